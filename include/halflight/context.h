@@ -1,0 +1,105 @@
+/* halflight/context.h - the context: memory, messages, progress and cancellation.
+ *
+ * Every other object is made with a context and must not outlive it. The library keeps no
+ * global state, prints nothing, never exits and reads no environment variables.
+ */
+#ifndef HALFLIGHT_CONTEXT_H
+#define HALFLIGHT_CONTEXT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__) || defined(__clang__)
+#define HL_API __attribute__((visibility("default")))
+#define HL_WARN_UNUSED __attribute__((warn_unused_result))
+#else
+#define HL_API
+#define HL_WARN_UNUSED
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define HL_VERSION_MAJOR 0
+#define HL_VERSION_MINOR 1
+#define HL_VERSION_PATCH 0
+
+typedef enum hl_status {
+  HL_OK = 0,
+  HL_ERROR_ARGUMENT = 1,    /* a call's argument is impossible: null, out of range, wrong struct_size */
+  HL_ERROR_MEMORY = 2,      /* the allocator returned null, or the context's memory limit was reached */
+  HL_ERROR_IO = 3,          /* a file could not be opened, read, written or renamed */
+  HL_ERROR_INPUT = 4,       /* a file or a scene is malformed */
+  HL_ERROR_UNSUPPORTED = 5, /* well-formed, but this version cannot do it */
+  HL_ERROR_CANCELLED = 6,   /* the context's cancel callback said stop */
+  HL_ERROR_INTERNAL = 7     /* a fault in the library itself */
+} hl_status;
+
+/* What went wrong, for a person. Filled by every fallible call that is given one; a null
+ * pointer is always allowed. `message` is one line that names the file or key, the place and
+ * the mend. line and column count from 1; 0 means not applicable. byte_offset is -1 if unknown. */
+typedef struct hl_error {
+  hl_status code;
+  int line;
+  int column;
+  int64_t byte_offset;
+  char message[1000];
+} hl_error;
+
+typedef enum hl_log_level { HL_LOG_WARNING = 1, HL_LOG_INFO = 2 } hl_log_level;
+
+/* Instruction sets of the hot functions, in rising order. Each gives the same bytes. */
+typedef enum hl_instruction_set {
+  HL_INSTRUCTION_SET_AUTO = 0,   /* the best that the processor has */
+  HL_INSTRUCTION_SET_SCALAR = 1, /* the compiler's baseline for the target */
+  HL_INSTRUCTION_SET_AVX2 = 2,
+  HL_INSTRUCTION_SET_AVX512 = 3
+} hl_instruction_set;
+
+/* All callbacks may be null (a default is used) and receive user_data. They may be called
+ * from the thread that called into the library only, except allocate and release, which may be
+ * called from any of its threads. */
+typedef struct hl_context_options {
+  size_t struct_size; /* set by hl_context_options_defaults() */
+  void *user_data;
+  /* Returns size bytes aligned to alignment (a power of two, at least 64), or null. */
+  void *(*allocate)(void *user_data, size_t size, size_t alignment);
+  void (*release)(void *user_data, void *memory);
+  void (*log)(void *user_data, hl_log_level level, const char *message);
+  /* fraction in [0,1] of the named stage ("load", "prepare", "render", "write"). */
+  void (*progress)(void *user_data, const char *stage, double fraction);
+  /* Asked often; a non-zero answer makes the running call return HL_ERROR_CANCELLED. */
+  int (*cancelled)(void *user_data);
+  uint64_t memory_limit;                /* bytes held through this context at once; 0: no limit */
+  hl_instruction_set instruction_set;   /* an unsupported choice is refused */
+} hl_context_options;
+
+typedef struct hl_context hl_context; /* usable from several threads at once */
+
+HL_API void hl_context_options_defaults(hl_context_options *options);
+
+/* options may be null for the defaults. *context is owned by the caller. */
+HL_API HL_WARN_UNUSED hl_status hl_context_create(const hl_context_options *options,
+                                                  hl_context **context, hl_error *error);
+
+/* Null is allowed. Everything made with the context must be released before. */
+HL_API void hl_context_destroy(hl_context *context);
+
+/* Bytes now held through the context, and the most it ever held. */
+HL_API uint64_t hl_context_memory_held(const hl_context *context);
+HL_API uint64_t hl_context_memory_peak(const hl_context *context);
+
+HL_API hl_instruction_set hl_context_instruction_set(const hl_context *context);
+HL_API const char *hl_instruction_set_name(hl_instruction_set set);
+
+/* "ok", "malformed input", ...; never null. */
+HL_API const char *hl_status_name(hl_status status);
+
+/* "0.1.0" */
+HL_API const char *hl_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

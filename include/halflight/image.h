@@ -1,0 +1,62 @@
+/* halflight/image.h - pictures: linear premultiplied RGBA in float, top row first. */
+#ifndef HALFLIGHT_IMAGE_H
+#define HALFLIGHT_IMAGE_H
+
+#include "context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct hl_image hl_image;
+
+/* width x height pixels, all zero. *image is owned by the caller. */
+HL_API HL_WARN_UNUSED hl_status hl_image_create(hl_context *context, int width, int height,
+                                                hl_image **image, hl_error *error);
+HL_API void hl_image_destroy(hl_image *image); /* null is allowed */
+
+HL_API int hl_image_width(const hl_image *image);
+HL_API int hl_image_height(const hl_image *image);
+/* [height][width][4]: linear premultiplied R, G, B, A; valid as long as the image. */
+HL_API float *hl_image_pixels(hl_image *image);
+HL_API const float *hl_image_pixels_const(const hl_image *image);
+
+typedef struct hl_image_write_options {
+  size_t struct_size;      /* set by hl_image_write_options_defaults() */
+  int png_depth;           /* 8 or 16 */
+  double background[3];    /* linear RGB; PNG only */
+  int background_transparent; /* PNG keeps alpha (unassociated, as PNG demands) */
+  const char *scene_json;  /* stored in the PNG as the text chunk "halflight:scene"; may be null */
+} hl_image_write_options;
+
+HL_API void hl_image_write_options_defaults(hl_image_write_options *options);
+
+/* By extension: .png (sRGB, composited over the background), .exr (linear float), .npy (float32,
+ * height x width x 4). Written to a temporary name beside path and renamed: never half a file.
+ * options may be null. */
+HL_API HL_WARN_UNUSED hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
+                                               const hl_image_write_options *options, hl_error *error);
+
+/* Reads .png (sRGB decoded), .exr (R, G, B, A; missing A is 1) and .npy (float32, height x width x 1, 3 or 4). */
+HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
+                                              hl_error *error);
+
+/* Differences of b against a over R, G, B, A, linear premultiplied. */
+typedef struct hl_image_difference {
+  size_t struct_size;        /* set by the caller */
+  double rmse;               /* root mean square over all pixels and channels */
+  double maximum;            /* greatest absolute difference */
+  double percentile_99_9;    /* of the pixels' greatest absolute difference */
+  double mean_signed[4];     /* mean of b - a per channel */
+  double rmse_channel[4];
+  uint64_t differing_pixels; /* pixels that are not equal */
+  int maximum_x, maximum_y;  /* where the greatest difference is */
+} hl_image_difference;
+
+HL_API HL_WARN_UNUSED hl_status hl_image_compare(const hl_image *a, const hl_image *b,
+                                                 hl_image_difference *difference, hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,59 @@
+/* halflight/render.h - from a scene to an image. */
+#ifndef HALFLIGHT_RENDER_H
+#define HALFLIGHT_RENDER_H
+
+#include "image.h"
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Reusable: keeps buffers and prepared volumes between frames. One thread at a time. */
+typedef struct hl_renderer hl_renderer;
+
+typedef struct hl_render_statistics {
+  size_t struct_size;         /* set by the caller to sizeof(hl_render_statistics) */
+  double seconds_prepare;     /* bricks, transfer-function tables, buffers */
+  double seconds_render;      /* the sheets */
+  int sheets;                 /* summed over sweeps */
+  int sweeps;                 /* one per slicing direction */
+  int threads;
+  hl_instruction_set instruction_set;
+  uint64_t voxels_total;
+  uint64_t voxels_kept;       /* that can matter to the picture */
+  uint64_t samples_shaded;    /* image samples classified, lit and composited */
+  uint64_t tiles_filled_image, tiles_filled_light;   /* sheet tiles reconstructed */
+  uint64_t tiles_skipped_image, tiles_skipped_light; /* skipped because they were already opaque or dark */
+  /* seconds of the calling thread per stage, summing to seconds_render */
+  double seconds_sort, seconds_fill_image, seconds_fill_light, seconds_shade, seconds_light, seconds_soften;
+} hl_render_statistics;
+
+HL_API HL_WARN_UNUSED hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_error *error);
+HL_API void hl_renderer_destroy(hl_renderer *renderer); /* null is allowed */
+
+/* pixels: the caller's buffer, [height][row_stride] floats, width x 4 of them used in each row: linear
+ * premultiplied RGBA of the volumes alone (no background), top row first. row_stride in floats, at
+ * least 4 x width. statistics may be null. On an error the buffer's content is undefined. */
+HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float *pixels,
+                                                   size_t row_stride, hl_render_statistics *statistics,
+                                                   hl_error *error);
+
+typedef struct hl_reference_options {
+  size_t struct_size;   /* set by hl_reference_options_defaults() */
+  int light_points;     /* points on each extended light; default 1024 */
+  double step;          /* marching step in smallest voxel edges; default 0.25 */
+  int threads;          /* 0: one per processor */
+} hl_reference_options;
+
+HL_API void hl_reference_options_defaults(hl_reference_options *options);
+
+/* The oracle: a slow double-precision ray marcher that shares no rendering code with the sheets. */
+HL_API HL_WARN_UNUSED hl_status hl_reference_render(hl_context *context, const hl_scene *scene,
+                                                    const hl_reference_options *options, float *pixels,
+                                                    size_t row_stride, hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

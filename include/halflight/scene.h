@@ -1,0 +1,201 @@
+/* halflight/scene.h - what is rendered: camera, lights, volumes, settings.
+ *
+ * A description is plain data; hl_scene_create() checks it and keeps a deep copy, immutable from
+ * then on. Lengths in world units, angles in degrees, colours linear RGB, right-handed.
+ */
+#ifndef HALFLIGHT_SCENE_H
+#define HALFLIGHT_SCENE_H
+
+#include "volume.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum hl_camera_type { HL_CAMERA_PERSPECTIVE = 0, HL_CAMERA_ORTHOGRAPHIC = 1 } hl_camera_type;
+
+typedef struct hl_camera {
+  hl_camera_type type;
+  double position[3], target[3], up[3];
+  double fovy_deg; /* perspective: vertical field of view */
+  double height;   /* orthographic: world height of the picture */
+} hl_camera;
+
+typedef enum hl_light_type {
+  HL_LIGHT_DIRECTIONAL = 0,
+  HL_LIGHT_POINT = 1,
+  HL_LIGHT_SPOT = 2,
+  HL_LIGHT_RECT = 3,
+  HL_LIGHT_DISK = 4,
+  HL_LIGHT_POLYGON = 5
+} hl_light_type;
+
+typedef enum hl_shadows {
+  HL_SHADOWS_DEFAULT = 0, /* a light's: as the render settings say */
+  HL_SHADOWS_OFF = 1,
+  HL_SHADOWS_HARD = 2,
+  HL_SHADOWS_SOFT = 3
+} hl_shadows;
+
+typedef enum hl_falloff { HL_FALLOFF_NONE = 0, HL_FALLOFF_INVERSE_SQUARE = 1 } hl_falloff;
+
+typedef struct hl_light {
+  hl_light_type type;
+  double direction[3];          /* directional, spot: the way the light travels */
+  double angular_diameter_deg;  /* directional: > 0 is soft */
+  double position[3];           /* point, spot, rect, disk (its centre) */
+  double radius;                /* point (a sphere), spot, disk */
+  double normal[3];             /* disk */
+  double edge1[3], edge2[3];    /* rect: full edges */
+  double opening_angle_deg;     /* spot: full angle */
+  double falloff_angle_deg;     /* spot: width of the smooth edge */
+  const double (*vertices)[3];  /* polygon; [vertex_count][3] */
+  size_t vertex_count;
+  double color[3];
+  double intensity;             /* I_light = color * intensity at the sample (no falloff unless asked) */
+  hl_falloff falloff;
+  hl_shadows shadows;
+} hl_light;
+
+typedef struct hl_opacity_point { double value, opacity; } hl_opacity_point;
+typedef struct hl_color_point { double value; double color[3]; } hl_color_point;
+
+/* Piecewise linear in data values, constant beyond the end points. */
+typedef struct hl_transfer_function {
+  double unit_distance;             /* world units; opacities are per this length */
+  const hl_opacity_point *opacity;  /* sorted by value */
+  size_t opacity_count;
+  const hl_color_point *color;      /* sorted by value; linear RGB */
+  size_t color_count;
+} hl_transfer_function;
+
+typedef enum hl_shading { HL_SHADING_PHONG = 0, HL_SHADING_NONE = 1 } hl_shading;
+
+typedef struct hl_material { double ambient, diffuse, specular, shininess; } hl_material; /* ka kd ks n */
+
+typedef struct hl_scene_volume {
+  const char *name;             /* may be null */
+  const char *file;             /* where the voxels came from, for hl_scene_to_json; may be null */
+  hl_volume *volume;            /* retained by the scene */
+  double scale;                 /* transform: scale, then rotate, then translate */
+  double rotate_axis[3];
+  double rotate_angle_deg;
+  double translate[3];
+  hl_transfer_function transfer_function;
+  hl_shading shading;
+  hl_material material;
+  double attenuation_color[3];  /* relative extinction of R, G, B */
+  int visible, casts_shadow, receives_shadow;
+  int clipped;                  /* non-zero: only the box clip_min..clip_max is there */
+  double clip_min[3], clip_max[3]; /* world units of the volume's own file, before the transform */
+} hl_scene_volume;
+
+typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
+typedef enum hl_kernel { HL_KERNEL_BSPLINE = 0, HL_KERNEL_GAUSSIAN = 1, HL_KERNEL_LINEAR = 2 } hl_kernel;
+typedef enum hl_reconstruction {
+  HL_RECONSTRUCTION_AUTO = 0,
+  HL_RECONSTRUCTION_SPLAT = 1,
+  HL_RECONSTRUCTION_GATHER = 2
+} hl_reconstruction;
+typedef enum hl_slicing { HL_SLICING_HALF_VECTOR = 0, HL_SLICING_IMAGE_ALIGNED = 1 } hl_slicing;
+typedef enum hl_shadow_lookup { HL_LOOKUP_BILINEAR = 0, HL_LOOKUP_NEAREST = 1 } hl_shadow_lookup;
+
+typedef struct hl_render_settings {
+  hl_shadows shadows;          /* off, hard or soft */
+  hl_soft_method soft_method;
+  int light_samples;           /* sublights: M, for M x M parts */
+  double sheet_spacing;        /* in voxels: the smallest voxel edge of the scene */
+  hl_kernel kernel;
+  hl_reconstruction reconstruction;
+  hl_slicing slicing;
+  hl_shadow_lookup shadow_lookup;
+  int shadow_resolution;       /* pixels along the longer side; 0: auto */
+  int threads;                 /* 0: one per processor */
+} hl_render_settings;
+
+typedef struct hl_scene_description {
+  size_t struct_size;          /* set by hl_scene_description_defaults() */
+  int width, height;           /* pixels */
+  double background[3];        /* linear RGB */
+  int background_transparent;  /* PNG keeps alpha */
+  hl_camera camera;
+  double ambient[3];           /* Ia */
+  const hl_light *lights;
+  size_t light_count;
+  const hl_scene_volume *volumes;
+  size_t volume_count;
+  hl_render_settings render;
+} hl_scene_description;
+
+typedef struct hl_scene hl_scene; /* immutable and counted */
+
+/* Documented defaults of each part. */
+HL_API void hl_scene_description_defaults(hl_scene_description *description);
+HL_API void hl_light_defaults(hl_light *light);
+HL_API void hl_scene_volume_defaults(hl_scene_volume *volume);
+
+/* Checks everything, copies everything, retains the volumes. Errors name the place as a JSON
+ * pointer ("/lights/0/radius"). */
+HL_API HL_WARN_UNUSED hl_status hl_scene_create(hl_context *context, const hl_scene_description *description,
+                                                hl_scene **scene, hl_error *error);
+
+/* Reads a scene file and the volumes it names; relative paths are relative to the file. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_load(hl_context *context, const char *path, hl_scene **scene,
+                                              hl_error *error);
+
+/* text: UTF-8, length bytes. base_folder: where relative paths start (null: the current folder).
+ * name: what errors call the text. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_from_json(hl_context *context, const char *text, size_t length,
+                                                   const char *base_folder, const char *name,
+                                                   hl_scene **scene, hl_error *error);
+
+/* The scene as JSON text, null-terminated; free with hl_text_release(). */
+HL_API HL_WARN_UNUSED hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text,
+                                                 hl_error *error);
+HL_API void hl_text_release(hl_context *context, char *text);
+
+/* A scene that shows one volume well with no further choice: three-quarter view, automatic transfer
+ * function, key light from the upper left with soft shadows. file may be null (see hl_scene_volume). */
+HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
+                                                    hl_scene **scene, hl_error *error);
+
+/* The scene's own copy: valid as long as the scene; change a copy of it and create another scene. */
+HL_API const hl_scene_description *hl_scene_describe(const hl_scene *scene);
+
+HL_API void hl_scene_retain(hl_scene *scene);
+HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
+
+/* Places the camera so that all visible volumes fill the picture. Angles as for --azimuth and
+ * --elevation: azimuth 0 looks along the world's +y, positive turns the eye to the right;
+ * elevation 90 looks straight down z. zoom 1 frames everything. camera->type and fovy_deg are kept. */
+HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg,
+                                                double elevation_deg, double zoom, hl_camera *camera);
+
+/* The direction (unit, the way light travels) of a light that stands, seen by the camera, at azimuth
+ * (positive: right) and elevation (positive: up) from the line of sight: 0,0 is a headlight. */
+HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
+                               double direction[3]);
+
+/* Transfer functions made by the library own their points: free with hl_transfer_function_release(). */
+/* From the volume's histogram: separates air from things in CT, MR and simulations alike. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
+                                                               hl_transfer_function *function, hl_error *error);
+/* name: one of hl_preset_name(0..). Presets in units of the volume's own kind adapt to its range. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context, const char *name,
+                                                            const hl_volume *volume,
+                                                            hl_transfer_function *function, hl_error *error);
+/* Replaces the colours by a named colormap over [low, high]. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *context, const char *name,
+                                                              double low, double high,
+                                                              hl_transfer_function *function, hl_error *error);
+/* Reads Halflight's own JSON object, ParaView's .json colour maps or Slicer's .vp.json. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load(hl_context *context, const char *path,
+                                                          hl_transfer_function *function, hl_error *error);
+HL_API void hl_transfer_function_release(hl_context *context, hl_transfer_function *function);
+HL_API const char *hl_preset_name(size_t index);   /* null past the last */
+HL_API const char *hl_colormap_name(size_t index); /* null past the last */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,84 @@
+/* halflight/volume.h - a regular grid of scalar voxels with its place in the world.
+ *
+ * Voxel (i, j, k) has its centre at world = origin + i*axis[0] + j*axis[1] + k*axis[2]; i runs
+ * fastest in memory. Volumes are immutable and counted: retain and release.
+ */
+#ifndef HALFLIGHT_VOLUME_H
+#define HALFLIGHT_VOLUME_H
+
+#include "context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum hl_voxel_type {
+  HL_VOXEL_U8 = 1,
+  HL_VOXEL_I8 = 2,
+  HL_VOXEL_U16 = 3,
+  HL_VOXEL_I16 = 4,
+  HL_VOXEL_U32 = 5,
+  HL_VOXEL_I32 = 6,
+  HL_VOXEL_F32 = 7,
+  HL_VOXEL_F64 = 8
+} hl_voxel_type;
+
+typedef struct hl_volume hl_volume;
+
+/* How voxels lie in the caller's memory. */
+typedef struct hl_volume_description {
+  size_t struct_size;        /* set by hl_volume_description_defaults() */
+  size_t dimensions[3];      /* voxels along i, j, k; each at least 1 */
+  hl_voxel_type type;        /* native byte order */
+  double origin[3];          /* world position of the centre of voxel (0,0,0); default 0 */
+  double axis[3][3];         /* axis[a]: world step of one voxel along index axis a; default unit */
+  double value_scale;        /* data value = value_scale * stored + value_offset; default 1 */
+  double value_offset;       /* default 0 */
+  const void *voxels;        /* voxel (0,0,0) */
+  ptrdiff_t stride_bytes[3]; /* bytes from one voxel to the next along i, j, k; all 0: packed */
+  int borrow;                /* non-zero: packed u8, u16 and f32 voxels are not copied and must outlive the volume */
+} hl_volume_description;
+
+#define HL_HISTOGRAM_BINS 256
+
+/* What a volume is. All values are data values (scale and offset applied). */
+typedef struct hl_volume_info {
+  size_t struct_size;          /* set by the caller to sizeof(hl_volume_info) */
+  size_t dimensions[3];
+  hl_voxel_type type;          /* as in the file */
+  double spacing[3];           /* length of each axis, world units */
+  double origin[3];
+  double direction[3][3];      /* direction[row][column]; columns are the unit axes */
+  double range[2];             /* least and greatest finite value; 0, 0 if there is none */
+  double mean;                 /* over finite voxels */
+  uint64_t nonfinite_count;    /* NaN and infinite voxels: transparent when rendered */
+  uint64_t histogram[HL_HISTOGRAM_BINS]; /* equal bins over range, finite voxels */
+} hl_volume_info;
+
+HL_API void hl_volume_description_defaults(hl_volume_description *description);
+
+/* Voxels are copied unless description->borrow. *volume is owned by the caller (release it). */
+HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
+                                                 const hl_volume_description *description,
+                                                 hl_volume **volume, hl_error *error);
+
+/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti and legacy .vtk files, told by content
+ * first and by name where the content has no mark. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path,
+                                               hl_volume **volume, hl_error *error);
+
+HL_API void hl_volume_retain(hl_volume *volume);
+HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
+
+HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info);
+
+/* The data value of one voxel, NaN where it is not finite or outside the grid. */
+HL_API double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k);
+
+/* "uint8", "int16", "float32", ... */
+HL_API const char *hl_voxel_type_name(hl_voxel_type type);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,94 @@
+/* core/context.c - creation of contexts, and their callbacks. */
+#include "core/context.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/cpu.h"
+#include "core/error.h"
+
+static void *default_allocate(void *user_data, size_t size, size_t alignment) {
+  (void)user_data;
+  size_t rounded = (size + alignment - 1) / alignment * alignment;
+  return rounded < size ? NULL : aligned_alloc(alignment, rounded);
+}
+
+static void default_release(void *user_data, void *memory) {
+  (void)user_data;
+  free(memory);
+}
+
+void hl_context_options_defaults(hl_context_options *options) {
+  if (options == NULL) return;
+  memset(options, 0, sizeof *options);
+  options->struct_size = sizeof *options;
+}
+
+hl_status hl_context_create(const hl_context_options *options, hl_context **context, hl_error *error) {
+  if (context == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "hl_context_create: context is null");
+  *context = NULL;
+  hl_context_options chosen;
+  hl_context_options_defaults(&chosen);
+  if (options != NULL) {
+    if (options->struct_size != sizeof *options)
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "hl_context_create: struct_size is %zu, expected %zu: call hl_context_options_defaults first",
+                     options->struct_size, sizeof *options);
+    chosen = *options;
+  }
+  if ((chosen.allocate == NULL) != (chosen.release == NULL))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_context_create: give both allocate and release, or neither");
+  if (chosen.allocate == NULL) {
+    chosen.allocate = default_allocate;
+    chosen.release = default_release;
+  }
+  hl_instruction_set best = hl_cpu_best_instruction_set();
+  if (chosen.instruction_set == HL_INSTRUCTION_SET_AUTO) chosen.instruction_set = best;
+  if (chosen.instruction_set > best)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "instruction set %s: this processor or build has at most %s",
+                   hl_instruction_set_name(chosen.instruction_set), hl_instruction_set_name(best));
+  hl_context *made = chosen.allocate(chosen.user_data, sizeof *made, 64);
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "a context");
+  made->options = chosen;
+  atomic_init(&made->held, 0);
+  atomic_init(&made->peak, 0);
+  *context = made;
+  return HL_OK;
+}
+
+void hl_context_destroy(hl_context *context) {
+  if (context == NULL) return;
+  context->options.release(context->options.user_data, context);
+}
+
+uint64_t hl_context_memory_held(const hl_context *context) {
+  return context == NULL ? 0 : atomic_load(&((hl_context *)context)->held);
+}
+
+uint64_t hl_context_memory_peak(const hl_context *context) {
+  return context == NULL ? 0 : atomic_load(&((hl_context *)context)->peak);
+}
+
+hl_instruction_set hl_context_instruction_set(const hl_context *context) {
+  return context == NULL ? HL_INSTRUCTION_SET_AUTO : context->options.instruction_set;
+}
+
+void hl_log(const hl_context *context, hl_log_level level, const char *format, ...) {
+  if (context->options.log == NULL) return;
+  char line[1000];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  context->options.log(context->options.user_data, level, line);
+}
+
+void hl_progress(const hl_context *context, const char *stage, double fraction) {
+  if (context->options.progress != NULL) context->options.progress(context->options.user_data, stage, fraction);
+}
+
+bool hl_cancelled(const hl_context *context) {
+  return context->options.cancelled != NULL && context->options.cancelled(context->options.user_data) != 0;
+}

@@ -1,0 +1,20 @@
+/* core/context.h - the inside of hl_context. */
+#ifndef HL_CORE_CONTEXT_H
+#define HL_CORE_CONTEXT_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+
+#include <halflight/context.h>
+
+struct hl_context {
+  hl_context_options options;             /* callbacks filled in; instruction_set resolved */
+  atomic_uint_least64_t held, peak;       /* bytes */
+};
+
+void hl_log(const hl_context *context, hl_log_level level, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+void hl_progress(const hl_context *context, const char *stage, double fraction);
+bool hl_cancelled(const hl_context *context);
+
+#endif

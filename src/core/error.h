@@ -1,0 +1,21 @@
+/* core/error.h - how every fallible function reports: a status, and a line for a person. */
+#ifndef HL_CORE_ERROR_H
+#define HL_CORE_ERROR_H
+
+#include <halflight/context.h>
+
+/* Fills *error (may be null) with the formatted line and returns code. */
+__attribute__((format(printf, 3, 4))) hl_status hl_fail(hl_error *error, hl_status code, const char *format, ...);
+
+/* The same with a place: line and column from 1 (0: none). */
+__attribute__((format(printf, 5, 6))) hl_status hl_fail_at(hl_error *error, hl_status code, int line, int column,
+                                                           const char *format, ...);
+
+/* The same with a byte offset into the input. */
+__attribute__((format(printf, 4, 5))) hl_status hl_fail_offset(hl_error *error, hl_status code, int64_t offset,
+                                                               const char *format, ...);
+
+/* "out of memory: NAME needs N bytes ..." */
+hl_status hl_fail_memory(hl_error *error, size_t bytes, const char *what);
+
+#endif

@@ -1,0 +1,34 @@
+/* core/file.h - whole files in, and outputs that appear complete or not at all. */
+#ifndef HL_CORE_FILE_H
+#define HL_CORE_FILE_H
+
+#include <stdio.h>
+
+#include "core/error.h"
+
+/* Reads a whole file of at most limit bytes. *bytes is owned by the caller (hl_release) and is
+ * followed by one zero byte. */
+hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes, size_t *length,
+                       hl_error *error);
+
+/* An output under a temporary name beside its final one. */
+typedef struct hl_output {
+  hl_context *context;
+  char *path;           /* owned; the final name */
+  char *temporary_path; /* owned */
+  FILE *file;           /* null for outputs that another library opens by temporary_path */
+} hl_output;
+
+/* Creates the temporary file and opens it for writing. */
+hl_status hl_output_begin(hl_context *context, const char *path, hl_output *output, hl_error *error);
+/* Flushes, closes and renames; on failure the temporary file is removed and the old file stands. */
+hl_status hl_output_commit(hl_output *output, hl_error *error);
+/* Closes and removes the temporary file; harmless after a commit. */
+void hl_output_abort(hl_output *output);
+
+/* folder + "/" + path, or path itself where it is absolute or folder is null or empty; null without memory. */
+char *hl_path_join(hl_context *context, const char *folder, const char *path);
+/* The folder part of a path ("" if none), owned by the caller; null without memory. */
+char *hl_path_folder(hl_context *context, const char *path);
+
+#endif
