@@ -1,0 +1,22 @@
+/* volume/convert.h - from the types of files and callers to the three storage types.
+ *
+ * signed integers   sign bit flipped: stored = value + 2^(bits-1), undone by the volume's value_offset
+ * u32, i32, f64     nearest f32; doubles beyond its range become infinite (transparent)
+ */
+#ifndef HL_VOLUME_CONVERT_H
+#define HL_VOLUME_CONVERT_H
+
+#include <stdbool.h>
+
+#include "volume/volume.h"
+
+hl_storage hl_voxel_type_storage(hl_voxel_type type);
+
+/* stored - value: 128 for i8, 32768 for i16, else 0. */
+double hl_voxel_type_bias(hl_voxel_type type);
+
+/* Converts count packed voxels; swap: they are in the other byte order. source needs no alignment; it
+ * may be destination itself where both types have the same size. */
+void hl_voxels_store(hl_voxel_type type, bool swap, const void *source, size_t count, void *destination);
+
+#endif

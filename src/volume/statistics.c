@@ -1,0 +1,146 @@
+/* volume/statistics.c - range, mean, histogram and non-finite count of a volume.
+ *
+ * u8 and u16 voxels are counted per stored value, everything else follows from the counts exactly. f32
+ * voxels take one pass for range, sum and finiteness, and one for the histogram.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "volume/volume.h"
+
+enum { LANES = 8 };
+
+/* Stored values; low > high if no voxel is finite. */
+typedef struct tally {
+  double low, high, sum;
+  uint64_t finite;
+} tally;
+
+/* Equal bins over [low, high] in data order: a negative value_scale runs them from high to low. */
+typedef struct binning {
+  double anchor, factor;
+} binning;
+
+static binning make_binning(tally total, double value_scale) {
+  double width = total.high - total.low;
+  if (!(width > 0)) return (binning){total.low, 0};
+  return value_scale > 0 ? (binning){total.low, HL_HISTOGRAM_BINS / width}
+                         : (binning){total.high, -HL_HISTOGRAM_BINS / width};
+}
+
+static int bin_of(binning bins, double stored) {
+  int bin = (int)((stored - bins.anchor) * bins.factor);
+  return bin < HL_HISTOGRAM_BINS - 1 ? bin : HL_HISTOGRAM_BINS - 1;
+}
+
+static void count_u8(const uint8_t *voxels, size_t count, uint64_t *counts) {
+  uint64_t lanes[4][256] = {{0}}; /* apart, so that runs of equal values do not wait for each other */
+  size_t n = 0;
+  for (; n + 4 <= count; n += 4)
+    for (int lane = 0; lane < 4; lane++) lanes[lane][voxels[n + (size_t)lane]]++;
+  for (; n < count; n++) lanes[0][voxels[n]]++;
+  for (int value = 0; value < 256; value++)
+    counts[value] = lanes[0][value] + lanes[1][value] + lanes[2][value] + lanes[3][value];
+}
+
+static void count_u16(const uint16_t *voxels, size_t count, uint64_t *counts) {
+  memset(counts, 0, 65536 * sizeof *counts);
+  for (size_t n = 0; n < count; n++) counts[voxels[n]]++;
+}
+
+static tally tally_counts(const uint64_t *counts, int values) {
+  tally total = {INFINITY, -INFINITY, 0, 0};
+  for (int value = 0; value < values; value++) {
+    if (counts[value] == 0) continue;
+    if (total.finite == 0) total.low = value;
+    total.high = value;
+    total.sum += (double)value * (double)counts[value];
+    total.finite += counts[value];
+  }
+  return total;
+}
+
+static void bin_counts(const uint64_t *counts, int values, binning bins, uint64_t *histogram) {
+  for (int value = 0; value < values; value++)
+    if (counts[value] != 0) histogram[bin_of(bins, value)] += counts[value];
+}
+
+static tally tally_f32(const float *voxels, size_t count) {
+  float low[LANES], high[LANES];
+  double sum[LANES] = {0};
+  uint64_t finite[LANES] = {0};
+  for (int lane = 0; lane < LANES; lane++) {
+    low[lane] = INFINITY;
+    high[lane] = -INFINITY;
+  }
+  for (size_t start = 0; start < count; start += LANES) {
+    float group[LANES];
+    size_t present = count - start < LANES ? count - start : LANES;
+    for (size_t lane = present; lane < LANES; lane++) group[lane] = NAN;
+    memcpy(group, voxels + start, present * sizeof *group);
+    for (int lane = 0; lane < LANES; lane++) {
+      float value = group[lane];
+      bool is_finite = fabsf(value) <= FLT_MAX;
+      float least = is_finite ? value : INFINITY, greatest = is_finite ? value : -INFINITY;
+      low[lane] = least < low[lane] ? least : low[lane];
+      high[lane] = greatest > high[lane] ? greatest : high[lane];
+      sum[lane] += is_finite ? (double)value : 0.0;
+      finite[lane] += is_finite;
+    }
+  }
+  tally total = {INFINITY, -INFINITY, 0, 0};
+  for (int lane = 0; lane < LANES; lane++) {
+    total.low = fmin(total.low, low[lane]);
+    total.high = fmax(total.high, high[lane]);
+    total.sum += sum[lane];
+    total.finite += finite[lane];
+  }
+  return total;
+}
+
+static void bin_f32(const float *voxels, size_t count, binning bins, uint64_t *histogram) {
+  uint64_t lanes[4][HL_HISTOGRAM_BINS] = {{0}};
+  for (size_t n = 0; n < count; n++)
+    if (fabsf(voxels[n]) <= FLT_MAX) lanes[n & 3][bin_of(bins, voxels[n])]++;
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
+    histogram[bin] = lanes[0][bin] + lanes[1][bin] + lanes[2][bin] + lanes[3][bin];
+}
+
+static hl_status record(hl_volume *volume, tally total, const char *subject, hl_error *error) {
+  volume->nonfinite_count = hl_volume_voxel_count(volume) - total.finite;
+  volume->minimum = volume->maximum = volume->mean = 0;
+  if (total.finite == 0) return HL_OK;
+  double first = volume->value_scale * total.low + volume->value_offset;
+  double last = volume->value_scale * total.high + volume->value_offset;
+  volume->minimum = fmin(first, last);
+  volume->maximum = fmax(first, last);
+  volume->mean = volume->value_scale * (total.sum / (double)total.finite) + volume->value_offset;
+  if (!isfinite(volume->maximum - volume->minimum))
+    return hl_fail(error, HL_ERROR_INPUT, "%s: values scaled by %g and shifted by %g leave the range of numbers",
+                   subject, volume->value_scale, volume->value_offset);
+  return HL_OK;
+}
+
+hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *error) {
+  size_t count = hl_volume_voxel_count(volume);
+  memset(volume->histogram, 0, sizeof volume->histogram);
+  if (volume->storage == HL_STORAGE_F32) {
+    tally total = tally_f32(volume->voxels, count);
+    if (total.finite > 0)
+      bin_f32(volume->voxels, count, make_binning(total, volume->value_scale), volume->histogram);
+    return record(volume, total, subject, error);
+  }
+  int values = volume->storage == HL_STORAGE_U8 ? 256 : 65536;
+  uint64_t *counts = hl_allocate(volume->context, (size_t)values, sizeof *counts);
+  if (counts == NULL) return hl_fail_memory(error, (size_t)values * sizeof *counts, subject);
+  if (volume->storage == HL_STORAGE_U8)
+    count_u8(volume->voxels, count, counts);
+  else
+    count_u16(volume->voxels, count, counts);
+  tally total = tally_counts(counts, values);
+  bin_counts(counts, values, make_binning(total, volume->value_scale), volume->histogram);
+  hl_release(volume->context, counts);
+  return record(volume, total, subject, error);
+}

@@ -1,0 +1,230 @@
+/* volume/volume.c - volumes from memory, their life and their queries.
+ *
+ * In: a description by the caller, or decoded voxels by the file formats. Out: an immutable, counted
+ * hl_volume with its statistics. Everything that renders starts from here.
+ */
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "volume/convert.h"
+
+void hl_volume_description_defaults(hl_volume_description *description) {
+  if (description == NULL) return;
+  memset(description, 0, sizeof *description);
+  description->struct_size = sizeof *description;
+  description->type = HL_VOXEL_U8;
+  description->value_scale = 1;
+  for (int axis = 0; axis < 3; axis++) description->axis[axis][axis] = 1;
+}
+
+static affine3 index_to_world(const hl_volume_description *description) {
+  return (affine3){mat3_from_columns(vec3_of(description->axis[0]), vec3_of(description->axis[1]),
+                                     vec3_of(description->axis[2])),
+                   vec3_of(description->origin)};
+}
+
+static hl_status check_size(const hl_volume_description *description, const char *subject, hl_error *error) {
+  const size_t *dimension = description->dimensions;
+  size_t bytes = 8; /* the largest voxel, so that no later product overflows */
+  bool fits = true;
+  for (int axis = 0; axis < 3; axis++) {
+    if (dimension[axis] < 1)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: the size %zu x %zu x %zu has a zero: each must be at least 1", subject,
+                     dimension[0], dimension[1], dimension[2]);
+    fits = fits && dimension[axis] <= INT32_MAX && hl_multiply(bytes, dimension[axis], &bytes);
+  }
+  if (!fits || bytes > SIZE_MAX / 2)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the size %zu x %zu x %zu is beyond any memory", subject, dimension[0],
+                   dimension[1], dimension[2]);
+  return HL_OK;
+}
+
+hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject, hl_error *error) {
+  if (hl_voxel_type_bytes(description->type) == 0)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no voxel type %d", subject, (int)description->type);
+  hl_status status = check_size(description, subject, error);
+  if (status != HL_OK) return status;
+  if (!isfinite(description->value_scale) || !isfinite(description->value_offset) || description->value_scale == 0)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: value scale %g and offset %g: both must be finite, the scale not 0",
+                   subject, description->value_scale, description->value_offset);
+  affine3 place = index_to_world(description), inverse;
+  bool possible = affine3_invert(place, &inverse) && isfinite(vec3_length(inverse.offset)) &&
+                  isfinite(vec3_length(place.offset));
+  for (int axis = 0; axis < 3; axis++) {
+    double length = vec3_length(vec3_of(description->axis[axis]));
+    possible = possible && isfinite(length * (double)description->dimensions[axis]) && length > 0 &&
+               isfinite(vec3_length(inverse.linear.row[axis]));
+  }
+  if (!possible)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: origin and axes must be finite numbers, the axes not zero and not in one plane", subject);
+  return HL_OK;
+}
+
+/* Everything but the voxels. */
+static hl_volume *make_volume(hl_context *context, const hl_volume_description *description) {
+  hl_volume *volume = hl_allocate_zeroed(context, 1, sizeof *volume);
+  if (volume == NULL) return NULL;
+  volume->context = context;
+  atomic_init(&volume->references, 1);
+  memcpy(volume->dimension, description->dimensions, sizeof volume->dimension);
+  volume->type = description->type;
+  volume->storage = hl_voxel_type_storage(description->type);
+  volume->value_scale = description->value_scale;
+  volume->value_offset = description->value_offset - description->value_scale * hl_voxel_type_bias(description->type);
+  volume->index_to_world = index_to_world(description);
+  return volume;
+}
+
+static hl_status finish_volume(hl_volume *made, const char *subject, hl_volume **volume, hl_error *error) {
+  hl_status status = hl_volume_measure(made, subject, error);
+  if (status == HL_OK)
+    *volume = made;
+  else
+    hl_volume_release(made);
+  return status;
+}
+
+hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
+                          void *voxels, hl_volume **volume, hl_error *error) {
+  *volume = NULL;
+  hl_status status = hl_volume_check_grid(description, subject, error);
+  hl_volume *made = status == HL_OK ? make_volume(context, description) : NULL;
+  if (made == NULL) {
+    hl_release(context, voxels);
+    return status != HL_OK ? status : hl_fail_memory(error, sizeof *made, subject);
+  }
+  made->voxels = made->owned_voxels = voxels;
+  return finish_volume(made, subject, volume, error);
+}
+
+/* Gathers one row of count voxels of the given size, stride_bytes apart. */
+static void gather_row(const unsigned char *source, ptrdiff_t stride_bytes, size_t voxel_bytes, size_t count,
+                       unsigned char *row) {
+  switch (voxel_bytes) {
+    case 1: for (size_t i = 0; i < count; i++) row[i] = source[(ptrdiff_t)i * stride_bytes]; break;
+    case 2: for (size_t i = 0; i < count; i++) memcpy(row + 2 * i, source + (ptrdiff_t)i * stride_bytes, 2); break;
+    case 4: for (size_t i = 0; i < count; i++) memcpy(row + 4 * i, source + (ptrdiff_t)i * stride_bytes, 4); break;
+    default: for (size_t i = 0; i < count; i++) memcpy(row + 8 * i, source + (ptrdiff_t)i * stride_bytes, 8); break;
+  }
+}
+
+/* Copies strided voxels into stored form; row is scratch for one row in the caller's type. */
+static void copy_voxels(const hl_volume_description *description, const ptrdiff_t stride[3], unsigned char *row,
+                        unsigned char *destination) {
+  const size_t *dimension = description->dimensions;
+  size_t voxel_bytes = hl_voxel_type_bytes(description->type);
+  size_t row_bytes = dimension[0] * hl_storage_bytes(hl_voxel_type_storage(description->type));
+  for (size_t k = 0; k < dimension[2]; k++)
+    for (size_t j = 0; j < dimension[1]; j++) {
+      const unsigned char *source =
+          (const unsigned char *)description->voxels + (ptrdiff_t)j * stride[1] + (ptrdiff_t)k * stride[2];
+      if (stride[0] != (ptrdiff_t)voxel_bytes) {
+        gather_row(source, stride[0], voxel_bytes, dimension[0], row);
+        source = row;
+      }
+      hl_voxels_store(description->type, false, source, dimension[0], destination);
+      destination += row_bytes;
+    }
+}
+
+static bool choose_strides(const hl_volume_description *description, ptrdiff_t stride[3]) {
+  const ptrdiff_t *given = description->stride_bytes;
+  ptrdiff_t packed[3] = {(ptrdiff_t)hl_voxel_type_bytes(description->type), 0, 0};
+  packed[1] = packed[0] * (ptrdiff_t)description->dimensions[0];
+  packed[2] = packed[1] * (ptrdiff_t)description->dimensions[1];
+  bool is_packed = given[0] == 0 && given[1] == 0 && given[2] == 0;
+  memcpy(stride, is_packed ? packed : given, sizeof packed);
+  return memcmp(stride, packed, sizeof packed) == 0;
+}
+
+/* What is stored as it comes and lies as a vector load needs it. */
+static bool can_borrow(const hl_volume_description *description) {
+  hl_voxel_type type = description->type;
+  return (type == HL_VOXEL_U8 || type == HL_VOXEL_U16 || type == HL_VOXEL_F32) &&
+         (uintptr_t)description->voxels % hl_voxel_type_bytes(type) == 0;
+}
+
+hl_status hl_volume_create(hl_context *context, const hl_volume_description *description, hl_volume **volume,
+                           hl_error *error) {
+  static const char subject[] = "hl_volume_create";
+  if (volume != NULL) *volume = NULL;
+  if (context == NULL || description == NULL || volume == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: context, description and volume must not be null", subject);
+  if (description->struct_size != sizeof *description)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "%s: struct_size is %zu, expected %zu: call hl_volume_description_defaults first", subject,
+                   description->struct_size, sizeof *description);
+  if (description->voxels == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "%s: voxels is null", subject);
+  hl_status status = hl_volume_check_grid(description, subject, error);
+  if (status != HL_OK) {
+    if (error != NULL) error->code = HL_ERROR_ARGUMENT; /* here the grid is an argument, not a file */
+    return HL_ERROR_ARGUMENT;
+  }
+  ptrdiff_t stride[3];
+  bool packed = choose_strides(description, stride);
+  hl_volume *made = make_volume(context, description);
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "a volume");
+  if (packed && description->borrow && can_borrow(description)) {
+    made->voxels = description->voxels;
+    return finish_volume(made, subject, volume, error);
+  }
+  size_t count = hl_volume_voxel_count(made), voxel_bytes = hl_storage_bytes(made->storage);
+  unsigned char *row = hl_allocate(context, description->dimensions[0], hl_voxel_type_bytes(description->type));
+  made->voxels = made->owned_voxels = hl_allocate(context, count, voxel_bytes);
+  if (row == NULL || made->voxels == NULL) {
+    hl_release(context, row);
+    hl_volume_release(made);
+    return hl_fail_memory(error, count * voxel_bytes, "a volume");
+  }
+  copy_voxels(description, stride, row, made->owned_voxels);
+  hl_release(context, row);
+  return finish_volume(made, subject, volume, error);
+}
+
+void hl_volume_retain(hl_volume *volume) {
+  if (volume != NULL) atomic_fetch_add(&volume->references, 1);
+}
+
+void hl_volume_release(hl_volume *volume) {
+  if (volume == NULL || atomic_fetch_sub(&volume->references, 1) != 1) return;
+  hl_release(volume->context, volume->owned_voxels);
+  hl_release(volume->context, volume);
+}
+
+hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info) {
+  if (volume == NULL || info == NULL || info->struct_size != sizeof *info) return HL_ERROR_ARGUMENT;
+  memcpy(info->dimensions, volume->dimension, sizeof info->dimensions);
+  info->type = volume->type;
+  const double offset[3] = {volume->index_to_world.offset.x, volume->index_to_world.offset.y,
+                            volume->index_to_world.offset.z};
+  memcpy(info->origin, offset, sizeof offset);
+  for (int axis = 0; axis < 3; axis++) {
+    vec3 step = mat3_column(volume->index_to_world.linear, axis);
+    info->spacing[axis] = vec3_length(step);
+    info->direction[0][axis] = step.x / info->spacing[axis];
+    info->direction[1][axis] = step.y / info->spacing[axis];
+    info->direction[2][axis] = step.z / info->spacing[axis];
+  }
+  info->range[0] = volume->minimum;
+  info->range[1] = volume->maximum;
+  info->mean = volume->mean;
+  info->nonfinite_count = volume->nonfinite_count;
+  memcpy(info->histogram, volume->histogram, sizeof info->histogram);
+  return HL_OK;
+}
+
+double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
+  if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2]) return NAN;
+  size_t index = (k * volume->dimension[1] + j) * volume->dimension[0] + i;
+  double stored = 0;
+  switch (volume->storage) {
+    case HL_STORAGE_U8: stored = ((const uint8_t *)volume->voxels)[index]; break;
+    case HL_STORAGE_U16: stored = ((const uint16_t *)volume->voxels)[index]; break;
+    case HL_STORAGE_F32: stored = (double)((const float *)volume->voxels)[index]; break;
+  }
+  return isfinite(stored) ? volume->value_scale * stored + volume->value_offset : NAN;
+}
