@@ -28,6 +28,18 @@ void hl_transfer_function_color(const hl_transfer_function *function, double val
 /* True if some value in [low, high] has opacity above zero. */
 int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high);
 
+/* The transparent value in [low, high] that is nearest to target (inside them); false if there is none. */
+bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high, double target,
+                                      double *nearest);
+
+/* *to gets arrays of its own. */
+hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from, hl_transfer_function *to,
+                                    hl_error *error);
+
+/* The camera's unit axes: forward from position to target, up as near to the camera's up as a right angle allows.
+ * False if up was useless (along the line of sight): then z, or y where the sight is along z, stands in. */
+bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
+
 /* A value with opacity zero that the volume's surroundings and missing voxels take: the most frequent
  * transparent value; if no value is transparent, one below the volume's range, treated as transparent. */
 double hl_scene_volume_empty_value(const hl_scene_volume *volume);

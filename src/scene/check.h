@@ -1,0 +1,25 @@
+/* scene/check.h - is a description possible? The one place where limits of scenes are written down. */
+#ifndef HL_SCENE_CHECK_H
+#define HL_SCENE_CHECK_H
+
+#include <halflight/scene.h>
+
+#define HL_LIMIT_PIXELS 32768          /* image width and height */
+#define HL_LIMIT_LIGHTS 256
+#define HL_LIMIT_VOLUMES 256
+#define HL_LIMIT_POINTS 65536          /* of one transfer function */
+#define HL_LIMIT_LENGTH 1e15           /* any coordinate or length: squares and cubes stay finite */
+#define HL_LIMIT_LIGHT_SAMPLES 64
+#define HL_LIMIT_SHADOW_RESOLUTION 16384
+#define HL_LIMIT_THREADS 1024
+#define HL_LIMIT_SHININESS 10000
+#define HL_LIMIT_SHEET_SPACING_LOW 0.01
+#define HL_LIMIT_SHEET_SPACING_HIGH 100
+
+/* Every field of a description; the first fault is reported as "JSON pointer: what is wrong: the mend". */
+hl_status hl_description_check(const hl_scene_description *description, hl_error *error);
+
+/* One transfer function; place is what errors call it ("/volumes/0/transfer_function"). */
+hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place, hl_error *error);
+
+#endif

@@ -1,0 +1,73 @@
+/* scene/placement.c - where a scene's volume is in the world, which part of it is there, and what surrounds it. */
+#include "scene/scene.h"
+
+affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
+  mat3 turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  if (volume->rotate_angle_deg != 0)
+    turn = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), volume->rotate_angle_deg * HL_PI / 180);
+  for (int r = 0; r < 3; r++) turn.row[r] = vec3_scale(turn.row[r], volume->scale);
+  return affine3_multiply((affine3){turn, vec3_of(volume->translate)}, volume->volume->index_to_world);
+}
+
+/* Bounds in index space of the clip box, whose corners are in the file's own world. */
+static void clip_bounds(const hl_scene_volume *volume, affine3 world_to_index, double low[3], double high[3]) {
+  for (int a = 0; a < 3; a++) low[a] = INFINITY, high[a] = -INFINITY;
+  for (int corner = 0; corner < 8; corner++) {
+    vec3 world = {corner & 1 ? volume->clip_max[0] : volume->clip_min[0],
+                  corner & 2 ? volume->clip_max[1] : volume->clip_min[1],
+                  corner & 4 ? volume->clip_max[2] : volume->clip_min[2]};
+    vec3 index = affine3_apply(world_to_index, world);
+    double coordinate[3] = {index.x, index.y, index.z};
+    for (int a = 0; a < 3; a++) {
+      low[a] = fmin(low[a], coordinate[a]);
+      high[a] = fmax(high[a], coordinate[a]);
+    }
+  }
+}
+
+void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]) {
+  affine3 world_to_index;
+  for (int a = 0; a < 3; a++) {
+    low[a] = -0.5;
+    high[a] = (double)volume->volume->dimension[a] - 0.5;
+  }
+  if (!volume->clipped || !affine3_invert(volume->volume->index_to_world, &world_to_index)) return;
+  double clip_low[3], clip_high[3];
+  clip_bounds(volume, world_to_index, clip_low, clip_high);
+  for (int a = 0; a < 3; a++) {
+    double full_high = high[a];
+    low[a] = fmin(fmax(low[a], clip_low[a]), full_high);
+    high[a] = fmax(fmin(full_high, clip_high[a]), low[a]);
+  }
+}
+
+/* A value that voxels of this histogram bin really have, as far as that can be told: integers are integers,
+ * and the outermost bins hold the extreme values. */
+static double typical_value(const hl_volume *volume, int bin) {
+  double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS;
+  if (bin == 0) return volume->minimum;
+  if (bin == HL_HISTOGRAM_BINS - 1) return volume->maximum;
+  double value = volume->minimum + (bin + 0.5) * width;
+  if (volume->storage == HL_STORAGE_F32) return value;
+  double stored = round((value - volume->value_offset) / volume->value_scale);
+  double whole = volume->value_scale * stored + volume->value_offset;
+  return fabs(whole - value) <= 0.5 * width ? whole : value;
+}
+
+double hl_scene_volume_empty_value(const hl_scene_volume *volume) {
+  const hl_volume *v = volume->volume;
+  double width = (v->maximum - v->minimum) / HL_HISTOGRAM_BINS, empty = 0;
+  bool found = false;
+  uint64_t most = 0;
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
+    if (found && v->histogram[bin] <= most) continue;
+    double low = v->minimum + bin * width, high = bin == HL_HISTOGRAM_BINS - 1 ? v->maximum : low + width, value;
+    if (!hl_transfer_function_transparent(&volume->transfer_function, low, high, typical_value(v, bin), &value)) continue;
+    found = true;
+    most = v->histogram[bin];
+    empty = value;
+  }
+  if (found) return empty;
+  double range = v->maximum - v->minimum;
+  return v->minimum - (range > 0 ? range : 1);
+}

@@ -1,0 +1,192 @@
+/* scene/scene.c - defaults, and the immutable scene: a checked deep copy of a description.
+ *
+ * In: a description of plain data. Out: an hl_scene that owns every array and text in its copy and holds a
+ * reference to each volume. Renderers read it through hl_scene_describe().
+ */
+#include "scene/scene.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "scene/check.h"
+
+void hl_light_defaults(hl_light *light) {
+  *light = (hl_light){
+      .type = HL_LIGHT_DIRECTIONAL,
+      .direction = {0, 0, -1},
+      .normal = {0, 0, -1},
+      .edge1 = {1, 0, 0},
+      .edge2 = {0, 1, 0},
+      .opening_angle_deg = 40,
+      .falloff_angle_deg = 5,
+      .color = {1, 1, 1},
+      .intensity = 1,
+      .falloff = HL_FALLOFF_NONE,
+      .shadows = HL_SHADOWS_DEFAULT,
+  };
+}
+
+void hl_scene_volume_defaults(hl_scene_volume *volume) {
+  *volume = (hl_scene_volume){
+      .scale = 1,
+      .rotate_axis = {0, 0, 1},
+      .transfer_function = {.unit_distance = 1},
+      .shading = HL_SHADING_PHONG,
+      .material = {.ambient = 1, .diffuse = 0.7, .specular = 0.3, .shininess = 32},
+      .attenuation_color = {1, 1, 1},
+      .visible = 1,
+      .casts_shadow = 1,
+      .receives_shadow = 1,
+  };
+}
+
+void hl_scene_description_defaults(hl_scene_description *description) {
+  *description = (hl_scene_description){
+      .struct_size = sizeof(hl_scene_description),
+      .width = 512,
+      .height = 512,
+      .camera = {.type = HL_CAMERA_PERSPECTIVE, .position = {0, -1, 0}, .up = {0, 0, 1}, .fovy_deg = 30, .height = 1},
+      .ambient = {0.2, 0.2, 0.2},
+      .render = {.shadows = HL_SHADOWS_SOFT,
+                 .soft_method = HL_SOFT_CASCADE,
+                 .light_samples = 1,
+                 .sheet_spacing = 0.5,
+                 .kernel = HL_KERNEL_BSPLINE},
+  };
+}
+
+static void release_volume(hl_context *context, hl_scene_volume *volume) {
+  hl_release(context, (void *)volume->name);
+  hl_release(context, (void *)volume->file);
+  hl_transfer_function_release(context, &volume->transfer_function);
+  hl_volume_release(volume->volume);
+}
+
+static void destroy(hl_scene *scene) {
+  hl_context *context = scene->context;
+  hl_scene_description *d = &scene->description;
+  for (size_t v = 0; v < d->volume_count; v++) release_volume(context, (hl_scene_volume *)&d->volumes[v]);
+  hl_release(context, (void *)d->volumes);
+  hl_release(context, (void *)d->lights);
+  hl_release(context, scene);
+}
+
+/* *copy = items, in memory of its own; null for none. */
+static hl_status copy_array(hl_context *context, const void *items, size_t count, size_t size, const char *what,
+                            void **copy, hl_error *error) {
+  *copy = NULL;
+  if (count == 0) return HL_OK;
+  *copy = hl_allocate(context, count, size);
+  if (*copy == NULL) return hl_fail_memory(error, count * size, what);
+  memcpy(*copy, items, count * size);
+  return HL_OK;
+}
+
+static hl_status copy_text(hl_context *context, const char *text, const char **copy, hl_error *error) {
+  if (text == NULL) return HL_OK;
+  *copy = hl_copy_text(context, text);
+  return *copy != NULL ? HL_OK : hl_fail_memory(error, strlen(text) + 1, "a volume's name");
+}
+
+hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from, hl_transfer_function *to,
+                                    hl_error *error) {
+  void *opacity = NULL, *color = NULL;
+  hl_status status = copy_array(context, from->opacity, from->opacity_count, sizeof *from->opacity,
+                                "a transfer function", &opacity, error);
+  if (status != HL_OK) return status;
+  status = copy_array(context, from->color, from->color_count, sizeof *from->color, "a transfer function", &color, error);
+  if (status != HL_OK) {
+    hl_release(context, opacity);
+    return status;
+  }
+  *to = (hl_transfer_function){from->unit_distance, opacity, from->opacity_count, color, from->color_count};
+  return HL_OK;
+}
+
+/* to: owned parts are null until they are its own, so that release_volume() can follow a failure. */
+static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to, hl_error *error) {
+  *to = *from;
+  to->name = to->file = NULL;
+  to->transfer_function = (hl_transfer_function){0};
+  hl_volume_retain(to->volume);
+  hl_status status = copy_text(context, from->name, &to->name, error);
+  if (status == HL_OK) status = copy_text(context, from->file, &to->file, error);
+  if (status == HL_OK)
+    status = hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);
+  return status;
+}
+
+static hl_status copy_volumes(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
+  hl_scene_volume *volumes = hl_allocate_zeroed(scene->context, from->volume_count, sizeof *volumes);
+  if (volumes == NULL) return hl_fail_memory(error, from->volume_count * sizeof *volumes, "a scene's volumes");
+  scene->description.volumes = volumes;
+  for (size_t v = 0; v < from->volume_count; v++) {
+    scene->description.volume_count = v + 1;
+    hl_status status = copy_volume(scene->context, &from->volumes[v], &volumes[v], error);
+    if (status != HL_OK) return status;
+  }
+  return HL_OK;
+}
+
+static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
+  void *lights = NULL;
+  hl_status status = copy_array(scene->context, from->lights, from->light_count, sizeof *from->lights,
+                                "a scene's lights", &lights, error);
+  if (status != HL_OK) return status;
+  scene->description.lights = lights;
+  scene->description.light_count = from->light_count;
+  for (size_t l = 0; l < from->light_count; l++) { /* only polygons, refused so far, have vertices */
+    ((hl_light *)lights)[l].vertices = NULL;
+    ((hl_light *)lights)[l].vertex_count = 0;
+  }
+  return HL_OK;
+}
+
+/* The camera's up, or another where it lies along the line of sight. */
+static void mend_up(hl_camera *camera) {
+  vec3 right, up, forward;
+  if (hl_camera_basis(camera, &right, &up, &forward)) return;
+  camera->up[0] = up.x;
+  camera->up[1] = up.y;
+  camera->up[2] = up.z;
+}
+
+hl_status hl_scene_create(hl_context *context, const hl_scene_description *description, hl_scene **scene,
+                          hl_error *error) {
+  if (context == NULL || description == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_create: null context, description or scene");
+  *scene = NULL;
+  if (description->struct_size != sizeof *description)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_scene_create: struct_size is %zu, not %zu: call hl_scene_description_defaults() first",
+                   description->struct_size, sizeof *description);
+  hl_status status = hl_description_check(description, error);
+  if (status != HL_OK) return status;
+  hl_scene *made = hl_allocate_zeroed(context, 1, sizeof *made);
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "a scene");
+  made->context = context;
+  atomic_init(&made->references, 1);
+  made->description = *description;
+  made->description.lights = NULL;
+  made->description.volumes = NULL;
+  made->description.light_count = made->description.volume_count = 0;
+  mend_up(&made->description.camera);
+  status = copy_lights(made, description, error);
+  if (status == HL_OK) status = copy_volumes(made, description, error);
+  if (status != HL_OK) {
+    destroy(made);
+    return status;
+  }
+  *scene = made;
+  return HL_OK;
+}
+
+const hl_scene_description *hl_scene_describe(const hl_scene *scene) { return &scene->description; }
+
+void hl_scene_retain(hl_scene *scene) {
+  if (scene != NULL) atomic_fetch_add(&scene->references, 1);
+}
+
+void hl_scene_release(hl_scene *scene) {
+  if (scene != NULL && atomic_fetch_sub(&scene->references, 1) == 1) destroy(scene);
+}

@@ -1,0 +1,72 @@
+/* tests/unit/scene_parts.h - what the scene tests share: a context, small volumes, a description. */
+#ifndef SCENE_PARTS_H
+#define SCENE_PARTS_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scene/scene.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static inline hl_context *make_context(void) {
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  return context;
+}
+
+/* A float volume of n^3 voxels of unit size with its first voxel at 0: values are copied. */
+static inline hl_volume *make_volume(hl_context *context, size_t n, const float *values) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  for (int a = 0; a < 3; a++) d.dimensions[a] = n;
+  d.type = HL_VOXEL_F32;
+  d.voxels = values;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  return volume;
+}
+
+/* A scene with one light and one volume, in storage that the tests may change. */
+typedef struct parts {
+  hl_context *context;
+  hl_volume *volume;
+  hl_opacity_point opacity[4];
+  hl_color_point color[3];
+  hl_light light;
+  hl_scene_volume scene_volume;
+  hl_scene_description description;
+} parts;
+
+static inline void parts_make(parts *p) {
+  float values[27];
+  for (int v = 0; v < 27; v++) values[v] = (float)v;
+  memset(p, 0, sizeof *p);
+  p->context = make_context();
+  p->volume = make_volume(p->context, 3, values);
+  for (int n = 0; n < 4; n++) p->opacity[n] = (hl_opacity_point){8.0 * n, 0.25 * n};
+  for (int n = 0; n < 3; n++) p->color[n] = (hl_color_point){10.0 * n, {0.5 * n, 0.25 * n, 1 - 0.5 * n}};
+  hl_light_defaults(&p->light);
+  hl_scene_volume_defaults(&p->scene_volume);
+  p->scene_volume.name = "cube";
+  p->scene_volume.volume = p->volume;
+  p->scene_volume.transfer_function = (hl_transfer_function){1, p->opacity, 4, p->color, 3};
+  hl_scene_description_defaults(&p->description);
+  p->description.lights = &p->light;
+  p->description.light_count = 1;
+  p->description.volumes = &p->scene_volume;
+  p->description.volume_count = 1;
+}
+
+static inline void parts_release(parts *p) {
+  hl_volume_release(p->volume);
+  assert_int_equal(hl_context_memory_held(p->context), 0);
+  hl_context_destroy(p->context);
+}
+
+#endif
