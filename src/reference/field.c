@@ -1,0 +1,169 @@
+/* reference/field.c - reconstruction of one volume at one point of its index space.
+ *
+ * f(p) is the sum over the 4 x 4 x 4 voxels around p of a tensor-product kernel, the voxels at the
+ * grid's borders repeated outwards. Used by march.c's walkers at every sample. The three kernels are
+ * written out here on purpose: this is the oracle's own copy.
+ */
+#include "reference/reference.h"
+
+/* Where the four taps of each axis lie, and what they weigh. */
+typedef struct taps {
+  size_t voxel[3][4];
+  double weight[3][4];
+  double slope[3][4]; /* derivative of weight by the point's coordinate */
+} taps;
+
+static inline double stored_at(const reference_volume *volume, hl_storage storage, size_t offset) {
+  const void *voxels = volume->grid->voxels;
+  if (storage == HL_STORAGE_U8) return ((const uint8_t *)voxels)[offset];
+  if (storage == HL_STORAGE_U16) return ((const uint16_t *)voxels)[offset];
+  float value = ((const float *)voxels)[offset];
+  return isfinite(value) ? (double)value : volume->empty_stored;
+}
+
+double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]) {
+  const size_t *n = volume->grid->dimension;
+  return stored_at(volume, volume->grid->storage, (voxel[2] * n[1] + voxel[1]) * n[0] + voxel[0]);
+}
+
+/* The cubic B-spline at distances 1+t, t, 1-t, 2-t, and its derivative by t. */
+static void bspline(double t, double weight[4], double slope[4]) {
+  double u = 1 - t;
+  weight[0] = u * u * u / 6;
+  weight[1] = (3 * t * t * t - 6 * t * t + 4) / 6;
+  weight[2] = (3 * u * u * u - 6 * u * u + 4) / 6;
+  weight[3] = t * t * t / 6;
+  slope[0] = -u * u / 2;
+  slope[1] = (1.5 * t - 2) * t;
+  slope[2] = -(1.5 * u - 2) * u;
+  slope[3] = t * t / 2;
+}
+
+/* exp(-2 d^2) for |d| < 2, divided by the sum over the four taps so that a constant stays constant.
+ * Slope by the quotient rule: (g/S)' = (g' - (g/S) S') / S. */
+static void gaussian(double t, double weight[4], double slope[4]) {
+  double sum = 0, slope_sum = 0;
+  for (int tap = 0; tap < 4; tap++) {
+    double d = t + 1 - tap;
+    weight[tap] = fabs(d) < 2 ? exp(-2 * d * d) : 0;
+    slope[tap] = -4 * d * weight[tap];
+    sum += weight[tap];
+    slope_sum += slope[tap];
+  }
+  for (int tap = 0; tap < 4; tap++) {
+    weight[tap] /= sum;
+    slope[tap] = (slope[tap] - weight[tap] * slope_sum) / sum;
+  }
+}
+
+static void linear(double t, double weight[4], double slope[4]) {
+  weight[0] = weight[3] = slope[0] = slope[3] = 0;
+  weight[1] = 1 - t;
+  weight[2] = t;
+  slope[1] = -1;
+  slope[2] = 1;
+}
+
+static void find_taps(const reference_volume *volume, vec3 point, taps *found) {
+  const double *p = &point.x;
+  for (int axis = 0; axis < 3; axis++) {
+    double last = (double)volume->grid->dimension[axis] - 1;
+    double inside = fmin(fmax(p[axis], -0.5), last + 0.5), base = floor(inside);
+    for (int tap = 0; tap < 4; tap++) found->voxel[axis][tap] = (size_t)fmin(fmax(base - 1 + tap, 0), last);
+    switch (volume->kernel) {
+      case HL_KERNEL_GAUSSIAN: gaussian(inside - base, found->weight[axis], found->slope[axis]); break;
+      case HL_KERNEL_LINEAR: linear(inside - base, found->weight[axis], found->slope[axis]); break;
+      default: bspline(inside - base, found->weight[axis], found->slope[axis]); break;
+    }
+  }
+}
+
+/* The sum over 64 voxels with one weight per tap and axis; storage is a constant at every call. */
+static inline double weigh_stored(const reference_volume *volume, hl_storage storage,
+                                  const size_t voxel[3][4], const double *x, const double *y,
+                                  const double *z) {
+  const size_t *n = volume->grid->dimension;
+  double sum = 0;
+  for (int k = 0; k < 4; k++) {
+    double slice = 0;
+    for (int j = 0; j < 4; j++) {
+      size_t row = (voxel[2][k] * n[1] + voxel[1][j]) * n[0];
+      double line = 0;
+      for (int i = 0; i < 4; i++) line += x[i] * stored_at(volume, storage, row + voxel[0][i]);
+      slice += y[j] * line;
+    }
+    sum += z[k] * slice;
+  }
+  return sum;
+}
+
+static double weigh(const reference_volume *volume, const taps *at, const double *x, const double *y,
+                    const double *z) {
+  switch (volume->grid->storage) {
+    case HL_STORAGE_U8: return weigh_stored(volume, HL_STORAGE_U8, at->voxel, x, y, z);
+    case HL_STORAGE_U16: return weigh_stored(volume, HL_STORAGE_U16, at->voxel, x, y, z);
+    default: return weigh_stored(volume, HL_STORAGE_F32, at->voxel, x, y, z);
+  }
+}
+
+double hl_reference_value(const reference_volume *volume, vec3 point) {
+  taps at;
+  find_taps(volume, point, &at);
+  double stored = weigh(volume, &at, at.weight[0], at.weight[1], at.weight[2]);
+  return volume->grid->value_scale * stored + volume->grid->value_offset;
+}
+
+vec3 hl_reference_gradient(const reference_volume *volume, vec3 point) {
+  taps at;
+  find_taps(volume, point, &at);
+  vec3 stored = {weigh(volume, &at, at.slope[0], at.weight[1], at.weight[2]),
+                 weigh(volume, &at, at.weight[0], at.slope[1], at.weight[2]),
+                 weigh(volume, &at, at.weight[0], at.weight[1], at.slope[2])};
+  /* df/dworld = (dindex/dworld)^T df/dindex */
+  return vec3_scale(mat3_apply(volume->gradient_to_world, stored), volume->grid->value_scale);
+}
+
+double hl_reference_extinction(const reference_volume *volume, double value) {
+  const hl_transfer_function *function = &volume->described->transfer_function;
+  if (value < volume->transparent_below) return 0;
+  double opacity = hl_transfer_function_opacity(function, value);
+  return opacity > 0 ? -log1p(-fmin(opacity, 0.9999)) / function->unit_distance : 0;
+}
+
+static double smallest_edge(const hl_scene_volume *volume) {
+  affine3 to_world = hl_scene_volume_index_to_world(volume);
+  double least = INFINITY;
+  for (int axis = 0; axis < 3; axis++) least = fmin(least, vec3_length(mat3_column(to_world.linear, axis)));
+  return least;
+}
+
+/* The gradient at which a sample counts as a surface: one thousandth of the transfer function's span of
+ * values per voxel edge. */
+static double surface_gradient(const hl_transfer_function *function, double edge) {
+  double span = 0;
+  if (function->opacity_count > 0)
+    span = function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
+  return 1e-3 * (span > 0 ? span : 1) / edge;
+}
+
+hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
+                                     reference_volume *made, hl_error *error) {
+  affine3 to_world = hl_scene_volume_index_to_world(described);
+  const hl_volume *grid = described->volume;
+  *made = (reference_volume){.described = described, .grid = grid, .kernel = all->scene->render.kernel};
+  if (!affine3_invert(to_world, &made->world_to_index))
+    return hl_fail(error, HL_ERROR_INPUT, "volume %s: its axes lie in a plane: give three independent ones",
+                   described->name != NULL ? described->name : "without a name");
+  mat3 inverse = made->world_to_index.linear;
+  made->gradient_to_world = mat3_from_columns(inverse.row[0], inverse.row[1], inverse.row[2]);
+  hl_scene_volume_box(described, made->low, made->high);
+  made->smallest_edge = smallest_edge(described);
+  made->surface_gradient = surface_gradient(&described->transfer_function, made->smallest_edge);
+  made->empty_value = hl_scene_volume_empty_value(described);
+  made->empty_stored =
+      grid->value_scale != 0 ? (made->empty_value - grid->value_offset) / grid->value_scale : 0;
+  /* Where no value is transparent the empty value lies below them all, and stands for nothing being there. */
+  bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
+  made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;
+  return hl_reference_bricks_create(all->context, made, pool, error);
+}

@@ -1,0 +1,88 @@
+/* reference/march.c - a ray through the boxes of several volumes.
+ *
+ * The distances at which the ray enters and leaves the boxes cut it into stretches; within a stretch the
+ * same volumes are there, and it is walked in equal steps, no longer than asked, each sampled at its
+ * middle. A homogeneous box is therefore integrated exactly, wherever its faces lie.
+ */
+#include "reference/reference.h"
+
+/* Entry and exit of the index-space box, by slabs. */
+static void clip_to_box(crossing *part, double distance) {
+  const double *o = &part->origin.x, *d = &part->direction.x;
+  part->enter = 0;
+  part->leave = distance;
+  for (int axis = 0; axis < 3; axis++) {
+    double low = part->volume->low[axis], high = part->volume->high[axis];
+    if (d[axis] == 0) {
+      if (o[axis] < low || o[axis] > high) part->leave = -1;
+      continue;
+    }
+    double a = (low - o[axis]) / d[axis], b = (high - o[axis]) / d[axis];
+    part->enter = fmax(part->enter, fmin(a, b));
+    part->leave = fmin(part->leave, fmax(a, b));
+  }
+}
+
+void hl_reference_march_begin(const reference *all, reference_role role, vec3 origin, vec3 direction,
+                              double distance, crossing *crossings, march *walk) {
+  *walk = (march){.crossings = crossings, .longest_step = all->step};
+  for (size_t v = 0; v < all->scene->volume_count; v++) {
+    const reference_volume *volume = &all->volumes[v];
+    if (!(role == REFERENCE_SEEN ? volume->described->visible : volume->described->casts_shadow)) continue;
+    crossing *part = &crossings[walk->count];
+    *part = (crossing){.volume = volume,
+                       .origin = affine3_apply(volume->world_to_index, origin),
+                       .direction = mat3_apply(volume->world_to_index.linear, direction)};
+    clip_to_box(part, distance);
+    if (part->enter < part->leave) walk->count++;
+  }
+}
+
+/* Moves to the next part of the ray in which the same boxes, at least one, are crossed. */
+static bool next_stretch(march *walk) {
+  for (;;) {
+    walk->start = walk->end;
+    walk->end = INFINITY;
+    bool inside = false;
+    for (size_t c = 0; c < walk->count; c++) {
+      crossing *part = &walk->crossings[c];
+      part->active = part->enter <= walk->start && part->leave > walk->start;
+      inside |= part->active;
+      if (part->active) walk->end = fmin(walk->end, part->leave);
+      if (part->enter > walk->start) walk->end = fmin(walk->end, part->enter);
+    }
+    if (walk->end == INFINITY) return false;
+    if (inside) break;
+  }
+  walk->next = 0;
+  walk->steps = fmax(ceil((walk->end - walk->start) / walk->longest_step), 1);
+  walk->length = (walk->end - walk->start) / walk->steps;
+  return true;
+}
+
+/* Puts the active crossings at the sample; how far all of them are empty, 0 where one is not. */
+static double locate(march *walk) {
+  double clear = INFINITY;
+  for (size_t c = 0; c < walk->count; c++) {
+    crossing *part = &walk->crossings[c];
+    part->occupied = false;
+    if (!part->active) continue;
+    part->here = vec3_add(part->origin, vec3_scale(part->direction, walk->at));
+    double clear_here = hl_reference_clearance(part->volume, part->here, part->direction);
+    part->occupied = clear_here <= 0;
+    clear = fmin(clear, clear_here);
+  }
+  return clear;
+}
+
+bool hl_reference_march_next(march *walk) {
+  for (;;) {
+    if (walk->next >= walk->steps && !next_stretch(walk)) return false;
+    walk->at = walk->start + (walk->next + 0.5) * walk->length;
+    double clear = locate(walk);
+    walk->next++;
+    if (clear <= 0) return true;
+    /* the samples strictly inside the empty part; the margin keeps rounding from skipping one too many */
+    walk->next += floor(fmax(clear / walk->length - 1e-6, 0));
+  }
+}

@@ -1,0 +1,244 @@
+/* reference/reference.c - the oracle's entry: camera rays, and emission-absorption along them.
+ *
+ * In: a scene. Out: linear premultiplied RGBA, the volumes alone, top row first. Pixels are independent
+ * of each other and are shared out in runs over the threads.
+ */
+#include <stdatomic.h>
+#include <string.h>
+
+#include <halflight/render.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "reference/reference.h"
+
+/* A ray ends where the eye sees no more through it. */
+static const double OPAQUE = 1 - 1e-5;
+
+enum { RUN_PIXELS = 16 };
+
+typedef struct eye_rays {
+  vec3 position, forward;
+  vec3 right, up; /* from the picture's centre to the middle of its right and top edge, on the plane at
+                     unit distance (perspective) or in world units (orthographic) */
+  bool orthographic;
+} eye_rays;
+
+typedef struct picture {
+  const reference *all;
+  eye_rays eye;
+  reference_worker *workers; /* [threads] */
+  float *pixels;             /* the caller's */
+  size_t row_stride;         /* floats */
+  size_t runs_per_row;
+  atomic_size_t runs_done;
+  atomic_bool cancelled;
+} picture;
+
+static eye_rays eye_rays_of(const hl_scene_description *scene) {
+  const hl_camera *camera = &scene->camera;
+  eye_rays eye = {.position = vec3_of(camera->position),
+                  .orthographic = camera->type == HL_CAMERA_ORTHOGRAPHIC};
+  eye.forward = vec3_normalise(vec3_subtract(vec3_of(camera->target), eye.position));
+  vec3 right = vec3_normalise(vec3_cross(eye.forward, vec3_of(camera->up)));
+  double half_height = eye.orthographic ? camera->height / 2 : tan(camera->fovy_deg * HL_PI / 360);
+  eye.up = vec3_scale(vec3_cross(right, eye.forward), half_height);
+  eye.right = vec3_scale(right, half_height * scene->width / scene->height);
+  return eye;
+}
+
+/* The ray through the centre of pixel (x, y); direction is a unit vector. */
+static void eye_ray(const picture *all, size_t x, size_t y, vec3 *origin, vec3 *direction) {
+  const eye_rays *eye = &all->eye;
+  double across = 2 * ((double)x + 0.5) / all->all->scene->width - 1;
+  double upwards = 1 - 2 * ((double)y + 0.5) / all->all->scene->height;
+  vec3 offset = vec3_add(vec3_scale(eye->right, across), vec3_scale(eye->up, upwards));
+  *origin = eye->orthographic ? vec3_add(eye->position, offset) : eye->position;
+  *direction = eye->orthographic ? eye->forward : vec3_normalise(vec3_add(eye->forward, offset));
+}
+
+/* What all volumes send from one sample: the sum of extinctions, and of colours times extinctions. */
+static double sample(const reference *all, const march *walk, vec3 point, vec3 to_eye,
+                     reference_worker *worker, double color[3]) {
+  double total = 0;
+  color[0] = color[1] = color[2] = 0;
+  for (size_t v = 0; v < walk->count; v++) {
+    const crossing *part = &walk->crossings[v];
+    if (!part->occupied) continue;
+    double value = hl_reference_value(part->volume, part->here), one[3];
+    double extinction = hl_reference_extinction(part->volume, value);
+    if (extinction <= 0) continue;
+    if (total == 0)
+      for (size_t l = 0; l < all->scene->light_count; l++)
+        hl_reference_light_arrive(&all->lights[l], point, &worker->arrivals[l]);
+    hl_reference_shade(all, part->volume, point, part->here, value, to_eye, worker, one);
+    for (int c = 0; c < 3; c++) color[c] += extinction * one[c];
+    total += extinction;
+  }
+  return total;
+}
+
+/* Front to back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), the exact integral of a step
+ * in which nothing varies. */
+static void trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
+                  double rgba[4]) {
+  march walk;
+  vec3 to_eye = vec3_scale(direction, -1);
+  rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
+  hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, INFINITY, worker->eye, &walk);
+  while (rgba[3] < OPAQUE && hl_reference_march_next(&walk)) {
+    double color[3];
+    vec3 point = vec3_add(origin, vec3_scale(direction, walk.at));
+    double extinction = sample(all, &walk, point, to_eye, worker, color);
+    if (extinction <= 0) continue;
+    double opacity = (1 - rgba[3]) * -expm1(-extinction * walk.length);
+    for (int c = 0; c < 3; c++) rgba[c] += opacity * color[c] / extinction;
+    rgba[3] += opacity;
+  }
+}
+
+/* Callbacks come from the calling thread alone, which is worker 0. */
+static bool keep_going(picture *all, int worker) {
+  if (worker == 0 && hl_cancelled(all->all->context)) atomic_store(&all->cancelled, true);
+  return !atomic_load(&all->cancelled);
+}
+
+static void render_run(void *data, size_t index, int worker) {
+  picture *all = data;
+  const hl_scene_description *scene = all->all->scene;
+  size_t y = index / all->runs_per_row, first = index % all->runs_per_row * RUN_PIXELS;
+  for (size_t x = first; x < first + RUN_PIXELS && x < (size_t)scene->width; x++) {
+    if (!keep_going(all, worker)) return;
+    vec3 origin, direction;
+    double rgba[4];
+    eye_ray(all, x, y, &origin, &direction);
+    trace(all->all, origin, direction, &all->workers[worker], rgba);
+    for (int c = 0; c < 4; c++) all->pixels[y * all->row_stride + 4 * x + (size_t)c] = (float)rgba[c];
+  }
+  size_t done = atomic_fetch_add(&all->runs_done, 1) + 1;
+  if (worker == 0)
+    hl_progress(all->all->context, "render",
+                (double)done / (double)(all->runs_per_row * (size_t)scene->height));
+}
+
+static hl_status prepare(reference *all, const hl_reference_options *options, hl_pool *pool,
+                         hl_error *error) {
+  const hl_scene_description *scene = all->scene;
+  all->volumes = hl_allocate_zeroed(all->context, scene->volume_count, sizeof *all->volumes);
+  all->lights = hl_allocate_zeroed(all->context, scene->light_count, sizeof *all->lights);
+  if (all->volumes == NULL || all->lights == NULL)
+    return hl_fail_memory(error, scene->volume_count * sizeof *all->volumes,
+                          "the reference's volumes and lights");
+  double edge = INFINITY;
+  for (size_t v = 0; v < scene->volume_count; v++) {
+    hl_status status = hl_reference_volume_create(all, &scene->volumes[v], pool, &all->volumes[v], error);
+    if (status != HL_OK) return status;
+    edge = fmin(edge, all->volumes[v].smallest_edge);
+  }
+  all->step = options->step * edge;
+  for (size_t l = 0; l < scene->light_count; l++) {
+    hl_status status =
+        hl_reference_light_create(all, &scene->lights[l], options->light_points, &all->lights[l], error);
+    if (status != HL_OK) return status;
+  }
+  return HL_OK;
+}
+
+static void release(reference *all) {
+  for (size_t v = 0; all->volumes != NULL && v < all->scene->volume_count; v++)
+    hl_release(all->context, all->volumes[v].clearance);
+  for (size_t l = 0; all->lights != NULL && l < all->scene->light_count; l++)
+    hl_release(all->context, all->lights[l].points);
+  hl_release(all->context, all->volumes);
+  hl_release(all->context, all->lights);
+}
+
+/* One block: the workers, then their crossings, then their arrivals. */
+static reference_worker *workers_create(const reference *all, size_t threads) {
+  size_t volumes = all->scene->volume_count, lights = all->scene->light_count;
+  reference_worker *workers = hl_allocate_zeroed(all->context, threads, sizeof *workers);
+  crossing *crossings = hl_allocate_zeroed(all->context, 2 * threads * volumes, sizeof *crossings);
+  arrival *arrivals = hl_allocate_zeroed(all->context, threads * lights, sizeof *arrivals);
+  if (workers == NULL || crossings == NULL || arrivals == NULL) {
+    hl_release(all->context, workers);
+    hl_release(all->context, crossings);
+    hl_release(all->context, arrivals);
+    return NULL;
+  }
+  for (size_t t = 0; t < threads; t++)
+    workers[t] = (reference_worker){crossings + 2 * t * volumes, crossings + (2 * t + 1) * volumes,
+                                    arrivals + t * lights};
+  return workers;
+}
+
+static void workers_release(hl_context *context, reference_worker *workers) {
+  hl_release(context, workers[0].eye);
+  hl_release(context, workers[0].arrivals);
+  hl_release(context, workers);
+}
+
+static hl_status render(const reference *all, hl_pool *pool, float *pixels, size_t row_stride,
+                        hl_error *error) {
+  size_t threads = (size_t)hl_pool_threads(pool), width = (size_t)all->scene->width;
+  picture made = {.all = all,
+                  .eye = eye_rays_of(all->scene),
+                  .pixels = pixels,
+                  .row_stride = row_stride,
+                  .runs_per_row = (width + RUN_PIXELS - 1) / RUN_PIXELS};
+  made.workers = workers_create(all, threads);
+  if (made.workers == NULL)
+    return hl_fail_memory(error, threads * sizeof(reference_worker), "the reference's threads");
+  hl_pool_run(pool, made.runs_per_row * (size_t)all->scene->height, render_run, &made);
+  workers_release(all->context, made.workers);
+  return atomic_load(&made.cancelled) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering")
+                                      : HL_OK;
+}
+
+void hl_reference_options_defaults(hl_reference_options *options) {
+  if (options == NULL) return;
+  *options = (hl_reference_options){.struct_size = sizeof *options, .light_points = 1024, .step = 0.25};
+}
+
+static hl_status check(const hl_reference_options *options, const hl_scene_description *scene,
+                       size_t row_stride, hl_error *error) {
+  if (options->struct_size != sizeof *options)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "hl_reference_render: struct_size is %zu, expected %zu: call hl_reference_options_defaults first",
+        options->struct_size, sizeof *options);
+  if (!(options->step >= 0.001 && options->step <= 100))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_reference_render: step is %g, must be from 0.001 to 100 voxels", options->step);
+  if (options->light_points < 1 || options->light_points > 1 << 20)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: light_points is %d, must be from 1 to %d",
+                   options->light_points, 1 << 20);
+  if (options->threads < 0)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: threads is %d, must be 0 or more",
+                   options->threads);
+  if (row_stride / 4 < (size_t)scene->width)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_reference_render: row_stride is %zu, a row needs %d x 4 floats", row_stride,
+                   scene->width);
+  return HL_OK;
+}
+
+hl_status hl_reference_render(hl_context *context, const hl_scene *scene, const hl_reference_options *options,
+                              float *pixels, size_t row_stride, hl_error *error) {
+  if (context == NULL || scene == NULL || pixels == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_reference_render: context, scene and pixels must not be null");
+  hl_reference_options chosen;
+  hl_reference_options_defaults(&chosen);
+  if (options != NULL) chosen = *options;
+  hl_status status = check(&chosen, &scene->description, row_stride, error);
+  if (status != HL_OK) return status;
+  hl_pool *pool = NULL;
+  status = hl_pool_create(context, chosen.threads, &pool, error);
+  if (status != HL_OK) return status;
+  reference all = {.context = context, .scene = &scene->description};
+  status = prepare(&all, &chosen, pool, error);
+  if (status == HL_OK) status = render(&all, pool, pixels, row_stride, error);
+  release(&all);
+  hl_pool_destroy(pool);
+  return status;
+}

@@ -1,0 +1,129 @@
+/* reference/reference.h - the inside of the oracle: a ray marcher in double precision.
+ *
+ * It answers what the picture of a scene should be, slowly, so that the sheet renderer can be judged
+ * against it; the two therefore share the scene and its transfer functions, and no rendering code.
+ *
+ *     reference.c   camera, rows of pixels, the entry point
+ *     march.c       a ray through the boxes of the volumes, step by step, jumping over empty bricks
+ *     field.c       reconstruction of one volume at a point: value, gradient, extinction
+ *     bricks.c      where a volume has nothing
+ *     lights.c      points on the lights, and the transmittance towards them
+ *     shade.c       the light that one sample sends to the eye
+ */
+#ifndef HL_REFERENCE_REFERENCE_H
+#define HL_REFERENCE_REFERENCE_H
+
+#include <stdbool.h>
+
+#include "core/error.h"
+#include "core/pool.h"
+#include "core/vector.h"
+#include "scene/scene.h"
+
+/* One volume of the scene, made ready for questions at points of its index space. */
+typedef struct reference_volume {
+  const hl_scene_volume *described;
+  const hl_volume *grid;
+  hl_kernel kernel;
+  affine3 world_to_index;
+  mat3 gradient_to_world;     /* inverse transpose of index-to-world */
+  double low[3], high[3];     /* the box, in index space */
+  double empty_value;         /* data value of voxels that are not finite */
+  double empty_stored;        /* the same as a stored value */
+  double transparent_below;   /* data values below this are no matter at all; -infinity where all may be */
+  double surface_gradient;    /* data value per world unit from which a sample is a surface, not a medium */
+  double smallest_edge;       /* of a voxel, world units */
+  size_t bricks[3];           /* i, j, k */
+  unsigned char *clearance;   /* owned; [k][j][i] of bricks: 0 where something may be seen, else the number
+                                 of bricks (in the chessboard metric) to the nearest such brick, at most 255 */
+} reference_volume;
+
+/* One light. points is [point_count]: positions in the world, or unit directions to a directional light. */
+typedef struct reference_light {
+  const hl_light *described;
+  bool directional;
+  vec3 centre;                /* world; not for directional lights */
+  vec3 towards;               /* directional lights: unit vector to the light */
+  double color[3];            /* color * intensity */
+  vec3 *points;               /* owned; null where the light casts no shadows */
+  size_t point_count;
+} reference_light;
+
+typedef struct reference {
+  hl_context *context;
+  const hl_scene_description *scene;
+  reference_volume *volumes;  /* owned; [scene->volume_count] */
+  reference_light *lights;    /* owned; [scene->light_count] */
+  double step;                /* world units */
+} reference;
+
+/* A ray inside one volume's box. */
+typedef struct crossing {
+  const reference_volume *volume;
+  vec3 origin, direction;     /* index space; the parameter is the world's distance along the ray */
+  double enter, leave;        /* distances; none where enter >= leave */
+  bool active;                /* the ray is inside the box now */
+  bool occupied;              /* active, and something may be seen here */
+  vec3 here;                  /* index space; the point of the present sample, where active */
+} crossing;
+
+/* A march along a ray: a stretch is a part of the ray between two box faces, cut into equal steps. */
+typedef struct march {
+  crossing *crossings;        /* borrowed; [count] */
+  size_t count;
+  double longest_step;
+  double start, end;          /* the present stretch */
+  double length;              /* of a step */
+  double next, steps;         /* whole numbers */
+  double at;                  /* distance of the present sample: the middle of its step */
+} march;
+
+/* The light of one source that arrives at a sample. */
+typedef struct arrival {
+  vec3 towards;               /* unit vector to the light's centre */
+  double incoming[3];         /* without attenuation by volumes; eq. (1) */
+  double transmittance[3];
+  bool transmittance_known;
+} arrival;
+
+/* What one thread needs; all arrays are owned by hl_reference_render. */
+typedef struct reference_worker {
+  crossing *eye, *shadow;     /* [volume_count] */
+  arrival *arrivals;          /* [light_count] */
+} reference_worker;
+
+hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
+                                     reference_volume *made, hl_error *error);
+hl_status hl_reference_bricks_create(hl_context *context, reference_volume *volume, hl_pool *pool, hl_error *error);
+/* How far a ray may go from `point` (index space) before it can meet something: 0 where it may be here.
+ * In units of `direction`. */
+double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction);
+
+double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
+double hl_reference_value(const reference_volume *volume, vec3 point);
+/* Data value per world unit. */
+vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
+/* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u */
+double hl_reference_extinction(const reference_volume *volume, double value);
+
+/* Which volumes a march is about. */
+typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference_role;
+
+/* From `origin` along the unit vector `direction` (world), over at most `distance`. */
+void hl_reference_march_begin(const reference *all, reference_role role, vec3 origin, vec3 direction,
+                              double distance, crossing *crossings, march *walk);
+/* Goes to the next sample at which some crossing is occupied; false at the end. */
+bool hl_reference_march_next(march *walk);
+
+hl_status hl_reference_light_create(const reference *all, const hl_light *light, int point_count,
+                                    reference_light *made, hl_error *error);
+/* The light at a world point, before any volume. */
+void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived);
+void hl_reference_light_transmittance(const reference *all, const reference_light *light, vec3 point,
+                                      crossing *scratch, double transmittance[3]);
+
+/* The colour that a sample of one volume sends along `to_eye`. `index_point` is the same point as `point`. */
+void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
+                        double value, vec3 to_eye, reference_worker *worker, double color[3]);
+
+#endif
