@@ -94,7 +94,7 @@ hl_status hl_reference_bricks_create(hl_context *context, reference_volume *volu
 }
 
 double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction) {
-  const double *p = &point.x, *d = &direction.x;
+  const double p[3] = {point.x, point.y, point.z}, d[3] = {direction.x, direction.y, direction.z};
   size_t brick[3];
   for (int axis = 0; axis < 3; axis++) {
     double coordinate = fmax(floor((p[axis] + 1) / BRICK_CELLS), 0);

@@ -65,7 +65,7 @@ static void linear(double t, double weight[4], double slope[4]) {
 }
 
 static void find_taps(const reference_volume *volume, vec3 point, taps *found) {
-  const double *p = &point.x;
+  const double p[3] = {point.x, point.y, point.z};
   for (int axis = 0; axis < 3; axis++) {
     double last = (double)volume->grid->dimension[axis] - 1;
     double inside = fmin(fmax(p[axis], -0.5), last + 0.5), base = floor(inside);

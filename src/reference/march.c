@@ -8,7 +8,8 @@
 
 /* Entry and exit of the index-space box, by slabs. */
 static void clip_to_box(crossing *part, double distance) {
-  const double *o = &part->origin.x, *d = &part->direction.x;
+  const double o[3] = {part->origin.x, part->origin.y, part->origin.z};
+  const double d[3] = {part->direction.x, part->direction.y, part->direction.z};
   part->enter = 0;
   part->leave = distance;
   for (int axis = 0; axis < 3; axis++) {
@@ -60,14 +61,14 @@ static bool next_stretch(march *walk) {
   return true;
 }
 
-/* Puts the active crossings at the sample; how far all of them are empty, 0 where one is not. */
-static double locate(march *walk) {
+double hl_reference_march_place(march *walk, double at) {
   double clear = INFINITY;
+  walk->at = at;
   for (size_t c = 0; c < walk->count; c++) {
     crossing *part = &walk->crossings[c];
     part->occupied = false;
     if (!part->active) continue;
-    part->here = vec3_add(part->origin, vec3_scale(part->direction, walk->at));
+    part->here = vec3_add(part->origin, vec3_scale(part->direction, at));
     double clear_here = hl_reference_clearance(part->volume, part->here, part->direction);
     part->occupied = clear_here <= 0;
     clear = fmin(clear, clear_here);
@@ -78,8 +79,7 @@ static double locate(march *walk) {
 bool hl_reference_march_next(march *walk) {
   for (;;) {
     if (walk->next >= walk->steps && !next_stretch(walk)) return false;
-    walk->at = walk->start + (walk->next + 0.5) * walk->length;
-    double clear = locate(walk);
+    double clear = hl_reference_march_place(walk, walk->start + (walk->next + 0.5) * walk->length);
     walk->next++;
     if (clear <= 0) return true;
     /* the samples strictly inside the empty part; the margin keeps rounding from skipping one too many */

@@ -15,6 +15,10 @@
 /* A ray ends where the eye sees no more through it. */
 static const double OPAQUE = 1 - 1e-5;
 
+/* What one sample may add to a pixel: light that grazes a dense volume fades within a small part of a step.
+ */
+static const double MOST_OPACITY = 0.02;
+
 enum { RUN_PIXELS = 16 };
 
 typedef struct eye_rays {
@@ -57,6 +61,16 @@ static void eye_ray(const picture *all, size_t x, size_t y, vec3 *origin, vec3 *
   *direction = eye->orthographic ? eye->forward : vec3_normalise(vec3_add(eye->forward, offset));
 }
 
+static double total_extinction(const march *walk) {
+  double total = 0;
+  for (size_t v = 0; v < walk->count; v++) {
+    const crossing *part = &walk->crossings[v];
+    if (part->occupied)
+      total += hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here));
+  }
+  return total;
+}
+
 /* What all volumes send from one sample: the sum of extinctions, and of colours times extinctions. */
 static double sample(const reference *all, const march *walk, vec3 point, vec3 to_eye,
                      reference_worker *worker, double color[3]) {
@@ -78,27 +92,44 @@ static double sample(const reference *all, const march *walk, vec3 point, vec3 t
   return total;
 }
 
-/* Front to back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), the exact integral of a step
- * in which nothing varies. */
+/* Adds the sample at which the march stands, for a step of this length, and gives its extinction. Front to
+ * back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), the exact integral of a step in which
+ * nothing varies. */
+static double composite(const reference *all, const march *walk, double length, vec3 origin, vec3 direction,
+                        reference_worker *worker, double rgba[4]) {
+  double color[3];
+  vec3 point = vec3_add(origin, vec3_scale(direction, walk->at));
+  double extinction = sample(all, walk, point, vec3_scale(direction, -1), worker, color);
+  if (extinction <= 0) return 0;
+  double opacity = (1 - rgba[3]) * -expm1(-extinction * length);
+  for (int c = 0; c < 3; c++) rgba[c] += opacity * color[c] / extinction;
+  rgba[3] += opacity;
+  return extinction;
+}
+
+/* Every step of the march is cut so finely that no part adds more than MOST_OPACITY, judged by the extinction
+ * of the part before. */
 static void trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
                   double rgba[4]) {
   march walk;
-  vec3 to_eye = vec3_scale(direction, -1);
   rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
   hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, INFINITY, worker->eye, &walk);
   while (rgba[3] < OPAQUE && hl_reference_march_next(&walk)) {
-    double color[3];
-    vec3 point = vec3_add(origin, vec3_scale(direction, walk.at));
-    double extinction = sample(all, &walk, point, to_eye, worker, color);
+    double at = walk.at - walk.length / 2, end = at + walk.length, extinction = total_extinction(&walk);
     if (extinction <= 0) continue;
-    double opacity = (1 - rgba[3]) * -expm1(-extinction * walk.length);
-    for (int c = 0; c < 3; c++) rgba[c] += opacity * color[c] / extinction;
-    rgba[3] += opacity;
+    while (at < end && rgba[3] < OPAQUE) {
+      double length = end - at;
+      if (extinction > 0) length = fmin(length, MOST_OPACITY / (extinction * (1 - rgba[3])));
+      hl_reference_march_place(&walk, at + length / 2);
+      extinction = composite(all, &walk, length, origin, direction, worker, rgba);
+      at += length;
+    }
   }
 }
 
 /* Callbacks come from the calling thread alone, which is worker 0. */
 static bool keep_going(picture *all, int worker) {
+  if (atomic_load(&all->cancelled)) return false;
   if (worker == 0 && hl_cancelled(all->all->context)) atomic_store(&all->cancelled, true);
   return !atomic_load(&all->cancelled);
 }

@@ -75,7 +75,7 @@ typedef struct march {
   double start, end;          /* the present stretch */
   double length;              /* of a step */
   double next, steps;         /* whole numbers */
-  double at;                  /* distance of the present sample: the middle of its step */
+  double at;                  /* distance of the present sample */
 } march;
 
 /* The light of one source that arrives at a sample. */
@@ -112,7 +112,10 @@ typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference
 /* From `origin` along the unit vector `direction` (world), over at most `distance`. */
 void hl_reference_march_begin(const reference *all, reference_role role, vec3 origin, vec3 direction,
                               double distance, crossing *crossings, march *walk);
-/* Goes to the next sample at which some crossing is occupied; false at the end. */
+/* Puts the crossings at a distance within the present stretch; how far from there all of them are empty,
+ * 0 where one is not. */
+double hl_reference_march_place(march *walk, double at);
+/* Goes to the middle of the next step at which some crossing is occupied; false at the end. */
 bool hl_reference_march_next(march *walk);
 
 hl_status hl_reference_light_create(const reference *all, const hl_light *light, int point_count,

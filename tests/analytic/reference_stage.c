@@ -1,0 +1,165 @@
+/* analytic/reference_stage.c - see reference_stage.h. */
+#include "reference_stage.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void require(hl_status status, const hl_error *error) {
+  if (status != HL_OK) fail_msg("%s: %s", hl_status_name(status), error->message);
+}
+
+static void copy_vector(double to[3], vec3 from) {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
+}
+
+void stage_open(stage *set) {
+  memset(set, 0, sizeof *set);
+  hl_error error = {0};
+  require(hl_context_create(NULL, &set->context, &error), &error);
+  hl_scene_description_defaults(&set->scene);
+  set->scene.width = set->scene.height = 16;
+  set->scene.lights = set->lights;
+  set->scene.volumes = set->volumes;
+  memset(set->scene.ambient, 0, sizeof set->scene.ambient);
+  set->scene.render.shadows = HL_SHADOWS_HARD;
+  set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
+  set->scene.camera.height = 16;
+  stage_look(set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+}
+
+void stage_close(stage *set) {
+  for (size_t v = 0; v < set->scene.volume_count; v++) hl_volume_release(set->volumes[v].volume);
+  assert_true(hl_context_memory_held(set->context) == 0);
+  hl_context_destroy(set->context);
+}
+
+hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const double spacing[3], vec3 corner,
+                                const float *voxels) {
+  assert_true(set->scene.volume_count < STAGE_VOLUMES);
+  size_t count = dimensions[0] * dimensions[1] * dimensions[2];
+  float *ones = malloc(count * sizeof *ones);
+  assert_non_null(ones);
+  for (size_t i = 0; i < count; i++) ones[i] = 1;
+  hl_volume_description description;
+  hl_volume_description_defaults(&description);
+  const double low[3] = {corner.x, corner.y, corner.z};
+  for (int a = 0; a < 3; a++) {
+    description.dimensions[a] = dimensions[a];
+    description.axis[a][0] = description.axis[a][1] = description.axis[a][2] = 0;
+    description.axis[a][a] = spacing[a];
+    description.origin[a] = low[a] + spacing[a] / 2;
+  }
+  description.type = HL_VOXEL_F32;
+  description.voxels = voxels != NULL ? voxels : ones;
+  hl_scene_volume *volume = &set->volumes[set->scene.volume_count++];
+  hl_scene_volume_defaults(volume);
+  hl_error error = {0};
+  require(hl_volume_create(set->context, &description, &volume->volume, &error), &error);
+  free(ones);
+  volume->shading = HL_SHADING_NONE;
+  stage_set_opacity(set, volume, 0.5, 1);
+  stage_set_color(set, volume, 1, 1, 1);
+  return volume;
+}
+
+hl_scene_volume *stage_add_box(stage *set, vec3 low, vec3 high) {
+  vec3 size = vec3_subtract(high, low);
+  return stage_add_grid(set, (size_t[3]){1, 1, 1}, (double[3]){size.x, size.y, size.z}, low, NULL);
+}
+
+void stage_set_opacity(stage *set, hl_scene_volume *volume, double opacity, double unit_distance) {
+  hl_opacity_point *point = &set->constant_opacity[volume - set->volumes];
+  *point = (hl_opacity_point){0, opacity};
+  volume->transfer_function.opacity = point;
+  volume->transfer_function.opacity_count = 1;
+  volume->transfer_function.unit_distance = unit_distance;
+}
+
+void stage_set_color(stage *set, hl_scene_volume *volume, double r, double g, double b) {
+  hl_color_point *point = &set->constant_color[volume - set->volumes];
+  *point = (hl_color_point){0, {r, g, b}};
+  volume->transfer_function.color = point;
+  volume->transfer_function.color_count = 1;
+}
+
+static hl_light *add_light(stage *set, hl_light_type type) {
+  assert_true(set->scene.light_count < STAGE_LIGHTS);
+  hl_light *light = &set->lights[set->scene.light_count++];
+  hl_light_defaults(light);
+  light->type = type;
+  return light;
+}
+
+hl_light *stage_add_directional(stage *set, vec3 direction) {
+  hl_light *light = add_light(set, HL_LIGHT_DIRECTIONAL);
+  copy_vector(light->direction, direction);
+  return light;
+}
+
+hl_light *stage_add_point(stage *set, vec3 position) {
+  hl_light *light = add_light(set, HL_LIGHT_POINT);
+  copy_vector(light->position, position);
+  return light;
+}
+
+void stage_look(stage *set, vec3 position, vec3 target, vec3 up) {
+  copy_vector(set->scene.camera.position, position);
+  copy_vector(set->scene.camera.target, target);
+  copy_vector(set->scene.camera.up, up);
+}
+
+/* Written by angles and pixel pitch, unlike the reference's own. */
+void stage_eye_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction) {
+  const hl_camera *camera = &set->scene.camera;
+  vec3 eye = vec3_of(camera->position), back = vec3_normalise(vec3_subtract(eye, vec3_of(camera->target)));
+  vec3 right = vec3_normalise(vec3_cross(vec3_of(camera->up), back)), up = vec3_cross(back, right);
+  bool perspective = camera->type == HL_CAMERA_PERSPECTIVE;
+  double height = perspective ? 2 * tan(camera->fovy_deg / 2 * HL_PI / 180) : camera->height;
+  double pitch = height / set->scene.height;
+  double u = (x + 0.5 - set->scene.width / 2.0) * pitch, v = (set->scene.height / 2.0 - y - 0.5) * pitch;
+  vec3 offset = vec3_add(vec3_scale(right, u), vec3_scale(up, v));
+  *origin = perspective ? eye : vec3_add(eye, offset);
+  *direction = vec3_scale(back, -1);
+  if (perspective) *direction = vec3_normalise(vec3_add(*direction, offset));
+}
+
+double stage_chord(vec3 low, vec3 high, vec3 origin, vec3 direction) {
+  double enter = 0, leave = INFINITY;
+  const double l[3] = {low.x, low.y, low.z}, h[3] = {high.x, high.y, high.z};
+  const double o[3] = {origin.x, origin.y, origin.z}, d[3] = {direction.x, direction.y, direction.z};
+  for (int a = 0; a < 3; a++) {
+    if (fabs(d[a]) < 1e-12) {
+      if (o[a] < l[a] || o[a] > h[a]) return 0;
+      continue;
+    }
+    double near = (d[a] > 0 ? l[a] : h[a]) - o[a], far = (d[a] > 0 ? h[a] : l[a]) - o[a];
+    enter = fmax(enter, near / d[a]);
+    leave = fmin(leave, far / d[a]);
+  }
+  return fmax(leave - enter, 0);
+}
+
+void stage_render(stage *set, const hl_reference_options *options, float *pixels) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  require(hl_scene_create(set->context, &set->scene, &scene, &error), &error);
+  require(hl_reference_render(set->context, scene, options, pixels, 4 * (size_t)set->scene.width, &error),
+          &error);
+  hl_scene_release(scene);
+}
+
+float stage_noise(double x, double y, double z) {
+  double sum = 0, frequency = 1, size = 0.25;
+  for (int octave = 0; octave < 3; octave++, frequency *= 1.9, size *= 0.6) {
+    double a = frequency * (x + 0.31 * y), b = frequency * (y - 0.27 * z), c = frequency * (z + 0.43 * x);
+    sum += size * sin(a + 1.3 * sin(b)) * cos(c + 0.7 * sin(a));
+  }
+  return (float)fmin(fmax(0.5 + sum, 0), 1);
+}

@@ -1,0 +1,48 @@
+/* analytic/reference_stage.h - small scenes built in code, and their pictures by the reference. */
+#ifndef REFERENCE_STAGE_H
+#define REFERENCE_STAGE_H
+
+#include <halflight/halflight.h>
+
+#include "core/vector.h"
+
+enum { STAGE_VOLUMES = 4, STAGE_LIGHTS = 4 };
+
+typedef struct stage {
+  hl_context *context;
+  hl_scene_description
+      scene; /* its arrays are the ones below; camera, size and settings to be changed at will */
+  hl_scene_volume volumes[STAGE_VOLUMES]; /* each holds a reference to its hl_volume */
+  hl_light lights[STAGE_LIGHTS];
+  hl_opacity_point constant_opacity[STAGE_VOLUMES]; /* where a volume's opacity is one number */
+  hl_color_point constant_color[STAGE_VOLUMES];
+} stage;
+
+/* No volumes, no lights, no ambient, hard shadows; 16 x 16 pixels seen orthographically along -z, up +y. */
+void stage_open(stage *set);
+void stage_close(stage *set);
+
+/* A grid with axes along the world's; its box starts at `corner`. voxels: [k][j][i] or null for all 1.
+ * Opacity 0.5 per unit length and white for every value, shading "none". */
+hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const double spacing[3], vec3 corner,
+                                const float *voxels);
+/* A grid of one voxel that fills the box. */
+hl_scene_volume *stage_add_box(stage *set, vec3 low, vec3 high);
+void stage_set_opacity(stage *set, hl_scene_volume *volume, double opacity, double unit_distance);
+void stage_set_color(stage *set, hl_scene_volume *volume, double r, double g, double b);
+hl_light *stage_add_directional(stage *set, vec3 direction);
+hl_light *stage_add_point(stage *set, vec3 position);
+
+void stage_look(stage *set, vec3 position, vec3 target, vec3 up);
+/* The ray through the centre of pixel (x, y), as the scene format defines it. */
+void stage_eye_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction);
+/* How long the ray is inside the box. */
+double stage_chord(vec3 low, vec3 high, vec3 origin, vec3 direction);
+
+/* pixels: [height][width][4]. options may be null. The test fails where rendering does. */
+void stage_render(stage *set, const hl_reference_options *options, float *pixels);
+
+/* Smooth noise without a library: sums of sines with a fixed pattern, in [0, 1]. */
+float stage_noise(double x, double y, double z);
+
+#endif
