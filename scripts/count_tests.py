@@ -1,0 +1,47 @@
+#!/usr/bin/env python3
+"""Sums the tests of several build folders and prints "N passed, N failed, N skipped".
+
+usage: count_tests.py FAILED_STEPS BUILD_FOLDER ...
+FAILED_STEPS: failures that happened outside of tests (a build that does not compile). A test that speaks TAP counts
+as its parts, and one that failed without a failing part (a crash, a timeout) as one failure. A folder without results
+counts as a failure.
+"""
+import json
+import pathlib
+import re
+import sys
+
+passed = skipped = 0
+failed = int(sys.argv[1])
+names = []
+
+
+def count(test):
+    """(passed, failed, skipped) of one line of the log."""
+    results = re.findall(r"^(ok|not ok)\b([^\n]*)", test.get("stdout") or "", re.M)
+    skips = sum("# SKIP" in rest.upper() for word, rest in results if word == "ok")
+    bad = sum(word == "not ok" for word, _ in results)
+    good = sum(word == "ok" for word, _ in results) - skips
+    if test["result"] == "SKIP":
+        return 0, 0, max(1, skips)
+    if test["result"] not in ("OK", "EXPECTEDFAIL"):
+        return good, max(1, bad), skips
+    return (good, bad, skips) if results else (1, 0, 0)
+
+
+for folder in sys.argv[2:]:
+    log = pathlib.Path(folder) / "meson-logs" / "testlog.json"
+    lines = log.read_text().splitlines() if log.exists() else []
+    if not lines:
+        failed += 1
+        names.append(f"{folder}: no test ran")
+    for line in lines:
+        test = json.loads(line)
+        good, bad, skips = count(test)
+        passed, failed, skipped = passed + good, failed + bad, skipped + skips
+        if bad:
+            names.append(f"{folder}: {test['name']}")
+for name in names:
+    print(f"failed: {name}")
+print(f"{passed} passed, {failed} failed, {skipped} skipped")
+sys.exit(1 if failed else 0)

@@ -1,0 +1,11 @@
+/* cli/commands.h - the subcommands, one file each. */
+#ifndef HL_CLI_COMMANDS_H
+#define HL_CLI_COMMANDS_H
+
+#include "options.h"
+
+extern const cli_command render_command; /* render.c */
+extern const cli_command info_command;   /* info.c */
+extern const cli_command diff_command;   /* diff.c */
+
+#endif

@@ -1,0 +1,113 @@
+/* cli/host.c - callbacks of the context: progress bar, warnings, interruption. */
+#define _GNU_SOURCE
+#include "host.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Set by the handler, read by the library's cancel callback: the one variable a handler may write. */
+static volatile sig_atomic_t interrupted = 0;
+
+static void on_signal(int signal_number) {
+  (void)signal_number;
+  interrupted = 1;
+}
+
+bool host_interrupted(void) { return interrupted != 0; }
+
+static int on_cancelled(void *user_data) {
+  (void)user_data;
+  return interrupted != 0;
+}
+
+double clock_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void host_clear_bar(cli_host *host) {
+  if (!host->drawn) return;
+  fputs("\r\033[K", stderr);
+  host->drawn = false;
+}
+
+static void on_progress(void *user_data, const char *stage, double fraction) {
+  enum { WIDTH = 32 };
+  cli_host *host = user_data;
+  double now = clock_seconds();
+  if (!host->bar || (host->drawn && now - host->drawn_at < 0.1)) return;
+  if (!(fraction > 0)) fraction = 0;
+  if (fraction > 1) fraction = 1;
+  char full[WIDTH + 1], rest[WIDTH + 1];
+  int filled = (int)(fraction * WIDTH);
+  memset(full, '#', sizeof full);
+  memset(rest, '.', sizeof rest);
+  fprintf(stderr, "\r\033[K%s%.*s%s%.*s %3d %%  %s %s", host->color ? "\033[36m" : "", filled, full,
+          host->color ? "\033[0m" : "", WIDTH - filled, rest, (int)(100 * fraction), stage, host->subject);
+  fflush(stderr);
+  host->drawn = true;
+  host->drawn_at = now;
+}
+
+static void on_log(void *user_data, hl_log_level level, const char *message) {
+  cli_host *host = user_data;
+  if (level != HL_LOG_WARNING || host->quiet) return;
+  host_clear_bar(host);
+  warn("%s", message);
+}
+
+static bool terminal_can_redraw(void) {
+  const char *terminal = getenv("TERM");
+  return isatty(STDERR_FILENO) && terminal != NULL && strcmp(terminal, "dumb") != 0;
+}
+
+static bool color_wanted(void) {
+  const char *no_color = getenv("NO_COLOR");
+  return no_color == NULL || no_color[0] == '\0';
+}
+
+static void listen_to_signals(void) {
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_RESTART; /* reading goes on until the cancel callback is asked */
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+}
+
+int host_open(const cli_host_options *options, cli_host *host) {
+  memset(host, 0, sizeof *host);
+  host->quiet = options->quiet;
+  host->bar = options->progress && !options->quiet && terminal_can_redraw();
+  host->color = color_wanted();
+  host->subject = options->subject;
+  listen_to_signals();
+  hl_context_options context_options;
+  hl_context_options_defaults(&context_options);
+  context_options.user_data = host;
+  context_options.log = on_log;
+  context_options.progress = on_progress;
+  context_options.cancelled = on_cancelled;
+  context_options.memory_limit = options->memory_limit;
+  context_options.instruction_set = options->instruction_set;
+  hl_error error = {0};
+  hl_status status = hl_context_create(&context_options, &host->context, &error);
+  return status == HL_OK ? EXIT_CODE_OK : fail_with(PHASE_SETUP, status, &error);
+}
+
+void host_close(cli_host *host) {
+  host_clear_bar(host);
+  hl_context_destroy(host->context);
+  host->context = NULL;
+}
+
+int host_fail(cli_host *host, cli_phase phase, hl_status status, const hl_error *error) {
+  host_clear_bar(host);
+  return fail_with(phase, status, error);
+}

@@ -1,0 +1,44 @@
+/* cli/host.h - what the program gives the library: memory limit, log, progress bar, interruption. */
+#ifndef HL_CLI_HOST_H
+#define HL_CLI_HOST_H
+
+#include <stdbool.h>
+
+#include "message.h"
+
+typedef struct cli_host {
+  hl_context *context;
+  bool quiet;          /* no warnings, no bar, no summary */
+  bool bar;            /* stderr is a terminal that can redraw a line */
+  bool color;
+  bool drawn;          /* a bar is on the line now */
+  double drawn_at;     /* seconds; bars are redrawn ten times a second at most */
+  const char *subject; /* what the bar speaks of; not owned */
+} cli_host;
+
+typedef struct cli_host_options {
+  bool quiet;
+  bool progress;
+  const char *subject;
+  uint64_t memory_limit; /* bytes; 0: none */
+  hl_instruction_set instruction_set;
+} cli_host_options;
+
+/* Makes the context and starts listening to SIGINT and SIGTERM. Returns the exit code. `host` must
+ * not move until host_close(). */
+int host_open(const cli_host_options *options, cli_host *host);
+void host_close(cli_host *host);
+
+/* Removes the bar, so that a line can be printed. */
+void host_clear_bar(cli_host *host);
+
+/* Prints the line of a library error after clearing the bar; returns the exit code. */
+int host_fail(cli_host *host, cli_phase phase, hl_status status, const hl_error *error);
+
+/* True once the user has asked to stop. */
+bool host_interrupted(void);
+
+/* Seconds of a steady clock. */
+double clock_seconds(void);
+
+#endif

@@ -1,0 +1,31 @@
+/* cli/json_writer.h - JSON on stdout, indented by two blanks.
+ *
+ * Calls nest: an object or array opened is closed by json_close(). `key` names the value inside an
+ * object and is null inside an array.
+ */
+#ifndef HL_CLI_JSON_WRITER_H
+#define HL_CLI_JSON_WRITER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct json_writer {
+  int depth;
+  bool first;      /* nothing yet in the innermost object or array */
+  char close[16];  /* closing bracket of each level */
+} json_writer;
+
+void json_open_object(json_writer *writer, const char *key);
+void json_open_array(json_writer *writer, const char *key);
+void json_close(json_writer *writer);
+
+void json_text(json_writer *writer, const char *key, const char *value); /* null becomes null */
+void json_bool(json_writer *writer, const char *key, bool value);
+void json_integer(json_writer *writer, const char *key, uint64_t value);
+void json_number(json_writer *writer, const char *key, double value); /* not finite becomes null */
+/* One line: [a, b, c] */
+void json_numbers(json_writer *writer, const char *key, const double *values, size_t count);
+void json_integers(json_writer *writer, const char *key, const uint64_t *values, size_t count);
+
+#endif

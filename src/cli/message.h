@@ -1,0 +1,36 @@
+/* cli/message.h - exit codes, and the one line on stderr that goes with each but success. */
+#ifndef HL_CLI_MESSAGE_H
+#define HL_CLI_MESSAGE_H
+
+#include <halflight/halflight.h>
+
+enum {
+  EXIT_CODE_OK = 0,
+  EXIT_CODE_FAILURE = 1,     /* while running; or a limit of `diff` was exceeded */
+  EXIT_CODE_USAGE = 2,
+  EXIT_CODE_INPUT = 3,       /* a file that was given is missing or malformed */
+  EXIT_CODE_UNSUPPORTED = 4, /* understood, but not in this version or on this machine */
+  EXIT_CODE_INTERRUPTED = 130
+};
+
+/* Prints "halflight: ..." on stderr, control characters replaced, and returns exit_code. */
+__attribute__((format(printf, 2, 3))) int fail(int exit_code, const char *format, ...);
+
+/* The same, "halflight: warning: ...". */
+__attribute__((format(printf, 1, 2))) void warn(const char *format, ...);
+
+/* What the failing library call was doing decides whose fault an error is. */
+typedef enum cli_phase {
+  PHASE_SETUP,  /* from options alone */
+  PHASE_READ,   /* reading a file that the user named */
+  PHASE_CHANGE, /* applying options to a scene that was good */
+  PHASE_RUN     /* rendering, writing */
+} cli_phase;
+
+/* Prints the library's message and returns the exit code of the status in this phase. */
+int fail_with(cli_phase phase, hl_status status, const hl_error *error);
+
+/* Flushes stdout; a full disk or a closed pipe is an error like any other. */
+int finish_stdout(void);
+
+#endif

@@ -1,0 +1,277 @@
+/* cli/options.c - parsing of a subcommand's arguments against its table of options. */
+#include "options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "message.h"
+
+static const char *choice_name(const void *choices, size_t index) {
+  return ((const cli_choice *)choices)[index].name;
+}
+
+static const char *option_name(const void *data, size_t index) {
+  const cli_command *command = data;
+  while (index < command->option_count && command->options[index].reserved) index++;
+  return index < command->option_count    ? command->options[index].name
+         : index == command->option_count ? "help"
+                                          : NULL;
+}
+
+/* "off, hard, soft" */
+static void list_choices(const cli_option *option, char *text, size_t size) {
+  size_t used = 0;
+  text[0] = '\0';
+  for (const cli_choice *choice = option->choices; choice->name != NULL && used < size; choice++)
+    used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", choice->name);
+}
+
+/* What OPTION_NUMBERS accepts, in words. */
+static void describe_numbers(const cli_option *option, char *text, size_t size) {
+  const char *kind = option->whole ? "whole number" : "number";
+  char range[80];
+  if (isinf(option->high))
+    snprintf(range, sizeof range, "%s %.9g", option->above ? "above" : "of at least", option->low);
+  else if (option->above)
+    snprintf(range, sizeof range, "above %.9g, up to %.9g", option->low, option->high);
+  else
+    snprintf(range, sizeof range, "from %.9g to %.9g", option->low, option->high);
+  size_t used;
+  if (option->count == 1)
+    used = (size_t)snprintf(text, size, "a %s %s", kind, range);
+  else
+    used = (size_t)snprintf(text, size, "%d %ss joined by '%c', each %s", option->count, kind,
+                            option->separator, isinf(option->low) ? "finite" : range);
+  if (option->choices != NULL && used < size) {
+    char choices[200];
+    list_choices(option, choices, sizeof choices);
+    snprintf(text + used, size - used, ", or %s", choices);
+  }
+}
+
+static int refuse_value(const cli_option *option, const char *text) {
+  char accepted[300];
+  const char *meant = NULL;
+  switch (option->kind) {
+    case OPTION_CHOICE:
+      list_choices(option, accepted, sizeof accepted);
+      meant = nearest_name(text, choice_name, option->choices);
+      return fail(EXIT_CODE_USAGE, "--%s: '%s' is none of %s%s%s%s", option->name, text, accepted,
+                  meant != NULL ? " (did you mean " : "", meant != NULL ? meant : "",
+                  meant != NULL ? "?)" : "");
+    case OPTION_NUMBERS:
+      describe_numbers(option, accepted, sizeof accepted);
+      return fail(EXIT_CODE_USAGE, "--%s: '%s' is not %s", option->name, text, accepted);
+    case OPTION_BYTES:
+      return fail(EXIT_CODE_USAGE, "--%s: '%s' is not a whole number above 0 with an optional K, M, G or T",
+                  option->name, text);
+    case OPTION_SWITCH:
+    case OPTION_TEXT: break;
+  }
+  return fail(EXIT_CODE_USAGE, "--%s: '%s' is not %s", option->name, text, option->argument);
+}
+
+static bool parse_choice(const cli_option *option, const char *text, cli_value *value) {
+  for (const cli_choice *choice = option->choices; choice != NULL && choice->name != NULL; choice++)
+    if (strcmp(choice->name, text) == 0) {
+      value->chosen = true;
+      value->choice = choice->value;
+      return true;
+    }
+  return false;
+}
+
+static bool parse_numbers(const cli_option *option, const char *text, cli_value *value) {
+  const char *at = text;
+  for (int i = 0; i < option->count; i++) {
+    size_t length = strspn(at, option->whole ? "0123456789" : "0123456789+-.eE");
+    char *end;
+    double number = strtod(at, &end);
+    if (length == 0 || end != at + length || !isfinite(number)) return false;
+    if (number < option->low || number > option->high || (option->above && number == option->low))
+      return false;
+    value->number[i] = number;
+    if (*end != (i + 1 < option->count ? option->separator : '\0')) return false;
+    at = end + 1;
+  }
+  return true;
+}
+
+static bool parse_bytes(const char *text, cli_value *value) {
+  static const char suffixes[] = "KMGT";
+  uint64_t bytes = 0;
+  const char *at = text;
+  for (; *at >= '0' && *at <= '9'; at++) {
+    if (bytes > (UINT64_MAX - 9) / 10) return false;
+    bytes = bytes * 10 + (uint64_t)(*at - '0');
+  }
+  if (at == text || bytes == 0) return false;
+  if (*at != '\0') {
+    const char *suffix = strchr(suffixes, *at >= 'a' && *at <= 'z' ? *at - 'a' + 'A' : *at);
+    if (suffix == NULL || at[1] != '\0') return false;
+    int shift = 10 * (int)(suffix - suffixes + 1);
+    if (bytes > UINT64_MAX >> shift) return false;
+    bytes <<= shift;
+  }
+  value->bytes = bytes;
+  return true;
+}
+
+static int parse_value(const cli_option *option, const char *text, cli_value *value) {
+  bool good = false;
+  switch (option->kind) {
+    case OPTION_SWITCH: good = true; break;
+    case OPTION_TEXT: good = text[0] != '\0'; break;
+    case OPTION_CHOICE: good = parse_choice(option, text, value); break;
+    case OPTION_NUMBERS:
+      good = parse_choice(option, text, value) || parse_numbers(option, text, value);
+      break;
+    case OPTION_BYTES: good = parse_bytes(text, value); break;
+  }
+  if (!good) return refuse_value(option, text);
+  value->given = true;
+  value->text = text;
+  return EXIT_CODE_OK;
+}
+
+/* "-30,20", "-.5": a value, although it begins with a dash. */
+static bool looks_like_option(const char *text) {
+  return text[0] == '-' && text[1] != '\0' && strchr("0123456789.", text[1]) == NULL;
+}
+
+static const cli_option *find_option(const cli_command *command, const char *name, size_t length) {
+  for (size_t i = 0; i < command->option_count; i++) {
+    const cli_option *option = &command->options[i];
+    if (strlen(option->name) == length && strncmp(option->name, name, length) == 0) return option;
+  }
+  return NULL;
+}
+
+static const cli_option *find_letter(const cli_command *command, char letter) {
+  for (size_t i = 0; i < command->option_count; i++)
+    if (command->options[i].letter == letter && letter != '\0') return &command->options[i];
+  return NULL;
+}
+
+static int refuse_unknown(const cli_command *command, const char *argument) {
+  char name[80];
+  size_t length = argument[1] == '-' ? strcspn(argument + 2, "=") : 0;
+  snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), argument + 2);
+  const char *meant = length > 0 ? nearest_name(name, option_name, command) : NULL;
+  if (meant != NULL)
+    return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s?", name, command->name,
+                meant);
+  return fail(EXIT_CODE_USAGE, "unknown option '%s' of %s: see 'halflight help %s'", argument, command->name,
+              command->name);
+}
+
+/* Parses the option at arguments[*index], and its value; *index ends at the last argument used. */
+static int parse_option(const cli_command *command, int argument_count, char **arguments, int *index,
+                        cli_value *values) {
+  const char *argument = arguments[*index], *attached = NULL;
+  const cli_option *option = NULL;
+  if (argument[1] == '-') {
+    size_t length = strcspn(argument + 2, "=");
+    option = find_option(command, argument + 2, length);
+    attached = argument[2 + length] == '=' ? argument + 3 + length : NULL;
+  } else {
+    option = find_letter(command, argument[1]);
+    attached = argument[2] != '\0' ? argument + 2 : NULL;
+  }
+  if (option == NULL) return refuse_unknown(command, argument);
+  if (option->reserved)
+    return fail(EXIT_CODE_UNSUPPORTED, "--%s is not yet in this version (%s)", option->name, hl_version());
+  cli_value *value = &values[option - command->options];
+  if (value->given) return fail(EXIT_CODE_USAGE, "--%s is given twice: give it once", option->name);
+  if (option->kind == OPTION_SWITCH) {
+    if (attached != NULL)
+      return fail(EXIT_CODE_USAGE, "--%s takes no value, but '%s' was given", option->name, attached);
+    return parse_value(option, "", value);
+  }
+  if (attached == NULL) {
+    bool missing = *index + 1 >= argument_count || looks_like_option(arguments[*index + 1]);
+    if (missing) {
+      char choices[200] = "";
+      if (option->argument == NULL) list_choices(option, choices, sizeof choices);
+      return fail(EXIT_CODE_USAGE, "--%s needs a value: %s", option->name,
+                  option->argument != NULL ? option->argument : choices);
+    }
+    attached = arguments[++*index];
+  }
+  return parse_value(option, attached, value);
+}
+
+int options_parse(const cli_command *command, int argument_count, char **arguments, cli_value *values,
+                  char **operands, bool *help) {
+  int operand_count = 0;
+  bool only_operands = false;
+  *help = false;
+  for (int i = 0; i < argument_count; i++) {
+    char *argument = arguments[i];
+    if (!only_operands && strcmp(argument, "--") == 0) {
+      only_operands = true;
+    } else if (!only_operands && (strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0)) {
+      *help = true;
+      return EXIT_CODE_OK;
+    } else if (!only_operands && argument[0] == '-' && argument[1] != '\0') {
+      int exit_code = parse_option(command, argument_count, arguments, &i, values);
+      if (exit_code != EXIT_CODE_OK) return exit_code;
+    } else if (operand_count == command->operand_count) {
+      return fail(EXIT_CODE_USAGE, "'%s' is too much: %s takes %s only; see 'halflight help %s'", argument,
+                  command->name, command->operands, command->name);
+    } else {
+      operands[operand_count++] = argument;
+    }
+  }
+  if (operand_count < command->operand_count)
+    return fail(EXIT_CODE_USAGE, "%s needs %s: see 'halflight help %s'", command->name, command->operands,
+                command->name);
+  return EXIT_CODE_OK;
+}
+
+/* "--shadows off|hard|soft" */
+static void option_heading(const cli_option *option, char *text, size_t size) {
+  size_t used =
+      (size_t)(option->letter != '\0' ? snprintf(text, size, "-%c, --%s", option->letter, option->name)
+                                      : snprintf(text, size, "--%s", option->name));
+  if (option->kind == OPTION_SWITCH) return;
+  if (option->argument != NULL) {
+    snprintf(text + used, size - used, " %s", option->argument);
+    return;
+  }
+  for (const cli_choice *choice = option->choices; choice->name != NULL && used < size; choice++)
+    used += (size_t)snprintf(text + used, size - used, "%s%s", choice == option->choices ? " " : "|",
+                             choice->name);
+}
+
+static void print_option(const char *heading, const char *help) {
+  enum { COLUMN = 38 };
+  printf("  %s", heading);
+  size_t at = 2 + strlen(heading);
+  if (at >= COLUMN) {
+    putchar('\n');
+    at = 0;
+  }
+  for (const char *line = help; *line != '\0';) {
+    int length = (int)strcspn(line, "\n");
+    printf("%*s%.*s\n", (int)(COLUMN - at), "", length, line);
+    line += line[length] == '\n' ? length + 1 : length;
+    at = 0;
+  }
+}
+
+void options_print_help(const cli_command *command) {
+  printf("usage: halflight %s %s [OPTION ...]\n\n%s\n", command->name, command->operands,
+         command->description);
+  for (size_t i = 0; i < command->option_count; i++) {
+    const cli_option *option = &command->options[i];
+    if (option->reserved) continue;
+    if (option->group != NULL) printf("\n%s\n", option->group);
+    char heading[120];
+    option_heading(option, heading, sizeof heading);
+    print_option(heading, option->help);
+  }
+  print_option("-h, --help", "this text");
+}

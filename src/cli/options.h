@@ -1,0 +1,78 @@
+/* cli/options.h - command-line options as tables.
+ *
+ * A subcommand states its options once, in a table indexed by its own enum; parsing, help texts and
+ * error messages all come from that table. Long options only (and a letter for a few):
+ * --name value, --name=value, -o value. Negative numbers are values. "--" ends the options.
+ */
+#ifndef HL_CLI_OPTIONS_H
+#define HL_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum cli_option_kind {
+  OPTION_SWITCH,  /* takes no value */
+  OPTION_TEXT,    /* any text but an empty one */
+  OPTION_CHOICE,  /* one of choices */
+  OPTION_NUMBERS, /* count numbers joined by separator; or one of choices, if there are any */
+  OPTION_BYTES    /* a whole number with an optional K, M, G or T (powers of 1024) */
+} cli_option_kind;
+
+typedef struct cli_choice {
+  const char *name; /* null ends the list */
+  int value;
+} cli_choice;
+
+typedef struct cli_option {
+  const char *name;     /* without the dashes */
+  char letter;          /* of the short form; 0: none */
+  cli_option_kind kind;
+  const char *argument; /* the value as help shows it; null for a switch, or to list the choices */
+  const char *help;     /* lines, the first one short */
+  const char *group;    /* heading above this option in help; null: same group as the one before */
+  const cli_choice *choices;
+  int count;            /* OPTION_NUMBERS: 1 to 3 */
+  char separator;       /* between them: ',' or 'x' */
+  bool whole;           /* whole numbers only */
+  bool above;           /* low itself is excluded */
+  double low, high;     /* the accepted range */
+  bool reserved;        /* known, but not in this version: not shown in help, refused when given */
+} cli_option;
+
+typedef struct cli_value {
+  bool given;
+  const char *text;  /* as given */
+  bool chosen;       /* one of the choices was given, and choice is its value */
+  int choice;
+  double number[3];
+  uint64_t bytes;
+} cli_value;
+
+typedef struct cli_command {
+  const char *name;
+  const char *operands;  /* as help shows them: "INPUT" */
+  int operand_count;     /* exactly so many */
+  const char *summary;   /* one line, for the list of commands */
+  const char *description;
+  const cli_option *options;
+  size_t option_count;
+  /* values: [option_count]; operands: [operand_count]. Returns the exit code. */
+  int (*run)(const cli_value *values, char **operands);
+} cli_command;
+
+enum { MAXIMUM_OPTIONS = 48, MAXIMUM_OPERANDS = 2 };
+
+/* Parses what follows the subcommand's name. Returns EXIT_CODE_OK, or another exit code after having
+ * printed one line. *help is set, and parsing stops, at --help or -h. */
+int options_parse(const cli_command *command, int argument_count, char **arguments, cli_value *values,
+                  char **operands, bool *help);
+
+/* Prints the help text of a subcommand on stdout. */
+void options_print_help(const cli_command *command);
+
+/* The candidate nearest to text, or null if none is near. candidate(data, i) is null past the last. */
+const char *nearest_name(const char *text, const char *(*candidate)(const void *data, size_t index),
+                         const void *data);
+
+#endif

@@ -1,0 +1,240 @@
+/* cli/render.c - `halflight render INPUT`: load, change as the options say, render, write, report. */
+#define _GNU_SOURCE
+#include "render.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "commands.h"
+
+/* One run, from INPUT to OUT. */
+typedef struct render_job {
+  cli_host host;
+  const cli_value *values;
+  const char *input;
+  char *output;    /* owned */
+  bool bare;       /* INPUT is a volume file */
+  hl_scene *scene; /* owned */
+  hl_image *image; /* owned */
+  double started;  /* seconds of clock_seconds() */
+  render_result result;
+} render_job;
+
+/* The part of a path after its last slash. */
+static const char *base_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash != NULL ? slash + 1 : path;
+}
+
+static bool has_extension(const char *path, const char *extension) {
+  size_t length = strlen(path), extension_length = strlen(extension);
+  return length > extension_length && strcasecmp(path + length - extension_length, extension) == 0;
+}
+
+/* "head.png" for "scans/head.nii.gz", in the current folder; owned by the caller. */
+static char *default_output(const char *input) {
+  const char *base = base_name(input);
+  size_t length = strlen(base);
+  if (has_extension(base, ".gz")) length -= 3;
+  size_t stem = length;
+  while (stem > 0 && base[stem - 1] != '.') stem--;
+  stem = stem > 1 ? stem - 1 : length;
+  char *name = malloc(stem + sizeof ".png");
+  if (name == NULL) return NULL;
+  memcpy(name, base, stem);
+  memcpy(name + stem, ".png", sizeof ".png");
+  return name;
+}
+
+/* Scenes are told by name; where the name says nothing, by a first character '{'. */
+static bool is_scene(const char *path) {
+  static const char *const volume_extensions[] = {".raw", ".gz",  ".nrrd", ".nhdr", ".mha",
+                                                  ".mhd", ".nii", ".vti",  ".vtk"};
+  if (has_extension(path, ".json")) return true;
+  for (size_t i = 0; i < sizeof volume_extensions / sizeof volume_extensions[0]; i++)
+    if (has_extension(path, volume_extensions[i])) return false;
+  FILE *file = fopen(path, "rb");
+  if (file == NULL) return false;
+  int c;
+  do c = getc(file);
+  while (c != EOF && isspace(c));
+  fclose(file);
+  return c == '{';
+}
+
+/* Found out before the work, not after it: a folder that is not there or cannot be written. */
+static int check_output(const char *path) {
+  struct stat about;
+  if (stat(path, &about) == 0 && S_ISDIR(about.st_mode))
+    return fail(EXIT_CODE_FAILURE, "%s: is a folder: name a file in it", path);
+  char *folder = strdup(path);
+  if (folder == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  char *slash = strrchr(folder, '/');
+  if (slash != NULL) slash[slash == folder ? 1 : 0] = '\0';
+  const char *name = slash != NULL ? folder : ".";
+  int exit_code = EXIT_CODE_OK;
+  if (access(name, W_OK | X_OK) != 0)
+    exit_code =
+        fail(EXIT_CODE_FAILURE, "%s: its folder '%s' cannot be written: %s", path, name, strerror(errno));
+  free(folder);
+  return exit_code;
+}
+
+static int job_open(render_job *job) {
+  const cli_value *values = job->values;
+  int exit_code = render_check_options(values);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  job->output = values[RENDER_OUTPUT].given ? strdup(values[RENDER_OUTPUT].text) : default_output(job->input);
+  if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  exit_code = check_output(job->output);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  cli_host_options options = {.quiet = values[RENDER_QUIET].given,
+                              .progress = true,
+                              .subject = base_name(job->input),
+                              .memory_limit = values[RENDER_MAX_MEMORY].bytes,
+                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
+  return host_open(&options, &job->host);
+}
+
+static hl_status load_volume_scene(render_job *job, hl_error *error) {
+  hl_volume *volume = NULL;
+  hl_status status = hl_volume_load(job->host.context, job->input, &volume, error);
+  if (status == HL_OK)
+    status = hl_scene_for_volume(job->host.context, volume, job->input, &job->scene, error);
+  hl_volume_release(volume);
+  return status;
+}
+
+static int job_load(render_job *job) {
+  hl_error error = {0};
+  job->bare = !is_scene(job->input);
+  hl_status status = job->bare ? load_volume_scene(job, &error)
+                               : hl_scene_load(job->host.context, job->input, &job->scene, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_READ, status, &error);
+  int exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
+  job->result.seconds.load = clock_seconds() - job->started;
+  return exit_code;
+}
+
+static uint64_t count_voxels(const hl_scene_description *description) {
+  uint64_t voxels = 0;
+  for (size_t i = 0; i < description->volume_count; i++) {
+    hl_volume_info info = {.struct_size = sizeof info};
+    if (hl_volume_get_info(description->volumes[i].volume, &info) == HL_OK)
+      voxels += (uint64_t)info.dimensions[0] * info.dimensions[1] * info.dimensions[2];
+  }
+  return voxels;
+}
+
+static hl_status render_reference(render_job *job, const hl_scene_description *description, hl_error *error) {
+  const cli_value *values = job->values;
+  hl_render_statistics *statistics = &job->result.statistics;
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  if (values[RENDER_LIGHT_POINTS].given) options.light_points = (int)values[RENDER_LIGHT_POINTS].number[0];
+  if (values[RENDER_STEP].given) options.step = values[RENDER_STEP].number[0];
+  options.threads = description->render.threads;
+  double started = clock_seconds();
+  hl_status status = hl_reference_render(job->host.context, job->scene, &options, hl_image_pixels(job->image),
+                                         4 * (size_t)description->width, error);
+  statistics->seconds_render = clock_seconds() - started;
+  statistics->threads = options.threads > 0 ? options.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+  statistics->instruction_set = HL_INSTRUCTION_SET_SCALAR;
+  statistics->voxels_total = statistics->voxels_kept = count_voxels(description);
+  return status;
+}
+
+static hl_status render_sheets(render_job *job, const hl_scene_description *description, hl_error *error) {
+  hl_renderer *renderer = NULL;
+  hl_status status = hl_renderer_create(job->host.context, &renderer, error);
+  if (status == HL_OK)
+    status = hl_renderer_render(renderer, job->scene, hl_image_pixels(job->image),
+                                4 * (size_t)description->width, &job->result.statistics, error);
+  hl_renderer_destroy(renderer);
+  return status;
+}
+
+static int job_render(render_job *job) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  hl_error error = {0};
+  job->result.statistics.struct_size = sizeof job->result.statistics;
+  hl_status status =
+      hl_image_create(job->host.context, description->width, description->height, &job->image, &error);
+  if (status == HL_OK)
+    status = job->result.reference ? render_reference(job, description, &error)
+                                   : render_sheets(job, description, &error);
+  job->result.description = description;
+  job->result.seconds.prepare = job->result.statistics.seconds_prepare;
+  job->result.seconds.render = job->result.statistics.seconds_render;
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
+}
+
+static int job_write(render_job *job) {
+  const hl_scene_description *description = job->result.description;
+  double started = clock_seconds();
+  hl_error error = {0};
+  char *scene_json = NULL;
+  hl_status status = host_interrupted() ? HL_ERROR_CANCELLED : HL_OK;
+  if (status == HL_OK) status = hl_scene_to_json(job->host.context, job->scene, &scene_json, &error);
+  if (status == HL_OK) {
+    hl_image_write_options options;
+    hl_image_write_options_defaults(&options);
+    if (job->values[RENDER_DEPTH].given) options.png_depth = job->values[RENDER_DEPTH].choice;
+    memcpy(options.background, description->background, sizeof options.background);
+    options.background_transparent = description->background_transparent;
+    options.scene_json = scene_json;
+    status = hl_image_write(job->host.context, job->image, job->output, &options, &error);
+  }
+  hl_text_release(job->host.context, scene_json);
+  job->result.seconds.write = clock_seconds() - started;
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
+}
+
+static int job_report(render_job *job) {
+  host_clear_bar(&job->host);
+  job->result.output = job->output;
+  job->result.seconds.total = clock_seconds() - job->started;
+  if (job->values[RENDER_JSON].given) return render_print_json(&job->result);
+  if (!job->host.quiet) render_print_summary(&job->result);
+  return EXIT_CODE_OK;
+}
+
+static void job_close(render_job *job) {
+  hl_image_destroy(job->image);
+  hl_scene_release(job->scene);
+  host_close(&job->host);
+  free(job->output);
+}
+
+static int run_render(const cli_value *values, char **operands) {
+  render_job job = {.values = values, .input = operands[0], .started = clock_seconds()};
+  job.result.input = job.input;
+  job.result.reference = values[RENDER_REFERENCE].given;
+  int exit_code = job_open(&job);
+  if (exit_code == EXIT_CODE_OK) exit_code = job_load(&job);
+  if (exit_code == EXIT_CODE_OK) exit_code = job_render(&job);
+  if (exit_code == EXIT_CODE_OK) exit_code = job_write(&job);
+  if (exit_code == EXIT_CODE_OK) exit_code = job_report(&job);
+  job_close(&job);
+  return exit_code;
+}
+
+const cli_command render_command = {
+    .name = "render",
+    .operands = "INPUT",
+    .operand_count = 1,
+    .summary = "render a scene (.json) or a volume file to a picture",
+    .description =
+        "Renders INPUT, a scene (.json) or a volume file (NRRD, MetaImage, NIfTI, VTK, raw).\n"
+        "A volume needs no options: the camera frames it, the transfer function comes from its\n"
+        "histogram, and a key light from the upper left casts soft shadows. Options override\n"
+        "what the scene says.",
+    .options = render_options,
+    .option_count = RENDER_OPTION_COUNT,
+    .run = run_render,
+};

@@ -1,0 +1,75 @@
+/* cli/render.h - shared by the files of `halflight render`. */
+#ifndef HL_CLI_RENDER_H
+#define HL_CLI_RENDER_H
+
+#include "host.h"
+#include "options.h"
+
+enum render_option {
+  RENDER_OUTPUT,
+  RENDER_SIZE,
+  RENDER_DEPTH,
+  RENDER_BACKGROUND,
+  RENDER_LAYERS,
+  RENDER_AZIMUTH,
+  RENDER_ELEVATION,
+  RENDER_ZOOM,
+  RENDER_FOVY,
+  RENDER_ORTHO,
+  RENDER_TF,
+  RENDER_COLORMAP,
+  RENDER_SHADING,
+  RENDER_LIGHT,
+  RENDER_LIGHT_SIZE,
+  RENDER_SHADOWS,
+  RENDER_SOFT_METHOD,
+  RENDER_LIGHT_SAMPLES,
+  RENDER_SHADOW_RESOLUTION,
+  RENDER_SHADOW_LOOKUP,
+  RENDER_SHEET_SPACING,
+  RENDER_KERNEL,
+  RENDER_RECONSTRUCTION,
+  RENDER_SLICING,
+  RENDER_REFERENCE,
+  RENDER_LIGHT_POINTS,
+  RENDER_STEP,
+  RENDER_THREADS,
+  RENDER_INSTRUCTION_SET,
+  RENDER_MAX_MEMORY,
+  RENDER_JSON,
+  RENDER_QUIET,
+  RENDER_OPTION_COUNT
+};
+
+extern const cli_option render_options[RENDER_OPTION_COUNT];
+
+/* Refuses options that contradict each other. */
+int render_check_options(const cli_value *values);
+
+/* Replaces *scene by one that differs from it as the options say. bare: the scene was made for a
+ * volume file, so that camera and key light follow the options. Returns the exit code. */
+int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
+
+/* The transfer function that --tf and --colormap ask for on one volume. The points of *function are
+ * owned by the caller (hl_transfer_function_release); the volume's own function is left alone. */
+int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_volume *volume,
+                             hl_transfer_function *function);
+
+typedef struct render_seconds {
+  double load, prepare, render, write, total;
+} render_seconds;
+
+/* What is known when the picture is written. */
+typedef struct render_result {
+  const char *input, *output;
+  bool reference;
+  const hl_scene_description *description;
+  hl_render_statistics statistics;
+  render_seconds seconds;
+} render_result;
+
+/* The statistics as JSON on stdout, or one line on stderr. */
+int render_print_json(const render_result *result);
+void render_print_summary(const render_result *result);
+
+#endif

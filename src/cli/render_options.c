@@ -1,0 +1,244 @@
+/* cli/render_options.c - the options of `halflight render`: one table, and what contradicts. */
+#include <math.h>
+#include <string.h>
+
+#include "render.h"
+
+static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
+static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
+static const cli_choice shadings[] = {{"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {NULL, 0}};
+static const cli_choice shadow_kinds[] = {
+    {"off", HL_SHADOWS_OFF}, {"hard", HL_SHADOWS_HARD}, {"soft", HL_SHADOWS_SOFT}, {NULL, 0}};
+static const cli_choice soft_methods[] = {
+    {"cascade", HL_SOFT_CASCADE}, {"paper", HL_SOFT_PAPER}, {"sublights", HL_SOFT_SUBLIGHTS}, {NULL, 0}};
+static const cli_choice resolutions[] = {{"auto", 0}, {NULL, 0}};
+static const cli_choice lookups[] = {
+    {"bilinear", HL_LOOKUP_BILINEAR}, {"nearest", HL_LOOKUP_NEAREST}, {NULL, 0}};
+static const cli_choice kernels[] = {{"bspline", HL_KERNEL_BSPLINE},
+                                     {"gaussian", HL_KERNEL_GAUSSIAN},
+                                     {"linear", HL_KERNEL_LINEAR},
+                                     {NULL, 0}};
+static const cli_choice reconstructions[] = {{"auto", HL_RECONSTRUCTION_AUTO},
+                                             {"splat", HL_RECONSTRUCTION_SPLAT},
+                                             {"gather", HL_RECONSTRUCTION_GATHER},
+                                             {NULL, 0}};
+static const cli_choice slicings[] = {
+    {"half-vector", HL_SLICING_HALF_VECTOR}, {"image-aligned", HL_SLICING_IMAGE_ALIGNED}, {NULL, 0}};
+static const cli_choice instruction_sets[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
+                                              {"scalar", HL_INSTRUCTION_SET_SCALAR},
+                                              {"avx2", HL_INSTRUCTION_SET_AVX2},
+                                              {"avx512", HL_INSTRUCTION_SET_AVX512},
+                                              {NULL, 0}};
+
+const cli_option render_options[RENDER_OPTION_COUNT] = {
+    [RENDER_OUTPUT] =
+        {.name = "output",
+         .letter = 'o',
+         .kind = OPTION_TEXT,
+         .argument = "OUT",
+         .group = "Picture",
+         .help = "file to write: .png, .exr or .npy\n(default: INPUT's name with .png, in this folder)"},
+    [RENDER_SIZE] = {.name = "size",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "WxH",
+                     .help = "pixels (default 512x512)",
+                     .count = 2,
+                     .separator = 'x',
+                     .whole = true,
+                     .low = 1,
+                     .high = 32768},
+    [RENDER_DEPTH] = {.name = "depth",
+                      .kind = OPTION_CHOICE,
+                      .choices = depths,
+                      .help = "bits per channel of a .png (default 8)"},
+    [RENDER_BACKGROUND] = {.name = "background",
+                           .kind = OPTION_NUMBERS,
+                           .argument = "R,G,B|transparent",
+                           .help = "linear 0..1, under a .png (default black)",
+                           .choices = backgrounds,
+                           .count = 3,
+                           .separator = ',',
+                           .low = 0,
+                           .high = 1},
+    [RENDER_LAYERS] = {.name = "layers", .kind = OPTION_SWITCH, .help = "", .reserved = true},
+
+    [RENDER_AZIMUTH] = {.name = "azimuth",
+                        .kind = OPTION_NUMBERS,
+                        .argument = "DEG",
+                        .group = "Camera (frames all volumes anew)",
+                        .help = "0 looks along +y; positive: the eye moves right",
+                        .count = 1,
+                        .low = -360,
+                        .high = 360},
+    [RENDER_ELEVATION] = {.name = "elevation",
+                          .kind = OPTION_NUMBERS,
+                          .argument = "DEG",
+                          .help = "90 looks straight down z",
+                          .count = 1,
+                          .low = -90,
+                          .high = 90},
+    [RENDER_ZOOM] = {.name = "zoom",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "FACTOR",
+                     .help = "1 shows everything",
+                     .count = 1,
+                     .low = 0,
+                     .high = 1000,
+                     .above = true},
+    [RENDER_FOVY] = {.name = "fovy",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "DEG",
+                     .help = "perspective with this vertical field of view",
+                     .count = 1,
+                     .low = 0.1,
+                     .high = 170},
+    [RENDER_ORTHO] = {.name = "ortho",
+                      .kind = OPTION_SWITCH,
+                      .help = "parallel projection, the same framing"},
+
+    [RENDER_TF] =
+        {.name = "tf",
+         .kind = OPTION_TEXT,
+         .argument = "FILE|PRESET",
+         .group = "Look (of every volume)",
+         .help = "transfer function: a JSON file (Halflight's,\nParaView's, Slicer's .vp.json) or a preset,\n"
+                 "see 'halflight help presets'"},
+    [RENDER_COLORMAP] =
+        {.name = "colormap",
+         .kind = OPTION_TEXT,
+         .argument = "NAME",
+         .help = "colours over the range that is not transparent,\nsee 'halflight help colormaps'"},
+    [RENDER_SHADING] = {.name = "shading",
+                        .kind = OPTION_CHOICE,
+                        .choices = shadings,
+                        .help = "surfaces, or a medium such as smoke"},
+
+    [RENDER_LIGHT] =
+        {.name = "light",
+         .kind = OPTION_NUMBERS,
+         .argument = "AZ,EL",
+         .group = "Light and shadows",
+         .help = "direction of the first light, seen from the\ncamera: 0,0 is a headlight, -40,40 upper left",
+         .count = 2,
+         .separator = ',',
+         .low = -360,
+         .high = 360},
+    [RENDER_LIGHT_SIZE] = {.name = "light-size",
+                           .kind = OPTION_NUMBERS,
+                           .argument = "DEG",
+                           .help = "angular diameter of the first light; 0 is hard",
+                           .count = 1,
+                           .low = 0,
+                           .high = 90},
+    [RENDER_SHADOWS] = {.name = "shadows",
+                        .kind = OPTION_CHOICE,
+                        .choices = shadow_kinds,
+                        .help = "of all lights that cast any"},
+    [RENDER_SOFT_METHOD] = {.name = "soft-method",
+                            .kind = OPTION_CHOICE,
+                            .choices = soft_methods,
+                            .help = "how soft shadows are made"},
+    [RENDER_LIGHT_SAMPLES] = {.name = "light-samples",
+                              .kind = OPTION_NUMBERS,
+                              .argument = "M",
+                              .help = "cut the light into M x M parts (sublights)",
+                              .count = 1,
+                              .whole = true,
+                              .low = 1,
+                              .high = 64},
+    [RENDER_SHADOW_RESOLUTION] = {.name = "shadow-resolution",
+                                  .kind = OPTION_NUMBERS,
+                                  .argument = "N|auto",
+                                  .help = "longer side of the shadow buffer, in pixels",
+                                  .choices = resolutions,
+                                  .count = 1,
+                                  .whole = true,
+                                  .low = 1,
+                                  .high = 32768},
+    [RENDER_SHADOW_LOOKUP] = {.name = "shadow-lookup",
+                              .kind = OPTION_CHOICE,
+                              .choices = lookups,
+                              .help = "how the shadow buffer is read"},
+
+    [RENDER_SHEET_SPACING] = {.name = "sheet-spacing",
+                              .kind = OPTION_NUMBERS,
+                              .argument = "VOXELS",
+                              .group = "Sheets",
+                              .help = "distance of sheets in smallest voxel edges",
+                              .count = 1,
+                              .low = 0.01,
+                              .high = 100},
+    [RENDER_KERNEL] = {.name = "kernel", .kind = OPTION_CHOICE, .choices = kernels, .help = "of each voxel"},
+    [RENDER_RECONSTRUCTION] = {.name = "reconstruction",
+                               .kind = OPTION_CHOICE,
+                               .choices = reconstructions,
+                               .help = "push footprints, or pull samples: the same\npicture to rounding"},
+    [RENDER_SLICING] = {.name = "slicing",
+                        .kind = OPTION_CHOICE,
+                        .choices = slicings,
+                        .help = "direction of the sheets"},
+
+    [RENDER_REFERENCE] = {.name = "reference",
+                          .kind = OPTION_SWITCH,
+                          .group = "Reference",
+                          .help = "march rays instead: exact, and very slow"},
+    [RENDER_LIGHT_POINTS] = {.name = "light-points",
+                             .kind = OPTION_NUMBERS,
+                             .argument = "N",
+                             .help = "its points on each extended light",
+                             .count = 1,
+                             .whole = true,
+                             .low = 1,
+                             .high = 1000000},
+    [RENDER_STEP] = {.name = "step",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "VOXELS",
+                     .help = "its step in smallest voxel edges",
+                     .count = 1,
+                     .low = 0.001,
+                     .high = 10},
+
+    [RENDER_THREADS] = {.name = "threads",
+                        .kind = OPTION_NUMBERS,
+                        .argument = "N",
+                        .group = "Running",
+                        .help = "0: one per processor (default)",
+                        .count = 1,
+                        .whole = true,
+                        .low = 0,
+                        .high = 1024},
+    [RENDER_INSTRUCTION_SET] = {.name = "instruction-set",
+                                .kind = OPTION_CHOICE,
+                                .choices = instruction_sets,
+                                .help = "any gives the same picture"},
+    [RENDER_MAX_MEMORY] = {.name = "max-memory",
+                           .kind = OPTION_BYTES,
+                           .argument = "BYTES",
+                           .help = "fail rather than hold more; suffix K, M, G or T"},
+    [RENDER_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "statistics on standard output"},
+    [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
+};
+
+static bool ends_with(const char *text, const char *end) {
+  size_t length = strlen(text), end_length = strlen(end);
+  return length > end_length && strcmp(text + length - end_length, end) == 0;
+}
+
+int render_check_options(const cli_value *values) {
+  const char *output = values[RENDER_OUTPUT].given ? values[RENDER_OUTPUT].text : ".picture.png";
+  bool png = ends_with(output, ".png");
+  if (!png && !ends_with(output, ".exr") && !ends_with(output, ".npy"))
+    return fail(EXIT_CODE_USAGE, "--output: '%s' must end in .png, .exr or .npy", output);
+  if (values[RENDER_DEPTH].given && !png)
+    return fail(EXIT_CODE_USAGE,
+                "--depth is for .png pictures, not for '%s': .exr and .npy hold 32-bit floats", output);
+  if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
+    return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
+  for (int which = RENDER_LIGHT_POINTS; which <= RENDER_STEP; which++)
+    if (values[which].given && !values[RENDER_REFERENCE].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for --reference: give both or none", render_options[which].name);
+  if (values[RENDER_LIGHT].given && fabs(values[RENDER_LIGHT].number[1]) > 90)
+    return fail(EXIT_CODE_USAGE, "--light: '%s': the elevation must be from -90 to 90",
+                values[RENDER_LIGHT].text);
+  return EXIT_CODE_OK;
+}

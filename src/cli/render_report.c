@@ -1,0 +1,99 @@
+/* cli/render_report.c - what a finished rendering says of itself. */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <sys/resource.h>
+
+#include "json_writer.h"
+#include "render.h"
+
+static const char *shadows_name(hl_shadows shadows) {
+  return shadows == HL_SHADOWS_OFF ? "off" : shadows == HL_SHADOWS_HARD ? "hard" : "soft";
+}
+
+static const char *soft_method_name(hl_soft_method method) {
+  return method == HL_SOFT_PAPER ? "paper" : method == HL_SOFT_SUBLIGHTS ? "sublights" : "cascade";
+}
+
+/* The most memory this process ever had resident. Linux counts ru_maxrss in KiB. */
+static uint64_t peak_memory_bytes(void) {
+  struct rusage usage;
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024 * (uint64_t)usage.ru_maxrss : 0;
+}
+
+static void print_seconds(json_writer *json, const render_result *result) {
+  const hl_render_statistics *statistics = &result->statistics;
+  json_open_object(json, "seconds");
+  json_number(json, "load", result->seconds.load);
+  json_number(json, "prepare", result->seconds.prepare);
+  json_number(json, "render", result->seconds.render);
+  json_number(json, "write", result->seconds.write);
+  json_number(json, "total", result->seconds.total);
+  json_close(json);
+  json_open_object(json, "render_seconds"); /* what "render" above is made of */
+  json_number(json, "sort", statistics->seconds_sort);
+  json_number(json, "fill_image", statistics->seconds_fill_image);
+  json_number(json, "fill_light", statistics->seconds_fill_light);
+  json_number(json, "shade", statistics->seconds_shade);
+  json_number(json, "light", statistics->seconds_light);
+  json_number(json, "soften", statistics->seconds_soften);
+  json_close(json);
+}
+
+static void print_tiles(json_writer *json, const char *key, uint64_t filled, uint64_t skipped) {
+  json_open_object(json, key);
+  json_integer(json, "filled", filled);
+  json_integer(json, "skipped", skipped);
+  json_close(json);
+}
+
+static void print_work(json_writer *json, const hl_render_statistics *statistics) {
+  json_integer(json, "sheets", (uint64_t)statistics->sheets);
+  json_integer(json, "sweeps", (uint64_t)statistics->sweeps);
+  json_open_object(json, "voxels");
+  json_integer(json, "total", statistics->voxels_total);
+  json_integer(json, "kept", statistics->voxels_kept);
+  json_integer(json, "culled", statistics->voxels_total - statistics->voxels_kept);
+  json_close(json);
+  json_integer(json, "samples_shaded", statistics->samples_shaded);
+  json_open_object(json, "tiles");
+  print_tiles(json, "image", statistics->tiles_filled_image, statistics->tiles_skipped_image);
+  print_tiles(json, "light", statistics->tiles_filled_light, statistics->tiles_skipped_light);
+  json_close(json);
+}
+
+int render_print_json(const render_result *result) {
+  const hl_scene_description *description = result->description;
+  const hl_render_statistics *statistics = &result->statistics;
+  json_writer json = {0};
+  json_open_object(&json, NULL);
+  json_text(&json, "version", hl_version());
+  json_text(&json, "input", result->input);
+  json_text(&json, "output", result->output);
+  json_integer(&json, "width", (uint64_t)description->width);
+  json_integer(&json, "height", (uint64_t)description->height);
+  json_text(&json, "method", result->reference ? "reference" : "sheets");
+  json_text(&json, "shadows", shadows_name(description->render.shadows));
+  json_text(&json, "soft_method", soft_method_name(description->render.soft_method));
+  print_seconds(&json, result);
+  print_work(&json, statistics);
+  json_integer(&json, "peak_memory_bytes", peak_memory_bytes());
+  json_integer(&json, "threads", (uint64_t)statistics->threads);
+  json_text(&json, "instruction_set", hl_instruction_set_name(statistics->instruction_set));
+  json_close(&json);
+  return finish_stdout();
+}
+
+void render_print_summary(const render_result *result) {
+  const hl_scene_description *description = result->description;
+  const hl_render_statistics *statistics = &result->statistics;
+  bool soft = description->render.shadows == HL_SHADOWS_SOFT && !result->reference;
+  fprintf(stderr, "%s: %dx%d, %s shadows%s%s%s, ", result->output, description->width, description->height,
+          shadows_name(description->render.shadows), soft ? " (" : "",
+          soft ? soft_method_name(description->render.soft_method) : "", soft ? ")" : "");
+  if (result->reference)
+    fprintf(stderr, "ray-marched");
+  else
+    fprintf(stderr, "%d sheets", statistics->sheets);
+  fprintf(stderr, ", %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)\n", result->seconds.total,
+          result->seconds.load, result->seconds.prepare, result->seconds.render, result->seconds.write);
+}

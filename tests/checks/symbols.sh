@@ -1,0 +1,15 @@
+#!/bin/sh
+# The shared library exports exactly the functions that the public headers declare.
+# usage: symbols.sh LIBRARY INCLUDE_FOLDER
+set -eu
+library=$1 include=$2
+exported=$(nm -D --defined-only "$library" | awk '{ print $3 }' | sort)
+# Declarations may span lines: the name is the word before the first parenthesis after HL_API.
+declared=$(cat "$include"/halflight/*.h | grep -v '^#' | tr '\n' ' ' |
+  grep -o 'HL_API[^;(]*(' | sed 's/($//; s/.*[ *]//' | sort -u)
+[ "$(echo "$declared" | wc -l)" -ge 40 ] || { echo "fewer than 40 declarations were found"; exit 1; }
+if [ "$exported" != "$declared" ]; then
+  echo "exported:" && echo "$exported" >&1
+  echo "declared:" && echo "$declared"
+  exit 1
+fi

@@ -1,0 +1,1 @@
+halflight diff a.npy b.npy --amplify 3

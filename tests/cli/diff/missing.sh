@@ -1,0 +1,1 @@
+halflight diff nowhere.png nowhere.png

@@ -1,0 +1,4 @@
+tool ball 8 ball_8x8x8_uint8.raw
+halflight render ball_8x8x8_uint8.raw --size 8x8 --quiet -o a.npy
+halflight render ball_8x8x8_uint8.raw --size 8x9 --quiet -o b.npy
+halflight diff a.npy b.npy

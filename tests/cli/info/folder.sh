@@ -1,0 +1,2 @@
+mkdir folder.nrrd
+halflight info folder.nrrd

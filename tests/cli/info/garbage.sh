@@ -1,0 +1,2 @@
+echo 'no volume at all' >garbage.nrrd
+halflight info garbage.nrrd

@@ -1,0 +1,13 @@
+# SIGINT and SIGTERM end a long run with 130; nothing is left behind, and the old picture stands.
+tool ball 40 ball_40x40x40_uint8.raw
+echo old >keep.npy
+for signal in INT TERM; do
+  "$HALFLIGHT" render ball_40x40x40_uint8.raw --size 4096x4096 --sheet-spacing 0.01 --quiet -o keep.npy 2>/dev/null &
+  sleep 0.7
+  kill -$signal $!
+  code=0
+  wait $! || code=$?
+  echo $code
+done
+test "$(cat keep.npy)" = old
+echo *

@@ -1,0 +1,2 @@
+mkdir x.png
+halflight render x.nrrd -o x.png

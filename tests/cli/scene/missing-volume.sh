@@ -1,0 +1,2 @@
+echo '{ "halflight": 1, "volumes": [ { "file": "nowhere.nrrd" } ] }' >scene.json
+halflight render scene.json

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""What the command-line cases need besides the program: small volumes, and a look into its outputs.
+
+Uses Python's standard library alone, so that it shares no reader with the program or its other tests.
+"""
+import ast
+import json
+import math
+import struct
+import sys
+import zlib
+
+
+def ball(size, path):
+    """A size^3 uint8 volume: 255 in a centred ball of 0.35 size radius, an edge of two voxels, air outside;
+    a smaller ball stands beyond its +x, +y and +z side, so that no two views are equal."""
+    n = int(size)
+
+    def value(x, y, z):
+        big = 0.35 * n - math.dist((x, y, z), (n / 2 - 0.5,) * 3)
+        small = 0.1 * n - math.dist((x, y, z), (0.8 * n, 0.75 * n, 0.85 * n))
+        return max(0, min(255, round(128 + 64 * max(big, small))))
+
+    with open(path, "wb") as file:
+        file.write(bytes(value(x, y, z) for z in range(n) for y in range(n) for x in range(n)))
+
+
+def read_npy(path):
+    """(height, width, channels, numbers) of a float32 array."""
+    data = open(path, "rb").read()
+    assert data[:6] == b"\x93NUMPY", f"{path} is no .npy file"
+    length, = struct.unpack("<H", data[8:10])
+    header = ast.literal_eval(data[10:10 + length].decode())
+    assert header["descr"] == "<f4" and not header["fortran_order"], header
+    height, width, channels = header["shape"]
+    return height, width, channels, struct.unpack(f"<{height * width * channels}f", data[10 + length:])
+
+
+def npy_shape(path):
+    """height width channels"""
+    print(*read_npy(path)[:3])
+
+
+def brightness(path):
+    """Mean of R + G + B over the left, right, upper and lower half: 'left right upper lower'."""
+    height, width, channels, numbers = read_npy(path)
+    sums = dict(left=0.0, right=0.0, upper=0.0, lower=0.0)
+    for y in range(height):
+        for x in range(width):
+            light = sum(numbers[channels * (y * width + x):][:3])
+            sums["left" if x < width / 2 else "right"] += light
+            sums["upper" if y < height / 2 else "lower"] += light
+    print(*(f"{2 * total / (width * height):.5f}" for total in sums.values()))
+
+
+def coverage(path):
+    """Width and height, in pixels, of the box of the pixels that are not empty."""
+    height, width, channels, numbers = read_npy(path)
+    covered = [(x, y) for y in range(height) for x in range(width) if numbers[channels * (y * width + x) + 3] > 0.01]
+    xs, ys = [x for x, _ in covered], [y for _, y in covered]
+    print(max(xs) - min(xs) + 1, max(ys) - min(ys) + 1)
+
+
+def png_chunks(path):
+    data = open(path, "rb").read()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", f"{path} is no PNG file"
+    at = 8
+    while at < len(data):
+        length, = struct.unpack(">I", data[at:at + 4])
+        body = data[at + 8:at + 8 + length]
+        check, = struct.unpack(">I", data[at + 8 + length:at + 12 + length])
+        assert check == zlib.crc32(data[at + 4:at + 8 + length]), "a chunk is damaged"
+        yield data[at + 4:at + 8].decode(), body
+        at += 12 + length
+
+
+def png_header(path):
+    """width height bits color-type (2: RGB, 6: RGBA)"""
+    chunks = dict(png_chunks(path))
+    print(*struct.unpack(">IIBB", chunks["IHDR"][:10]))
+    assert "IEND" in chunks
+
+
+def png_scene(path):
+    """The scene that the picture carries."""
+    for kind, body in png_chunks(path):
+        if kind in ("tEXt", "iTXt", "zTXt") and body.startswith(b"halflight:scene\0"):
+            rest = body.split(b"\0", 1)[1]
+            if kind == "tEXt":
+                print(rest.decode())
+            elif kind == "zTXt":
+                print(zlib.decompress(rest[1:]).decode())
+            else:
+                compressed, text = rest[0], rest[2:].split(b"\0", 2)[2]
+                print((zlib.decompress(text) if compressed else text).decode())
+            return
+    sys.exit(f"{path} carries no scene")
+
+
+def png_pixel(path, x, y):
+    """The 8-bit channels of one pixel; knows the filters of the PNG specification, section 9."""
+    chunks = list(png_chunks(path))
+    width, height, bits, color_type = struct.unpack(">IIBB", dict(chunks)["IHDR"][:10])
+    assert bits == 8
+    step = {2: 3, 6: 4}[color_type]
+    rows = zlib.decompress(b"".join(body for kind, body in chunks if kind == "IDAT"))
+    above = bytearray(width * step)
+    for row in range(int(y) + 1):
+        at = row * (width * step + 1)
+        kind, line = rows[at], bytearray(rows[at + 1:at + 1 + width * step])
+        for i in range(len(line)):
+            left, up, corner = (line[i - step], above[i], above[i - step]) if i >= step else (0, above[i], 0)
+            guess = left + up - corner
+            nearest = min((left, up, corner), key=lambda value: abs(guess - value))
+            line[i] = (line[i] + (0, left, up, (left + up) // 2, nearest)[kind]) % 256
+        above = line
+    print(*above[int(x) * step:(int(x) + 1) * step])
+
+
+def json_get(path, expression):
+    """Evaluates a Python expression in which `d` is the parsed file."""
+    print(eval(expression, {"d": json.load(open(path)), "len": len, "sum": sum, "sorted": sorted, "abs": abs}))
+
+
+COMMANDS = {"ball": ball, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage,
+            "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel, "json": json_get}
+COMMANDS[sys.argv[1]](*sys.argv[2:])

@@ -1,0 +1,1 @@
+halflight render --max-memory 12Q x.nrrd

@@ -1,0 +1,1 @@
+halflight render --background 1,2 x.nrrd

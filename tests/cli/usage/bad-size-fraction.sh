@@ -1,0 +1,1 @@
+halflight render --size 5.5x5 x.nrrd

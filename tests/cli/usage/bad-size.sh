@@ -1,0 +1,1 @@
+halflight render --size 512 x.nrrd

@@ -1,0 +1,1 @@
+halflight render --max-memory 99999999999G x.nrrd

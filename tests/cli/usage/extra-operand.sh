@@ -1,0 +1,1 @@
+halflight render a.nrrd b.nrrd

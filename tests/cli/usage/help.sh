@@ -1,0 +1,8 @@
+# Help goes to standard output, names every command and no reserved one, and is the same in all spellings.
+halflight --help >help
+grep -q '^  render INPUT ' help
+grep -q '^  info VOLUME ' help
+grep -q '^  diff A B ' help
+if grep -qE '^  (make|view) ' help; then exit 1; fi
+halflight help | cmp help -
+halflight -h | cmp help -

@@ -1,0 +1,1 @@
+halflight render --size 99999x1 x.nrrd

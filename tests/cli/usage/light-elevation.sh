@@ -1,0 +1,1 @@
+halflight render x.nrrd --light 0,91

@@ -1,0 +1,1 @@
+halflight render --azimuth nan x.nrrd

@@ -1,0 +1,1 @@
+halflight render --zoom 2px x.nrrd

@@ -1,0 +1,1 @@
+halflight info --size 3x3 x.nrrd

@@ -1,0 +1,1 @@
+halflight render --zoom 1 --zoom 2 x.nrrd

@@ -1,0 +1,1 @@
+halflight render --ortho --fovy 30 x.nrrd

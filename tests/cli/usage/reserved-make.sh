@@ -1,0 +1,1 @@
+halflight make rings -o rings.nrrd

@@ -1,0 +1,1 @@
+halflight render x.nrrd --step 0.5

@@ -1,0 +1,1 @@
+halflight rendr x.nrrd

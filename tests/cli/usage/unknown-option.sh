@@ -1,0 +1,1 @@
+halflight render --sizee 3x3 x.nrrd

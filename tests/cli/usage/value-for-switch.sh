@@ -1,0 +1,1 @@
+halflight render --quiet=yes x.nrrd

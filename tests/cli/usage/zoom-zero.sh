@@ -1,0 +1,1 @@
+halflight render --zoom 0 x.nrrd
