@@ -27,53 +27,76 @@ double hl_reference_stored_value(const reference_volume *volume, const size_t vo
 }
 
 /* The cubic B-spline at distances 1+t, t, 1-t, 2-t, and its derivative by t. */
-static void bspline(double t, double weight[4], double slope[4]) {
+static void bspline(double t, double weight[4]) {
   double u = 1 - t;
-  weight[0] = u * u * u / 6;
-  weight[1] = (3 * t * t * t - 6 * t * t + 4) / 6;
-  weight[2] = (3 * u * u * u - 6 * u * u + 4) / 6;
-  weight[3] = t * t * t / 6;
+  weight[0] = u * u * u * (1.0 / 6);
+  weight[1] = t * t * (0.5 * t - 1) + 2.0 / 3;
+  weight[2] = u * u * (0.5 * u - 1) + 2.0 / 3;
+  weight[3] = t * t * t * (1.0 / 6);
+}
+static void bspline_slope(double t, double slope[4]) {
+  double u = 1 - t;
   slope[0] = -u * u / 2;
   slope[1] = (1.5 * t - 2) * t;
   slope[2] = -(1.5 * u - 2) * u;
   slope[3] = t * t / 2;
 }
 
-/* exp(-2 d^2) for |d| < 2, divided by the sum over the four taps so that a constant stays constant.
- * Slope by the quotient rule: (g/S)' = (g' - (g/S) S') / S. */
-static void gaussian(double t, double weight[4], double slope[4]) {
-  double sum = 0, slope_sum = 0;
+/* exp(-2 d^2) for |d| < 2, divided by the sum over the four taps so that a constant stays constant. */
+static void gaussian(double t, double weight[4]) {
+  double sum = 0;
   for (int tap = 0; tap < 4; tap++) {
     double d = t + 1 - tap;
     weight[tap] = fabs(d) < 2 ? exp(-2 * d * d) : 0;
-    slope[tap] = -4 * d * weight[tap];
     sum += weight[tap];
-    slope_sum += slope[tap];
   }
-  for (int tap = 0; tap < 4; tap++) {
-    weight[tap] /= sum;
-    slope[tap] = (slope[tap] - weight[tap] * slope_sum) / sum;
-  }
+  for (int tap = 0; tap < 4; tap++) weight[tap] /= sum;
+}
+/* With w = g/S and g' = -4 d g: w' = (g' - w S') / S, and g/S is w again. */
+static void gaussian_slope(double t, const double weight[4], double slope[4]) {
+  double sum = 0;
+  for (int tap = 0; tap < 4; tap++) sum += slope[tap] = -4 * (t + 1 - tap) * weight[tap];
+  for (int tap = 0; tap < 4; tap++) slope[tap] -= weight[tap] * sum;
 }
 
-static void linear(double t, double weight[4], double slope[4]) {
-  weight[0] = weight[3] = slope[0] = slope[3] = 0;
+static void linear(double t, double weight[4]) {
+  weight[0] = weight[3] = 0;
   weight[1] = 1 - t;
   weight[2] = t;
+}
+static void linear_slope(double slope[4]) {
+  slope[0] = slope[3] = 0;
   slope[1] = -1;
   slope[2] = 1;
 }
 
-static void find_taps(const reference_volume *volume, vec3 point, taps *found) {
+static inline size_t clamp_voxel(int64_t voxel, int64_t last) {
+  return (size_t)(voxel < 0 ? 0 : voxel > last ? last : voxel);
+}
+
+/* Slopes are filled only where asked for. */
+static inline void find_taps(const reference_volume *volume, vec3 point, bool slopes, taps *found) {
   const double p[3] = {point.x, point.y, point.z};
   for (int axis = 0; axis < 3; axis++) {
-    double last = (double)volume->grid->dimension[axis] - 1;
-    double inside = fmin(fmax(p[axis], -0.5), last + 0.5), base = floor(inside);
-    for (int tap = 0; tap < 4; tap++) found->voxel[axis][tap] = (size_t)fmin(fmax(base - 1 + tap, 0), last);
+    int64_t last = (int64_t)volume->grid->dimension[axis] - 1;
+    double inside = p[axis] > -0.5 ? p[axis] : -0.5;
+    if (inside > (double)last + 0.5) inside = (double)last + 0.5;
+    int64_t base = (int64_t)(inside + 1) - 1; /* the floor, as inside + 1 is positive */
+    double t = inside - (double)base, *weight = found->weight[axis], *slope = found->slope[axis];
+    for (int tap = 0; tap < 4; tap++) found->voxel[axis][tap] = clamp_voxel(base - 1 + tap, last);
     switch (volume->kernel) {
-      case HL_KERNEL_GAUSSIAN: gaussian(inside - base, found->weight[axis], found->slope[axis]); break;
-      case HL_KERNEL_LINEAR: linear(inside - base, found->weight[axis], found->slope[axis]); break;
-      default: bspline(inside - base, found->weight[axis], found->slope[axis]); break;
+      case HL_KERNEL_GAUSSIAN:
+        gaussian(t, weight);
+        if (slopes) gaussian_slope(t, weight, slope);
+        break;
+      case HL_KERNEL_LINEAR:
+        linear(t, weight);
+        if (slopes) linear_slope(slope);
+        break;
+      default:
+        bspline(t, weight);
+        if (slopes) bspline_slope(t, slope);
+        break;
     }
   }
 }
@@ -108,14 +131,14 @@ static double weigh(const reference_volume *volume, const taps *at, const double
 
 double hl_reference_value(const reference_volume *volume, vec3 point) {
   taps at;
-  find_taps(volume, point, &at);
+  find_taps(volume, point, false, &at);
   double stored = weigh(volume, &at, at.weight[0], at.weight[1], at.weight[2]);
   return volume->grid->value_scale * stored + volume->grid->value_offset;
 }
 
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point) {
   taps at;
-  find_taps(volume, point, &at);
+  find_taps(volume, point, true, &at);
   vec3 stored = {weigh(volume, &at, at.slope[0], at.weight[1], at.weight[2]),
                  weigh(volume, &at, at.weight[0], at.slope[1], at.weight[2]),
                  weigh(volume, &at, at.weight[0], at.weight[1], at.slope[2])};

@@ -25,6 +25,7 @@ void stage_open(stage *set) {
   require(hl_context_create(NULL, &set->context, &error), &error);
   hl_scene_description_defaults(&set->scene);
   set->scene.width = set->scene.height = 16;
+  set->type = HL_VOXEL_F32;
   set->scene.lights = set->lights;
   set->scene.volumes = set->volumes;
   memset(set->scene.ambient, 0, sizeof set->scene.ambient);
@@ -40,13 +41,26 @@ void stage_close(stage *set) {
   hl_context_destroy(set->context);
 }
 
+/* The voxels as the stage's type; the caller frees them. */
+static void *store_voxels(const stage *set, const float *voxels, size_t count, double *value_scale) {
+  float *stored = malloc(count * sizeof *stored);
+  assert_non_null(stored);
+  *value_scale = set->type == HL_VOXEL_U8 ? 1.0 / 255 : set->type == HL_VOXEL_U16 ? 1.0 / 65535 : 1;
+  for (size_t i = 0; i < count; i++) {
+    float value = voxels == NULL ? 1 : voxels[i];
+    if (set->type == HL_VOXEL_U8)
+      ((uint8_t *)stored)[i] = (uint8_t)lround(value / *value_scale);
+    else if (set->type == HL_VOXEL_U16)
+      ((uint16_t *)stored)[i] = (uint16_t)lround(value / *value_scale);
+    else
+      stored[i] = value;
+  }
+  return stored;
+}
+
 hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const double spacing[3], vec3 corner,
                                 const float *voxels) {
   assert_true(set->scene.volume_count < STAGE_VOLUMES);
-  size_t count = dimensions[0] * dimensions[1] * dimensions[2];
-  float *ones = malloc(count * sizeof *ones);
-  assert_non_null(ones);
-  for (size_t i = 0; i < count; i++) ones[i] = 1;
   hl_volume_description description;
   hl_volume_description_defaults(&description);
   const double low[3] = {corner.x, corner.y, corner.z};
@@ -56,13 +70,15 @@ hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const do
     description.axis[a][a] = spacing[a];
     description.origin[a] = low[a] + spacing[a] / 2;
   }
-  description.type = HL_VOXEL_F32;
-  description.voxels = voxels != NULL ? voxels : ones;
+  void *stored =
+      store_voxels(set, voxels, dimensions[0] * dimensions[1] * dimensions[2], &description.value_scale);
+  description.type = set->type;
+  description.voxels = stored;
   hl_scene_volume *volume = &set->volumes[set->scene.volume_count++];
   hl_scene_volume_defaults(volume);
   hl_error error = {0};
   require(hl_volume_create(set->context, &description, &volume->volume, &error), &error);
-  free(ones);
+  free(stored);
   volume->shading = HL_SHADING_NONE;
   stage_set_opacity(set, volume, 0.5, 1);
   stage_set_color(set, volume, 1, 1, 1);

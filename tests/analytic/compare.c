@@ -1,0 +1,402 @@
+/* analytic/compare.c - the renderer against the reference on small scenes made in code.
+ *
+ *     compare [--size N] [--spacing S] [--only TEXT] [--soft] [--points N] [--write FOLDER]
+ *
+ * Prints one line per scene and shadow setting: the root mean square, greatest and mean signed differences of
+ * renderer - reference over R, G, B, A, and the pixel of the greatest one. Without options it is a test: exit
+ * status 1 if a picture is further from the reference than its bar. --only picks scenes by part of their
+ * name,
+ * --soft adds the soft methods (without bars), --write keeps the pictures as
+ * FOLDER/NAME-SHADOWS-{renderer,reference}.npy.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+typedef struct choices {
+  int size;         /* pixels a side */
+  double spacing;   /* of the sheets, voxels */
+  const char *only; /* null: all */
+  int soft;
+  int light_points;   /* of the reference, for soft shadows */
+  const char *folder; /* null: keep nothing */
+} choices;
+
+/* ---- voxels: value of a unit cube's point, each coordinate in [-1, 1] ---- */
+
+typedef double field_function(double x, double y, double z);
+
+static double ball(double x, double y, double z, double cx, double cy, double cz, double radius) {
+  double dx = x - cx, dy = y - cy, dz = z - cz;
+  return fmax(0, 1 - (dx * dx + dy * dy + dz * dz) / (radius * radius));
+}
+static double balls(double x, double y, double z) {
+  double a = ball(x, y, z, -0.35, -0.3, -0.25, 0.5), b = ball(x, y, z, 0.4, 0.35, 0.1, 0.45);
+  return fmax(fmax(a, b), ball(x, y, z, 0.1, -0.35, 0.55, 0.35));
+}
+/* A slab two to three voxels thick in 40, and a ball below it. */
+static double plate(double x, double y, double z) {
+  double inside = fabs(x) < 0.6 && fabs(y) < 0.5 ? fmax(0, 1 - fabs(z - 0.5) / 0.1) : 0;
+  return fmax(inside, ball(x, y, z, 0, 0, -0.4, 0.5));
+}
+/* A wall with a slit before a floor, as sharp as the grid. */
+static double wall(double x, double y, double z) {
+  if (z < -0.75) return 1;
+  return x > -0.2 && x < 0.25 && z < 0.5 && fabs(y) < 0.8 && !(fabs(y) < 0.15 && z < 0.1) ? 1 : 0;
+}
+static double smoke(double x, double y, double z) {
+  double fade = fmax(0, 1 - (x * x + y * y + z * z));
+  return fade * (double)stage_noise(4 * x, 4 * y, 4 * z);
+}
+static double full(double x, double y, double z) {
+  return 0.2 + 0.8 * (double)stage_noise(3 * x, 3 * y, 3 * z);
+}
+
+/* ---- scenes ---- */
+
+static const hl_opacity_point SURFACE[] = {{0, 0}, {0.2, 0}, {0.45, 0.7}, {1, 0.9}};
+static const hl_opacity_point SHARP[] = {{0, 0}, {0.45, 0}, {0.55, 0.95}, {1, 0.95}};
+static const hl_opacity_point THIN[] = {{0, 0}, {0.1, 0}, {0.6, 0.12}, {1, 0.2}};
+static const hl_opacity_point HAZE[] = {{0, 0}, {0.03, 0}, {0.5, 0.3}, {1, 0.4}};
+static const hl_color_point WARM[] = {{0, {0.2, 0.3, 0.9}}, {0.5, {0.9, 0.4, 0.2}}, {1, {1, 0.9, 0.6}}};
+
+#define OPACITY(volume, points)                    \
+  ((volume)->transfer_function.opacity = (points), \
+   (volume)->transfer_function.opacity_count = sizeof(points) / sizeof *(points))
+
+/* An N^3-like grid of the field around the origin; the box is `edge` long along x. */
+static hl_scene_volume *add_field(stage *set, field_function *field, const size_t n[3],
+                                  const double spacing[3]) {
+  float *voxels = malloc(n[0] * n[1] * n[2] * sizeof *voxels), *out = voxels;
+  assert_non_null(voxels);
+  for (size_t k = 0; k < n[2]; k++)
+    for (size_t j = 0; j < n[1]; j++)
+      for (size_t i = 0; i < n[0]; i++)
+        *out++ =
+            (float)field((2.0 * (double)i + 1) / (double)n[0] - 1, (2.0 * (double)j + 1) / (double)n[1] - 1,
+                         (2.0 * (double)k + 1) / (double)n[2] - 1);
+  vec3 corner = {-0.5 * (double)n[0] * spacing[0], -0.5 * (double)n[1] * spacing[1],
+                 -0.5 * (double)n[2] * spacing[2]};
+  hl_scene_volume *volume = stage_add_grid(set, n, spacing, corner, voxels);
+  free(voxels);
+  volume->shading = HL_SHADING_PHONG;
+  OPACITY(volume, SURFACE);
+  volume->transfer_function.color = WARM;
+  volume->transfer_function.color_count = sizeof WARM / sizeof *WARM;
+  return volume;
+}
+
+static hl_scene_volume *add_cube(stage *set, field_function *field, size_t n) {
+  return add_field(set, field, (size_t[3]){n, n, n}, (double[3]){1, 1, 1});
+}
+
+static void look_from_corner(stage *set) {
+  stage_look(set, (vec3){46, -70, 52}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  set->scene.camera.height = 62;
+}
+static void perspective(stage *set, double fovy_deg) {
+  set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  set->scene.camera.fovy_deg = fovy_deg;
+}
+
+static void make_balls(stage *set) {
+  add_cube(set, balls, 40);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_balls_medium(stage *set) {
+  make_balls(set);
+  set->volumes[0].shading = HL_SHADING_NONE;
+}
+static void make_balls_bytes(stage *set) {
+  set->type = HL_VOXEL_U8;
+  make_balls_medium(set);
+}
+static void make_balls_words(stage *set) {
+  set->type = HL_VOXEL_U16;
+  make_balls_medium(set);
+}
+static void make_balls_gaussian(stage *set) {
+  make_balls_medium(set);
+  set->scene.render.kernel = HL_KERNEL_GAUSSIAN;
+}
+static void make_balls_linear(stage *set) {
+  make_balls_medium(set);
+  set->scene.render.kernel = HL_KERNEL_LINEAR;
+}
+static void make_balls_splat(stage *set) {
+  make_balls_medium(set);
+  set->scene.render.reconstruction = HL_RECONSTRUCTION_SPLAT;
+}
+static void make_balls_perspective(stage *set) {
+  make_balls(set);
+  stage_look(set, (vec3){34, -38, 30}, (vec3){0, 0, -2}, (vec3){0, 0, 1});
+  perspective(set, 50);
+}
+static void make_balls_point_light(stage *set) {
+  make_balls_medium(set);
+  set->scene.light_count = 0;
+  hl_light *light = stage_add_point(set, (vec3){25, -12, 45});
+  light->radius = 8;
+}
+static void make_balls_two_lights(stage *set) {
+  make_balls(set);
+  set->lights[0].color[2] = 0.2;
+  set->lights[0].intensity = 0.6;
+  stage_add_directional(set, (vec3){1, 0.2, -0.4})->color[0] = 0.1;
+}
+static void make_plate(stage *set) {
+  OPACITY(add_cube(set, plate, 40), SHARP);
+  set->volumes[0].shading = HL_SHADING_NONE;
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){0.2, 0.1, -1})->angular_diameter_deg = 20;
+}
+static void make_wall(stage *set) {
+  OPACITY(add_cube(set, wall, 40), SHARP);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-1, 0.2, -0.7})->angular_diameter_deg = 20;
+}
+static void make_smoke_lit(stage *set, vec3 direction) {
+  hl_scene_volume *volume = add_cube(set, smoke, 40);
+  OPACITY(volume, HAZE);
+  volume->shading = HL_SHADING_NONE;
+  volume->attenuation_color[0] = 0.3;
+  volume->attenuation_color[1] = 0.7;
+  look_from_corner(set);
+  stage_add_directional(set, direction)->angular_diameter_deg = 20;
+}
+static void make_smoke(stage *set) { make_smoke_lit(set, (vec3){-0.5, 0.3, -1}); }
+static void make_smoke_backlit(stage *set) { make_smoke_lit(set, (vec3){46, -60, 40}); }
+static void make_smoke_silhouette(stage *set) {
+  make_smoke_lit(set, (vec3){46, -70, 52});
+} /* e opposite to l */
+static void make_smoke_headlight(stage *set) {
+  make_smoke_lit(set, (vec3){-46, 70, -52});
+} /* e parallel to l */
+static void make_smoke_across(stage *set) { make_smoke_lit(set, (vec3){70, 46, 0}); } /* e.l = 0 */
+static void make_oblique(stage *set) {
+  hl_scene_volume *volume = add_field(set, balls, (size_t[3]){36, 30, 16}, (double[3]){1, 1.2, 2.2});
+  volume->rotate_axis[0] = 1;
+  volume->rotate_axis[1] = -0.5;
+  volume->rotate_angle_deg = 35;
+  volume->shading = HL_SHADING_NONE;
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_oblique_phong(stage *set) {
+  make_oblique(set);
+  set->volumes[0].shading = HL_SHADING_PHONG;
+}
+static void make_two_volumes(stage *set) {
+  hl_scene_volume *haze = add_cube(set, full, 24);
+  OPACITY(haze, THIN);
+  haze->shading = HL_SHADING_NONE;
+  haze->scale = 1.3;
+  haze->rotate_axis[1] = 1;
+  haze->rotate_angle_deg = 25;
+  haze->translate[0] = 5;
+  haze->attenuation_color[2] = 0.4;
+  add_cube(set, balls, 32);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+/* The box's faces cut through matter: they must be where they are, at full strength. */
+static void make_clipped(stage *set) {
+  hl_scene_volume *volume = add_cube(set, full, 32);
+  OPACITY(volume, THIN);
+  volume->shading = HL_SHADING_NONE;
+  volume->clipped = 1;
+  const double low[3] = {-11.3, -20, -9.2}, high[3] = {20, 7.4, 8.6};
+  memcpy(volume->clip_min, low, sizeof low);
+  memcpy(volume->clip_max, high, sizeof high);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_clipped_perspective(stage *set) {
+  make_clipped(set);
+  stage_look(set, (vec3){30, -34, 24}, (vec3){4, -4, 0}, (vec3){0, 0, 1});
+  perspective(set, 60);
+}
+static void make_eye_inside(stage *set) {
+  make_smoke(set);
+  stage_look(set, (vec3){3, -6, 4}, (vec3){-10, 12, -4}, (vec3){0, 0, 1});
+  perspective(set, 70);
+}
+static void make_lamp_inside(stage *set) {
+  make_smoke(set);
+  set->scene.light_count = 0;
+  stage_add_point(set, (vec3){4, -3, 5});
+}
+static void make_hidden_occluder(stage *set) {
+  make_plate(set);
+  hl_scene_volume *screen = stage_add_box(set, (vec3){-6, -30, 24}, (vec3){30, 30, 25});
+  stage_set_opacity(set, screen, 0.9, 1);
+  screen->visible = 0;
+}
+
+typedef struct scenario {
+  const char *name;
+  void (*make)(stage *set);
+  double bar; /* RMSE at sheet spacing 0.5; 0: none yet */
+} scenario;
+
+static const scenario SCENARIOS[] = {
+    {"balls", make_balls, 0.006},
+    {"balls-medium", make_balls_medium, 0.006},
+    {"balls-u8", make_balls_bytes, 0.006},
+    {"balls-u16", make_balls_words, 0.006},
+    {"balls-gaussian", make_balls_gaussian, 0.006},
+    {"balls-linear", make_balls_linear, 0.006},
+    {"balls-splat", make_balls_splat, 0.006},
+    {"balls-perspective", make_balls_perspective, 0.006},
+    {"balls-point-light", make_balls_point_light, 0.006},
+    {"balls-two-lights", make_balls_two_lights, 0.006},
+    {"plate", make_plate, 0.006},
+    {"wall", make_wall, 0.006},
+    {"smoke", make_smoke, 0.006},
+    {"smoke-backlit", make_smoke_backlit, 0.006},
+    {"smoke-silhouette", make_smoke_silhouette, 0.006},
+    {"smoke-headlight", make_smoke_headlight, 0.006},
+    {"smoke-across", make_smoke_across, 0.006},
+    {"oblique", make_oblique, 0.006},
+    {"oblique-phong", make_oblique_phong, 0.006},
+    {"two-volumes", make_two_volumes, 0.006},
+    {"clipped", make_clipped, 0.006},
+    {"clipped-perspective", make_clipped_perspective, 0.006},
+    {"eye-inside", make_eye_inside, 0.006},
+    {"lamp-inside", make_lamp_inside, 0.006},
+    {"hidden-occluder", make_hidden_occluder, 0.006},
+};
+
+/* ---- pictures ---- */
+
+typedef struct shadow_setting {
+  const char *name;
+  hl_shadows shadows;
+  hl_soft_method method;
+} shadow_setting;
+
+static const shadow_setting SETTINGS[] = {
+    {"off", HL_SHADOWS_OFF, HL_SOFT_CASCADE},          {"hard", HL_SHADOWS_HARD, HL_SOFT_CASCADE},
+    {"cascade", HL_SHADOWS_SOFT, HL_SOFT_CASCADE},     {"paper", HL_SHADOWS_SOFT, HL_SOFT_PAPER},
+    {"sublights", HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS},
+};
+
+static void render_sheets(stage *set, float *pixels) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  if (hl_scene_create(set->context, &set->scene, &scene, &error) != HL_OK ||
+      hl_renderer_create(set->context, &renderer, &error) != HL_OK ||
+      hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set->scene.width, NULL, &error) != HL_OK)
+    fail_msg("%s", error.message);
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+}
+
+static void keep(hl_context *context, const choices *chosen, const char *scene, const char *setting,
+                 const char *renderer, const hl_image *image) {
+  char path[1000];
+  hl_error error = {0};
+  if (chosen->folder == NULL) return;
+  snprintf(path, sizeof path, "%s/%s-%s-%s.npy", chosen->folder, scene, setting, renderer);
+  if (hl_image_write(context, image, path, NULL, &error) != HL_OK) fail_msg("%s", error.message);
+}
+
+static void print_difference(const char *scene, const char *setting, const hl_image_difference *d,
+                             const float *a, const float *b, int width) {
+  const float *p = a + 4 * ((size_t)d->maximum_y * (size_t)width + (size_t)d->maximum_x);
+  const float *q = b + 4 * ((size_t)d->maximum_y * (size_t)width + (size_t)d->maximum_x);
+  printf(
+      "%-20s %-9s %.5f  %.4f  %+.5f %+.5f %+.5f %+.5f  (%d,%d) reference %.3f %.3f %.3f %.3f renderer %.3f "
+      "%.3f %.3f %.3f\n",
+      scene, setting, d->rmse, d->maximum, d->mean_signed[0], d->mean_signed[1], d->mean_signed[2],
+      d->mean_signed[3], d->maximum_x, d->maximum_y, (double)p[0], (double)p[1], (double)p[2], (double)p[3],
+      (double)q[0], (double)q[1], (double)q[2], (double)q[3]);
+  fflush(stdout);
+}
+
+/* True if the picture is near enough. */
+static int compare(const scenario *scene, const shadow_setting *setting, const choices *chosen) {
+  stage set;
+  stage_open(&set);
+  scene->make(&set);
+  set.scene.width = set.scene.height = chosen->size;
+  set.scene.render.sheet_spacing = chosen->spacing;
+  set.scene.render.shadows = setting->shadows;
+  set.scene.render.soft_method = setting->method;
+  set.scene.render.light_samples = 4;
+  for (int c = 0; c < 3; c++) set.scene.ambient[c] = 0.15;
+  hl_image *reference = NULL, *rendered = NULL;
+  hl_error error = {0};
+  if (hl_image_create(set.context, chosen->size, chosen->size, &reference, &error) != HL_OK ||
+      hl_image_create(set.context, chosen->size, chosen->size, &rendered, &error) != HL_OK)
+    fail_msg("%s", error.message);
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.light_points = chosen->light_points;
+  stage_render(&set, &options, hl_image_pixels(reference));
+  render_sheets(&set, hl_image_pixels(rendered));
+  hl_image_difference difference = {.struct_size = sizeof difference};
+  if (hl_image_compare(reference, rendered, &difference, &error) != HL_OK) fail_msg("%s", error.message);
+  print_difference(scene->name, setting->name, &difference, hl_image_pixels(reference),
+                   hl_image_pixels(rendered), chosen->size);
+  keep(set.context, chosen, scene->name, setting->name, "reference", reference);
+  keep(set.context, chosen, scene->name, setting->name, "renderer", rendered);
+  hl_image_destroy(reference);
+  hl_image_destroy(rendered);
+  stage_close(&set);
+  int barred = setting->shadows != HL_SHADOWS_SOFT && scene->bar > 0 && chosen->spacing <= 0.5;
+  return !barred || difference.rmse <= scene->bar;
+}
+
+static int read_choices(int argc, char **argv, choices *chosen) {
+  *chosen = (choices){.size = 64, .spacing = 0.5, .light_points = 64};
+  for (int i = 1; i < argc; i++) {
+    const char *value = i + 1 < argc ? argv[i + 1] : NULL;
+    if (strcmp(argv[i], "--soft") == 0) {
+      chosen->soft = 1;
+      continue;
+    }
+    if (value == NULL) return 0;
+    if (strcmp(argv[i], "--size") == 0)
+      chosen->size = atoi(value);
+    else if (strcmp(argv[i], "--spacing") == 0)
+      chosen->spacing = atof(value);
+    else if (strcmp(argv[i], "--only") == 0)
+      chosen->only = value;
+    else if (strcmp(argv[i], "--points") == 0)
+      chosen->light_points = atoi(value);
+    else if (strcmp(argv[i], "--write") == 0)
+      chosen->folder = value;
+    else
+      return 0;
+    i++;
+  }
+  return 1;
+}
+
+int main(int argc, char **argv) {
+  choices chosen;
+  if (!read_choices(argc, argv, &chosen)) {
+    fprintf(stderr,
+            "usage: compare [--size N] [--spacing S] [--only TEXT] [--soft] [--points N] [--write FOLDER]\n");
+    return 2;
+  }
+  int failures = 0;
+  printf("%-20s %-9s %-7s  %-6s  mean signed R G B A; where the greatest is\n", "scene", "shadows", "rmse",
+         "max");
+  for (size_t i = 0; i < sizeof SCENARIOS / sizeof *SCENARIOS; i++) {
+    if (chosen.only != NULL && strstr(SCENARIOS[i].name, chosen.only) == NULL) continue;
+    for (size_t s = 0; s < (chosen.soft ? 5 : 2); s++)
+      failures += !compare(&SCENARIOS[i], &SETTINGS[s], &chosen);
+  }
+  if (failures > 0) printf("%d pictures are further from the reference than their bars\n", failures);
+  return failures > 0;
+}
