@@ -1,0 +1,243 @@
+/* volume/legacy_vtk.c - legacy .vtk files with STRUCTURED_POINTS, ASCII or BINARY (big-endian).
+ *
+ * After four lines (mark, title, ASCII or BINARY, DATASET) come keywords; the first array of one component
+ * under POINT_DATA is the volume, whether it is a SCALARS attribute or part of a FIELD.
+ */
+#include <string.h>
+
+#include "volume/format.h"
+#include "volume/text.h"
+
+enum { WORD_BYTES = 256 };
+
+typedef struct vtk_header {
+  hl_stream *stream;
+  hl_payload payload;
+  int line;
+  bool has_dimensions, in_point_data;
+  size_t tuples;     /* of the POINT_DATA or CELL_DATA section; of the volume's array once it is found */
+  size_t components; /* of the last array that was passed over for having several; 0: none */
+  bool found;        /* the stream is at the voxels */
+} vtk_header;
+
+static hl_status fail(const vtk_header *header, const char *message, const char *text, hl_error *error) {
+  char shown[HL_PRINTABLE_BYTES];
+  return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "%s \"%s\"", message,
+                      hl_text_printable(shown, text));
+}
+
+static hl_status next_line(vtk_header *header, char line[HL_LINE_BYTES], bool *ended, hl_error *error) {
+  header->line++;
+  return hl_stream_line(header->stream, line, ended, error);
+}
+
+static hl_status read_opening(vtk_header *header, hl_error *error) {
+  char line[HL_LINE_BYTES];
+  bool ended;
+  hl_status status = next_line(header, line, &ended, error); /* "# vtk DataFile Version x.y" */
+  if (status == HL_OK) status = next_line(header, line, &ended, error); /* a title */
+  do {
+    if (status == HL_OK) status = next_line(header, line, &ended, error);
+  } while (status == HL_OK && !ended && *hl_text_trim(line) == 0);
+  if (status != HL_OK) return status;
+  header->payload.text = hl_text_equal(hl_text_trim(line), "ASCII");
+  header->payload.big_endian = true;
+  if (header->payload.text || hl_text_equal(hl_text_trim(line), "BINARY")) return HL_OK;
+  return fail(header, "expected ASCII or BINARY, not", line, error);
+}
+
+static hl_status read_type(const vtk_header *header, const char *name, hl_voxel_type *type, hl_error *error) {
+  static const struct { const char *name; hl_voxel_type type; } types[] = {
+      {"unsigned_char", HL_VOXEL_U8},   {"char", HL_VOXEL_I8},   {"signed_char", HL_VOXEL_I8},
+      {"unsigned_short", HL_VOXEL_U16}, {"short", HL_VOXEL_I16}, {"unsigned_int", HL_VOXEL_U32},
+      {"int", HL_VOXEL_I32},            {"float", HL_VOXEL_F32}, {"double", HL_VOXEL_F64}};
+  for (size_t n = 0; n < sizeof types / sizeof *types; n++)
+    if (hl_text_equal(name, types[n].name)) {
+      *type = types[n].type;
+      return HL_OK;
+    }
+  static const char *const others[] = {"bit", "long", "unsigned_long", "vtkIdType", "vtktypeint64", "vtktypeuint64",
+                                       "string"};
+  bool known = false;
+  for (size_t n = 0; n < sizeof others / sizeof *others; n++) known = known || hl_text_equal(name, others[n]);
+  char shown[HL_PRINTABLE_BYTES];
+  return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
+                      "values of type \"%s\" are not read: 8, 16 and 32 bit integers, float and double are",
+                      hl_text_printable(shown, name));
+}
+
+/* Passes over count values of an array. */
+static hl_status skip_values(vtk_header *header, size_t count, size_t value_bytes, hl_error *error) {
+  if (!header->payload.text) return hl_stream_skip(header->stream, (uint64_t)count * value_bytes, error);
+  for (bool inside = false; count > 0;) {
+    const unsigned char *bytes;
+    size_t available, n;
+    hl_status status = hl_stream_peek(header->stream, 1, &bytes, &available, error);
+    if (status != HL_OK || available == 0) return status;
+    for (n = 0; n < available && count > 0; n++) {
+      bool space = hl_is_space((char)bytes[n]);
+      if (inside && space) count--;
+      inside = !space;
+    }
+    hl_stream_take(header->stream, n);
+  }
+  return HL_OK;
+}
+
+/* An array's values come next: stop there if they are the volume. */
+static hl_status meet_array(vtk_header *header, const char *type_name, size_t components, size_t tuples,
+                            hl_error *error) {
+  hl_voxel_type type = HL_VOXEL_U8;
+  bool wanted = header->in_point_data && components == 1;
+  hl_status status = read_type(header, type_name, &type, error);
+  if (status != HL_OK) return status;
+  if (header->in_point_data && components > 1) header->components = components;
+  if (!wanted) {
+    size_t values;
+    if (__builtin_mul_overflow(tuples, components, &values) || values > SIZE_MAX / 8)
+      return fail(header, "impossible number of values in an array of type", type_name, error);
+    return skip_values(header, values, hl_voxel_type_bytes(type), error);
+  }
+  header->payload.grid.type = type;
+  header->tuples = tuples;
+  header->found = true;
+  return HL_OK;
+}
+
+/* "SCALARS name type [components]", then, in all but some old files, "LOOKUP_TABLE name". */
+static hl_status read_scalars(vtk_header *header, const char *arguments, hl_error *error) {
+  char name[WORD_BYTES], type[WORD_BYTES], line[HL_LINE_BYTES];
+  const char *cursor = arguments;
+  size_t components = 1;
+  if (!hl_text_word(&cursor, name, sizeof name) || !hl_text_word(&cursor, type, sizeof type) ||
+      hl_text_sizes(cursor, &components, 1) < 0 || components < 1 || components > 1024)
+    return fail(header, "expected \"SCALARS name type [components]\", not", arguments, error);
+  const unsigned char *bytes;
+  size_t available;
+  hl_status status = hl_stream_peek(header->stream, 12, &bytes, &available, error);
+  if (status == HL_OK && available >= 12 && hl_text_starts((const char *)bytes, "LOOKUP_TABLE")) {
+    bool ended;
+    status = next_line(header, line, &ended, error);
+  }
+  return status == HL_OK ? meet_array(header, type, components, header->tuples, error) : status;
+}
+
+/* "FIELD name n", then n times "name components tuples type" and the values. */
+static hl_status read_fields(vtk_header *header, const char *arguments, hl_error *error) {
+  char word[WORD_BYTES], line[HL_LINE_BYTES];
+  const char *cursor = arguments;
+  size_t arrays, shape[2];
+  if (!hl_text_word(&cursor, word, sizeof word) || hl_text_sizes(cursor, &arrays, 1) != 1)
+    return fail(header, "expected \"FIELD name number\", not", arguments, error);
+  while (arrays > 0 && !header->found) {
+    bool ended;
+    hl_status status = next_line(header, line, &ended, error);
+    if (status != HL_OK || ended) return status;
+    cursor = line;
+    if (!hl_text_word(&cursor, word, sizeof word)) continue; /* the line's end after the values */
+    if (hl_text_equal(word, "METADATA")) { /* of the array before, up to an empty line */
+      while (status == HL_OK && !ended && *hl_text_trim(line) != 0) status = next_line(header, line, &ended, error);
+      if (status != HL_OK) return status;
+      continue;
+    }
+    char sizes[2 * WORD_BYTES], second[WORD_BYTES];
+    if (!hl_text_word(&cursor, sizes, WORD_BYTES) || !hl_text_word(&cursor, second, sizeof second) ||
+        hl_text_sizes(sizes, &shape[0], 1) != 1 || hl_text_sizes(second, &shape[1], 1) != 1 ||
+        !hl_text_word(&cursor, word, sizeof word))
+      return fail(header, "expected \"name components tuples type\", not", line, error);
+    status = meet_array(header, word, shape[0], shape[1], error);
+    if (status != HL_OK) return status;
+    arrays--;
+  }
+  return HL_OK;
+}
+
+static hl_status read_geometry(vtk_header *header, const char *keyword, const char *arguments, hl_error *error) {
+  hl_volume_description *grid = &header->payload.grid;
+  double numbers[3];
+  bool sound = true;
+  if (hl_text_equal(keyword, "DIMENSIONS")) {
+    sound = header->has_dimensions = hl_text_sizes(arguments, grid->dimensions, 3) == 3;
+  } else if (hl_text_numbers(arguments, numbers, 3) != 3) {
+    sound = false;
+  } else {
+    for (int axis = 0; axis < 3; axis++)
+      if (hl_text_equal(keyword, "ORIGIN")) grid->origin[axis] = numbers[axis];
+      else grid->axis[axis][axis] = numbers[axis];
+  }
+  return sound ? HL_OK : fail(header, "expected three numbers, not", arguments, error);
+}
+
+static hl_status begin_section(vtk_header *header, bool points, const char *arguments, hl_error *error) {
+  header->in_point_data = points;
+  if (hl_text_sizes(arguments, &header->tuples, 1) != 1)
+    return fail(header, "expected the number of values, not", arguments, error);
+  return HL_OK;
+}
+
+static hl_status read_keyword(vtk_header *header, const char *keyword, const char *arguments, hl_error *error) {
+  char shown[HL_PRINTABLE_BYTES];
+  if (hl_text_equal(keyword, "DATASET")) {
+    if (hl_text_equal(arguments, "STRUCTURED_POINTS")) return HL_OK;
+    return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line,
+                        "a data set of kind \"%s\" is not read: STRUCTURED_POINTS is",
+                        hl_text_printable(shown, arguments));
+  }
+  static const char *const geometry[] = {"DIMENSIONS", "SPACING", "ASPECT_RATIO", "ORIGIN"};
+  for (int n = 0; n < 4; n++)
+    if (hl_text_equal(keyword, geometry[n])) return read_geometry(header, keyword, arguments, error);
+  if (hl_text_equal(keyword, "POINT_DATA")) return begin_section(header, true, arguments, error);
+  if (hl_text_equal(keyword, "CELL_DATA")) return begin_section(header, false, arguments, error);
+  if (hl_text_equal(keyword, "SCALARS")) return read_scalars(header, arguments, error);
+  if (hl_text_equal(keyword, "FIELD")) return read_fields(header, arguments, error);
+  if (hl_text_equal(keyword, "METADATA")) {
+    char line[HL_LINE_BYTES] = "-";
+    bool ended = false;
+    hl_status status = HL_OK;
+    while (status == HL_OK && !ended && *hl_text_trim(line) != 0) status = next_line(header, line, &ended, error);
+    return status;
+  }
+  return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line,
+                      "\"%s\" is not read: the volume must be SCALARS or in a FIELD, and come before other data",
+                      hl_text_printable(shown, keyword));
+}
+
+static hl_status read_header(vtk_header *header, hl_error *error) {
+  char line[HL_LINE_BYTES], keyword[WORD_BYTES];
+  hl_status status = read_opening(header, error);
+  while (status == HL_OK && !header->found) {
+    bool ended;
+    status = next_line(header, line, &ended, error);
+    if (status != HL_OK) return status;
+    if (ended && header->components > 1)
+      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: voxels of %zu components: only one value per voxel is read",
+                     header->stream->path, header->components);
+    if (ended)
+      return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "%s",
+                          "the file ends without POINT_DATA and SCALARS, which hold the volume");
+    const char *cursor = hl_text_trim(line);
+    if (*cursor == 0) continue;
+    if (!hl_text_word(&cursor, keyword, sizeof keyword)) return fail(header, "expected a keyword, not", line, error);
+    while (hl_is_space(*cursor)) cursor++;
+    status = read_keyword(header, keyword, cursor, error);
+  }
+  return status;
+}
+
+hl_status hl_load_legacy_vtk(hl_stream **stream, hl_volume **volume, hl_error *error) {
+  vtk_header header = {.stream = *stream};
+  hl_payload_defaults(&header.payload);
+  header.payload.trailing = HL_TRAILING_IGNORED;
+  hl_status status = read_header(&header, error);
+  if (status != HL_OK) return status;
+  if (!header.has_dimensions)
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, *stream, header.line, "%s", "the file has no DIMENSIONS");
+  status = hl_volume_check_grid(&header.payload.grid, (*stream)->path, error);
+  if (status != HL_OK) return status;
+  const size_t *dimension = header.payload.grid.dimensions;
+  if (header.tuples != dimension[0] * dimension[1] * dimension[2])
+    return hl_fail(error, HL_ERROR_INPUT, "%s: POINT_DATA has %zu values, DIMENSIONS %zu x %zu x %zu need %zu",
+                   (*stream)->path, header.tuples, dimension[0], dimension[1], dimension[2],
+                   dimension[0] * dimension[1] * dimension[2]);
+  return hl_payload_read(*stream, &header.payload, volume, error);
+}

@@ -1,0 +1,214 @@
+/* volume/metaimage.c - MetaImage: .mha (voxels in the file) and .mhd (in another).
+ *
+ * The header is lines "Key = value"; ElementDataFile is the last. World: physical = Offset +
+ * sum over axes of index * spacing * row of TransformMatrix, which is how ITK reads the matrix.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "volume/format.h"
+#include "volume/text.h"
+
+enum { MOST_AXES = 10, NAME_BYTES = 1024 };
+
+typedef struct meta_header {
+  const hl_stream *stream;
+  int line;
+  int dimension; /* 0: not yet stated */
+  size_t size[MOST_AXES];
+  double spacing[MOST_AXES], element_size[MOST_AXES], offset[MOST_AXES];
+  double matrix[MOST_AXES * MOST_AXES]; /* row a: direction of index axis a */
+  bool has_sizes, has_spacing, has_element_size, has_offset, has_matrix;
+  hl_voxel_type type; /* 0: not yet stated */
+  size_t channels, header_bytes;
+  bool header_is_rest; /* HeaderSize -1: the voxels are the last bytes of the file */
+  bool big_endian, compressed, text;
+  double slope, intercept;
+  char data_file[NAME_BYTES];
+} meta_header;
+
+bool hl_is_metaimage(const unsigned char *bytes, size_t length) {
+  static const char *const keys[] = {"ObjectType", "NDims", "Comment", "ObjectSubType", "ID", "DimSize", "BinaryData",
+                                     "ElementType"};
+  for (size_t n = 0; n < sizeof keys / sizeof *keys; n++) {
+    size_t place = strlen(keys[n]);
+    if (length <= place || memcmp(bytes, keys[n], place) != 0) continue;
+    while (place < length && (bytes[place] == ' ' || bytes[place] == '\t')) place++;
+    if (place < length && bytes[place] == '=') return true;
+  }
+  return false;
+}
+
+static hl_status refuse(const meta_header *header, const char *key, const char *value, hl_error *error) {
+  char shown[HL_PRINTABLE_BYTES];
+  return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "%s cannot be \"%s\"", key,
+                      hl_text_printable(shown, value));
+}
+
+static bool read_flag(const char *value, bool *flag) {
+  *flag = hl_text_equal(value, "True") || hl_text_equal(value, "1");
+  return *flag || hl_text_equal(value, "False") || hl_text_equal(value, "0");
+}
+
+static hl_status read_type(meta_header *header, const char *value, hl_error *error) {
+  static const struct { const char *name; hl_voxel_type type; } types[] = {
+      {"MET_UCHAR", HL_VOXEL_U8}, {"MET_CHAR", HL_VOXEL_I8},   {"MET_USHORT", HL_VOXEL_U16}, {"MET_SHORT", HL_VOXEL_I16},
+      {"MET_UINT", HL_VOXEL_U32}, {"MET_INT", HL_VOXEL_I32},   {"MET_ULONG", HL_VOXEL_U32},  {"MET_LONG", HL_VOXEL_I32},
+      {"MET_FLOAT", HL_VOXEL_F32}, {"MET_DOUBLE", HL_VOXEL_F64}};
+  for (size_t n = 0; n < sizeof types / sizeof *types; n++)
+    if (hl_text_equal(value, types[n].name)) {
+      header->type = types[n].type;
+      return HL_OK;
+    }
+  char shown[HL_PRINTABLE_BYTES];
+  return HL_FAIL_LINE(error, hl_text_starts(value, "MET_") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream,
+                      header->line,
+                      "ElementType \"%s\" is not read: MET_ with CHAR, SHORT, INT, their U forms, FLOAT and DOUBLE are",
+                      hl_text_printable(shown, value));
+}
+
+static hl_status read_numbers(meta_header *header, const char *key, const char *value, double *numbers, int count,
+                              bool *present, hl_error *error) {
+  if (header->dimension == 0)
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "NDims must come before %s", key);
+  if (hl_text_numbers(value, numbers, count) != count) return refuse(header, key, value, error);
+  *present = true;
+  return HL_OK;
+}
+
+static hl_status read_dimension(meta_header *header, const char *key, const char *value, hl_error *error) {
+  size_t dimension;
+  if (hl_text_sizes(value, &dimension, 1) != 1 || dimension < 1 || dimension > MOST_AXES)
+    return refuse(header, key, value, error);
+  header->dimension = (int)dimension;
+  return HL_OK;
+}
+
+static hl_status read_data_file(meta_header *header, const char *key, const char *value, hl_error *error) {
+  if (hl_text_starts(value, "LIST") || strchr(value, '%') != NULL)
+    return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
+                        "voxels in several files (ElementDataFile LIST or a pattern) are not read: save them as one");
+  if (*value == 0 || strlen(value) >= sizeof header->data_file) return refuse(header, key, value, error);
+  strcpy(header->data_file, value);
+  return HL_OK;
+}
+
+static bool is_one_of(const char *key, const char *a, const char *b, const char *c) {
+  return hl_text_equal(key, a) || hl_text_equal(key, b) || (c != NULL && hl_text_equal(key, c));
+}
+
+static hl_status read_key(meta_header *header, const char *key, const char *value, hl_error *error) {
+  int n = header->dimension;
+  bool sound = true, flag, unused;
+  if (hl_text_equal(key, "NDims")) return read_dimension(header, key, value, error);
+  if (hl_text_equal(key, "DimSize"))
+    sound = header->has_sizes = n > 0 && hl_text_sizes(value, header->size, MOST_AXES) == n;
+  else if (hl_text_equal(key, "ElementType")) return read_type(header, value, error);
+  else if (hl_text_equal(key, "ElementSpacing"))
+    return read_numbers(header, key, value, header->spacing, n, &header->has_spacing, error);
+  else if (hl_text_equal(key, "ElementSize"))
+    return read_numbers(header, key, value, header->element_size, n, &header->has_element_size, error);
+  else if (is_one_of(key, "Offset", "Position", "Origin"))
+    return read_numbers(header, key, value, header->offset, n, &header->has_offset, error);
+  else if (is_one_of(key, "TransformMatrix", "Rotation", "Orientation"))
+    return read_numbers(header, key, value, header->matrix, n * n, &header->has_matrix, error);
+  else if (hl_text_equal(key, "ElementNumberOfChannels")) sound = hl_text_sizes(value, &header->channels, 1) == 1;
+  else if (is_one_of(key, "ElementByteOrderMSB", "BinaryDataByteOrderMSB", NULL))
+    sound = read_flag(value, &header->big_endian);
+  else if (hl_text_equal(key, "CompressedData")) sound = read_flag(value, &header->compressed);
+  else if (hl_text_equal(key, "BinaryData")) {
+    sound = read_flag(value, &flag);
+    header->text = !flag;
+  } else if (hl_text_equal(key, "HeaderSize")) {
+    header->header_is_rest = hl_text_equal(value, "-1");
+    sound = header->header_is_rest || hl_text_sizes(value, &header->header_bytes, 1) == 1;
+  } else if (hl_text_equal(key, "ObjectType")) sound = hl_text_equal(value, "Image");
+  else if (hl_text_equal(key, "ElementToIntensityFunctionSlope"))
+    return read_numbers(header, key, value, &header->slope, 1, &unused, error);
+  else if (hl_text_equal(key, "ElementToIntensityFunctionOffset"))
+    return read_numbers(header, key, value, &header->intercept, 1, &unused, error);
+  else if (hl_text_equal(key, "ElementDataFile")) return read_data_file(header, key, value, error);
+  return sound ? HL_OK : refuse(header, key, value, error);
+}
+
+static hl_status read_header(hl_stream *stream, meta_header *header, hl_error *error) {
+  char line[HL_LINE_BYTES], shown[HL_PRINTABLE_BYTES];
+  header->stream = stream;
+  header->channels = 1;
+  header->slope = 1;
+  for (header->line = 1; header->data_file[0] == 0; header->line++) {
+    bool ended;
+    hl_status status = hl_stream_line(stream, line, &ended, error);
+    if (status != HL_OK) return status;
+    if (ended)
+      return HL_FAIL_LINE(error, HL_ERROR_INPUT, stream, header->line, "%s",
+                          "the file ends without ElementDataFile, which must be the header's last key");
+    char *equals = strpbrk(line, "=:");
+    if (equals == NULL && *hl_text_trim(line) == 0) continue;
+    if (equals == NULL)
+      return HL_FAIL_LINE(error, HL_ERROR_INPUT, stream, header->line, "expected \"Key = value\", not \"%s\"",
+                          hl_text_printable(shown, line));
+    *equals = 0;
+    status = read_key(header, hl_text_trim(line), hl_text_trim(equals + 1), error);
+    if (status != HL_OK) return status;
+  }
+  if (header->type != 0 && header->has_sizes) return HL_OK;
+  return hl_fail(error, HL_ERROR_INPUT, "%s: the header has no %s, which MetaImage needs", stream->path,
+                 header->has_sizes ? "ElementType" : "DimSize");
+}
+
+static hl_status make_grid(const meta_header *header, hl_volume_description *grid, hl_error *error) {
+  for (int axis = 3; axis < header->dimension; axis++)
+    if (header->size[axis] != 1)
+      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %d dimensions, and dimension %d has %zu samples: at most three "
+                     "may have more than one", header->stream->path, header->dimension, axis + 1, header->size[axis]);
+  if (header->channels != 1)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: voxels of %zu components: only one value per voxel is read",
+                   header->stream->path, header->channels);
+  const double *spacing = header->has_spacing ? header->spacing : header->has_element_size ? header->element_size : NULL;
+  for (int axis = 0; axis < 3 && axis < header->dimension; axis++) {
+    grid->dimensions[axis] = header->size[axis];
+    grid->origin[axis] = header->has_offset ? header->offset[axis] : 0;
+    for (int row = 0; row < 3; row++) {
+      double direction = row == axis;
+      if (header->has_matrix)
+        direction = row < header->dimension ? header->matrix[axis * header->dimension + row] : 0;
+      grid->axis[axis][row] = direction * (spacing != NULL ? spacing[axis] : 1);
+    }
+  }
+  grid->type = header->type;
+  grid->value_scale = header->slope;
+  grid->value_offset = header->intercept;
+  return HL_OK;
+}
+
+/* A LOCAL payload follows the header; another file may have a header of its own to pass over. */
+static hl_status go_to_voxels(hl_stream **stream, const meta_header *header, const hl_payload *payload,
+                              hl_error *error) {
+  bool local = hl_text_equal(header->data_file, "LOCAL");
+  hl_status status = local ? HL_OK : hl_stream_switch(stream, header->data_file, error);
+  if (status != HL_OK) return status;
+  uint64_t skip = local ? 0 : header->header_bytes, most = hl_stream_at_most(*stream);
+  if (header->header_is_rest) {
+    if (header->compressed || header->text || most == UINT64_MAX)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: HeaderSize -1 needs plain binary voxels in an ordinary file",
+                     (*stream)->path);
+    skip = most > hl_payload_bytes(payload) ? most - hl_payload_bytes(payload) : 0;
+  }
+  status = hl_stream_skip(*stream, skip, error);
+  return status == HL_OK && header->compressed ? hl_stream_push_inflate(stream, error) : status;
+}
+
+hl_status hl_load_metaimage(hl_stream **stream, hl_volume **volume, hl_error *error) {
+  meta_header header = {.dimension = 0};
+  hl_payload payload;
+  hl_payload_defaults(&payload);
+  hl_status status = read_header(*stream, &header, error);
+  if (status == HL_OK) status = make_grid(&header, &payload.grid, error);
+  if (status == HL_OK) status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
+  payload.big_endian = header.big_endian;
+  payload.text = header.text;
+  if (status == HL_OK) status = go_to_voxels(stream, &header, &payload, error);
+  return status == HL_OK ? hl_payload_read(*stream, &payload, volume, error) : status;
+}

@@ -1,0 +1,401 @@
+/* volume/nrrd.c - NRRD, versions 1 to 5, attached and detached.
+ *
+ * The header is lines "field: value" (any case) up to an empty line; "key:=value" pairs and fields about
+ * things that Halflight has no use for are passed over. Source of the meanings: the format's definition
+ * by Teem, "Definition of NRRD File Format".
+ */
+#include <math.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "volume/format.h"
+#include "volume/text.h"
+
+enum { MOST_AXES = 16, KIND_BYTES = 32, NAME_BYTES = 1024 };
+
+typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_TEXT, NRRD_HEX } nrrd_encoding;
+
+typedef struct nrrd_axis {
+  size_t size;
+  double spacing, minimum, maximum; /* NaN: not stated */
+  bool is_node;                     /* samples at cell corners; else at cell centres, as Teem assumes */
+  bool has_direction;
+  double direction[3];
+  char kind[KIND_BYTES];
+} nrrd_axis;
+
+typedef struct nrrd_header {
+  const hl_stream *stream; /* for error lines */
+  int line;                /* the current one, from 1 */
+  int dimension;           /* 0: not yet stated */
+  nrrd_axis axis[MOST_AXES];
+  hl_voxel_type type; /* 0: not yet stated */
+  nrrd_encoding encoding;
+  bool has_encoding, has_endian, big_endian, has_sizes, has_directions, has_space_origin;
+  double space_origin[3];
+  char data_file[NAME_BYTES]; /* "" if attached */
+  size_t line_skip, byte_skip;
+  bool skip_to_last; /* byte skip -1: the voxels are the last bytes of the file */
+} nrrd_header;
+
+typedef hl_status field_function(nrrd_header *header, const char *value, hl_error *error);
+
+static hl_status refuse(const nrrd_header *header, const char *field, const char *value, hl_error *error) {
+  char shown[HL_PRINTABLE_BYTES];
+  return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "%s cannot be \"%s\"", field,
+                      hl_text_printable(shown, value));
+}
+
+static hl_status read_dimension(nrrd_header *header, const char *value, hl_error *error) {
+  size_t dimension;
+  if (hl_text_sizes(value, &dimension, 1) != 1 || dimension < 1 || dimension > MOST_AXES)
+    return refuse(header, "dimension", value, error);
+  header->dimension = (int)dimension;
+  return HL_OK;
+}
+
+static hl_status need_dimension(const nrrd_header *header, const char *field, hl_error *error) {
+  if (header->dimension > 0) return HL_OK;
+  return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line,
+                      "the field dimension must come before %s", field);
+}
+
+static hl_status read_sizes(nrrd_header *header, const char *value, hl_error *error) {
+  size_t sizes[MOST_AXES];
+  hl_status status = need_dimension(header, "sizes", error);
+  if (status != HL_OK) return status;
+  if (hl_text_sizes(value, sizes, MOST_AXES) != header->dimension) {
+    char shown[HL_PRINTABLE_BYTES];
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line,
+                        "sizes must be %d whole numbers, as the dimension says, not \"%s\"", header->dimension,
+                        hl_text_printable(shown, value));
+  }
+  for (int axis = 0; axis < header->dimension; axis++) header->axis[axis].size = sizes[axis];
+  header->has_sizes = true;
+  return HL_OK;
+}
+
+static hl_status read_type(nrrd_header *header, const char *value, hl_error *error) {
+  static const struct { const char *name; hl_voxel_type type; } types[] = {
+      {"unsigned char", HL_VOXEL_U8},       {"uchar", HL_VOXEL_U8},               {"uint8", HL_VOXEL_U8},
+      {"uint8_t", HL_VOXEL_U8},             {"signed char", HL_VOXEL_I8},         {"char", HL_VOXEL_I8},
+      {"int8", HL_VOXEL_I8},                {"int8_t", HL_VOXEL_I8},              {"unsigned short", HL_VOXEL_U16},
+      {"unsigned short int", HL_VOXEL_U16}, {"ushort", HL_VOXEL_U16},             {"uint16", HL_VOXEL_U16},
+      {"uint16_t", HL_VOXEL_U16},           {"short", HL_VOXEL_I16},              {"short int", HL_VOXEL_I16},
+      {"signed short", HL_VOXEL_I16},       {"signed short int", HL_VOXEL_I16},   {"int16", HL_VOXEL_I16},
+      {"int16_t", HL_VOXEL_I16},            {"unsigned int", HL_VOXEL_U32},       {"uint", HL_VOXEL_U32},
+      {"uint32", HL_VOXEL_U32},             {"uint32_t", HL_VOXEL_U32},           {"int", HL_VOXEL_I32},
+      {"signed int", HL_VOXEL_I32},         {"int32", HL_VOXEL_I32},              {"int32_t", HL_VOXEL_I32},
+      {"float", HL_VOXEL_F32},              {"double", HL_VOXEL_F64}};
+  for (size_t n = 0; n < sizeof types / sizeof *types; n++)
+    if (hl_text_equal(value, types[n].name)) {
+      header->type = types[n].type;
+      return HL_OK;
+    }
+  bool known = strstr(value, "long") != NULL || strstr(value, "64") != NULL || hl_text_equal(value, "block");
+  char shown[HL_PRINTABLE_BYTES];
+  return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
+                      "type \"%s\" is not read: 8, 16 and 32 bit integers, float and double are",
+                      hl_text_printable(shown, value));
+}
+
+static hl_status read_encoding(nrrd_header *header, const char *value, hl_error *error) {
+  static const struct { const char *name; nrrd_encoding encoding; } encodings[] = {
+      {"raw", NRRD_RAW},   {"gzip", NRRD_GZIP},  {"gz", NRRD_GZIP}, {"ascii", NRRD_TEXT},
+      {"text", NRRD_TEXT}, {"txt", NRRD_TEXT},   {"hex", NRRD_HEX}};
+  for (size_t n = 0; n < sizeof encodings / sizeof *encodings; n++)
+    if (hl_text_equal(value, encodings[n].name)) {
+      header->encoding = encodings[n].encoding;
+      header->has_encoding = true;
+      return HL_OK;
+    }
+  bool known = hl_text_equal(value, "bzip2") || hl_text_equal(value, "bz2") || hl_text_equal(value, "zrl");
+  char shown[HL_PRINTABLE_BYTES];
+  return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
+                      "encoding \"%s\" is not read: raw, gzip, ascii and hex are (unu save -f nrrd -e gzip converts)",
+                      hl_text_printable(shown, value));
+}
+
+static hl_status read_endian(nrrd_header *header, const char *value, hl_error *error) {
+  header->big_endian = hl_text_equal(value, "big");
+  header->has_endian = true;
+  return header->big_endian || hl_text_equal(value, "little") ? HL_OK : refuse(header, "endian", value, error);
+}
+
+/* One number per axis, NaN allowed; place is the offset of the number in nrrd_axis. */
+static hl_status read_per_axis(nrrd_header *header, const char *field, const char *value, size_t place,
+                               hl_error *error) {
+  double numbers[MOST_AXES];
+  hl_status status = need_dimension(header, field, error);
+  if (status != HL_OK) return status;
+  if (hl_text_numbers(value, numbers, MOST_AXES) != header->dimension) return refuse(header, field, value, error);
+  for (int axis = 0; axis < header->dimension; axis++)
+    memcpy((char *)&header->axis[axis] + place, &numbers[axis], sizeof *numbers);
+  return HL_OK;
+}
+
+static hl_status read_spacings(nrrd_header *header, const char *value, hl_error *error) {
+  return read_per_axis(header, "spacings", value, offsetof(nrrd_axis, spacing), error);
+}
+static hl_status read_minima(nrrd_header *header, const char *value, hl_error *error) {
+  return read_per_axis(header, "axis mins", value, offsetof(nrrd_axis, minimum), error);
+}
+static hl_status read_maxima(nrrd_header *header, const char *value, hl_error *error) {
+  return read_per_axis(header, "axis maxs", value, offsetof(nrrd_axis, maximum), error);
+}
+
+static hl_status read_centers(nrrd_header *header, const char *value, hl_error *error) {
+  hl_status status = need_dimension(header, "centers", error);
+  char word[KIND_BYTES];
+  const char *cursor = value;
+  for (int axis = 0; status == HL_OK && axis < header->dimension; axis++) {
+    if (!hl_text_word(&cursor, word, sizeof word)) return refuse(header, "centers", value, error);
+    header->axis[axis].is_node = hl_text_equal(word, "node");
+  }
+  return status;
+}
+
+static hl_status read_kinds(nrrd_header *header, const char *value, hl_error *error) {
+  hl_status status = need_dimension(header, "kinds", error);
+  const char *cursor = value;
+  for (int axis = 0; status == HL_OK && axis < header->dimension; axis++)
+    if (!hl_text_word(&cursor, header->axis[axis].kind, KIND_BYTES)) return refuse(header, "kinds", value, error);
+  return status;
+}
+
+/* "(x, y, z)": as many numbers as it has, at most 3; the rest become 0. */
+static bool scan_vector(const char **cursor, double vector[3]) {
+  const char *text = *cursor;
+  while (hl_is_space(*text)) text++;
+  const char *end = *text == '(' ? strchr(text, ')') : NULL;
+  if (end == NULL) return false;
+  char inside[256];
+  size_t length = (size_t)(end - text) - 1;
+  if (length >= sizeof inside) return false;
+  for (size_t n = 0; n < length; n++) inside[n] = text[n + 1] == ',' ? ' ' : text[n + 1];
+  inside[length] = 0;
+  vector[0] = vector[1] = vector[2] = 0;
+  *cursor = end + 1;
+  return hl_text_numbers(inside, vector, 3) >= 1;
+}
+
+static hl_status read_directions(nrrd_header *header, const char *value, hl_error *error) {
+  hl_status status = need_dimension(header, "space directions", error);
+  if (status != HL_OK) return status;
+  const char *cursor = value;
+  for (int axis = 0; axis < header->dimension; axis++) {
+    while (hl_is_space(*cursor)) cursor++;
+    nrrd_axis *place = &header->axis[axis];
+    place->has_direction = !hl_text_starts(cursor, "none");
+    if (!place->has_direction)
+      cursor += 4;
+    else if (!scan_vector(&cursor, place->direction))
+      return refuse(header, "space directions", value, error);
+    header->has_directions = header->has_directions || place->has_direction;
+  }
+  return HL_OK;
+}
+
+static hl_status read_origin(nrrd_header *header, const char *value, hl_error *error) {
+  const char *cursor = value;
+  if (!scan_vector(&cursor, header->space_origin)) return refuse(header, "space origin", value, error);
+  header->has_space_origin = true;
+  return HL_OK;
+}
+
+static hl_status read_data_file(nrrd_header *header, const char *value, hl_error *error) {
+  if (hl_text_starts(value, "LIST") || strchr(value, '%') != NULL)
+    return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
+                        "voxels in several data files are not read: join them with unu join or unu save");
+  if (*value == 0 || strlen(value) >= sizeof header->data_file) return refuse(header, "data file", value, error);
+  strcpy(header->data_file, value);
+  return HL_OK;
+}
+
+static hl_status read_line_skip(nrrd_header *header, const char *value, hl_error *error) {
+  return hl_text_sizes(value, &header->line_skip, 1) == 1 ? HL_OK : refuse(header, "line skip", value, error);
+}
+
+static hl_status read_byte_skip(nrrd_header *header, const char *value, hl_error *error) {
+  header->skip_to_last = hl_text_equal(value, "-1");
+  if (header->skip_to_last || hl_text_sizes(value, &header->byte_skip, 1) == 1) return HL_OK;
+  return refuse(header, "byte skip", value, error);
+}
+
+static hl_status pass_over(nrrd_header *header, const char *value, hl_error *error) {
+  (void)header, (void)value, (void)error;
+  return HL_OK;
+}
+
+static field_function *find_field(const char *name) {
+  static const struct { const char *name; field_function *read; } fields[] = {
+      {"dimension", read_dimension}, {"sizes", read_sizes}, {"type", read_type}, {"encoding", read_encoding},
+      {"endian", read_endian}, {"spacings", read_spacings}, {"axis mins", read_minima}, {"axismins", read_minima},
+      {"axis maxs", read_maxima}, {"axismaxs", read_maxima}, {"centers", read_centers},
+      {"centerings", read_centers}, {"kinds", read_kinds}, {"space directions", read_directions},
+      {"space origin", read_origin}, {"data file", read_data_file}, {"datafile", read_data_file},
+      {"line skip", read_line_skip}, {"lineskip", read_line_skip}, {"byte skip", read_byte_skip},
+      {"byteskip", read_byte_skip}, {"space", pass_over}, {"space dimension", pass_over},
+      {"space units", pass_over}, {"measurement frame", pass_over}, {"content", pass_over}, {"number", pass_over},
+      {"block size", pass_over}, {"blocksize", pass_over}, {"min", pass_over}, {"max", pass_over},
+      {"old min", pass_over}, {"oldmin", pass_over}, {"old max", pass_over}, {"oldmax", pass_over},
+      {"thicknesses", pass_over}, {"labels", pass_over}, {"units", pass_over}, {"sample units", pass_over},
+      {"sampleunits", pass_over}};
+  for (size_t n = 0; n < sizeof fields / sizeof *fields; n++)
+    if (hl_text_equal(name, fields[n].name)) return fields[n].read;
+  return NULL;
+}
+
+static hl_status read_field_line(nrrd_header *header, char *line, hl_error *error) {
+  char shown[HL_PRINTABLE_BYTES];
+  char *colon = strchr(line, ':');
+  if (colon == NULL)
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line,
+                        "expected \"field: value\", an empty line before the voxels, or a # comment, not \"%s\"",
+                        hl_text_printable(shown, line));
+  if (colon[1] == '=') return HL_OK;
+  *colon = 0;
+  char *name = hl_text_trim(line), *value = hl_text_trim(colon + 1);
+  field_function *read = find_field(name);
+  if (read != NULL) return read(header, value, error);
+  hl_log(header->stream->context, HL_LOG_WARNING, "%s, line %d: the field \"%s\" is not known and has no effect",
+         header->stream->path, header->line, hl_text_printable(shown, name));
+  return HL_OK;
+}
+
+static hl_status read_header(hl_stream *stream, nrrd_header *header, hl_error *error) {
+  char line[HL_LINE_BYTES];
+  bool ended;
+  header->stream = stream;
+  for (int axis = 0; axis < MOST_AXES; axis++)
+    header->axis[axis].spacing = header->axis[axis].minimum = header->axis[axis].maximum = NAN;
+  for (header->line = 1;; header->line++) {
+    hl_status status = hl_stream_line(stream, line, &ended, error);
+    if (status != HL_OK) return status;
+    if (ended || (line[0] == 0 && header->line > 1)) break;
+    if (header->line == 1) {
+      if (strncmp(line, "NRRD000", 7) != 0 || line[7] < '1' || line[7] > '5' || line[8] != 0)
+        return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, stream, 1, "%s",
+                            "expected NRRD0001 to NRRD0005, the versions of the format");
+      continue;
+    }
+    if (line[0] != '#') status = read_field_line(header, line, error);
+    if (status != HL_OK) return status;
+  }
+  if (header->type == 0 || !header->has_sizes || !header->has_encoding)
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, stream, header->line,
+                        "the header ends without a field \"%s\", which NRRD needs",
+                        header->type == 0 ? "type" : !header->has_sizes ? "sizes" : "encoding");
+  if (ended && header->data_file[0] == 0)
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, stream, header->line, "%s",
+                        "the file ends with its header: neither an empty line and voxels, nor a \"data file\"");
+  return HL_OK;
+}
+
+/* Whether the samples along an axis are several values of one voxel. */
+static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
+  if (header->has_directions) return !axis->has_direction;
+  return axis->kind[0] != 0 && !hl_text_equal(axis->kind, "domain") && !hl_text_equal(axis->kind, "space") &&
+         !hl_text_equal(axis->kind, "time") && !hl_text_equal(axis->kind, "none") && !hl_text_equal(axis->kind, "???");
+}
+
+/* The indices of at most 3 axes of the grid; the others must have one sample. */
+static hl_status choose_axes(const nrrd_header *header, const nrrd_axis *chosen[3], int *count, hl_error *error) {
+  size_t components = 1;
+  *count = 0;
+  for (int n = 0; n < header->dimension; n++) {
+    const nrrd_axis *axis = &header->axis[n];
+    bool is_component = is_component_axis(header, axis);
+    if (is_component && axis->size != 1) {
+      if (!hl_multiply(components, axis->size, &components)) components = SIZE_MAX;
+    } else if (!is_component && *count < 3) {
+      chosen[(*count)++] = axis;
+    } else if (!is_component && axis->size != 1) {
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: %d dimensions, and the one after the third has %zu samples: take one out with unu slice",
+                     header->stream->path, header->dimension, axis->size);
+    }
+  }
+  if (components != 1)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: voxels of %zu components: only one value per voxel is read (unu slice or unu project)",
+                   header->stream->path, components);
+  return HL_OK;
+}
+
+/* The step of an axis without direction, and the place of its first sample; Teem's rules for spacing, axis
+ * mins and maxs, and centering. */
+static void place_axis(const nrrd_axis *axis, double *spacing, double *first) {
+  double width = axis->maximum - axis->minimum;
+  double intervals = axis->is_node ? (double)axis->size - 1 : (double)axis->size;
+  *spacing = isfinite(axis->spacing) ? axis->spacing : isfinite(width) && intervals > 0 ? width / intervals : 1;
+  *first = isfinite(axis->minimum) ? axis->minimum + (axis->is_node ? 0 : *spacing / 2) : 0;
+}
+
+/* Axes that the file does not have get a unit step across the others. */
+static void complete_axes(hl_volume_description *grid, int count) {
+  if (count == 1) {
+    vec3 across = vec3_perpendicular(vec3_normalise(vec3_of(grid->axis[0])));
+    memcpy(grid->axis[1], &across, sizeof across);
+  }
+  if (count < 3) {
+    vec3 across = vec3_normalise(vec3_cross(vec3_of(grid->axis[0]), vec3_of(grid->axis[1])));
+    memcpy(grid->axis[2], &across, sizeof across);
+  }
+}
+
+static hl_status make_grid(const nrrd_header *header, hl_volume_description *grid, hl_error *error) {
+  const nrrd_axis *chosen[3];
+  int count;
+  hl_status status = choose_axes(header, chosen, &count, error);
+  if (status != HL_OK) return status;
+  for (int n = 0; n < count; n++) {
+    grid->dimensions[n] = chosen[n]->size;
+    if (header->has_directions)
+      memcpy(grid->axis[n], chosen[n]->direction, sizeof grid->axis[n]);
+    else
+      place_axis(chosen[n], &grid->axis[n][n], &grid->origin[n]);
+  }
+  if (header->has_directions) complete_axes(grid, count);
+  if (header->has_space_origin) memcpy(grid->origin, header->space_origin, sizeof grid->origin);
+  grid->type = header->type;
+  return HL_OK;
+}
+
+static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, const hl_payload *payload,
+                                hl_error *error) {
+  char line[HL_LINE_BYTES];
+  hl_status status = HL_OK;
+  bool ended = false;
+  for (size_t n = 0; status == HL_OK && n < header->line_skip && !ended; n++)
+    status = hl_stream_line(*stream, line, &ended, error);
+  if (status != HL_OK) return status;
+  if (header->encoding == NRRD_GZIP) status = hl_stream_push_inflate(stream, error);
+  if (header->encoding == NRRD_HEX) status = hl_stream_push_hex(stream, error);
+  uint64_t skip = header->byte_skip, most = hl_stream_at_most(*stream), bytes = hl_payload_bytes(payload);
+  if (header->skip_to_last) {
+    if (header->encoding != NRRD_RAW || most == UINT64_MAX)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: byte skip -1 needs encoding raw and an ordinary file",
+                     (*stream)->path);
+    skip = most > bytes ? most - bytes : 0;
+  }
+  return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
+}
+
+hl_status hl_load_nrrd(hl_stream **stream, hl_volume **volume, hl_error *error) {
+  nrrd_header header = {.dimension = 0};
+  hl_payload payload;
+  hl_payload_defaults(&payload);
+  hl_status status = read_header(*stream, &header, error);
+  if (status == HL_OK) status = make_grid(&header, &payload.grid, error);
+  if (status == HL_OK) status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
+  if (status != HL_OK) return status;
+  payload.big_endian = header.big_endian;
+  payload.text = header.encoding == NRRD_TEXT;
+  if (!header.has_endian && !payload.text && hl_voxel_type_bytes(header.type) > 1)
+    hl_log((*stream)->context, HL_LOG_WARNING, "%s: no field \"endian\": little-endian is assumed", (*stream)->path);
+  if (header.data_file[0] != 0) status = hl_stream_switch(stream, header.data_file, error);
+  if (status == HL_OK) status = skip_to_voxels(stream, &header, &payload, error);
+  return status == HL_OK ? hl_payload_read(*stream, &payload, volume, error) : status;
+}

@@ -1,0 +1,193 @@
+/* volume/payload.c - reads the voxels that a header promises.
+ *
+ * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes go to their final
+ * place and are converted there, piece by piece; only doubles, which shrink, pass through a small stage.
+ */
+#include "volume/payload.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "volume/convert.h"
+#include "volume/text.h"
+
+enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192 };
+
+static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
+
+void hl_payload_defaults(hl_payload *payload) {
+  memset(payload, 0, sizeof *payload);
+  hl_volume_description_defaults(&payload->grid);
+  for (int axis = 0; axis < 3; axis++) payload->grid.dimensions[axis] = 1;
+  payload->trailing = HL_TRAILING_WARNS;
+  payload->promiser = "the header";
+}
+
+static size_t voxel_count(const hl_payload *payload) {
+  const size_t *dimension = payload->grid.dimensions;
+  return dimension[0] * dimension[1] * dimension[2];
+}
+
+uint64_t hl_payload_bytes(const hl_payload *payload) {
+  return (uint64_t)voxel_count(payload) * hl_voxel_type_bytes(payload->grid.type);
+}
+
+static hl_status check_promise(const hl_stream *stream, const hl_payload *payload, hl_error *error) {
+  hl_status status = hl_volume_check_grid(&payload->grid, stream->path, error);
+  if (status != HL_OK) return status;
+  uint64_t most = hl_stream_at_most(stream), promised = hl_payload_bytes(payload);
+  if (payload->text) promised = 2 * (uint64_t)voxel_count(payload) - 1; /* a digit each, and what separates them */
+  if (promised <= most) return HL_OK;
+  return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                        "%s: %s promises %llu bytes of voxels%s (%zu x %zu x %zu %s), the file %s %llu bytes",
+                        stream->path, payload->promiser, (unsigned long long)promised, payload->text ? " as text or more" : "",
+                        payload->grid.dimensions[0], payload->grid.dimensions[1], payload->grid.dimensions[2],
+                        hl_voxel_type_name(payload->grid.type),
+                        stream->below == NULL ? "has only" : "can decode to at most", (unsigned long long)most);
+}
+
+/* Progress, and whether to go on. */
+static hl_status report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
+  hl_progress(stream->context, "load", (double)done / (double)count);
+  return hl_cancelled(stream->context) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path) : HL_OK;
+}
+
+static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, uint64_t found, hl_error *error) {
+  return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                        "%s: %s promises %llu bytes of voxels (%zu x %zu x %zu %s), but the data end after "
+                        "%llu%s",
+                        stream->path, payload->promiser, (unsigned long long)hl_payload_bytes(payload),
+                        payload->grid.dimensions[0], payload->grid.dimensions[1], payload->grid.dimensions[2],
+                        hl_voxel_type_name(payload->grid.type), (unsigned long long)found,
+                        stream->cut_short ? ": the file is cut short" : ": correct its sizes or type");
+}
+
+static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsigned char *voxels, hl_error *error) {
+  hl_voxel_type type = payload->grid.type;
+  size_t file_bytes = hl_voxel_type_bytes(type), stored_bytes = hl_storage_bytes(hl_voxel_type_storage(type));
+  size_t count = voxel_count(payload), piece = file_bytes > stored_bytes ? STAGE_VOXELS : PIECE_BYTES / file_bytes;
+  unsigned char stage[STAGE_VOXELS * 8];
+  bool swap = payload->big_endian != native_is_big_endian;
+  for (size_t done = 0; done < count;) {
+    size_t wanted = count - done < piece ? count - done : piece, got;
+    unsigned char *place = voxels + done * stored_bytes, *raw = file_bytes > stored_bytes ? stage : place;
+    hl_status status = hl_stream_read(stream, raw, wanted * file_bytes, &got, error);
+    if (status != HL_OK) return status;
+    if (got < wanted * file_bytes) return fail_short(stream, payload, (uint64_t)done * file_bytes + got, error);
+    hl_voxels_store(type, swap, raw, wanted, place);
+    done += wanted;
+    status = report(stream, done, count, error);
+    if (status != HL_OK) return status;
+  }
+  return HL_OK;
+}
+
+static bool is_separator(unsigned char c) { return hl_is_space((char)c) || c == ','; }
+
+/* Reads the next number; *found is false at the end. */
+static hl_status next_number(hl_stream *stream, double *value, bool *found, hl_error *error) {
+  const unsigned char *bytes;
+  size_t available, begin;
+  *found = false;
+  do {
+    hl_status status = hl_stream_peek(stream, HL_NUMBER_CHARACTERS, &bytes, &available, error);
+    if (status != HL_OK || available == 0) return status;
+    for (begin = 0; begin < available && is_separator(bytes[begin]); begin++) {
+    }
+    if (begin > 0) hl_stream_take(stream, begin);
+  } while (begin > 0 && available - begin < HL_NUMBER_CHARACTERS);
+  bytes += begin;
+  available -= begin;
+  size_t length = 0;
+  while (length < available && length < HL_NUMBER_CHARACTERS && !is_separator(bytes[length]) && bytes[length] != '<')
+    length++;
+  if (length == 0) return HL_OK;
+  if (!hl_text_number((const char *)bytes, length, value))
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset, "%s, byte %llu: expected a number here",
+                          stream->path, (unsigned long long)stream->offset);
+  hl_stream_take(stream, length);
+  *found = true;
+  return HL_OK;
+}
+
+static bool fits_type(hl_voxel_type type, double value) {
+  static const double low[HL_VOXEL_F64 + 1] = {
+      [HL_VOXEL_I8] = INT8_MIN, [HL_VOXEL_I16] = INT16_MIN, [HL_VOXEL_I32] = INT32_MIN};
+  static const double high[HL_VOXEL_F64 + 1] = {
+      [HL_VOXEL_U8] = UINT8_MAX,   [HL_VOXEL_I8] = INT8_MAX,     [HL_VOXEL_U16] = UINT16_MAX,
+      [HL_VOXEL_I16] = INT16_MAX,  [HL_VOXEL_U32] = UINT32_MAX,  [HL_VOXEL_I32] = INT32_MAX};
+  if (type == HL_VOXEL_F32 || type == HL_VOXEL_F64) return true;
+  return value >= low[type] && value <= high[type] && value == floor(value);
+}
+
+static void store_number(const hl_volume_description *grid, double value, size_t index, void *voxels) {
+  double stored = value + hl_voxel_type_bias(grid->type);
+  switch (hl_voxel_type_storage(grid->type)) {
+    case HL_STORAGE_U8: ((uint8_t *)voxels)[index] = (uint8_t)stored; break;
+    case HL_STORAGE_U16: ((uint16_t *)voxels)[index] = (uint16_t)stored; break;
+    case HL_STORAGE_F32: ((float *)voxels)[index] = (float)stored; break;
+  }
+}
+
+static hl_status read_text(hl_stream *stream, const hl_payload *payload, void *voxels, hl_error *error) {
+  size_t count = voxel_count(payload);
+  for (size_t done = 0; done < count; done++) {
+    double value;
+    bool found;
+    hl_status status = next_number(stream, &value, &found, error);
+    if (status == HL_OK && done % PIECE_BYTES == 0) status = report(stream, done, count, error);
+    if (status != HL_OK) return status;
+    if (!found)
+      return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                            "%s: %s promises %zu voxels, but only %zu numbers follow", stream->path, payload->promiser, count,
+                            done);
+    if (!fits_type(payload->grid.type, value))
+      return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                            "%s, before byte %llu: %.17g does not fit the type %s", stream->path,
+                            (unsigned long long)stream->offset, value, hl_voxel_type_name(payload->grid.type));
+    store_number(&payload->grid, value, done, voxels);
+  }
+  return HL_OK;
+}
+
+/* Asking for one byte more also lets a decompressor check its sum. */
+static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_error *error) {
+  if (payload->trailing == HL_TRAILING_IGNORED) return HL_OK;
+  const unsigned char *bytes;
+  size_t available;
+  hl_status status = hl_stream_peek(stream, 1, &bytes, &available, error);
+  while (status == HL_OK && payload->text && available > 0 && is_separator(bytes[0])) {
+    hl_stream_take(stream, 1);
+    status = hl_stream_peek(stream, 1, &bytes, &available, error);
+  }
+  if (status != HL_OK || available == 0) return status;
+  if (payload->trailing == HL_TRAILING_REFUSED)
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                          "%s: %s promises %zu x %zu x %zu %s, %llu bytes, but the data are longer: correct the sizes "
+                          "or the type",
+                          stream->path, payload->promiser, payload->grid.dimensions[0], payload->grid.dimensions[1],
+                          payload->grid.dimensions[2], hl_voxel_type_name(payload->grid.type),
+                          (unsigned long long)hl_payload_bytes(payload));
+  hl_log(stream->context, HL_LOG_WARNING, "%s: the data go on after the %llu bytes of voxels that the header promises",
+         stream->path, (unsigned long long)hl_payload_bytes(payload));
+  return HL_OK;
+}
+
+hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, hl_volume **volume, hl_error *error) {
+  hl_status status = check_promise(stream, payload, error);
+  if (status != HL_OK) return status;
+  size_t stored_bytes = hl_storage_bytes(hl_voxel_type_storage(payload->grid.type));
+  void *voxels = hl_allocate(stream->context, voxel_count(payload), stored_bytes);
+  if (voxels == NULL) return hl_fail_memory(error, voxel_count(payload) * stored_bytes, stream->path);
+  status = report(stream, 0, voxel_count(payload), error);
+  if (status == HL_OK) status = payload->text ? read_text(stream, payload, voxels, error)
+                                              : read_binary(stream, payload, voxels, error);
+  if (status == HL_OK) status = check_end(stream, payload, error);
+  if (status != HL_OK) {
+    hl_release(stream->context, voxels);
+    return status;
+  }
+  return hl_volume_adopt(stream->context, &payload->grid, stream->path, voxels, volume, error);
+}

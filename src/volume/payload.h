@@ -1,0 +1,32 @@
+/* volume/payload.h - from a header and a stream of voxels to a volume: the core of every format. */
+#ifndef HL_VOLUME_PAYLOAD_H
+#define HL_VOLUME_PAYLOAD_H
+
+#include "volume/stream.h"
+#include "volume/volume.h"
+
+typedef enum hl_trailing {
+  HL_TRAILING_IGNORED, /* something else may follow the voxels */
+  HL_TRAILING_WARNS,
+  HL_TRAILING_REFUSED
+} hl_trailing;
+
+/* What a header says about its voxels. */
+typedef struct hl_payload {
+  hl_volume_description grid; /* dimensions, type, origin, axis, value_scale, value_offset; nothing else */
+  bool big_endian;
+  bool text; /* decimal numbers separated by white space or commas, not binary */
+  hl_trailing trailing;
+  const char *promiser; /* who states size and type, for error lines: "the header" */
+} hl_payload;
+
+void hl_payload_defaults(hl_payload *payload);
+
+/* Bytes of all voxels as the file has them; the grid must be checked. */
+uint64_t hl_payload_bytes(const hl_payload *payload);
+
+/* Checks the grid, and before any allocation whether the stream can hold so much; reads, converts and adopts
+ * the voxels. Reports progress and can be cancelled. */
+hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, hl_volume **volume, hl_error *error);
+
+#endif

@@ -1,0 +1,145 @@
+/* volume/raw.c - bare voxels: sizes and type from the file's name, or from a .dat descriptor beside them.
+ *
+ * Names: anything_256x256x128_uint8.raw, with _be (or _le) after the type for big-endian voxels and .gz for
+ * gzip. Descriptors: lines "ObjectFileName: f.raw", "Resolution: 64 64 64", "SliceThickness: 1 1 1",
+ * "Format: UCHAR".
+ */
+#include <string.h>
+
+#include "volume/format.h"
+#include "volume/text.h"
+
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/* Reads "256x256x128_"; false if something else is there. */
+static bool scan_sizes(const char **cursor, size_t sizes[3]) {
+  const char *text = *cursor;
+  for (int axis = 0; axis < 3; axis++) {
+    size_t value = 0;
+    if (!is_digit(*text)) return false;
+    for (; is_digit(*text); text++) {
+      if (value > (size_t)1 << 32) return false;
+      value = 10 * value + (size_t)(*text - '0');
+    }
+    if (*text++ != (axis < 2 ? 'x' : '_')) return false;
+    sizes[axis] = value;
+  }
+  *cursor = text;
+  return true;
+}
+
+static bool ends_word(char c) { return c == 0 || c == '.' || c == '_'; }
+
+static bool scan_type(const char **cursor, hl_voxel_type *type, bool *big_endian) {
+  for (int candidate = HL_VOXEL_U8; candidate <= HL_VOXEL_F64; candidate++) {
+    const char *name = hl_voxel_type_name((hl_voxel_type)candidate);
+    const char *rest = *cursor + strlen(name);
+    if (!hl_text_starts(*cursor, name) || !ends_word(*rest)) continue;
+    *type = (hl_voxel_type)candidate;
+    *big_endian = hl_text_starts(rest, "_be") && ends_word(rest[3]);
+    *cursor = rest;
+    return true;
+  }
+  return false;
+}
+
+bool hl_raw_name(const char *path, hl_payload *payload) {
+  const char *slash = strrchr(path, '/'), *name = slash == NULL ? path : slash + 1;
+  hl_payload_defaults(payload);
+  payload->promiser = "its name";
+  payload->trailing = HL_TRAILING_REFUSED;
+  for (const char *place = name; *place != 0; place++) {
+    if (!is_digit(*place) || (place > name && is_digit(place[-1]))) continue;
+    const char *cursor = place;
+    if (scan_sizes(&cursor, payload->grid.dimensions) && scan_type(&cursor, &payload->grid.type, &payload->big_endian))
+      return true;
+  }
+  return false;
+}
+
+hl_status hl_load_raw(hl_stream **stream, hl_volume **volume, hl_error *error) {
+  hl_payload payload;
+  if (!hl_raw_name((*stream)->path, &payload))
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: raw voxels need their size and type in the file's name, as in name_256x256x128_uint8.raw "
+                   "(uint8, int8, uint16, int16, uint32, int32, float32 or float64; _be after the type for "
+                   "big-endian; .raw or .raw.gz)",
+                   (*stream)->path);
+  return hl_payload_read(*stream, &payload, volume, error);
+}
+
+bool hl_is_raw_descriptor(const unsigned char *bytes, size_t length) {
+  static const char *const keys[] = {"ObjectFileName:", "TaggedFileName:", "Resolution:"};
+  for (int n = 0; n < 3; n++)
+    if (length > strlen(keys[n]) && memcmp(bytes, keys[n], strlen(keys[n])) == 0) return true;
+  return false;
+}
+
+static bool format_type(const char *name, hl_voxel_type *type) {
+  static const struct { const char *name; hl_voxel_type type; } formats[] = {
+      {"UCHAR", HL_VOXEL_U8},   {"UINT8", HL_VOXEL_U8},   {"CHAR", HL_VOXEL_I8},    {"INT8", HL_VOXEL_I8},
+      {"USHORT", HL_VOXEL_U16}, {"UINT16", HL_VOXEL_U16}, {"USHORT_12", HL_VOXEL_U16}, {"SHORT", HL_VOXEL_I16},
+      {"INT16", HL_VOXEL_I16},  {"UINT", HL_VOXEL_U32},   {"INT", HL_VOXEL_I32},    {"FLOAT", HL_VOXEL_F32},
+      {"FLOAT32", HL_VOXEL_F32}, {"DOUBLE", HL_VOXEL_F64}};
+  for (size_t n = 0; n < sizeof formats / sizeof *formats; n++)
+    if (hl_text_equal(name, formats[n].name)) {
+      *type = formats[n].type;
+      return true;
+    }
+  return false;
+}
+
+typedef struct descriptor {
+  hl_payload payload;
+  char data_file[1024];
+  bool has_sizes, has_type;
+} descriptor;
+
+static hl_status read_field(const hl_stream *stream, int line_number, const char *key, const char *value,
+                            descriptor *header, hl_error *error) {
+  hl_volume_description *grid = &header->payload.grid;
+  bool sound = true;
+  if (hl_text_equal(key, "ObjectFileName")) {
+    sound = *value != 0 && strlen(value) < sizeof header->data_file;
+    if (sound) strcpy(header->data_file, value);
+  } else if (hl_text_equal(key, "Resolution")) {
+    sound = header->has_sizes = hl_text_sizes(value, grid->dimensions, 3) == 3;
+  } else if (hl_text_equal(key, "SliceThickness")) {
+    double spacing[3];
+    sound = hl_text_numbers(value, spacing, 3) == 3;
+    for (int axis = 0; sound && axis < 3; axis++) grid->axis[axis][axis] = spacing[axis];
+  } else if (hl_text_equal(key, "Format")) {
+    sound = header->has_type = format_type(value, &grid->type);
+  }
+  char shown[HL_PRINTABLE_BYTES];
+  return sound ? HL_OK
+               : HL_FAIL_LINE(error, HL_ERROR_INPUT, stream, line_number, "%s cannot be \"%s\"", key,
+                              hl_text_printable(shown, value));
+}
+
+hl_status hl_load_raw_descriptor(hl_stream **stream, hl_volume **volume, hl_error *error) {
+  descriptor header = {.has_sizes = false};
+  hl_payload_defaults(&header.payload);
+  header.payload.promiser = "the .dat descriptor";
+  header.payload.trailing = HL_TRAILING_REFUSED;
+  char line[HL_LINE_BYTES];
+  for (int number = 1;; number++) {
+    bool ended;
+    hl_status status = hl_stream_line(*stream, line, &ended, error);
+    if (status != HL_OK) return status;
+    if (ended) break;
+    char *colon = strchr(line, ':');
+    if (colon == NULL) continue;
+    *colon = 0;
+    status = read_field(*stream, number, hl_text_trim(line), hl_text_trim(colon + 1), &header, error);
+    if (status != HL_OK) return status;
+  }
+  if (header.data_file[0] == 0 || !header.has_sizes || !header.has_type)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: a .dat descriptor needs the lines ObjectFileName, Resolution and Format",
+                   (*stream)->path);
+  hl_status status = hl_stream_switch(stream, header.data_file, error);
+  if (status == HL_OK) status = hl_volume_check_grid(&header.payload.grid, (*stream)->path, error);
+  if (status == HL_OK && hl_stream_at_most(*stream) != hl_payload_bytes(&header.payload))
+    status = hl_stream_inflate_if_gzip(stream, error);
+  return status == HL_OK ? hl_payload_read(*stream, &header.payload, volume, error) : status;
+}

@@ -1,0 +1,243 @@
+/* volume/stream.c - what all streams share (buffer, lines, skipping), and files. */
+#define _GNU_SOURCE
+#include "volume/stream.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+
+typedef struct file_stream {
+  hl_stream base;
+  int descriptor; /* -1 until open */
+  bool regular;
+  uint64_t size, position; /* of a regular file, bytes */
+} file_stream;
+
+hl_stream *hl_stream_make(hl_context *context, size_t size, hl_stream *below) {
+  hl_stream *stream = hl_allocate_zeroed(context, 1, size);
+  if (stream == NULL) return NULL;
+  stream->context = context;
+  stream->buffer = hl_allocate(context, HL_STREAM_BUFFER_BYTES, 1);
+  if (stream->buffer == NULL) {
+    hl_release(context, stream);
+    return NULL;
+  }
+  stream->below = below;
+  if (below != NULL) stream->path = below->path;
+  return stream;
+}
+
+void hl_stream_close(hl_stream *stream) {
+  while (stream != NULL) {
+    hl_stream *below = stream->below;
+    if (stream->close != NULL) stream->close(stream);
+    hl_release(stream->context, stream->buffer);
+    hl_release(stream->context, stream);
+    stream = below;
+  }
+}
+
+static hl_status file_pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+  file_stream *file = (file_stream *)stream;
+  ssize_t got;
+  do got = read(file->descriptor, bytes, capacity);
+  while (got < 0 && errno == EINTR);
+  if (got < 0) return hl_fail(error, HL_ERROR_IO, "%s: cannot read: %s", stream->path, strerror(errno));
+  *count = (size_t)got;
+  file->position += (uint64_t)got;
+  return HL_OK;
+}
+
+static uint64_t file_at_most(const hl_stream *stream) {
+  const file_stream *file = (const file_stream *)stream;
+  if (!file->regular) return UINT64_MAX;
+  return file->position < file->size ? file->size - file->position : 0;
+}
+
+static void file_close(hl_stream *stream) {
+  file_stream *file = (file_stream *)stream;
+  if (file->descriptor >= 0) close(file->descriptor);
+  hl_release(stream->context, stream->path);
+}
+
+static hl_status file_begin(file_stream *file, const char *path, bool regular_only, hl_error *error) {
+  struct stat information;
+  file->base.path = hl_copy_text(file->base.context, path);
+  if (file->base.path == NULL) return hl_fail_memory(error, strlen(path), path);
+  /* Non-blocking, so that a name that leads to a pipe without a writer cannot hang the program. */
+  file->descriptor = open(path, O_RDONLY | O_CLOEXEC | (regular_only ? O_NONBLOCK : 0));
+  if (file->descriptor < 0 || fstat(file->descriptor, &information) != 0)
+    return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", path, strerror(errno));
+  file->regular = S_ISREG(information.st_mode);
+  file->size = file->regular && information.st_size > 0 ? (uint64_t)information.st_size : 0;
+  if (S_ISDIR(information.st_mode))
+    return hl_fail(error, HL_ERROR_IO, "%s: is a folder, expected a volume file", path);
+  if (regular_only && !file->regular)
+    return hl_fail(error, HL_ERROR_IO, "%s: is not a regular file", path);
+  return HL_OK;
+}
+
+hl_status hl_stream_open(hl_context *context, const char *path, bool regular_only, hl_stream **stream,
+                         hl_error *error) {
+  *stream = NULL;
+  file_stream *file = (file_stream *)hl_stream_make(context, sizeof *file, NULL);
+  if (file == NULL) return hl_fail_memory(error, HL_STREAM_BUFFER_BYTES, path);
+  file->descriptor = -1;
+  file->base.pull = file_pull;
+  file->base.at_most = file_at_most;
+  file->base.close = file_close;
+  hl_status status = file_begin(file, path, regular_only, error);
+  if (status == HL_OK)
+    *stream = &file->base;
+  else
+    hl_stream_close(&file->base);
+  return status;
+}
+
+hl_status hl_stream_switch(hl_stream **stream, const char *name, hl_error *error) {
+  hl_context *context = (*stream)->context;
+  char *folder = hl_path_folder(context, (*stream)->path);
+  char *path = folder == NULL ? NULL : hl_path_join(context, folder, name);
+  hl_release(context, folder);
+  if (path == NULL) return hl_fail_memory(error, strlen(name), name);
+  hl_stream *opened;
+  hl_status status = hl_stream_open(context, path, true, &opened, error);
+  hl_release(context, path);
+  if (status != HL_OK) return status;
+  hl_stream_close(*stream);
+  *stream = opened;
+  return HL_OK;
+}
+
+hl_status hl_stream_restart(hl_stream **stream, hl_error *error) {
+  hl_stream *opened;
+  hl_status status = hl_stream_open((*stream)->context, (*stream)->path, true, &opened, error);
+  if (status != HL_OK) return status;
+  hl_stream_close(*stream);
+  *stream = opened;
+  return HL_OK;
+}
+
+static hl_status pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+  *count = 0;
+  if (stream->ended) return HL_OK;
+  hl_status status = stream->pull(stream, bytes, capacity, count, error);
+  if (status != HL_OK || *count == 0) stream->ended = true;
+  return status;
+}
+
+hl_status hl_stream_peek(hl_stream *stream, size_t wanted, const unsigned char **bytes, size_t *available,
+                         hl_error *error) {
+  if (stream->end - stream->begin < wanted && stream->begin > 0) {
+    memmove(stream->buffer, stream->buffer + stream->begin, stream->end - stream->begin);
+    stream->end -= stream->begin;
+    stream->begin = 0;
+  }
+  hl_status status = HL_OK;
+  while (status == HL_OK && stream->end - stream->begin < wanted && !stream->ended) {
+    size_t count;
+    status = pull(stream, stream->buffer + stream->end, HL_STREAM_BUFFER_BYTES - stream->end, &count, error);
+    stream->end += count;
+  }
+  *bytes = stream->buffer + stream->begin;
+  *available = stream->end - stream->begin;
+  return status;
+}
+
+void hl_stream_take(hl_stream *stream, size_t count) {
+  stream->begin += count;
+  stream->offset += count;
+}
+
+hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *count, hl_error *error) {
+  unsigned char *destination = bytes;
+  *count = 0;
+  hl_status status = HL_OK;
+  while (status == HL_OK && *count < wanted) {
+    size_t left = wanted - *count, got;
+    if (stream->begin == stream->end && left >= HL_STREAM_BUFFER_BYTES) { /* past the buffer: no second copy */
+      status = pull(stream, destination + *count, left, &got, error);
+      stream->offset += got;
+    } else {
+      const unsigned char *buffered;
+      status = hl_stream_peek(stream, 1, &buffered, &got, error);
+      if (got > left) got = left;
+      if (got > 0) memcpy(destination + *count, buffered, got);
+      hl_stream_take(stream, got);
+    }
+    if (got == 0) break;
+    *count += got;
+  }
+  return status;
+}
+
+hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_error *error) {
+  size_t count;
+  hl_status status = hl_stream_read(stream, bytes, wanted, &count, error);
+  if (status == HL_OK && count < wanted)
+    status = hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                            "%s, byte %llu: the file ends here, in the middle of its header", stream->path,
+                            (unsigned long long)stream->offset);
+  return status;
+}
+
+hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error) {
+  while (count > 0) {
+    const unsigned char *bytes;
+    size_t available;
+    hl_status status = hl_stream_peek(stream, 1, &bytes, &available, error);
+    if (status != HL_OK) return status;
+    if (available == 0)
+      return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                            "%s: the file ends at byte %llu, %llu bytes before its voxels begin", stream->path,
+                            (unsigned long long)stream->offset, (unsigned long long)count);
+    size_t step = available < count ? available : (size_t)count;
+    hl_stream_take(stream, step);
+    count -= step;
+  }
+  return HL_OK;
+}
+
+/* Learns the kind of line end from the first one: a lone CR counts only if no LF follows it there. */
+static void learn_line_end(hl_stream *stream, const unsigned char *bytes, size_t length, size_t available) {
+  if (stream->line_end_known) return;
+  const unsigned char *carriage_return = memchr(bytes, '\r', length);
+  if (carriage_return != NULL) {
+    size_t next = (size_t)(carriage_return - bytes) + 1;
+    stream->line_end_is_return = next >= available || bytes[next] != '\n';
+  }
+  stream->line_end_known = true;
+}
+
+hl_status hl_stream_line(hl_stream *stream, char line[HL_LINE_BYTES], bool *ended, hl_error *error) {
+  const unsigned char *bytes;
+  size_t available;
+  line[0] = 0;
+  hl_status status = hl_stream_peek(stream, HL_LINE_BYTES, &bytes, &available, error);
+  *ended = status != HL_OK || available == 0;
+  if (*ended) return status;
+  size_t searched = available < HL_LINE_BYTES ? available : HL_LINE_BYTES;
+  const unsigned char *feed = memchr(bytes, '\n', searched);
+  learn_line_end(stream, bytes, feed == NULL ? searched : (size_t)(feed - bytes), available);
+  const unsigned char *end = stream->line_end_is_return ? memchr(bytes, '\r', searched) : feed;
+  size_t length = end == NULL ? searched : (size_t)(end - bytes);
+  if (end == NULL && available >= HL_LINE_BYTES)
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                          "%s, byte %llu: a header line of more than %d bytes; is this header text at all?",
+                          stream->path, (unsigned long long)stream->offset, HL_LINE_BYTES - 1);
+  size_t kept = length > 0 && !stream->line_end_is_return && bytes[length - 1] == '\r' ? length - 1 : length;
+  memcpy(line, bytes, kept);
+  line[kept] = 0;
+  hl_stream_take(stream, end == NULL ? length : length + 1);
+  return HL_OK;
+}
+
+uint64_t hl_stream_at_most(const hl_stream *stream) {
+  uint64_t buffered = stream->end - stream->begin, more = stream->ended ? 0 : stream->at_most(stream);
+  return more > UINT64_MAX - buffered ? UINT64_MAX : buffered + more;
+}

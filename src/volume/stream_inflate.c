@@ -1,0 +1,242 @@
+/* volume/stream_inflate.c - streams that decompress: gzip and zlib data, and VTK's compressed blocks.
+ *
+ * In: compressed bytes from the stream below. Out: plain bytes, never more than are asked for. All
+ * states are bounded: zlib's window, and one small header.
+ */
+#include <limits.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "core/memory.h"
+#include "volume/stream.h"
+
+enum {
+  DEFLATE_GREATEST_RATIO = 1032, /* RFC 1951: 258 bytes from one bit of length and one of distance */
+  PENDING_BYTES = 65536,         /* more than zlib can hold back in its window and bit buffer */
+  AUTOMATIC_WINDOW = 15 + 32     /* zlib.h: largest window, gzip and zlib told apart by their first bytes */
+};
+
+typedef struct inflate_stream {
+  hl_stream base;
+  z_stream zlib;
+  bool started, finished;
+} inflate_stream;
+
+typedef struct blocks_stream {
+  hl_stream base;
+  z_stream zlib;
+  bool started;
+  uint64_t block_count, block_bytes, last_bytes; /* plain sizes; last_bytes is that of the last block */
+  uint64_t *compressed_bytes;                    /* owned; [block_count] */
+  uint64_t block;                                /* the current one */
+  uint64_t plain_left, compressed_left;          /* bytes of the current block */
+} blocks_stream;
+
+static void *zlib_allocate(void *context, unsigned items, unsigned size) { return hl_allocate(context, items, size); }
+static void zlib_release(void *context, void *memory) { hl_release(context, memory); }
+
+static hl_status start_zlib(z_stream *zlib, hl_stream *stream, bool *started, hl_error *error) {
+  zlib->zalloc = zlib_allocate;
+  zlib->zfree = zlib_release;
+  zlib->opaque = stream->context;
+  *started = inflateInit2(zlib, AUTOMATIC_WINDOW) == Z_OK;
+  return *started ? HL_OK : hl_fail_memory(error, PENDING_BYTES, stream->path);
+}
+
+/* One step of zlib from what the stream below has, at most input_limit bytes of it. *consumed and *made may
+ * both be 0 at the end of the input. */
+static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_limit, unsigned char *bytes,
+                              size_t capacity, size_t *consumed, size_t *made, int *code, hl_error *error) {
+  const unsigned char *input;
+  size_t available;
+  hl_status status = hl_stream_peek(stream->below, 1, &input, &available, error);
+  if (status != HL_OK) return status;
+  zlib->next_in = (unsigned char *)input;
+  zlib->avail_in = (unsigned)(available < input_limit ? available : input_limit);
+  zlib->next_out = bytes;
+  zlib->avail_out = (unsigned)(capacity < INT_MAX ? capacity : INT_MAX);
+  size_t input_before = zlib->avail_in, output_before = zlib->avail_out;
+  *code = inflate(zlib, Z_NO_FLUSH);
+  *consumed = input_before - zlib->avail_in;
+  *made = output_before - zlib->avail_out;
+  hl_stream_take(stream->below, *consumed);
+  if (*code == Z_MEM_ERROR) return hl_fail_memory(error, PENDING_BYTES, stream->path);
+  if (*code == Z_DATA_ERROR || *code == Z_NEED_DICT || *code == Z_STREAM_ERROR)
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->below->offset,
+                          "%s, byte %llu: the compressed data are damaged (%s)", stream->path,
+                          (unsigned long long)stream->below->offset, zlib->msg != NULL ? zlib->msg : "bad stream");
+  return HL_OK;
+}
+
+/* After one gzip member another may follow; anything else is not ours. */
+static hl_status next_member(inflate_stream *stream, hl_error *error) {
+  const unsigned char *bytes;
+  size_t available;
+  hl_status status = hl_stream_peek(stream->base.below, 2, &bytes, &available, error);
+  stream->finished = status != HL_OK || available < 2 || bytes[0] != 0x1f || bytes[1] != 0x8b;
+  if (!stream->finished) inflateReset(&stream->zlib);
+  return status;
+}
+
+static hl_status inflate_pull(hl_stream *base, unsigned char *bytes, size_t capacity, size_t *count,
+                              hl_error *error) {
+  inflate_stream *stream = (inflate_stream *)base;
+  *count = 0;
+  while (*count < capacity && !stream->finished) {
+    size_t consumed, made;
+    int code;
+    hl_status status = inflate_step(base, &stream->zlib, UINT_MAX, bytes + *count, capacity - *count, &consumed,
+                                    &made, &code, error);
+    if (status == HL_OK && code == Z_STREAM_END) status = next_member(stream, error);
+    if (status != HL_OK) return status;
+    *count += made;
+    if (code != Z_STREAM_END && consumed == 0 && made == 0) {
+      base->cut_short = true;
+      break;
+    }
+  }
+  return HL_OK;
+}
+
+static uint64_t inflate_at_most(const hl_stream *stream) {
+  uint64_t below = hl_stream_at_most(stream->below), most;
+  if (__builtin_mul_overflow(below, (uint64_t)DEFLATE_GREATEST_RATIO, &most)) return UINT64_MAX;
+  return most > UINT64_MAX - PENDING_BYTES ? UINT64_MAX : most + PENDING_BYTES;
+}
+
+static void inflate_close(hl_stream *stream) {
+  if (((inflate_stream *)stream)->started) inflateEnd(&((inflate_stream *)stream)->zlib);
+}
+
+hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error) {
+  hl_context *context = (*stream)->context;
+  inflate_stream *made = (inflate_stream *)hl_stream_make(context, sizeof *made, *stream);
+  if (made == NULL) return hl_fail_memory(error, HL_STREAM_BUFFER_BYTES, (*stream)->path);
+  made->base.pull = inflate_pull;
+  made->base.at_most = inflate_at_most;
+  made->base.close = inflate_close;
+  *stream = &made->base; /* from here on the caller closes it, also on failure */
+  return start_zlib(&made->zlib, &made->base, &made->started, error);
+}
+
+static void begin_block(blocks_stream *stream) {
+  if (stream->block >= stream->block_count) return;
+  stream->plain_left = stream->block + 1 == stream->block_count ? stream->last_bytes : stream->block_bytes;
+  stream->compressed_left = stream->compressed_bytes[stream->block];
+  inflateReset(&stream->zlib);
+}
+
+static hl_status fail_block(const blocks_stream *stream, hl_error *error) {
+  return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->base.below->offset,
+                        "%s: compressed block %llu of %llu does not have the %llu bytes that its header promises",
+                        stream->base.path, (unsigned long long)stream->block + 1,
+                        (unsigned long long)stream->block_count,
+                        (unsigned long long)(stream->block + 1 == stream->block_count ? stream->last_bytes
+                                                                                      : stream->block_bytes));
+}
+
+/* The current block is full: let zlib see its check sum, and pass over what is left of its input. */
+static hl_status end_block(blocks_stream *stream, hl_error *error) {
+  int code = Z_OK;
+  while (code != Z_STREAM_END) {
+    unsigned char surplus;
+    size_t consumed, made;
+    hl_status status = inflate_step(&stream->base, &stream->zlib, stream->compressed_left, &surplus, 1, &consumed,
+                                    &made, &code, error);
+    if (status != HL_OK) return status;
+    stream->compressed_left -= consumed;
+    if (made > 0 || (consumed == 0 && code != Z_STREAM_END)) return fail_block(stream, error);
+  }
+  hl_status status = hl_stream_skip(stream->base.below, stream->compressed_left, error);
+  stream->block++;
+  begin_block(stream);
+  return status;
+}
+
+static hl_status blocks_pull(hl_stream *base, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+  blocks_stream *stream = (blocks_stream *)base;
+  *count = 0;
+  while (*count < capacity && stream->block < stream->block_count) {
+    size_t room = capacity - *count < stream->plain_left ? capacity - *count : (size_t)stream->plain_left;
+    size_t consumed, made;
+    int code;
+    hl_status status = inflate_step(base, &stream->zlib, stream->compressed_left, bytes + *count, room, &consumed,
+                                    &made, &code, error);
+    if (status != HL_OK) return status;
+    *count += made;
+    stream->compressed_left -= consumed;
+    stream->plain_left -= made;
+    if (stream->plain_left == 0)
+      status = end_block(stream, error);
+    else if (code == Z_STREAM_END || (consumed == 0 && made == 0))
+      status = fail_block(stream, error);
+    if (status != HL_OK) return status;
+  }
+  return HL_OK;
+}
+
+static void blocks_close(hl_stream *base) {
+  blocks_stream *stream = (blocks_stream *)base;
+  if (stream->started) inflateEnd(&stream->zlib);
+  hl_release(base->context, stream->compressed_bytes);
+}
+
+static uint64_t load_integer(const unsigned char *bytes, size_t length, bool big_endian) {
+  uint64_t value = 0;
+  for (size_t n = 0; n < length; n++) value = value << 8 | bytes[big_endian ? n : length - 1 - n];
+  return value;
+}
+
+static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_endian, uint64_t *values,
+                               uint64_t count, hl_error *error) {
+  unsigned char bytes[8];
+  for (uint64_t n = 0; n < count; n++) {
+    hl_status status = hl_stream_read_all(stream, bytes, header_bytes, error);
+    if (status != HL_OK) return status;
+    values[n] = load_integer(bytes, header_bytes, big_endian);
+  }
+  return HL_OK;
+}
+
+/* The block sizes must add up to what the file promised elsewhere, which bounds their number too. */
+static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian, uint64_t promised,
+                                   hl_error *error) {
+  hl_stream *below = stream->base.below;
+  uint64_t first[3]; /* number of blocks, bytes in each, bytes in the last (0: full) */
+  hl_status status = read_integers(below, header_bytes, big_endian, first, 3, error);
+  if (status != HL_OK) return status;
+  stream->block_count = first[0];
+  stream->block_bytes = first[1];
+  stream->last_bytes = first[2] != 0 ? first[2] : first[1];
+  uint64_t total = 0;
+  bool sound = first[0] > 0 && first[1] > 0 && first[2] <= first[1] &&
+               !__builtin_mul_overflow(first[0] - 1, first[1], &total) &&
+               !__builtin_add_overflow(total, stream->last_bytes, &total);
+  if (!sound || total != promised)
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)below->offset,
+                          "%s: the header promises %llu bytes of voxels, the compressed blocks (%llu of %llu bytes, "
+                          "last %llu) hold another number",
+                          stream->base.path, (unsigned long long)promised, (unsigned long long)first[0],
+                          (unsigned long long)first[1], (unsigned long long)first[2]);
+  if (first[0] > hl_stream_at_most(below) / header_bytes)
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)below->offset,
+                          "%s: the header promises %llu compressed blocks, only %llu bytes follow", stream->base.path,
+                          (unsigned long long)first[0], (unsigned long long)hl_stream_at_most(below));
+  stream->compressed_bytes = hl_allocate(stream->base.context, first[0], sizeof *stream->compressed_bytes);
+  if (stream->compressed_bytes == NULL) return hl_fail_memory(error, first[0] * 8, stream->base.path);
+  return read_integers(below, header_bytes, big_endian, stream->compressed_bytes, first[0], error);
+}
+
+hl_status hl_stream_push_vtk_blocks(hl_stream **stream, size_t header_bytes, bool big_endian, uint64_t promised,
+                                    hl_error *error) {
+  blocks_stream *made = (blocks_stream *)hl_stream_make((*stream)->context, sizeof *made, *stream);
+  if (made == NULL) return hl_fail_memory(error, HL_STREAM_BUFFER_BYTES, (*stream)->path);
+  made->base.pull = blocks_pull;
+  made->base.at_most = inflate_at_most;
+  made->base.close = blocks_close;
+  *stream = &made->base;
+  hl_status status = read_block_header(made, header_bytes, big_endian, promised, error);
+  if (status == HL_OK) status = start_zlib(&made->zlib, &made->base, &made->started, error);
+  if (status == HL_OK) begin_block(made);
+  return status;
+}
