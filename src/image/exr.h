@@ -1,0 +1,18 @@
+/* image/exr.h - OpenEXR files of any number of named float channels. */
+#ifndef HL_IMAGE_EXR_H
+#define HL_IMAGE_EXR_H
+
+#include "core/file.h"
+
+/* One channel: values[(y * width + x) * pixel_stride], linear. Layers are named "layer.R" and so on. */
+typedef struct hl_exr_channel {
+  const char *name;
+  const float *values; /* borrowed */
+  size_t pixel_stride; /* floats from one pixel to the next */
+} hl_exr_channel;
+
+/* Writes width x height pixels of all channels to output->file: scanlines, ZIP, 32-bit float. */
+hl_status hl_exr_encode_channels(hl_context *context, int width, int height, const hl_exr_channel *channels,
+                                 size_t channel_count, hl_output *output, hl_error *error);
+
+#endif

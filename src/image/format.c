@@ -1,0 +1,125 @@
+/* format.c - which format a picture has, and the ways in and out for all of them.
+ *
+ * Writing goes by the name's extension. Reading goes by the file's first bytes, so that a wrongly
+ * named picture is still read; the extension only serves to explain a failure.
+ */
+#include "image/format.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+
+typedef struct picture_format {
+  const char *extension, *title;
+  unsigned char mark[8]; /* the first bytes of every such file */
+  size_t mark_length;
+  hl_status (*encode)(const hl_image *, const hl_image_write_options *, hl_output *, hl_error *);
+  hl_status (*decode)(hl_context *, const char *, const unsigned char *, size_t, hl_image **, hl_error *);
+} picture_format;
+
+static const picture_format formats[] = {
+    {".png", "PNG", {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, 8, hl_png_encode, hl_png_decode},
+    {".exr", "OpenEXR", {0x76, 0x2f, 0x31, 0x01}, 4, hl_exr_encode, hl_exr_decode},
+    {".npy", "NPY", {0x93, 'N', 'U', 'M', 'P', 'Y'}, 6, hl_npy_encode, hl_npy_decode}};
+
+enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
+
+/* 8 GiB: what the largest picture that is read takes in doubles. */
+static const size_t file_bytes_max = (size_t)1 << 33;
+
+static const picture_format *format_by_name(const char *path) {
+  const char *dot = strrchr(path, '.');
+  for (size_t i = 0; dot != NULL && i < FORMAT_COUNT; i++)
+    if (strcasecmp(dot, formats[i].extension) == 0) return &formats[i];
+  return NULL;
+}
+
+static const picture_format *format_by_content(const unsigned char *bytes, size_t length) {
+  for (size_t i = 0; i < FORMAT_COUNT; i++)
+    if (length >= formats[i].mark_length && memcmp(bytes, formats[i].mark, formats[i].mark_length) == 0)
+      return &formats[i];
+  return NULL;
+}
+
+void hl_image_write_options_defaults(hl_image_write_options *options) {
+  if (options == NULL) return;
+  memset(options, 0, sizeof *options);
+  options->struct_size = sizeof *options;
+  options->png_depth = 8;
+}
+
+static hl_status check_options(const hl_image_write_options *options, hl_error *error) {
+  if (options->struct_size != sizeof *options)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "hl_image_write: struct_size is %zu, expected %zu: call hl_image_write_options_defaults first",
+        options->struct_size, sizeof *options);
+  if (options->png_depth != 8 && options->png_depth != 16)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: png_depth is %d, expected 8 or 16",
+                   options->png_depth);
+  for (int c = 0; c < 3; c++)
+    if (!isfinite(options->background[c]))
+      return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: background[%d] is not a finite number", c);
+  return HL_OK;
+}
+
+hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error) {
+  if (row % 16 != 0) return HL_OK;
+  hl_progress(context, "write", (double)row / height);
+  if (hl_cancelled(context)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while writing a picture");
+  return HL_OK;
+}
+
+hl_status hl_fail_write(hl_error *error, const hl_output *output, int system_error) {
+  return hl_fail(error, HL_ERROR_IO, "%s: cannot write: %s", output->path,
+                 system_error != 0 ? strerror(system_error) : "the file took less than was given");
+}
+
+hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
+                         const hl_image_write_options *options, hl_error *error) {
+  if (context == NULL || image == NULL || path == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: context, image and path must not be null");
+  hl_image_write_options chosen;
+  hl_image_write_options_defaults(&chosen);
+  if (options == NULL) options = &chosen;
+  hl_status status = check_options(options, error);
+  if (status != HL_OK) return status;
+  const picture_format *format = format_by_name(path);
+  if (format == NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: unknown picture format: end the name in .png, .exr or .npy", path);
+  hl_output output;
+  status = hl_output_begin(context, path, &output, error);
+  if (status != HL_OK) return status;
+  status = format->encode(image, options, &output, error);
+  if (status == HL_OK) status = hl_output_commit(&output, error);
+  hl_output_abort(&output);
+  if (status == HL_OK) hl_progress(context, "write", 1);
+  return status;
+}
+
+hl_status hl_image_read(hl_context *context, const char *path, hl_image **image, hl_error *error) {
+  if (image != NULL) *image = NULL;
+  if (context == NULL || path == NULL || image == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_read: context, path and image must not be null");
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  hl_status status = hl_file_read(context, path, file_bytes_max, &bytes, &length, error);
+  if (status != HL_OK) return status;
+  const picture_format *format = format_by_content(bytes, length), *named = format_by_name(path);
+  if (format != NULL)
+    status = format->decode(context, path, bytes, length, image, error);
+  else if (named != NULL)
+    status = hl_fail_offset(error, HL_ERROR_INPUT, 0,
+                            "%s: byte 0: not a %s file: its first bytes are not the mark of one", path,
+                            named->title);
+  else
+    status = hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 0,
+                            "%s: byte 0: unknown picture format: expected a PNG, OpenEXR or NPY file", path);
+  hl_release(context, bytes);
+  return status;
+}

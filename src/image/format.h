@@ -1,0 +1,31 @@
+/* image/format.h - what each picture format offers to hl_image_write and hl_image_read. */
+#ifndef HL_IMAGE_FORMAT_H
+#define HL_IMAGE_FORMAT_H
+
+#include "core/file.h"
+#include "image/image.h"
+
+/* Encoders write the whole picture to output->file; the caller commits or aborts. Failures of the
+ * file are HL_ERROR_IO lines that name output->path. */
+hl_status hl_png_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
+                        hl_error *error);
+hl_status hl_exr_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
+                        hl_error *error);
+hl_status hl_npy_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
+                        hl_error *error);
+
+/* Decoders take the bytes of a whole file, which may be anything; name is what errors call it. */
+hl_status hl_png_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
+                        hl_image **image, hl_error *error);
+hl_status hl_exr_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
+                        hl_image **image, hl_error *error);
+hl_status hl_npy_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
+                        hl_image **image, hl_error *error);
+
+/* Called by encoders before each row: tells of progress, and fails with HL_ERROR_CANCELLED. */
+hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error);
+
+/* The line for a failed write to output->file, from errno. */
+hl_status hl_fail_write(hl_error *error, const hl_output *output, int system_error);
+
+#endif

@@ -1,0 +1,23 @@
+/* image/image.h - the inside of hl_image, and what picture readers need to make one. */
+#ifndef HL_IMAGE_IMAGE_H
+#define HL_IMAGE_IMAGE_H
+
+#include <halflight/image.h>
+
+enum {
+  HL_IMAGE_SIDE_MAX = 65535,
+  /* What a reader allocates on a file's word alone: 2^28 pixels, 4 GiB. */
+  HL_IMAGE_READ_PIXELS_MAX = 1 << 28
+};
+
+struct hl_image {
+  hl_context *context;
+  int width, height;
+  float *pixels; /* owned; [height][width][4]; linear premultiplied R, G, B, A; top row first */
+};
+
+/* hl_image_create for a size that a file claims; an error names the file. */
+hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64_t width, uint64_t height,
+                                   hl_image **image, hl_error *error);
+
+#endif

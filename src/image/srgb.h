@@ -1,0 +1,33 @@
+/* image/srgb.h - the sRGB transfer curve (IEC 61966-2-1), exact and the same on every machine. */
+#ifndef HL_IMAGE_SRGB_H
+#define HL_IMAGE_SRGB_H
+
+#include <stdint.h>
+
+#include "core/error.h"
+
+/* The linear value of an encoded one, for |encoded| up to a little above 1; odd (f(-c) = -f(c)). */
+double hl_srgb_decode(double encoded);
+
+/* Linear values to whole codes 0..maximum by search among the curve's steps: no rounding of an
+ * approximation, so each float gets the code that its exact encoded value rounds to. */
+typedef struct hl_srgb_encoder {
+  hl_context *context;
+  int maximum;      /* 255 or 65535 */
+  float *threshold; /* owned; [maximum + 2]; linear; [k]: the least value whose code is k or more */
+  uint16_t *first;  /* owned; [HL_SRGB_KEYS + 1]; the code at the lower end of each interval of float bits */
+} hl_srgb_encoder;
+
+/* Intervals: 8 bits of mantissa in each of the 21 octaves below 1. */
+enum { HL_SRGB_KEYS = 21 * 256 };
+
+hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder, hl_error *error);
+void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder);
+
+/* Nearest code; below 0 and NaN give 0, above 1 gives maximum. */
+int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear);
+
+/* The same with offset (in codes, -0.5 < offset < 0.5) added before rounding. */
+int hl_srgb_encode_offset(const hl_srgb_encoder *encoder, float linear, float offset);
+
+#endif

@@ -1,0 +1,170 @@
+/* tests/unit/image_hostile.c - damaged PNG, OpenEXR and NPY files: cut at every length and changed at every
+ * byte.
+ *
+ * Decoders get each file in a block of its exact size, so that a sanitizer sees any read beyond it. They must
+ * say what is wrong or give a picture, hold to the memory limit, and release everything.
+ */
+#include "image_parts.h"
+
+typedef hl_status (*decoder)(hl_context *, const char *, const unsigned char *, size_t, hl_image **,
+                             hl_error *);
+
+static hl_context *make_limited_context(void) {
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.memory_limit = 64 << 20;
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
+  return context;
+}
+
+static hl_status decode(hl_context *context, decoder function, const unsigned char *bytes, size_t length) {
+  unsigned char *exact = malloc(length > 0 ? length : 1);
+  memcpy(exact, bytes, length);
+  hl_image *image = NULL;
+  hl_error error = {0};
+  uint64_t held = hl_context_memory_held(context);
+  hl_status status = function(context, "damaged", exact, length, &image, &error);
+  if (status == HL_OK) {
+    assert_non_null(image);
+    volatile float last = image->pixels[(size_t)image->width * (size_t)image->height * 4 - 1];
+    (void)last;
+  } else {
+    assert_null(image);
+    assert_int_equal(error.code, status);
+    assert_non_null(strstr(error.message, "damaged"));
+    assert_null(strchr(error.message, '\n'));
+  }
+  hl_image_destroy(image);
+  assert_int_equal(hl_context_memory_held(context), held);
+  free(exact);
+  return status;
+}
+
+static void damage(const char *extension, decoder function, int width, int height,
+                   const hl_image_write_options *options) {
+  hl_context *context = make_limited_context();
+  char folder[64], path[100];
+  make_folder(folder);
+  snprintf(path, sizeof path, "%s/a.%s", folder, extension);
+  hl_image *image = make_structured(context, width, height);
+  assert_int_equal(hl_image_write(context, image, path, options, NULL), HL_OK);
+  hl_image_destroy(image);
+  size_t length;
+  unsigned char *bytes = read_bytes(context, path, &length);
+  assert_int_equal(decode(context, function, bytes, length), HL_OK);
+  for (size_t cut = 0; cut < length; cut++)
+    assert_int_not_equal(decode(context, function, bytes, cut), HL_OK);
+  uint32_t random = 7;
+  for (size_t at = 0; at < length; at++) {
+    unsigned char old = bytes[at];
+    random = random * 1664525u + 1013904223u;
+    const unsigned char values[] = {(unsigned char)(old ^ 1), (unsigned char)(old ^ 0x80), 0, 0xff,
+                                    (unsigned char)(random >> 24)};
+    for (size_t v = 0; v < sizeof values; v++) {
+      bytes[at] = values[v];
+      (void)decode(context, function, bytes, length);
+    }
+    bytes[at] = old;
+  }
+  hl_release(context, bytes);
+  remove_folder(folder);
+  end_context(context);
+}
+
+static void damaged_png(void **state) {
+  (void)state;
+  hl_image_write_options options;
+  hl_image_write_options_defaults(&options);
+  options.scene_json = "{}";
+  damage("png", hl_png_decode, 9, 7, &options);
+  options.png_depth = 16;
+  options.background_transparent = 1;
+  damage("png", hl_png_decode, 2, 2, &options);
+}
+
+static void damaged_exr(void **state) {
+  (void)state;
+  damage("exr", hl_exr_decode, 9, 7, NULL);
+  damage("exr", hl_exr_decode, 3, 40, NULL);
+}
+
+static void damaged_npy(void **state) {
+  (void)state;
+  damage("npy", hl_npy_decode, 5, 4, NULL);
+}
+
+/* PNG's checksums hide what lies behind them from plain damage: mend them after each change. */
+static uint32_t crc_of(const unsigned char *bytes, size_t length) {
+  uint32_t crc = 0xffffffffu;
+  for (size_t i = 0; i < length; i++) {
+    crc ^= bytes[i];
+    for (int bit = 0; bit < 8; bit++) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+  }
+  return ~crc;
+}
+
+static uint32_t big_endian(const unsigned char *b) {
+  return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+}
+
+static void mend_checksums(unsigned char *bytes, size_t length) {
+  for (size_t at = 8; at + 12 <= length;) {
+    size_t data = big_endian(bytes + at);
+    if (data > length - at - 12) return;
+    uint32_t crc = crc_of(bytes + at + 4, data + 4);
+    for (int i = 0; i < 4; i++) bytes[at + 8 + data + (size_t)i] = (unsigned char)(crc >> (24 - 8 * i));
+    at += data + 12;
+  }
+}
+
+static void damaged_png_with_right_checksums(void **state) {
+  (void)state;
+  hl_context *context = make_limited_context();
+  char folder[64], path[100];
+  make_folder(folder);
+  snprintf(path, sizeof path, "%s/a.png", folder);
+  hl_image *image = make_structured(context, 9, 7);
+  assert_int_equal(hl_image_write(context, image, path, NULL, NULL), HL_OK);
+  hl_image_destroy(image);
+  size_t length;
+  unsigned char *bytes = read_bytes(context, path, &length), *changed = malloc(length);
+  memcpy(changed, bytes, length);
+  mend_checksums(changed, length);
+  assert_memory_equal(changed, bytes, length);
+  for (size_t at = 8; at < length; at++)
+    for (int value = 0; value < 256; value += at < 60 ? 1 : 17) {
+      memcpy(changed, bytes, length);
+      changed[at] = (unsigned char)value;
+      mend_checksums(changed, length);
+      (void)decode(context, hl_png_decode, changed, length);
+    }
+  free(changed);
+  hl_release(context, bytes);
+  remove_folder(folder);
+  end_context(context);
+}
+
+/* A few bytes that claim the greatest picture: refused before its pixels are allocated. */
+static void claims_are_held_against_the_bytes(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  unsigned char png[] = {0x89, 'P', 'N', 'G',  '\r', '\n', 0x1a, '\n', 0,    0,   0,   13, 'I', 'H', 'D',
+                         'R',  0,   0,   0xff, 0xff, 0,    0,    0xff, 0xff, 8,   6,   0,  0,   0,   0,
+                         0,    0,   0,   0,    0,    0,    0,    'I',  'D',  'A', 'T', 0,  0,   0,   0};
+  mend_checksums(png, sizeof png);
+  hl_image *image = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_png_decode(context, "bomb.png", png, sizeof png, &image, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "can hold"));
+  assert_true(hl_context_memory_peak(context) < 1 << 20);
+  end_context(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(damaged_png), cmocka_unit_test(damaged_exr),
+                                     cmocka_unit_test(damaged_npy),
+                                     cmocka_unit_test(damaged_png_with_right_checksums),
+                                     cmocka_unit_test(claims_are_held_against_the_bytes)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
