@@ -1,0 +1,33 @@
+/* light/attenuate.h - step 17: a sheet's extinction, seen from the light, composited into the shadow buffer. */
+#ifndef HL_LIGHT_ATTENUATE_H
+#define HL_LIGHT_ATTENUATE_H
+
+#include "splat/classify.h"
+#include "splat/fill.h"
+
+enum { HL_CHANNELS = 3 };
+
+/* One volume's part in a tile. */
+typedef struct attenuate_volume {
+  const classifier *classifier;
+  const float *density;          /* [256], block-major */
+  const float *enter, *leave;    /* [256], block-major; null: the box does not cut anything visible */
+  uint32_t blocks;               /* blocks with density */
+  float weight[HL_CHANNELS];     /* relative extinction of R, G, B */
+} attenuate_volume;
+
+typedef struct attenuate_job {
+  sheet_rays rays;               /* light pixels -> frame space */
+  float path;                    /* parallel light: sheet spacing / |l.h|; point light: sheet spacing */
+  float height, spacing;         /* of the sheet above the first; frame units */
+  const attenuate_volume *volumes;
+  int volume_count;
+  int channels;                  /* 1: attenuation is grey; 3 */
+  float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
+  size_t stride;
+} attenuate_job;
+
+/* Multiplies the tile's transmittance by exp(-sum of extinction * path); returns its greatest value after. */
+typedef float attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
+
+#endif

@@ -1,0 +1,59 @@
+/* light/attenuate_lanes.h - classification and compositing of light pixels (step 17), sixteen at a time. */
+#ifndef HL_LIGHT_ATTENUATE_LANES_H
+#define HL_LIGHT_ATTENUATE_LANES_H
+
+#include "light/attenuate.h"
+#include "splat/classify_lanes.h"
+#include "splat/coverage_lanes.h"
+
+/* Length of the rays' way through one sheet: spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|). Lanes whose
+ * sheet lies behind the view's origin get 0. */
+LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
+  if (!rays->perspective) return lanes_set(path);
+  lanes3 w = rays_linear(rays, u, v);
+  lanes climb = u * rays->hu + (v * rays->hv + rays->h0);
+  lanes length = lanes_sqrt(w.x * w.x + w.y * w.y + w.z * w.z) / lanes_abs(climb) * path;
+  return lanes_keep(climb * rays->step > 0.0f, length);
+}
+
+LANES_INLINE lanes volume_extinction(const classifier *classifier, lanes density, const float *enter,
+                                     const float *leave, int block, float height, float spacing) {
+  lanes extinction = classify_value(classifier->extinction, classify_place(classifier, density));
+  if (enter == NULL) return extinction;
+  return extinction * covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS),
+                              height, spacing);
+}
+
+static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, int block) {
+  lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int i = 0; i < job->volume_count; i++) {
+    const attenuate_volume *volume = &job->volumes[i];
+    if ((volume->blocks >> block & 1) == 0) continue;
+    lanes extinction = volume_extinction(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS),
+                                         volume->enter, volume->leave, block, job->height, job->spacing);
+    for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
+  }
+  lanes any = depth[0] + depth[1] + depth[2];
+  if (lanes_bits(any > 0.0f) == 0) return;
+  int x = block % 4 * BLOCK, y = block / 4 * BLOCK;
+  lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
+  for (int c = 0; c < job->channels; c++) {
+    float *at = job->transmittance[c] + (size_t)y * job->stride + x;
+    lanes_store_block(at, job->stride, lanes_load_block(at, job->stride) * lanes_exp_negative(depth[c] * path));
+  }
+}
+
+static float attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
+  uint32_t blocks = 0;
+  lanes greatest = lanes_set(0);
+  for (int i = 0; i < job->volume_count; i++) blocks |= job->volumes[i].blocks;
+  for (int block = 0; block < TILE_BLOCKS; block++) {
+    if (blocks >> block & 1) attenuate_block(job, tile_x, tile_y, block);
+    for (int c = 0; c < job->channels; c++)
+      greatest = lanes_max(greatest, lanes_load_block(job->transmittance[c] + (size_t)(block / 4 * BLOCK) * job->stride +
+                                                          block % 4 * BLOCK, job->stride));
+  }
+  return lanes_greatest(greatest);
+}
+
+#endif

@@ -1,0 +1,29 @@
+/* light/blur.h - centred box blur of a shadow buffer, tile by tile: along rows, then along columns. */
+#ifndef HL_LIGHT_BLUR_H
+#define HL_LIGHT_BLUR_H
+
+#include "splat/fill.h"
+
+/* A box of width 2 reach + 1 + 2 edge pixels: whole weights out to reach, weight edge (0 to 1) one further. */
+typedef struct blur_box {
+  int reach;
+  float edge;
+  float scale; /* 1 / width */
+} blur_box;
+
+typedef struct blur_job {
+  const float *from; /* pixel (0,0); rows stride apart; readable reach + 1 pixels beyond the tiles */
+  float *to;
+  size_t stride;
+  blur_box box;
+} blur_job;
+
+typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
+
+/* The box of the given width in pixels (at least 1): even whole widths become centred by half weights. */
+static inline blur_box hl_blur_box(float width) {
+  int reach = (int)((width - 1) / 2);
+  return (blur_box){reach, (width - 1) / 2 - (float)reach, 1 / width};
+}
+
+#endif

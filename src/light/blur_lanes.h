@@ -1,0 +1,25 @@
+/* light/blur_lanes.h - box blurs of one tile, a row of sixteen pixels at a time. */
+#ifndef HL_LIGHT_BLUR_LANES_H
+#define HL_LIGHT_BLUR_LANES_H
+
+#include "light/blur.h"
+#include "simd/lanes.h"
+
+LANES_INLINE void blur_tile(const blur_job *job, int tile_x, int tile_y, ptrdiff_t step) {
+  const blur_box *box = &job->box;
+  size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  for (int row = 0; row < TILE; row++, at += job->stride) {
+    const float *from = job->from + at;
+    lanes ends = lanes_load(from - (box->reach + 1) * step) + lanes_load(from + (box->reach + 1) * step);
+    lanes sum = lanes_load(from) + ends * box->edge;
+    for (int i = 1; i <= box->reach; i++) sum = sum + (lanes_load(from - i * step) + lanes_load(from + i * step));
+    lanes_store(job->to + at, sum * box->scale);
+  }
+}
+
+static void blur_rows_tile(const blur_job *job, int tile_x, int tile_y) { blur_tile(job, tile_x, tile_y, 1); }
+static void blur_columns_tile(const blur_job *job, int tile_x, int tile_y) {
+  blur_tile(job, tile_x, tile_y, (ptrdiff_t)job->stride);
+}
+
+#endif

@@ -1,0 +1,22 @@
+/* light/light_source.h - a scene's light in frame space, as the sheets need it. */
+#ifndef HL_LIGHT_LIGHT_SOURCE_H
+#define HL_LIGHT_LIGHT_SOURCE_H
+
+#include <halflight/scene.h>
+
+#include "core/vector.h"
+
+typedef struct light_source {
+  bool parallel;
+  vec3 direction;  /* unit, the way light travels: parallel, or from the light's centre to the content's */
+  vec3 position;   /* of the light's centre, unless parallel; frame space */
+  double size;     /* parallel: diameter of the disk of directions, 2 tan(angle / 2); else the light's diameter */
+  hl_shadows shadows; /* off, hard or soft */
+  hl_soft_method soft_method;
+  const hl_light *light;
+} light_source;
+
+/* content: the middle of what is lit; frame space. centre: world position of frame space's origin. */
+light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 centre, vec3 content);
+
+#endif

@@ -1,0 +1,125 @@
+/* light/shadow_buffer.c - place, size and memory of shadow buffers. */
+#include "light/shadow_buffer.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+
+/* Tangent of the widest angle that a point light's buffer covers. */
+static const double WIDEST = 6;
+enum { GREATEST_SIDE = 8192, BORDER_PIXELS = 2 };
+
+static void bound_points(const view *unit, const light_source *source, const shadow_extent *extent, double low[2],
+                         double high[2]) {
+  low[0] = low[1] = INFINITY;
+  high[0] = high[1] = -INFINITY;
+  for (int i = 0; i < extent->point_count; i++) {
+    double uv[2];
+    bool in_front = hl_view_project(unit, extent->points[i], uv);
+    for (int axis = 0; axis < 2; axis++) {
+      if (!in_front) { /* beside or behind a light near the volume: as wide as the buffer goes */
+        low[axis] = -WIDEST;
+        high[axis] = WIDEST;
+        continue;
+      }
+      low[axis] = fmin(low[axis], uv[axis]);
+      high[axis] = fmax(high[axis], uv[axis]);
+    }
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    if (source->parallel) continue;
+    low[axis] = fmax(low[axis], -WIDEST);
+    high[axis] = fmin(high[axis], WIDEST);
+    if (!(high[axis] > low[axis])) high[axis] = low[axis] + 1e-3;
+  }
+}
+
+/* Pixel edge in the units of the unit view: world for parallel light, at distance 1 for a point light, whose
+ * pixels grow with distance and must still be small enough at the far side. */
+static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent, const double size[2]) {
+  double pixel = extent->pixel;
+  if (!source->parallel) {
+    double farthest = 0;
+    for (int i = 0; i < extent->point_count; i++)
+      farthest = fmax(farthest, vec3_dot(normal, vec3_subtract(extent->points[i], source->position)));
+    pixel = farthest > 0 ? pixel / farthest : pixel;
+  }
+  double longer = fmax(size[0], size[1]);
+  if (extent->resolution > 0) pixel = longer / extent->resolution;
+  pixel = fmax(pixel, longer / GREATEST_SIDE);
+  return fmax(pixel, sqrt(size[0] * size[1] / (double)extent->greatest_pixels));
+}
+
+void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view) {
+  double low[2], high[2], size[2];
+  vec3 u = vec3_perpendicular(plane_normal), v = vec3_cross(plane_normal, u), zero = {0, 0, 0};
+  view->perspective = !source->parallel;
+  view->origin = source->position;
+  view->direction = source->direction;
+  view->corner = source->parallel ? zero : plane_normal;
+  view->du = u;
+  view->dv = v;
+  hl_view_finish(view);
+  bound_points(view, source, extent, low, high);
+  for (int axis = 0; axis < 2; axis++) size[axis] = fmax(high[axis] - low[axis], 1e-9);
+  double pixel = pixel_edge(source, plane_normal, extent, size);
+  double margin = BORDER_PIXELS * pixel + extent->margin;
+  view->width = (int)ceil((size[0] + 2 * margin) / pixel);
+  view->height = (int)ceil((size[1] + 2 * margin) / pixel);
+  if (view->width > GREATEST_SIDE) view->width = GREATEST_SIDE;
+  if (view->height > GREATEST_SIDE) view->height = GREATEST_SIDE;
+  double u0 = (low[0] + high[0]) / 2 - view->width * pixel / 2, v0 = (low[1] + high[1]) / 2 - view->height * pixel / 2;
+  view->corner = vec3_add(view->corner, vec3_add(vec3_scale(u, u0), vec3_scale(v, v0)));
+  view->du = vec3_scale(u, pixel);
+  view->dv = vec3_scale(v, pixel);
+  hl_view_finish(view);
+}
+
+static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floats, size_t tiles, hl_error *error) {
+  if (buffer->capacity < floats) {
+    hl_release(context, buffer->memory);
+    buffer->memory = hl_allocate(context, floats, sizeof(float));
+    buffer->capacity = buffer->memory == NULL ? 0 : floats;
+  }
+  if (buffer->tile_capacity < tiles) {
+    hl_release(context, buffer->tile_greatest);
+    hl_release(context, buffer->tile_touched);
+    buffer->tile_greatest = hl_allocate(context, tiles, sizeof(float));
+    buffer->tile_touched = hl_allocate(context, tiles, 2);
+    buffer->tile_capacity = buffer->tile_greatest == NULL || buffer->tile_touched == NULL ? 0 : tiles;
+  }
+  if (buffer->capacity == 0 || buffer->tile_capacity == 0)
+    return hl_fail_memory(error, floats * sizeof(float) + tiles * 6, "a shadow buffer");
+  return HL_OK;
+}
+
+hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, const view *view, int channels, bool soft,
+                                 int reach, hl_error *error) {
+  size_t margin = ((size_t)reach + 1 + TILE) / TILE * TILE;
+  buffer->view = *view;
+  buffer->channels = channels;
+  buffer->tiles_x = (view->width + TILE - 1) / TILE;
+  buffer->tiles_y = (view->height + TILE - 1) / TILE;
+  buffer->stride = (size_t)buffer->tiles_x * TILE + 2 * margin;
+  buffer->plane = ((size_t)buffer->tiles_y * TILE + 2 * margin) * buffer->stride;
+  buffer->origin = margin * buffer->stride + margin;
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, planes = (size_t)channels * (soft ? 2 : 1);
+  hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);
+  if (status != HL_OK) return status;
+  for (size_t i = 0; i < planes * buffer->plane; i++) buffer->memory[i] = 1;
+  for (size_t tile = 0; tile < tiles; tile++) buffer->tile_greatest[tile] = 1;
+  memset(buffer->tile_touched, 0, 2 * tiles);
+  for (int c = 0; c < HL_CHANNELS; c++) {
+    bool used = c < channels;
+    buffer->transmittance[c] = used ? buffer->memory + (size_t)c * buffer->plane + buffer->origin : NULL;
+    buffer->scratch[c] = used && soft ? buffer->transmittance[c] + (size_t)channels * buffer->plane : NULL;
+  }
+  return HL_OK;
+}
+
+void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer) {
+  hl_release(context, buffer->memory);
+  hl_release(context, buffer->tile_greatest);
+  hl_release(context, buffer->tile_touched);
+  *buffer = (shadow_buffer){0};
+}

@@ -1,0 +1,48 @@
+/* light/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the current sheet.
+ *
+ * Perpendicular to the light's axis for hard shadows, parallel to the sheets for soft ones (fig. 17). Its
+ * pixels are no larger than the image's where the volume is. Around it light is unattenuated: a margin of
+ * ones, which blurs read. */
+#ifndef HL_LIGHT_SHADOW_BUFFER_H
+#define HL_LIGHT_SHADOW_BUFFER_H
+
+#include "core/error.h"
+#include "light/attenuate.h"
+#include "light/light_source.h"
+#include "splat/occupancy.h"
+
+typedef struct shadow_buffer {
+  view view;
+  int channels;                 /* 1: grey attenuation; 3: R, G, B */
+  int tiles_x, tiles_y;
+  size_t stride;                /* floats from row to row */
+  size_t plane;                 /* floats of one channel, margins included */
+  size_t origin;                /* offset of pixel (0,0) in a plane */
+  float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory */
+  float *scratch[HL_CHANNELS];  /* pixel (0,0); soft shadows only; in memory */
+  float *memory;                /* owned; all planes */
+  size_t capacity;              /* floats in memory */
+  float *tile_greatest;         /* owned; [tiles]; greatest transmittance */
+  unsigned char *tile_touched;  /* owned; [2][tiles]; 1 where some transmittance is below 1 */
+  size_t tile_capacity;
+} shadow_buffer;
+
+/* What decides a buffer's place and size. */
+typedef struct shadow_extent {
+  const vec3 *points;           /* corners of all that is to be lit or to cast shadows; frame space */
+  int point_count;
+  double pixel;                 /* wanted edge of a pixel at the volume, frame units */
+  int resolution;               /* pixels along the longer side; 0: by pixel */
+  size_t greatest_pixels;       /* limit of width * height */
+  double margin;                /* frame units around the points, for penumbrae; parallel lights */
+} shadow_extent;
+
+/* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
+void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view);
+
+/* (Re)allocates for the view and sets all transmittances to 1. reach: pixels that blurs read beyond a tile. */
+hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, const view *view, int channels, bool soft,
+                                 int reach, hl_error *error);
+void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
+
+#endif

@@ -1,0 +1,109 @@
+/* light/soft_paper.c - the convolution of the accumulated shadow buffer. */
+#include "light/soft_paper.h"
+
+#include <string.h>
+
+/* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets (section 5.2,
+ * (1)); a disk of diameter L tilted by t becomes an ellipse with axes L and L cos t, whose average size (section 5.2,
+ * (3)) we take as their mean. Z is measured along the sheets' normal; for parallel light L / Z then is (L / D) / cos t
+ * with L / D = 2 tan(angle / 2) along the ray (derived). */
+void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first, double pixel) {
+  double tilt = fmax(vec3_dot(source->direction, normal), 1e-3);
+  soft->parallel = source->parallel;
+  soft->size = source->size * (1 + tilt) / 2;
+  if (source->parallel) soft->size /= tilt;
+  soft->light_height = vec3_dot(source->position, normal);
+  soft->pixel = pixel;
+  soft->last = first;
+  soft->remainder = 0;
+}
+
+/* eq. (5): dx = L dZ / Z; seen from the light's centre at distance 1, dx / (Z + dZ) = L (1/Z - 1/(Z + dZ)). */
+double hl_soft_paper_width(const soft_paper *soft, double from, double to) {
+  if (soft->parallel) return soft->size * (to - from) / soft->pixel;
+  double near = from - soft->light_height, far = to - soft->light_height;
+  if (near <= 0 || far <= near) return 0;
+  return soft->size * (1 / near - 1 / far) / soft->pixel;
+}
+
+int hl_soft_paper_reach(const soft_paper *soft, double first, double spacing, int sheets) {
+  double widest = 0;
+  for (int k = 0; k < sheets; k++)
+    widest = fmax(widest, hl_soft_paper_width(soft, first + k * spacing, first + (k + 1) * spacing));
+  return (int)fmin(widest / 2 + 3, 1024);
+}
+
+typedef struct convolve_job {
+  shadow_buffer *buffer;
+  blur_job blur;
+  blur_tile_function *blur_tile;
+  const unsigned char *wanted; /* [tiles] */
+} convolve_job;
+
+static void convolve_tile(void *data, size_t index, int worker) {
+  (void)worker;
+  const convolve_job *job = data;
+  for (int x = 0; x < job->buffer->tiles_x; x++)
+    if (job->wanted[index * (size_t)job->buffer->tiles_x + (size_t)x]) job->blur_tile(&job->blur, x, (int)index);
+}
+
+/* Tiles within reach of one that light was taken from. */
+static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const unsigned char *from, unsigned char *to) {
+  for (int y = 0; y < buffer->tiles_y; y++)
+    for (int x = 0; x < buffer->tiles_x; x++) {
+      unsigned char found = 0;
+      for (int j = y - reach_tiles; j <= y + reach_tiles && !found; j++)
+        for (int i = x - reach_tiles; i <= x + reach_tiles && !found; i++)
+          if (i >= 0 && j >= 0 && i < buffer->tiles_x && j < buffer->tiles_y)
+            found = from[(size_t)j * (size_t)buffer->tiles_x + (size_t)i];
+      to[(size_t)y * (size_t)buffer->tiles_x + (size_t)x] = found;
+    }
+}
+
+static void refresh_tile(void *data, size_t index, int worker) {
+  (void)worker;
+  const convolve_job *job = data;
+  shadow_buffer *buffer = job->buffer;
+  if (!job->wanted[index]) return;
+  size_t at = index / (size_t)buffer->tiles_x * TILE * buffer->stride + index % (size_t)buffer->tiles_x * TILE;
+  float greatest = 0;
+  for (int c = 0; c < buffer->channels; c++)
+    for (int i = 0; i < TILE_PIXELS; i++) {
+      float value = buffer->transmittance[c][at + (size_t)(i / TILE) * buffer->stride + (size_t)(i % TILE)];
+      greatest = value > greatest ? value : greatest;
+    }
+  buffer->tile_greatest[index] = greatest;
+}
+
+/* Rows go from the buffer to the scratch, columns back: both for the tiles that can change. Tiles outside hold 1 in
+ * either. */
+static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, blur_tile_function *blur_rows,
+                     blur_tile_function *blur_columns) {
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
+  unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
+  convolve_job job = {buffer, {NULL, NULL, buffer->stride, hl_blur_box((float)width)}, blur_rows, spread};
+  spread_touched(buffer, (job.blur.box.reach + TILE) / TILE, touched, spread);
+  for (int c = 0; c < buffer->channels; c++) {
+    job.blur.from = buffer->transmittance[c];
+    job.blur.to = buffer->scratch[c];
+    job.blur_tile = blur_rows;
+    hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_tile, &job);
+    job.blur.from = buffer->scratch[c];
+    job.blur.to = buffer->transmittance[c];
+    job.blur_tile = blur_columns;
+    hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_tile, &job);
+  }
+  memcpy(touched, spread, tiles);
+  hl_pool_run(pool, tiles, refresh_tile, &job);
+}
+
+/* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest. */
+void hl_soft_paper_convolve(soft_paper *soft, shadow_buffer *buffer, double next, hl_pool *pool,
+                            blur_tile_function *blur_rows, blur_tile_function *blur_columns) {
+  double width = soft->remainder + hl_soft_paper_width(soft, soft->last, next);
+  if (width <= 2) return;
+  double whole = fmin(floor(width), 2048);
+  convolve(buffer, (int)whole, pool, blur_rows, blur_columns);
+  soft->remainder = width - whole;
+  soft->last = next;
+}

@@ -1,0 +1,121 @@
+/* render/frame.c - the eye's view and the content's bounds. */
+#include "render/frame.h"
+
+static vec3 camera_up(const hl_camera *camera, vec3 forward) {
+  vec3 up = vec3_normalise(vec3_of(camera->up));
+  if (vec3_length(vec3_cross(forward, up)) > 1e-6) return up;
+  return fabs(forward.z) < 0.9 ? (vec3){0, 0, 1} : (vec3){0, 1, 0};
+}
+
+hl_status hl_frame_eye(const hl_scene_description *scene, vec3 centre, view *eye, hl_error *error) {
+  const hl_camera *camera = &scene->camera;
+  vec3 position = vec3_subtract(vec3_of(camera->position), centre);
+  vec3 forward = vec3_normalise(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
+  vec3 right = vec3_normalise(vec3_cross(forward, camera_up(camera, forward)));
+  vec3 up = vec3_cross(right, forward);
+  eye->perspective = camera->type == HL_CAMERA_PERSPECTIVE;
+  double half_height = eye->perspective ? tan(camera->fovy_deg * HL_PI / 360) : camera->height / 2;
+  double half_width = half_height * scene->width / scene->height;
+  eye->width = scene->width;
+  eye->height = scene->height;
+  eye->origin = position;
+  eye->direction = forward;
+  eye->corner = vec3_add(vec3_scale(up, half_height), vec3_scale(right, -half_width));
+  eye->corner = vec3_add(eye->corner, eye->perspective ? forward : position);
+  eye->du = vec3_scale(right, 2 * half_width / scene->width);
+  eye->dv = vec3_scale(up, -2 * half_height / scene->height);
+  if (!hl_view_finish(eye))
+    return hl_fail(error, HL_ERROR_INPUT, "/camera: position, target and up do not span a view: move one of them");
+  return HL_OK;
+}
+
+void hl_frame_content(const grid *grid, vec3 corners[8]) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (uint32_t i = 0; i < grid->relevant_count; i++) {
+    int32_t b[3];
+    double centre[3], half[3];
+    hl_grid_brick_place(grid, grid->relevant_list[i], b);
+    hl_brick_bounds(grid, b, 0.5, centre, half);
+    for (int axis = 0; axis < 3; axis++) {
+      low[axis] = fmin(low[axis], centre[axis] - half[axis]);
+      high[axis] = fmax(high[axis], centre[axis] + half[axis]);
+    }
+  }
+  for (int corner = 0; corner < 8; corner++)
+    corners[corner] = affine3_apply(grid->index_to_frame, (vec3){corner & 1 ? high[0] : low[0],
+                                                                 corner & 2 ? high[1] : low[1],
+                                                                 corner & 4 ? high[2] : low[2]});
+}
+
+/* A half space: normal . x + offset >= 0. */
+typedef struct half_space { vec3 normal; double offset; } half_space;
+
+/* Cuts a segment; false if nothing is left. */
+static bool clip_segment(vec3 *a, vec3 *b, const half_space *planes, int count) {
+  for (int i = 0; i < count; i++) {
+    double da = vec3_dot(planes[i].normal, *a) + planes[i].offset;
+    double db = vec3_dot(planes[i].normal, *b) + planes[i].offset;
+    if (da < 0 && db < 0) return false;
+    if (da >= 0 && db >= 0) continue;
+    vec3 crossing = vec3_add(*a, vec3_scale(vec3_subtract(*b, *a), da / (da - db)));
+    if (da < 0) *a = crossing; else *b = crossing;
+  }
+  return true;
+}
+
+static half_space through(vec3 a, vec3 b, vec3 c, vec3 inside) {
+  vec3 normal = vec3_normalise(vec3_cross(vec3_subtract(b, a), vec3_subtract(c, a)));
+  half_space plane = {normal, -vec3_dot(normal, a)};
+  if (vec3_dot(normal, inside) + plane.offset < 0) plane = (half_space){vec3_scale(normal, -1), -plane.offset};
+  return plane;
+}
+
+/* The eye's pyramid (or beam), out to a distance beyond all content. */
+static void frustum(const view *eye, double depth, vec3 near[4], vec3 far[4], half_space planes[4]) {
+  vec3 middle_start, middle_way;
+  hl_view_ray(eye, eye->width / 2.0, eye->height / 2.0, &middle_start, &middle_way);
+  for (int corner = 0; corner < 4; corner++) {
+    vec3 way;
+    double u = corner == 1 || corner == 2 ? eye->width + 1.0 : -1.0, v = corner >= 2 ? eye->height + 1.0 : -1.0;
+    hl_view_ray(eye, u, v, &near[corner], &way);
+    way = vec3_normalise(way);
+    if (!eye->perspective) near[corner] = vec3_add(near[corner], vec3_scale(way, -depth));
+    far[corner] = vec3_add(near[corner], vec3_scale(way, 2 * depth));
+  }
+  vec3 inside = vec3_add(middle_start, vec3_scale(middle_way, depth));
+  for (int side = 0; side < 4; side++)
+    planes[side] = through(near[side], far[side], far[(side + 1) % 4], inside);
+}
+
+static int visible_points_of_box(const frame *frame, const vec3 corner[8], vec3 *points) {
+  static const int edges[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
+                                   {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  static const int faces[6][3] = {{0, 1, 2}, {4, 5, 6}, {0, 1, 4}, {2, 3, 6}, {0, 2, 4}, {1, 3, 5}};
+  vec3 near[4], far[4], middle = vec3_scale(vec3_add(corner[0], corner[7]), 0.5);
+  half_space sides[4], walls[6];
+  double depth = vec3_length(vec3_subtract(frame->eye.origin, middle)) + vec3_length(vec3_subtract(corner[7], corner[0]));
+  int count = 0;
+  frustum(&frame->eye, depth, near, far, sides);
+  for (int face = 0; face < 6; face++)
+    walls[face] = through(corner[faces[face][0]], corner[faces[face][1]], corner[faces[face][2]], middle);
+  for (int edge = 0; edge < 12; edge++) {
+    vec3 a = corner[edges[edge][0]], b = corner[edges[edge][1]];
+    if (!clip_segment(&a, &b, sides, 4)) continue;
+    points[count++] = a;
+    points[count++] = b;
+  }
+  for (int side = 0; side < 4; side++) {
+    vec3 a = near[side], b = far[side];
+    if (!clip_segment(&a, &b, walls, 6)) continue;
+    points[count++] = a;
+    points[count++] = b;
+  }
+  return count;
+}
+
+int hl_frame_visible_points(const frame *frame, vec3 *points) {
+  int count = 0;
+  for (int box = 0; box < frame->point_count / 8; box++)
+    count += visible_points_of_box(frame, frame->points + 8 * box, points + count);
+  return count;
+}

@@ -1,0 +1,50 @@
+/* render/frame.h - the geometry of one frame: where the eye, the lights and the sheets are.
+ *
+ * Frame space is the world moved so that the content's centre is the origin. */
+#ifndef HL_RENDER_FRAME_H
+#define HL_RENDER_FRAME_H
+
+#include "light/light_source.h"
+#include "render/shade.h"
+#include "splat/occupancy.h"
+
+enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
+
+/* One pass over the sheets, with the lights that one slicing direction serves. */
+typedef struct frame_sweep {
+  sheet_stack sheets;
+  bool back_to_front;      /* for the eye; light always travels with rising sheets */
+  int light[FRAME_LIGHTS]; /* indices into frame lights */
+  int light_count;
+} frame_sweep;
+
+typedef struct frame {
+  vec3 centre;             /* world position of frame space's origin */
+  view eye;
+  vec3 eye_direction;      /* e: unit, from the eye to the content */
+  double pixel;            /* edge of an image pixel at the content, frame units */
+  double spacing;          /* ds, world units */
+  vec3 *points;            /* corners of the content of all grids; owned by the caller; [8 * grids] */
+  int point_count;
+  light_source *lights;    /* [light_count]; owned by the caller */
+  int light_count;
+} frame;
+
+/* The eye's view of a scene. */
+hl_status hl_frame_eye(const hl_scene_description *scene, vec3 centre, view *eye, hl_error *error);
+
+/* Corners of the box around a grid's relevant bricks. */
+void hl_frame_content(const grid *grid, vec3 corners[8]);
+
+/* Groups lights into sweeps and slices each (section 3.1 and fig. 3); sweeps: room for light_count + 1. Returns
+ * how many there are: at least one. */
+int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, frame_sweep *sweeps);
+
+/* Refuses a sweep whose sheets a shadowing light does not cross (image-aligned slicing). */
+hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error);
+
+/* Corners of the part of the content that the eye sees: what a shadow buffer must cover. points: room for
+ * CONTENT_POINTS a grid. */
+int hl_frame_visible_points(const frame *frame, vec3 *points);
+
+#endif

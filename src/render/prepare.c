@@ -1,0 +1,95 @@
+/* render/prepare.c - bricks are rebuilt when a volume changes, tables and relevance when its transfer function does. */
+#include "render/prepare.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+
+static bool same_function(const hl_transfer_function *a, const hl_transfer_function *b) {
+  return a->unit_distance == b->unit_distance && a->opacity_count == b->opacity_count &&
+         a->color_count == b->color_count &&
+         (a->opacity_count == 0 || memcmp(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) == 0) &&
+         (a->color_count == 0 || memcmp(a->color, b->color, a->color_count * sizeof *a->color) == 0);
+}
+
+static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *scene) {
+  if (prepared->clipped != scene->clipped) return false;
+  return !scene->clipped || (memcmp(prepared->clip, scene->clip_min, sizeof scene->clip_min) == 0 &&
+                             memcmp(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max) == 0);
+}
+
+static void *copy(hl_context *context, const void *from, size_t count, size_t size) {
+  void *to = hl_allocate(context, count, size);
+  if (to != NULL && count > 0) memcpy(to, from, count * size);
+  return to;
+}
+
+static hl_status keep_key(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene, hl_error *error) {
+  const hl_transfer_function *function = &scene->transfer_function;
+  prepared->function = *function;
+  prepared->function.opacity = copy(context, function->opacity, function->opacity_count, sizeof *function->opacity);
+  prepared->function.color = copy(context, function->color, function->color_count, sizeof *function->color);
+  prepared->clipped = scene->clipped;
+  memcpy(prepared->clip, scene->clip_min, sizeof scene->clip_min);
+  memcpy(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max);
+  if (prepared->function.opacity == NULL || prepared->function.color == NULL)
+    return hl_fail_memory(error, function->opacity_count * sizeof *function->opacity, "a transfer function");
+  return HL_OK;
+}
+
+static void release_function(hl_context *context, prepared_volume *prepared) {
+  hl_release(context, (void *)prepared->function.opacity);
+  hl_release(context, (void *)prepared->function.color);
+  memset(&prepared->function, 0, sizeof prepared->function);
+  hl_classifier_release(context, &prepared->classifier);
+}
+
+void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
+  release_function(context, prepared);
+  hl_grid_release(context, &prepared->grid);
+  hl_volume_release(prepared->volume);
+  memset(prepared, 0, sizeof *prepared);
+}
+
+static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_functions *hot,
+                                const hl_scene_volume *scene, affine3 index_to_frame, prepared_volume *prepared,
+                                hl_error *error) {
+  hl_status status = HL_OK;
+  double empty = hl_scene_volume_empty_value(scene);
+  bool same_voxels = prepared->volume == scene->volume && prepared->empty == empty && same_clip(prepared, scene);
+  bool same = same_voxels && same_function(&prepared->function, &scene->transfer_function);
+  if (!same_voxels) {
+    hl_prepared_release(context, prepared);
+    status = hl_grid_create(context, pool, hot->bound_rows[scene->volume->storage], scene, index_to_frame, empty,
+                            &prepared->grid, error);
+    if (status != HL_OK) return status;
+    hl_volume_retain(scene->volume);
+    prepared->volume = scene->volume;
+    prepared->empty = empty;
+  }
+  prepared->scene = scene;
+  prepared->grid.index_to_frame = index_to_frame;
+  if (!affine3_invert(index_to_frame, &prepared->grid.frame_to_index))
+    return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
+  if (same) return HL_OK;
+  release_function(context, prepared);
+  status = hl_classifier_create(context, scene, &prepared->grid, &prepared->classifier, error);
+  if (status == HL_OK) status = keep_key(context, prepared, scene, error);
+  if (status == HL_OK) hl_grid_mark_relevant(&prepared->grid, &prepared->classifier, pool);
+  return status;
+}
+
+hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
+                             const hl_scene_description *scene, vec3 centre, prepared_volume *prepared,
+                             hl_error *error) {
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
+    placement.offset = vec3_subtract(placement.offset, centre);
+    hl_status status = prepare_volume(context, pool, hot, &scene->volumes[i], placement, &prepared[i], error);
+    if (status != HL_OK) {
+      hl_prepared_release(context, &prepared[i]);
+      return status;
+    }
+  }
+  return HL_OK;
+}

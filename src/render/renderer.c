@@ -1,0 +1,292 @@
+/* render/renderer.c - hl_renderer: from a scene to pixels, one sweep after the other. */
+#include <string.h>
+
+#include <halflight/render.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "render/clock.h"
+#include "render/prepare.h"
+
+struct hl_renderer {
+  hl_context *context;
+  hl_pool *pool;
+  int threads;                 /* as asked for: 0 is one per processor */
+  prepared_volume *prepared;   /* owned; [prepared_count] */
+  size_t prepared_count;
+  shadow_buffer *buffers;      /* owned; [buffer_count]; one per light of the scene */
+  size_t buffer_count;
+};
+
+hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_error *error) {
+  if (context == NULL || renderer == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_create: context or renderer is null");
+  *renderer = hl_allocate_zeroed(context, 1, sizeof **renderer);
+  if (*renderer == NULL) return hl_fail_memory(error, sizeof **renderer, "a renderer");
+  (*renderer)->context = context;
+  return HL_OK;
+}
+
+static void release_volumes(hl_renderer *renderer) {
+  for (size_t i = 0; i < renderer->prepared_count; i++) hl_prepared_release(renderer->context, &renderer->prepared[i]);
+  hl_release(renderer->context, renderer->prepared);
+  renderer->prepared = NULL;
+  renderer->prepared_count = 0;
+}
+
+static void release_buffers(hl_renderer *renderer) {
+  for (size_t i = 0; i < renderer->buffer_count; i++)
+    hl_shadow_buffer_release(renderer->context, &renderer->buffers[i]);
+  hl_release(renderer->context, renderer->buffers);
+  renderer->buffers = NULL;
+  renderer->buffer_count = 0;
+}
+
+void hl_renderer_destroy(hl_renderer *renderer) {
+  if (renderer == NULL) return;
+  release_volumes(renderer);
+  release_buffers(renderer);
+  hl_pool_destroy(renderer->pool);
+  hl_release(renderer->context, renderer);
+}
+
+/* Threads, and room for the scene's volumes and lights. */
+static hl_status make_room(hl_renderer *renderer, const hl_scene_description *scene, hl_error *error) {
+  hl_context *context = renderer->context;
+  if (renderer->pool == NULL || renderer->threads != scene->render.threads) {
+    hl_pool_destroy(renderer->pool);
+    renderer->pool = NULL;
+    hl_status status = hl_pool_create(context, scene->render.threads, &renderer->pool, error);
+    if (status != HL_OK) return status;
+    renderer->threads = scene->render.threads;
+  }
+  if (renderer->prepared_count != scene->volume_count) {
+    release_volumes(renderer);
+    renderer->prepared = hl_allocate_zeroed(context, scene->volume_count, sizeof *renderer->prepared);
+    if (renderer->prepared == NULL) return hl_fail_memory(error, sizeof *renderer->prepared, "the volumes");
+    renderer->prepared_count = scene->volume_count;
+  }
+  if (renderer->buffer_count != scene->light_count) {
+    release_buffers(renderer);
+    renderer->buffers = hl_allocate_zeroed(context, scene->light_count, sizeof *renderer->buffers);
+    if (renderer->buffers == NULL) return hl_fail_memory(error, sizeof *renderer->buffers, "the lights");
+    renderer->buffer_count = scene->light_count;
+  }
+  return HL_OK;
+}
+
+/* The middle of all volumes' boxes: frame space's origin. */
+static vec3 scene_centre(const hl_scene_description *scene) {
+  vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
+    double box[2][3];
+    hl_scene_volume_box(&scene->volumes[i], box[0], box[1]);
+    for (int corner = 0; corner < 8; corner++) {
+      vec3 p = affine3_apply(placement, (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]});
+      low = (vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
+      high = (vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
+    }
+  }
+  return scene->volume_count == 0 ? (vec3){0, 0, 0} : vec3_scale(vec3_add(low, high), 0.5);
+}
+
+static double smallest_edge(const hl_renderer *renderer) {
+  double edge = INFINITY;
+  for (size_t i = 0; i < renderer->prepared_count; i++)
+    for (int axis = 0; axis < 3; axis++)
+      edge = fmin(edge, vec3_length(mat3_column(renderer->prepared[i].grid.index_to_frame.linear, axis)));
+  return edge;
+}
+
+/* What a frame needs beyond the renderer; released after it. */
+typedef struct frame_work {
+  frame frame;
+  grid *grids;            /* [volumes] */
+  frame_sweep *sweeps;    /* [lights + 1] */
+  int sweep_count;
+  float *pixels;          /* [sweeps][tiles][16][4][16] */
+  size_t tiles_x, tiles;
+} frame_work;
+
+static void release_work(hl_context *context, frame_work *work) {
+  hl_release(context, work->frame.points);
+  hl_release(context, work->frame.lights);
+  hl_release(context, work->grids);
+  hl_release(context, work->sweeps);
+  hl_release(context, work->pixels);
+}
+
+/* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to its
+ * middle: what is closer is magnified beyond what its voxels hold. */
+static double pixel_at_content(const frame *frame, double middle_depth) {
+  const view *eye = &frame->eye;
+  double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
+  if (!eye->perspective) return edge;
+  double nearest = INFINITY;
+  vec3 start, forward;
+  hl_view_ray(eye, eye->width / 2.0, eye->height / 2.0, &start, &forward);
+  for (int i = 0; i < frame->point_count; i++)
+    nearest = fmin(nearest, vec3_dot(forward, vec3_subtract(frame->points[i], eye->origin)));
+  return edge * fmax(nearest, middle_depth / 3);
+}
+
+static vec3 content_middle(const frame *frame) {
+  vec3 sum = {0, 0, 0};
+  for (int i = 0; i < frame->point_count; i++) sum = vec3_add(sum, frame->points[i]);
+  return frame->point_count == 0 ? sum : vec3_scale(sum, 1.0 / frame->point_count);
+}
+
+/* e: towards the middle of the content where the eye is outside of it, else straight ahead. */
+static void look(frame *frame, vec3 middle) {
+  vec3 start, forward;
+  hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);
+  forward = vec3_normalise(forward);
+  frame->eye_direction = forward;
+  vec3 way = vec3_subtract(middle, frame->eye.origin);
+  double distance = vec3_length(way), radius = 0;
+  for (int i = 0; i < frame->point_count; i++)
+    radius = fmax(radius, vec3_length(vec3_subtract(frame->points[i], middle)));
+  if (frame->eye.perspective && distance > radius) {
+    vec3 towards = vec3_normalise(way);
+    if (vec3_dot(towards, forward) > 0.5) frame->eye_direction = vec3_normalise(vec3_add(towards, forward));
+  }
+  frame->pixel = pixel_at_content(frame, frame->eye.perspective ? vec3_dot(forward, way) : 1);
+}
+
+static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
+                              hl_error *error) {
+  hl_context *context = renderer->context;
+  frame *frame = &work->frame;
+  frame->points = hl_allocate(context, scene->volume_count * 8 + 1, sizeof(vec3));
+  frame->lights = hl_allocate(context, scene->light_count, sizeof(light_source));
+  work->grids = hl_allocate(context, scene->volume_count, sizeof(grid));
+  work->sweeps = hl_allocate_zeroed(context, scene->light_count + 1, sizeof(frame_sweep));
+  if (frame->points == NULL || frame->lights == NULL || work->grids == NULL || work->sweeps == NULL)
+    return hl_fail_memory(error, scene->light_count * sizeof(frame_sweep), "the frame");
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    work->grids[i] = renderer->prepared[i].grid;
+    if (work->grids[i].relevant_count == 0) continue;
+    hl_frame_content(&work->grids[i], frame->points + frame->point_count);
+    frame->point_count += 8;
+  }
+  hl_status status = hl_frame_eye(scene, frame->centre, &frame->eye, error);
+  if (status != HL_OK) return status;
+  vec3 middle = content_middle(frame);
+  look(frame, middle);
+  frame->spacing = scene->render.sheet_spacing * smallest_edge(renderer);
+  frame->light_count = (int)scene->light_count;
+  for (size_t i = 0; i < scene->light_count; i++)
+    frame->lights[i] = hl_light_source(&scene->lights[i], &scene->render, frame->centre, middle);
+  work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
+  status = hl_frame_check_sweeps(frame, work->sweeps, work->sweep_count, error);
+  if (status != HL_OK) return status;
+  work->tiles_x = (size_t)(scene->width + TILE - 1) / TILE;
+  work->tiles = work->tiles_x * ((size_t)(scene->height + TILE - 1) / TILE);
+  work->pixels = hl_allocate_zeroed(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
+  if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
+  return HL_OK;
+}
+
+static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
+  for (int i = 0; i < hl_pool_threads(sweep->pool); i++) {
+    statistics->samples_shaded += sweep->counts[i].samples;
+    statistics->tiles_filled_image += sweep->counts[i].filled_image;
+    statistics->tiles_filled_light += sweep->counts[i].filled_light;
+    statistics->tiles_skipped_image += sweep->counts[i].skipped_image;
+    statistics->tiles_skipped_light += sweep->counts[i].skipped_light;
+  }
+  statistics->sheets += sweep->geometry->sheets.count;
+  statistics->seconds_sort += sweep->seconds_sort;
+  statistics->seconds_fill_image += sweep->seconds_fill;
+  statistics->seconds_shade += sweep->seconds_shade;
+  statistics->seconds_soften += sweep->seconds_soften;
+}
+
+static int attenuation_channels(const hl_scene_description *scene) {
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    const double *color = scene->volumes[i].attenuation_color;
+    if (scene->volumes[i].casts_shadow && (color[0] != color[1] || color[1] != color[2])) return 3;
+  }
+  return 1;
+}
+
+static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work, int index,
+                           hl_render_statistics *statistics, hl_error *error) {
+  sweep sweep = {.context = renderer->context, .pool = renderer->pool, .scene = scene, .frame = &work->frame,
+                 .hot = hl_hot_functions(renderer->context->options.instruction_set),
+                 .geometry = &work->sweeps[index], .volumes = renderer->prepared, .grids = work->grids,
+                 .volume_count = (int)scene->volume_count, .kernel = hl_kernel_get(scene->render.kernel),
+                 .splat = scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT, .first = index == 0,
+                 .channels = attenuation_channels(scene),
+                 .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};
+  double start = hl_clock_seconds();
+  hl_status status = hl_sweep_begin(&sweep, renderer->buffers, error);
+  sweep.seconds_sort = hl_clock_seconds() - start;
+  if (status == HL_OK) status = hl_sweep_run(&sweep, error);
+  if (status == HL_OK) add_counts(&sweep, statistics);
+  hl_sweep_end(&sweep);
+  return status;
+}
+
+/* Blocks back to rows; contributions of lights add, opacity is the same in every sweep. */
+static void write_pixels(const frame_work *work, const hl_scene_description *scene, float *pixels, size_t row_stride) {
+  for (int y = 0; y < scene->height; y++)
+    for (int x = 0; x < scene->width; x++) {
+      size_t tile = (size_t)(y / TILE) * work->tiles_x + (size_t)(x / TILE);
+      size_t block = (size_t)(y % TILE / BLOCK * 4 + x % TILE / BLOCK), lane = (size_t)(y % BLOCK * 4 + x % BLOCK);
+      const float *from = work->pixels + (tile * TILE_BLOCKS + block) * 4 * BLOCK_PIXELS + lane;
+      float *to = pixels + (size_t)y * row_stride + 4 * (size_t)x;
+      for (int c = 0; c < 4; c++) to[c] = from[c * BLOCK_PIXELS];
+      for (int s = 1; s < work->sweep_count; s++)
+        for (int c = 0; c < 3; c++)
+          to[c] += from[(size_t)s * work->tiles * TILE_PIXELS * 4 + (size_t)(c * BLOCK_PIXELS)];
+    }
+}
+
+static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work, float *pixels,
+                              size_t row_stride, hl_render_statistics *statistics, hl_error *error) {
+  double start = hl_clock_seconds();
+  hl_status status = make_room(renderer, scene, error);
+  work->frame.centre = scene_centre(scene);
+  if (status == HL_OK)
+    status = hl_prepare_volumes(renderer->context, renderer->pool,
+                                hl_hot_functions(renderer->context->options.instruction_set), scene,
+                                work->frame.centre, renderer->prepared, error);
+  if (status == HL_OK) status = set_up_frame(renderer, scene, work, error);
+  statistics->seconds_prepare = hl_clock_seconds() - start;
+  start = hl_clock_seconds();
+  for (int s = 0; s < work->sweep_count && status == HL_OK && work->frame.point_count > 0; s++)
+    status = run_sweep(renderer, scene, work, s, statistics, error);
+  if (status != HL_OK) return status;
+  write_pixels(work, scene, pixels, row_stride);
+  statistics->seconds_render = hl_clock_seconds() - start;
+  statistics->sweeps = work->sweep_count;
+  statistics->threads = hl_pool_threads(renderer->pool);
+  statistics->instruction_set = renderer->context->options.instruction_set;
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    statistics->voxels_total += hl_volume_voxel_count(scene->volumes[i].volume);
+    statistics->voxels_kept += renderer->prepared[i].grid.kept_voxels;
+  }
+  hl_progress(renderer->context, "render", 1);
+  return HL_OK;
+}
+
+hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float *pixels, size_t row_stride,
+                             hl_render_statistics *statistics, hl_error *error) {
+  if (renderer == NULL || scene == NULL || pixels == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: renderer, scene or pixels is null");
+  const hl_scene_description *description = hl_scene_describe(scene);
+  if (row_stride < 4 * (size_t)description->width)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: row_stride is %zu, a row of %d pixels has %zu floats",
+                   row_stride, description->width, 4 * (size_t)description->width);
+  if (statistics != NULL && statistics->struct_size != sizeof *statistics)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: statistics->struct_size is %zu, expected %zu",
+                   statistics->struct_size, sizeof *statistics);
+  hl_render_statistics counted = {.struct_size = sizeof counted};
+  frame_work work = {0};
+  hl_status status = render_frame(renderer, description, &work, pixels, row_stride, &counted, error);
+  release_work(renderer->context, &work);
+  if (status == HL_OK && statistics != NULL) *statistics = counted;
+  return status;
+}

@@ -1,0 +1,55 @@
+/* render/shade.h - steps 12 to 16: gradient, classification, shadow lookup, illumination, compositing. */
+#ifndef HL_RENDER_SHADE_H
+#define HL_RENDER_SHADE_H
+
+#include "light/attenuate.h"
+
+enum { MAXIMUM_SWEEP_LIGHTS = 16 };
+
+typedef struct shade_volume {
+  const classifier *classifier;
+  const float *before, *current, *after; /* sheets k-1, k, k+1 of the image; pixel (0,0); rows stride apart */
+  const float *enter, *leave;            /* [tiles][256]; null: the box does not cut anything visible */
+  int phong, visible, receives_shadow;
+  float ambient, diffuse, specular, shininess; /* ka kd ks n */
+  float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
+} shade_volume;
+
+typedef struct shade_light {
+  int parallel;
+  float towards[3];               /* parallel: unit direction to the light; frame space */
+  float position[3];              /* else: the light's centre; frame space */
+  float color[3];                 /* color * intensity */
+  int inverse_square;
+  int shadowed;
+  float path;                     /* parallel: sheet spacing / |l.h|; else sheet spacing */
+  float map[3][4];                /* frame space -> (w, w u, w v) of the shadow buffer */
+  const float *transmittance[HL_CHANNELS]; /* pixel (0,0); rows stride apart */
+  size_t stride;
+  int width, height, channels;
+  int nearest;                    /* lookup: nearest pixel instead of bilinear */
+} shade_light;
+
+typedef struct shade_job {
+  sheet_rays rays;                /* image pixels -> frame space */
+  float through[3];               /* parallel: from one sheet to the next along the eye's rays */
+  float towards_eye[3];           /* parallel: unit direction to the eye */
+  float normal[3];                /* h */
+  float path;                     /* parallel: sheet spacing / |w.h|; perspective: sheet spacing */
+  float height, spacing;          /* of the sheet above the first; frame units */
+  int back_to_front;
+  const shade_volume *volumes;
+  int volume_count;
+  const shade_light *lights;
+  int light_count;
+  float ambient[3];               /* Ia; zero in all sweeps but the first */
+  size_t stride;                  /* of the sheets */
+  int channels;                   /* of light attenuation: 1 or 3 */
+} shade_job;
+
+/* Shades the tile's blocks that are open and have density. pixels: [16 blocks][R G B A][16]. Returns the
+ * blocks that are still open: some pixel not yet opaque. samples is raised by the pixels composited. */
+typedef uint32_t shade_tile_function(const shade_job *job, int tile_x, int tile_y, uint32_t blocks, float *pixels,
+                                     uint64_t *samples);
+
+#endif

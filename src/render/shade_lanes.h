@@ -1,0 +1,240 @@
+/* render/shade_lanes.h - one sheet's pixels lit and composited, a 4x4 block at a time (steps 12 to 16). */
+#ifndef HL_RENDER_SHADE_LANES_H
+#define HL_RENDER_SHADE_LANES_H
+
+#include "light/attenuate_lanes.h"
+#include "render/shade.h"
+
+/* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
+static const float OPAQUE = 1.0f - 1.0f / 2048;
+
+typedef struct color_lanes { lanes c[3]; } color_lanes;
+
+LANES_INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
+  return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+LANES_INLINE lanes3 scale3(lanes3 a, lanes s) { return (lanes3){a.x * s, a.y * s, a.z * s}; }
+LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
+LANES_INLINE lanes3 set3(const float v[3]) { return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])}; }
+LANES_INLINE lanes3 normalise3(lanes3 a) {
+  return scale3(a, 1.0f / lanes_sqrt(lanes_max(dot3(a, a), lanes_set(1e-30f))));
+}
+
+/* What the volumes of a block share: where its pixels are and how they look. */
+typedef struct block_geometry {
+  lanes3 position;       /* frame space, on the sheet */
+  lanes3 step_u, step_v; /* to the next pixel along the sheet */
+  lanes3 step_sheet;     /* to the next sheet along the ray */
+  lanes3 towards_eye;    /* unit */
+  lanes path;            /* of the eye's ray through the sheet; 0 behind the eye */
+} block_geometry;
+
+/* Derived: on the ray E + s W with s = step / H, H = h.W, moving one pixel gives s (Wu - (Hu / H) W), moving one
+ * sheet gives W ds / H: a skew basis, since the sheet is not perpendicular to the ray. */
+LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lanes v) {
+  const sheet_rays *rays = &job->rays;
+  block_geometry g;
+  g.position = rays_positions(rays, u, v);
+  g.path = path_through_sheet(rays, job->path, u, v);
+  if (!rays->perspective) {
+    g.step_u = set3(rays->wu);
+    g.step_v = set3(rays->wv);
+    g.step_sheet = set3(job->through);
+    g.towards_eye = set3(job->towards_eye);
+    return g;
+  }
+  lanes3 w = rays_linear(rays, u, v);
+  lanes inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
+  lanes s = inverse * rays->step, slip_u = inverse * rays->hu, slip_v = inverse * rays->hv;
+  lanes3 wu = set3(rays->wu), wv = set3(rays->wv);
+  g.step_u = (lanes3){(wu.x - w.x * slip_u) * s, (wu.y - w.y * slip_u) * s, (wu.z - w.z * slip_u) * s};
+  g.step_v = (lanes3){(wv.x - w.x * slip_v) * s, (wv.y - w.y * slip_v) * s, (wv.z - w.z * slip_v) * s};
+  g.step_sheet = scale3(w, inverse * job->spacing);
+  g.towards_eye = scale3(w, -1.0f / lanes_sqrt(dot3(w, w)));
+  return g;
+}
+
+/* Step 12. World gradient = B^-T differences, B the columns step_u, step_v, step_sheet; the rows of the inverse are
+ * cross products over the determinant. */
+LANES_INLINE lanes3 gradient(const block_geometry *g, const shade_volume *volume, size_t at, size_t stride) {
+  const float *here = volume->current + at;
+  lanes du = (lanes_load_block(here + 1, stride) - lanes_load_block(here - 1, stride)) * 0.5f;
+  lanes dv = (lanes_load_block(here + stride, stride) - lanes_load_block(here - stride, stride)) * 0.5f;
+  lanes dz = (lanes_load_block(volume->after + at, stride) - lanes_load_block(volume->before + at, stride)) * 0.5f;
+  lanes3 a = cross3(g->step_v, g->step_sheet), b = cross3(g->step_sheet, g->step_u), c = cross3(g->step_u, g->step_v);
+  lanes determinant = dot3(g->step_u, a);
+  lanes inverse = 1.0f / lanes_select(lanes_abs(determinant) > 0.0f, determinant, lanes_set(1.0f));
+  return scale3(add3(add3(scale3(a, du), scale3(b, dv)), scale3(c, dz)), inverse);
+}
+
+/* Light reaching the sample before its own sheet: the shadow buffer's transmittance, 1 outside it. */
+LANES_INLINE lanes look_up(const shade_light *light, const float *buffer, lanes u, lanes v) {
+  lanes_int inside = (u > 0.0f) & (v > 0.0f) & (u < (float)light->width) & (v < (float)light->height);
+  lanes x = lanes_clamp(u - 0.5f, 0, (float)(light->width - 1)), y = lanes_clamp(v - 0.5f, 0, (float)(light->height - 1));
+  if (light->nearest) {
+    x = lanes_from_int(lanes_truncate(x + 0.5f));
+    y = lanes_from_int(lanes_truncate(y + 0.5f));
+  }
+  lanes_int column = lanes_truncate(x), row = lanes_truncate(y);
+  lanes fx = x - lanes_from_int(column), fy = y - lanes_from_int(row);
+  lanes_int at = row * (int32_t)light->stride + column;
+  lanes a = lanes_gather(buffer, at), b = lanes_gather(buffer + 1, at);
+  lanes c = lanes_gather(buffer + light->stride, at), d = lanes_gather(buffer + light->stride + 1, at);
+  lanes top = a + (b - a) * fx, bottom = c + (d - c) * fx;
+  return lanes_select(inside, top + (bottom - top) * fy, lanes_set(1.0f));
+}
+
+/* Steps 14 and 15's first half: what arrives of one light (eqs. 1 and 2), and from where. */
+typedef struct arriving_light {
+  lanes3 towards; /* unit */
+  color_lanes full, shadowed; /* without and with attenuation */
+} arriving_light;
+
+LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_geometry *g,
+                                     const lanes cast[HL_CHANNELS]) {
+  arriving_light arriving;
+  lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
+  if (light->parallel) {
+    arriving.towards = set3(light->towards);
+  } else {
+    lanes3 way = {light->position[0] - g->position.x, light->position[1] - g->position.y,
+                  light->position[2] - g->position.z};
+    lanes squared = lanes_max(dot3(way, way), lanes_set(1e-20f)), distance = lanes_sqrt(squared);
+    arriving.towards = scale3(way, 1.0f / distance);
+    lanes climb = lanes_abs(dot3(arriving.towards, set3(job->normal)));
+    path = light->path / lanes_max(climb, lanes_set(1e-3f));
+    if (light->inverse_square) strength = 1.0f / squared;
+  }
+  for (int c = 0; c < 3; c++) arriving.full.c[c] = arriving.shadowed.c[c] = strength * light->color[c];
+  if (!light->shadowed) return arriving;
+  lanes place[3];
+  for (int row = 0; row < 3; row++)
+    place[row] = g->position.x * light->map[row][0] + g->position.y * light->map[row][1] +
+                 (g->position.z * light->map[row][2] + light->map[row][3]);
+  lanes u = place[1] / place[0], v = place[2] / place[0];
+  lanes transmittance = lanes_set(1.0f);
+  for (int c = 0; c < 3; c++) {
+    /* the square root of the sheet's own transmittance: its middle lies half a sheet deep */
+    if (c < light->channels)
+      transmittance = look_up(light, light->transmittance[c], u, v) * lanes_exp_negative(cast[c] * path * 0.5f);
+    arriving.shadowed.c[c] = arriving.shadowed.c[c] * transmittance;
+  }
+  return arriving;
+}
+
+LANES_INLINE lanes power(lanes base, float exponent) {
+  lanes safe = lanes_max(base, lanes_set(1e-12f));
+  return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
+}
+
+/* Step 15: eqs. (3) and (4) at the light's centre; a medium where there is no surface (algorithm, optical model). */
+LANES_INLINE color_lanes illuminate(const shade_job *job, const shade_volume *volume, const block_geometry *g,
+                                    const arriving_light *lights, color_lanes color, lanes3 slope, lanes density) {
+  lanes steepness = lanes_sqrt(dot3(slope, slope));
+  lanes surface = volume->phong ? lanes_min(steepness / volume->classifier->normal_edge, lanes_set(1.0f)) : lanes_set(0);
+  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-30f));
+  lanes3 normal = scale3(slope, outward);
+  color_lanes lit;
+  for (int c = 0; c < 3; c++) lit.c[c] = color.c[c] * (volume->ambient * job->ambient[c]);
+  for (int i = 0; i < job->light_count; i++) {
+    const color_lanes *intensity = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full;
+    lanes facing = dot3(normal, lights[i].towards);
+    lanes diffuse = lanes_max(facing, lanes_set(0)) * volume->diffuse * surface + (1.0f - surface);
+    lanes3 mirrored = add3(scale3(normal, facing * 2.0f), scale3(lights[i].towards, lanes_set(-1.0f)));
+    lanes glint = power(dot3(g->towards_eye, mirrored), volume->shininess) * volume->specular * surface;
+    glint = lanes_keep(facing > 0.0f, glint);
+    for (int c = 0; c < 3; c++) lit.c[c] = lit.c[c] + intensity->c[c] * (color.c[c] * diffuse + glint);
+  }
+  return lit;
+}
+
+/* Step 16. Front to back: C += (1-A) a c; back to front: C = a c + (1-a) C. */
+LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, float *pixels) {
+  lanes alpha = lanes_load(pixels + 3 * BLOCK_PIXELS);
+  lanes weight = back_to_front ? opacity : opacity * (1.0f - alpha);
+  lanes keep = back_to_front ? 1.0f - opacity : lanes_set(1.0f);
+  for (int c = 0; c < 3; c++) {
+    float *at = pixels + c * BLOCK_PIXELS;
+    lanes_store(at, lanes_load(at) * keep + lit.c[c] * weight);
+  }
+  alpha = alpha * keep + weight;
+  lanes_store(pixels + 3 * BLOCK_PIXELS, alpha);
+  return alpha;
+}
+
+/* The block's volumes at one sheet: extinctions, covered parts included. */
+typedef struct block_density { lanes density, extinction; } block_density;
+
+/* Step 13 for one volume. */
+LANES_INLINE block_density classify_block(const shade_job *job, const shade_volume *volume, size_t at, size_t tile,
+                                          int block) {
+  block_density d;
+  d.density = lanes_load_block(volume->current + at, job->stride);
+  const float *enter = volume->enter == NULL ? NULL : volume->enter + tile * TILE_PIXELS;
+  const float *leave = volume->leave == NULL ? NULL : volume->leave + tile * TILE_PIXELS;
+  d.extinction = volume_extinction(volume->classifier, d.density, enter, leave, block, job->height, job->spacing);
+  return d;
+}
+
+/* Colours of the volumes, lit and averaged weighted by extinction. */
+static color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
+                                  size_t at, size_t tile, int block, lanes total) {
+  color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
+  for (int i = 0; i < job->volume_count; i++) {
+    const shade_volume *volume = &job->volumes[i];
+    if (!volume->visible) continue;
+    block_density d = classify_block(job, volume, at, tile, block);
+    if (lanes_bits(d.extinction > 0.0f) == 0) continue;
+    table_place place = classify_place(volume->classifier, d.density);
+    color_lanes color;
+    for (int c = 0; c < 3; c++) color.c[c] = classify_value(volume->classifier->color[c], place);
+    lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
+    if (volume->phong) slope = gradient(g, volume, at, job->stride);
+    color_lanes lit = illuminate(job, volume, g, lights, color, slope, d.density);
+    lanes weight = job->volume_count == 1 ? lanes_set(1.0f) : d.extinction * inverse;
+    for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
+  }
+  return sum;
+}
+
+/* Returns true while some pixel of the block is not opaque. */
+static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile, int block, float *pixels,
+                       uint64_t *samples) {
+  int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK;
+  size_t at = (size_t)y * job->stride + (size_t)x;
+  lanes total = lanes_set(0), cast[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int i = 0; i < job->volume_count; i++) {
+    block_density d = classify_block(job, &job->volumes[i], at, tile, block);
+    if (job->volumes[i].visible) total = total + d.extinction;
+    for (int c = 0; c < job->channels; c++) cast[c] = cast[c] + d.extinction * job->volumes[i].cast[c];
+  }
+  lanes_int seen = total > 0.0f;
+  if (!job->back_to_front) seen &= lanes_load(pixels + 3 * BLOCK_PIXELS) < OPAQUE;
+  uint32_t bits = lanes_bits(seen);
+  if (bits == 0) return 1;
+  block_geometry g = geometry_of_block(job, block_u(x), block_v(y));
+  arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
+  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, cast);
+  color_lanes lit = color_of_block(job, &g, lights, at, tile, block, total);
+  for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(seen, lit.c[c]);
+  lanes opacity = lanes_keep(seen, 1.0f - lanes_exp_negative(total * g.path));
+  lanes alpha = composite(job->back_to_front, opacity, lit, pixels);
+  *samples += (uint64_t)__builtin_popcount(bits);
+  return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
+}
+
+static uint32_t shade_tile(const shade_job *job, int tile_x, int tile_y, uint32_t blocks, float *pixels,
+                           uint64_t *samples) {
+  size_t tiles_x = job->stride / TILE - 2; /* the sheets have a tile of margin on either side */
+  size_t tile = (size_t)tile_y * tiles_x + (size_t)tile_x;
+  uint32_t open = 0;
+  for (; blocks != 0; blocks &= blocks - 1) {
+    int block = __builtin_ctz(blocks);
+    if (shade_block(job, tile_x, tile_y, tile, block, pixels + block * 4 * BLOCK_PIXELS, samples)) open |= 1u << block;
+  }
+  return open;
+}
+
+#endif

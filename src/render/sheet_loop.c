@@ -1,0 +1,34 @@
+/* render/sheet_loop.c - the paper's loop over the sheets (section 3.1, eighteen steps).
+ *
+ *    1. transform voxels to the half-way vector's frame      hl_sweep_begin
+ *    2. bucket sort them by height                           hl_sweep_begin
+ *    3. opacity map = 0                                      hl_sweep_begin
+ *    4. shadow buffer = full light                           hl_sweep_begin
+ *    5. for each sheet
+ *    6, 7.   image and shadow sheets = 0                     hl_sweep_fill
+ *    8 - 11. add every footprint to both                     hl_sweep_fill
+ *   12 - 15. gradient, classification, shadow, illumination  hl_sweep_shade
+ *   16.      composite to the frame buffer                   hl_sweep_shade
+ *   17.      classify and composite the shadow sheet         hl_sweep_fill
+ *            (soft: convolve for the next sheet)             hl_sweep_soften
+ *   18. end
+ *
+ * A sheet's gradient needs the next sheet, so image sheets are filled one ahead; its light must not yet hold
+ * its own attenuation, so the shadow sheet is taken up one behind. Both fall in the same stage. */
+#include "core/context.h"
+#include "render/sweep.h"
+
+hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
+  int sheets = sweep->geometry->sheets.count;
+  hl_sweep_fill(sweep, 0, -1);
+  for (int sheet = 0; sheet < sheets; sheet++) {
+    hl_sweep_fill(sweep, sheet + 1, sheet - 1);
+    if (sheet > 0) hl_sweep_soften(sweep, sheet - 1);
+    hl_sweep_shade(sweep, sheet);
+    if ((sheet & 7) == 0) {
+      hl_progress(sweep->context, "render", (double)sheet / sheets);
+      if (hl_cancelled(sweep->context)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled");
+    }
+  }
+  return HL_OK;
+}

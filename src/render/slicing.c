@@ -1,0 +1,116 @@
+/* render/slicing.c - the slicing axis of section 3.1, and which lights share it. */
+#include "render/frame.h"
+
+/* cos 60 degrees: the steepest crossing of a sheet by an eye or light ray that one axis may ask of several lights. */
+static const double STEEPEST = 0.5;
+
+/* Least |cos| between the eye's rays through the picture's corners and h, all crossing in the same sense; 0 if not. */
+static double flattest_eye_ray(const view *eye, vec3 h) {
+  double least = INFINITY, sense = 0;
+  for (int corner = 0; corner < 4; corner++) {
+    vec3 start, way;
+    hl_view_ray(eye, corner & 1 ? eye->width : 0, corner & 2 ? eye->height : 0, &start, &way);
+    double crossing = vec3_dot(vec3_normalise(way), h);
+    if (sense == 0) sense = crossing;
+    if (crossing * sense <= 0) return 0;
+    least = fmin(least, fabs(crossing));
+  }
+  return least;
+}
+
+/* h = normalise(e + l) for e.l >= 0, normalise(l - e) else (fig. 3); for several lights the sum of their directions.
+ * A wide picture's corner rays may run along such sheets: then h leans towards the eye until they cross. */
+static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings, vec3 light, bool *back_to_front) {
+  *back_to_front = vec3_dot(frame->eye_direction, light) < 0;
+  vec3 e = *back_to_front ? vec3_scale(frame->eye_direction, -1) : frame->eye_direction;
+  if (settings->slicing == HL_SLICING_IMAGE_ALIGNED) return e;
+  vec3 h = vec3_normalise(vec3_add(e, light));
+  for (int lean = 0; lean < 8 && flattest_eye_ray(&frame->eye, h) < 0.2; lean++) {
+    vec3 leaning = vec3_normalise(vec3_add(h, vec3_scale(e, 0.25)));
+    if (vec3_dot(leaning, light) < 0.3) break;
+    h = leaning;
+  }
+  return h;
+}
+
+static bool axis_serves(const frame *frame, const frame_sweep *sweep, vec3 h, bool back_to_front) {
+  double e = vec3_dot(frame->eye_direction, h) * (back_to_front ? -1 : 1);
+  if (e < STEEPEST) return false;
+  for (int i = 0; i < sweep->light_count; i++)
+    if (vec3_dot(frame->lights[sweep->light[i]].direction, h) < STEEPEST) return false;
+  return true;
+}
+
+static vec3 sum_of_directions(const frame *frame, const frame_sweep *sweep) {
+  vec3 sum = {0, 0, 0};
+  for (int i = 0; i < sweep->light_count; i++) sum = vec3_add(sum, frame->lights[sweep->light[i]].direction);
+  return vec3_normalise(sum);
+}
+
+/* Takes the light into the sweep if one axis serves all. */
+static bool try_light(const frame *frame, const hl_render_settings *settings, frame_sweep *sweep, int light) {
+  if (sweep->light_count == FRAME_LIGHTS) return false;
+  sweep->light[sweep->light_count++] = light;
+  bool back_to_front;
+  vec3 h = slicing_axis(frame, settings, sum_of_directions(frame, sweep), &back_to_front);
+  if (sweep->light_count == 1 || axis_serves(frame, sweep, h, back_to_front)) {
+    sweep->sheets.normal = h;
+    sweep->back_to_front = back_to_front;
+    return true;
+  }
+  sweep->light_count--;
+  return false;
+}
+
+/* Sheets over the whole content, one to spare on either side for central differences. */
+static void place_sheets(const frame *frame, sheet_stack *sheets) {
+  double low = INFINITY, high = -INFINITY;
+  for (int i = 0; i < frame->point_count; i++) {
+    double height = vec3_dot(sheets->normal, frame->points[i]);
+    low = fmin(low, height);
+    high = fmax(high, height);
+  }
+  sheets->spacing = frame->spacing;
+  sheets->count = frame->point_count == 0 ? 0 : (int)ceil((high - low) / sheets->spacing) + 3;
+  sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
+}
+
+static void add_shadowing_light(const frame *frame, const hl_render_settings *settings, int light,
+                                frame_sweep *sweeps, int *count) {
+  for (int s = 0; s < *count; s++)
+    if (try_light(frame, settings, &sweeps[s], light)) return;
+  sweeps[*count] = (frame_sweep){0};
+  (void)try_light(frame, settings, &sweeps[(*count)++], light);
+}
+
+/* Lights without shadows go with any sweep; with none, sheets are image-aligned (section 2.2): h = e. */
+static void add_plain_light(const frame *frame, int light, frame_sweep *sweeps, int *count) {
+  int s = 0;
+  while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;
+  if (s == *count) sweeps[(*count)++] = (frame_sweep){.sheets = {.normal = frame->eye_direction}};
+  if (light >= 0) sweeps[s].light[sweeps[s].light_count++] = light;
+}
+
+int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, frame_sweep *sweeps) {
+  int count = 0;
+  for (int light = 0; light < frame->light_count; light++)
+    if (frame->lights[light].shadows != HL_SHADOWS_OFF) add_shadowing_light(frame, settings, light, sweeps, &count);
+  for (int light = 0; light < frame->light_count; light++)
+    if (frame->lights[light].shadows == HL_SHADOWS_OFF) add_plain_light(frame, light, sweeps, &count);
+  if (count == 0) add_plain_light(frame, -1, sweeps, &count);
+  for (int s = 0; s < count; s++) place_sheets(frame, &sweeps[s].sheets);
+  return count;
+}
+
+hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error) {
+  for (int s = 0; s < count; s++)
+    for (int i = 0; i < sweeps[s].light_count; i++) {
+      int light = sweeps[s].light[i];
+      if (frame->lights[light].shadows == HL_SHADOWS_OFF) continue;
+      if (vec3_dot(frame->lights[light].direction, sweeps[s].sheets.normal) < 0.17)
+        return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                       "/render/slicing: image-aligned sheets cannot carry the shadows of /lights/%d, which comes from the "
+                       "side: use half-vector", light);
+    }
+  return HL_OK;
+}

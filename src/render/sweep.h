@@ -1,0 +1,102 @@
+/* render/sweep.h - one pass over the sheets: its state, and the stages that the sheet loop calls.
+ *
+ * Threads own tiles: an image tile is filled, shaded and composited by one task, a light tile filled and
+ * composited by one task, always in the same order, so that the picture does not depend on threads. */
+#ifndef HL_RENDER_SWEEP_H
+#define HL_RENDER_SWEEP_H
+
+#include "light/soft_paper.h"
+#include "render/frame.h"
+#include "simd/hot.h"
+
+/* A volume made ready: kept between frames while its voxels and transfer function stay. */
+typedef struct prepared_volume {
+  const hl_scene_volume *scene;   /* the frame's scene */
+  hl_volume *volume;              /* retained */
+  grid grid;
+  classifier classifier;
+  double empty;                   /* data value */
+  hl_transfer_function function;  /* points owned; what the classifier was made of */
+  double clip[6];
+  int clipped;
+} prepared_volume;
+
+enum { RING = 3 }; /* sheets k-1, k, k+1 */
+
+/* The image's sheets of one volume. */
+typedef struct image_sheets {
+  float *density[RING];           /* pixel (0,0) of each; rows stride apart; in memory */
+  uint16_t *filled[RING];         /* [tiles]; blocks that hold density */
+  unsigned char *dirty[RING];     /* [tiles]; 1 where the tile is not all zero */
+  float *enter, *leave;           /* [tiles][256]; null where the box cuts nothing visible */
+} image_sheets;
+
+/* One light of a sweep with its buffer. */
+typedef struct sweep_light {
+  const light_source *source;
+  shadow_buffer *buffer;          /* null: no shadows */
+  occupancy occupancy;
+  voxel_lists *lists;             /* owned; [grids]; splat only */
+  float *enter, *leave;           /* owned; [grids][tiles][256]; null where no box cuts */
+  soft_paper soft;
+  double pixel;
+} sweep_light;
+
+typedef struct sweep_counts {
+  uint64_t samples, filled_image, filled_light, skipped_image, skipped_light;
+} sweep_counts;
+
+typedef struct sweep {
+  hl_context *context;
+  hl_pool *pool;
+  const hot_functions *hot;
+  const hl_scene_description *scene;
+  const frame *frame;
+  const frame_sweep *geometry;
+  prepared_volume *volumes;       /* [volume_count] */
+  const grid *grids;              /* [volume_count], copies of the volumes' grids */
+  int volume_count;
+  const kernel *kernel;
+  bool splat;                     /* else gather */
+  bool first;                     /* the sweep that carries ambient light and opacity */
+  int channels;                   /* of light attenuation */
+  /* the image */
+  occupancy occupancy;
+  voxel_lists *lists;             /* [grids]; splat only */
+  image_sheets *sheets;           /* [grids] */
+  float *sheet_memory;
+  size_t sheet_stride, tiles;
+  int tiles_x, tiles_y;
+  uint16_t *open;                 /* [tiles]; blocks not yet opaque */
+  float *pixels;                  /* [tiles][16][4][16] */
+  sweep_light lights[FRAME_LIGHTS];
+  /* the stage now running */
+  int sheet, fill_sheet, light_sheet;
+  uint32_t *tasks;                /* tiles of the stage: the image's, then each light's */
+  size_t task_capacity;
+  int task_start[FRAME_LIGHTS + 2]; /* where each kind starts */
+  fill_source *image_sources;     /* [grids]; of fill_sheet */
+  fill_source *light_sources;     /* [lights][grids]; of light_sheet */
+  shade_volume *shade_volumes;    /* [grids] */
+  shade_light shade_lights[FRAME_LIGHTS];
+  shade_job shade;
+  attenuate_job attenuate[FRAME_LIGHTS];
+  float *scratch;                 /* [threads][grids][256] */
+  attenuate_volume *scratch_volumes; /* [threads][grids] */
+  sweep_counts *counts;           /* [threads] */
+  double seconds_sort, seconds_fill, seconds_shade, seconds_soften;
+} sweep;
+
+/* Steps 1 and 2, and memory. buffers: one per light of the sweep, kept by the caller between frames. */
+hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, hl_error *error);
+void hl_sweep_end(sweep *sweep);
+
+/* The sheet loop: steps 3 to 18. */
+hl_status hl_sweep_run(sweep *sweep, hl_error *error);
+
+/* Stages (sweep_stages.c). */
+void hl_sweep_fill(sweep *sweep, int image_sheet, int light_sheet); /* steps 6 to 11, and 17 for light_sheet */
+void hl_sweep_shade(sweep *sweep, int sheet);                      /* steps 12 to 16 */
+void hl_sweep_soften(sweep *sweep, int sheet);                     /* section 5 */
+
+#endif

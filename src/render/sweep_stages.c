@@ -1,0 +1,227 @@
+/* render/sweep_stages.c - the stages of a sheet, each a set of tiles shared out to the threads. */
+#include <string.h>
+
+#include "render/clock.h"
+#include "render/sweep.h"
+
+/* A tile of the shadow buffer that gets less than this of the light is done: 1/4 of a step of 8 bits. */
+static const float DARK = 1.0f / 1024;
+
+static double sheet_height(const sweep *sweep, int sheet) {
+  return sweep->geometry->sheets.first + sheet * sweep->geometry->sheets.spacing;
+}
+
+/* Sets one bit in the list for each marked tile; two rows of bits may be joined (null: none). */
+static int list_tiles(const uint64_t *a, const uint64_t *b, int words, uint32_t *list) {
+  int count = 0;
+  for (int word = 0; word < words; word++) {
+    uint64_t bits = (a == NULL ? 0 : a[word]) | (b == NULL ? 0 : b[word]);
+    for (; bits != 0; bits &= bits - 1) list[count++] = (uint32_t)word * 64 + (uint32_t)__builtin_ctzll(bits);
+  }
+  return count;
+}
+
+static const uint64_t *tiles_of_sheet(const occupancy *occupancy, int sheet) {
+  if (sheet < 0 || sheet >= occupancy->sheets) return NULL;
+  return occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
+}
+
+/* Open blocks and their neighbours: what central differences of open pixels read. */
+static uint32_t needed_blocks(const sweep *sweep, size_t tile) {
+  if (sweep->geometry->back_to_front) return ALL_BLOCKS;
+  int x = (int)(tile % (size_t)sweep->tiles_x), y = (int)(tile / (size_t)sweep->tiles_x);
+  uint32_t own = sweep->open[tile];
+  uint32_t need = own | (own & 0x7777u) << 1 | (own & 0xeeeeu) >> 1 | own << 4 | own >> 4;
+  if (x > 0) need |= (sweep->open[tile - 1] & 0x8888u) >> 3;
+  if (x + 1 < sweep->tiles_x) need |= (sweep->open[tile + 1] & 0x1111u) << 3;
+  if (y > 0) need |= (uint32_t)sweep->open[tile - (size_t)sweep->tiles_x] >> 12;
+  if (y + 1 < sweep->tiles_y) need |= (sweep->open[tile + (size_t)sweep->tiles_x] & 0xfu) << 12;
+  return need & ALL_BLOCKS;
+}
+
+static uint32_t fill_tile(const sweep *sweep, const fill_source *source, int tile_x, int tile_y, uint32_t need,
+                          float *density) {
+  return sweep->splat ? sweep->hot->splat_tile(source, tile_x, tile_y, need, density)
+                      : sweep->hot->gather_tile(source, tile_x, tile_y, need, density);
+}
+
+static void copy_block(float *to, size_t stride, const float *block) {
+  for (int row = 0; row < BLOCK; row++) memcpy(to + (size_t)row * stride, block + row * BLOCK, BLOCK * sizeof(float));
+}
+
+/* Steps 6 and 8 to 11 for one tile of the image sheet of one volume. */
+static void fill_image_tile(sweep *sweep, size_t tile, int g, int worker) {
+  int slot = sweep->fill_sheet % RING;
+  image_sheets *sheets = &sweep->sheets[g];
+  int tile_x = (int)(tile % (size_t)sweep->tiles_x), tile_y = (int)(tile / (size_t)sweep->tiles_x);
+  float *to = sheets->density[slot] + (size_t)tile_y * TILE * sweep->sheet_stride + (size_t)tile_x * TILE;
+  bool occupied = sweep->fill_sheet < sweep->occupancy.sheets &&
+                  hl_occupancy_has(&sweep->occupancy, g, tile, sweep->fill_sheet);
+  uint32_t need = occupied ? needed_blocks(sweep, tile) : 0;
+  uint32_t filled = 0;
+  float *density = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * TILE_PIXELS;
+  if (need != 0) {
+    filled = fill_tile(sweep, &sweep->image_sources[g], tile_x, tile_y, need, density);
+    sweep->counts[worker].filled_image++;
+  } else if (occupied) {
+    sweep->counts[worker].skipped_image++;
+  }
+  if (filled == 0 && sheets->dirty[slot][tile])
+    for (int row = 0; row < TILE; row++) memset(to + (size_t)row * sweep->sheet_stride, 0, TILE * sizeof(float));
+  for (int block = 0; filled != 0 && block < TILE_BLOCKS; block++)
+    if (need >> block & 1)
+      copy_block(to + (size_t)(block / 4 * BLOCK) * sweep->sheet_stride + block % 4 * BLOCK, sweep->sheet_stride,
+                 density + block * BLOCK_PIXELS);
+  sheets->dirty[slot][tile] = filled != 0;
+  sheets->filled[slot][tile] = (uint16_t)filled;
+}
+
+/* Steps 7 to 11 and 17 for one tile of a light's shadow sheet and buffer. */
+static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int worker) {
+  sweep_light *light = &sweep->lights[light_index];
+  shadow_buffer *buffer = light->buffer;
+  sweep_counts *counts = &sweep->counts[worker];
+  if (buffer->tile_greatest[tile] < DARK) {
+    counts->skipped_light++;
+    return;
+  }
+  int tile_x = (int)(tile % (size_t)buffer->tiles_x), tile_y = (int)(tile / (size_t)buffer->tiles_x), found = 0;
+  float *density = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * TILE_PIXELS;
+  attenuate_volume *volumes = sweep->scratch_volumes + (size_t)worker * (size_t)sweep->volume_count;
+  size_t pixels = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y * TILE_PIXELS;
+  for (int g = 0; g < sweep->volume_count; g++) {
+    const hl_scene_volume *scene = sweep->volumes[g].scene;
+    if (!scene->casts_shadow || !hl_occupancy_has(&light->occupancy, g, tile, sweep->light_sheet)) continue;
+    const fill_source *source = &sweep->light_sources[light_index * sweep->volume_count + g];
+    uint32_t blocks = fill_tile(sweep, source, tile_x, tile_y, ALL_BLOCKS, density + (size_t)found * TILE_PIXELS);
+    if (blocks == 0) continue;
+    bool cut = sweep->grids[g].cut;
+    size_t at = (size_t)g * pixels + tile * TILE_PIXELS;
+    volumes[found] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = blocks,
+                                        .density = density + (size_t)found * TILE_PIXELS,
+                                        .enter = cut ? light->enter + at : NULL,
+                                        .leave = cut ? light->leave + at : NULL};
+    for (int c = 0; c < HL_CHANNELS; c++) volumes[found].weight[c] = (float)scene->attenuation_color[c];
+    found++;
+  }
+  counts->filled_light++;
+  if (found == 0) return;
+  attenuate_job job = sweep->attenuate[light_index];
+  job.volumes = volumes;
+  job.volume_count = found;
+  for (int c = 0; c < job.channels; c++)
+    job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
+  buffer->tile_greatest[tile] = sweep->hot->attenuate_tile(&job, tile_x, tile_y);
+  buffer->tile_touched[tile] = 1;
+}
+
+enum { TILES_A_TASK = 4 };
+
+static void fill_task(void *data, size_t index, int worker) {
+  sweep *sweep = data;
+  int last = sweep->task_start[sweep->geometry->light_count + 1];
+  int end = (int)(index + 1) * TILES_A_TASK < last ? (int)(index + 1) * TILES_A_TASK : last;
+  for (int task = (int)index * TILES_A_TASK; task < end; task++) {
+    size_t tile = sweep->tasks[task];
+    if (task < sweep->task_start[1]) {
+      for (int g = 0; g < sweep->volume_count; g++) fill_image_tile(sweep, tile, g, worker);
+      continue;
+    }
+    int light = 0;
+    while (task >= sweep->task_start[light + 2]) light++;
+    fill_light_tile(sweep, light, tile, worker);
+  }
+}
+
+static void set_source(const sweep *sweep, const view *view, int g, const voxel_lists *lists, int sheet,
+                       fill_source *source) {
+  *source = (fill_source){.grid = &sweep->grids[g], .kernel = sweep->kernel, .sheet = sheet,
+                          .lists = lists == NULL ? NULL : &lists[g]};
+  hl_view_sheet_rays(view, sweep->geometry->sheets.normal, sheet_height(sweep, sheet), sweep->grids[g].frame_to_index,
+                     &source->rays);
+}
+
+static void prepare_light(sweep *sweep, int light_index, int sheet) {
+  const affine3 identity = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
+  sweep_light *light = &sweep->lights[light_index];
+  attenuate_job *job = &sweep->attenuate[light_index];
+  for (int g = 0; g < sweep->volume_count; g++)
+    set_source(sweep, &light->buffer->view, g, light->lists, sheet,
+               &sweep->light_sources[light_index * sweep->volume_count + g]);
+  hl_view_sheet_rays(&light->buffer->view, sweep->geometry->sheets.normal, sheet_height(sweep, sheet), identity,
+                     &job->rays);
+  job->height = (float)(sheet * sweep->geometry->sheets.spacing);
+}
+
+void hl_sweep_fill(sweep *sweep, int image_sheet, int light_sheet) {
+  double start = hl_clock_seconds();
+  sweep->fill_sheet = image_sheet;
+  sweep->light_sheet = light_sheet;
+  for (int g = 0; g < sweep->volume_count; g++)
+    set_source(sweep, &sweep->frame->eye, g, sweep->lists, image_sheet, &sweep->image_sources[g]);
+  const occupancy *image = &sweep->occupancy;
+  sweep->task_start[0] = 0;
+  sweep->task_start[1] = list_tiles(tiles_of_sheet(image, image_sheet), tiles_of_sheet(image, image_sheet - RING),
+                                    image->tile_words, sweep->tasks);
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    int count = 0;
+    if (light_sheet >= 0 && sweep->lights[i].buffer != NULL) {
+      const occupancy *light = &sweep->lights[i].occupancy;
+      count = list_tiles(tiles_of_sheet(light, light_sheet), NULL, light->tile_words,
+                         sweep->tasks + sweep->task_start[i + 1]);
+      if (count > 0) prepare_light(sweep, i, light_sheet);
+    }
+    sweep->task_start[i + 2] = sweep->task_start[i + 1] + count;
+  }
+  size_t tasks = (size_t)sweep->task_start[sweep->geometry->light_count + 1];
+  hl_pool_run(sweep->pool, (tasks + TILES_A_TASK - 1) / TILES_A_TASK, fill_task, sweep);
+  sweep->seconds_fill += hl_clock_seconds() - start;
+}
+
+/* Steps 12 to 16 for one tile. */
+static void shade_one(sweep *sweep, size_t tile, int worker) {
+  uint32_t blocks = 0;
+  for (int g = 0; g < sweep->volume_count; g++) blocks |= sweep->sheets[g].filled[sweep->sheet % RING][tile];
+  blocks &= sweep->open[tile];
+  if (blocks == 0) return;
+  uint32_t open = sweep->hot->shade_tile(&sweep->shade, (int)(tile % (size_t)sweep->tiles_x),
+                                         (int)(tile / (size_t)sweep->tiles_x), blocks,
+                                         sweep->pixels + tile * 4 * TILE_PIXELS, &sweep->counts[worker].samples);
+  sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);
+}
+
+static void shade_task(void *data, size_t index, int worker) {
+  sweep *sweep = data;
+  int end = (int)(index + 1) * TILES_A_TASK < sweep->task_start[1] ? (int)(index + 1) * TILES_A_TASK : sweep->task_start[1];
+  for (int task = (int)index * TILES_A_TASK; task < end; task++) shade_one(sweep, sweep->tasks[task], worker);
+}
+
+void hl_sweep_shade(sweep *sweep, int sheet) {
+  double start = hl_clock_seconds();
+  const affine3 identity = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
+  sweep->sheet = sheet;
+  hl_view_sheet_rays(&sweep->frame->eye, sweep->geometry->sheets.normal, sheet_height(sweep, sheet), identity,
+                     &sweep->shade.rays);
+  sweep->shade.height = (float)(sheet * sweep->geometry->sheets.spacing);
+  for (int g = 0; g < sweep->volume_count; g++) {
+    shade_volume *volume = &sweep->shade_volumes[g];
+    volume->before = sweep->sheets[g].density[(sheet + RING - 1) % RING];
+    volume->current = sweep->sheets[g].density[sheet % RING];
+    volume->after = sweep->sheets[g].density[(sheet + 1) % RING];
+  }
+  sweep->task_start[1] = list_tiles(tiles_of_sheet(&sweep->occupancy, sheet), NULL, sweep->occupancy.tile_words,
+                                    sweep->tasks);
+  hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task, sweep);
+  sweep->seconds_shade += hl_clock_seconds() - start;
+}
+
+void hl_sweep_soften(sweep *sweep, int sheet) {
+  double start = hl_clock_seconds();
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    sweep_light *light = &sweep->lights[i];
+    if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
+    hl_soft_paper_convolve(&light->soft, light->buffer, sheet_height(sweep, sheet + 1), sweep->pool,
+                           sweep->hot->blur_rows_tile, sweep->hot->blur_columns_tile);
+  }
+  sweep->seconds_soften += hl_clock_seconds() - start;
+}

@@ -1,0 +1,18 @@
+/* simd/hot.c - compiled once for each instruction set; HL_HOT_TABLE names the table it fills. */
+#include "simd/hot.h"
+
+#include "light/blur_lanes.h"
+#include "render/shade_lanes.h"
+#include "splat/bounds_lanes.h"
+#include "splat/splat_lanes.h"
+
+const hot_functions HL_HOT_TABLE = {
+    .bound_rows = {bound_rows_u8, bound_rows_u16, bound_rows_f32},
+    .splat_tile = splat_tile,
+    .gather_tile = gather_tile,
+    .coverage_tile = coverage_tile,
+    .attenuate_tile = attenuate_tile,
+    .shade_tile = shade_tile,
+    .blur_rows_tile = blur_rows_tile,
+    .blur_columns_tile = blur_columns_tile,
+};

@@ -1,0 +1,31 @@
+/* simd/hot.h - the hot functions behind one table, chosen once a context.
+ *
+ * Each is written once, in the *_lanes.h of its room, and compiled for every instruction set; all give
+ * the same bytes. */
+#ifndef HL_SIMD_HOT_H
+#define HL_SIMD_HOT_H
+
+#include "light/attenuate.h"
+#include "light/blur.h"
+#include "render/shade.h"
+#include "splat/bricks.h"
+#include "splat/coverage.h"
+#include "splat/fill.h"
+
+typedef struct hot_functions {
+  bound_rows_function *bound_rows[3]; /* by hl_storage */
+  fill_tile_function *splat_tile, *gather_tile;
+  coverage_tile_function *coverage_tile;
+  attenuate_tile_function *attenuate_tile;
+  shade_tile_function *shade_tile;
+  blur_tile_function *blur_rows_tile, *blur_columns_tile;
+} hot_functions;
+
+const hot_functions *hl_hot_functions(hl_instruction_set set);
+
+extern const hot_functions hl_hot_scalar;
+#if defined(__x86_64__)
+extern const hot_functions hl_hot_avx2, hl_hot_avx512;
+#endif
+
+#endif

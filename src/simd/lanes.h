@@ -1,0 +1,223 @@
+/* simd/lanes.h - sixteen floats at a time, in one source for every instruction set.
+ *
+ * The compiler's vector extensions give one 512-bit, two 256-bit or four 128-bit operations for each
+ * line below, always the same IEEE operations in the same order: the bytes of a picture do not depend
+ * on the processor. Only what the extensions lack (minimum, gather) uses intrinsics. No fused
+ * multiply-add anywhere (-ffp-contract=off). */
+#ifndef HL_SIMD_LANES_H
+#define HL_SIMD_LANES_H
+
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+enum { LANES = 16 };
+
+typedef float lanes __attribute__((vector_size(64)));
+typedef int32_t lanes_int __attribute__((vector_size(64)));
+typedef uint32_t lanes_uint __attribute__((vector_size(64)));
+
+#define LANES_INLINE static inline __attribute__((always_inline, unused))
+
+LANES_INLINE lanes lanes_set(float x) { return (lanes){x, x, x, x, x, x, x, x, x, x, x, x, x, x, x, x}; }
+LANES_INLINE lanes_int lanes_set_int(int32_t x) {
+  return (lanes_int){x, x, x, x, x, x, x, x, x, x, x, x, x, x, x, x};
+}
+LANES_INLINE lanes lanes_load(const float *p) {
+  lanes v;
+  memcpy(&v, p, sizeof v);
+  return v;
+}
+LANES_INLINE void lanes_store(float *p, lanes v) { memcpy(p, &v, sizeof v); }
+
+/* A 4x4 block of pixels: lane 4*row + column; rows are stride floats apart. */
+LANES_INLINE lanes lanes_load_block(const float *p, size_t stride) {
+  lanes v;
+  memcpy((char *)&v, p, 16);
+  memcpy((char *)&v + 16, p + stride, 16);
+  memcpy((char *)&v + 32, p + 2 * stride, 16);
+  memcpy((char *)&v + 48, p + 3 * stride, 16);
+  return v;
+}
+LANES_INLINE void lanes_store_block(float *p, size_t stride, lanes v) {
+  memcpy(p, (char *)&v, 16);
+  memcpy(p + stride, (char *)&v + 16, 16);
+  memcpy(p + 2 * stride, (char *)&v + 32, 16);
+  memcpy(p + 3 * stride, (char *)&v + 48, 16);
+}
+
+/* mask: all bits set or clear in each lane, as comparisons give. */
+LANES_INLINE lanes lanes_select(lanes_int mask, lanes a, lanes b) {
+  return (lanes)(((lanes_int)a & mask) | ((lanes_int)b & ~mask));
+}
+LANES_INLINE lanes lanes_keep(lanes_int mask, lanes a) { return (lanes)((lanes_int)a & mask); }
+LANES_INLINE lanes_int lanes_select_int(lanes_int mask, lanes_int a, lanes_int b) {
+  return (a & mask) | (b & ~mask);
+}
+
+/* One bit a lane, lane 0 lowest. */
+LANES_INLINE uint32_t lanes_bits(lanes_int mask) {
+#if defined(__AVX512F__)
+  return (uint32_t)_mm512_movepi32_mask((__m512i)mask);
+#elif defined(__AVX2__)
+  __m256 half[2];
+  memcpy(half, &mask, sizeof half);
+  return (uint32_t)_mm256_movemask_ps(half[0]) | (uint32_t)_mm256_movemask_ps(half[1]) << 8;
+#else
+  uint32_t bits = 0;
+  for (int lane = 0; lane < LANES; lane++) bits |= (uint32_t)(mask[lane] < 0) << lane;
+  return bits;
+#endif
+}
+LANES_INLINE lanes_int lanes_from_bits(uint32_t bits) {
+  const lanes_int one_bit = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  return (lanes_set_int((int32_t)bits) & one_bit) != 0;
+}
+
+/* a < b ? a : b, and a > b ? a : b: the second where either is NaN, as the instructions do. */
+LANES_INLINE lanes lanes_min(lanes a, lanes b) {
+#if defined(__AVX512F__)
+  return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
+#elif defined(__AVX2__)
+  __m256 x[2], y[2];
+  memcpy(x, &a, sizeof x);
+  memcpy(y, &b, sizeof y);
+  x[0] = _mm256_min_ps(x[0], y[0]);
+  x[1] = _mm256_min_ps(x[1], y[1]);
+  memcpy(&a, x, sizeof a);
+  return a;
+#else
+  return lanes_select(a < b, a, b);
+#endif
+}
+LANES_INLINE lanes lanes_max(lanes a, lanes b) {
+#if defined(__AVX512F__)
+  return (lanes)_mm512_max_ps((__m512)a, (__m512)b);
+#elif defined(__AVX2__)
+  __m256 x[2], y[2];
+  memcpy(x, &a, sizeof x);
+  memcpy(y, &b, sizeof y);
+  x[0] = _mm256_max_ps(x[0], y[0]);
+  x[1] = _mm256_max_ps(x[1], y[1]);
+  memcpy(&a, x, sizeof a);
+  return a;
+#else
+  return lanes_select(a > b, a, b);
+#endif
+}
+LANES_INLINE lanes lanes_clamp(lanes x, float low, float high) {
+  return lanes_min(lanes_max(x, lanes_set(low)), lanes_set(high));
+}
+LANES_INLINE lanes lanes_abs(lanes x) { return (lanes)((lanes_int)x & lanes_set_int(0x7fffffff)); }
+
+LANES_INLINE lanes lanes_sqrt(lanes x) {
+#if defined(__AVX512F__)
+  return (lanes)_mm512_sqrt_ps((__m512)x);
+#elif defined(__AVX2__)
+  __m256 half[2];
+  memcpy(half, &x, sizeof half);
+  half[0] = _mm256_sqrt_ps(half[0]);
+  half[1] = _mm256_sqrt_ps(half[1]);
+  memcpy(&x, half, sizeof x);
+  return x;
+#else
+  for (int lane = 0; lane < LANES; lane++) x[lane] = __builtin_sqrtf(x[lane]);
+  return x;
+#endif
+}
+
+LANES_INLINE lanes lanes_from_int(lanes_int x) { return __builtin_convertvector(x, lanes); }
+LANES_INLINE lanes_int lanes_truncate(lanes x) { return __builtin_convertvector(x, lanes_int); }
+/* Greatest integer not above x; |x| < 2^31. */
+LANES_INLINE lanes_int lanes_floor(lanes x) {
+  lanes_int i = lanes_truncate(x);
+  return i + (lanes_from_int(i) > x);
+}
+
+/* table[index] of 4-byte elements. */
+LANES_INLINE lanes lanes_gather(const float *table, lanes_int index) {
+#if defined(__AVX512F__)
+  return (lanes)_mm512_i32gather_ps((__m512i)index, table, 4);
+#elif defined(__AVX2__)
+  __m256i i[2];
+  memcpy(i, &index, sizeof i);
+  __m256 v[2] = {_mm256_i32gather_ps(table, i[0], 4), _mm256_i32gather_ps(table, i[1], 4)};
+  lanes result;
+  memcpy(&result, v, sizeof result);
+  return result;
+#else
+  lanes result;
+  for (int lane = 0; lane < LANES; lane++) result[lane] = table[index[lane]];
+  return result;
+#endif
+}
+
+/* Four bytes at base + offset (bytes), little-endian into each lane. */
+LANES_INLINE lanes_int lanes_gather_bytes(const unsigned char *base, lanes_int offset) {
+#if defined(__AVX512F__)
+  return (lanes_int)_mm512_i32gather_epi32((__m512i)offset, base, 1);
+#elif defined(__AVX2__)
+  __m256i i[2];
+  memcpy(i, &offset, sizeof i);
+  __m256i v[2] = {_mm256_i32gather_epi32((const int *)(const void *)base, i[0], 1),
+                  _mm256_i32gather_epi32((const int *)(const void *)base, i[1], 1)};
+  lanes_int result;
+  memcpy(&result, v, sizeof result);
+  return result;
+#else
+  lanes_int result;
+  for (int lane = 0; lane < LANES; lane++) {
+    const unsigned char *p = base + offset[lane];
+    result[lane] = (int32_t)((uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24);
+  }
+  return result;
+#endif
+}
+
+/* 2^x for |x| < 126, relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by its Taylor series in
+ * f ln 2 to degree 7 (derived; the remainder (0.3466)^8/8! is 5e-9), 2^n by the exponent bits. */
+LANES_INLINE lanes lanes_exp2(lanes x) {
+  lanes_int n = lanes_floor(x + 0.5f);
+  lanes f = (x - lanes_from_int(n)) * 0.69314718056f;
+  lanes p = f * (1.0f / 5040) + 1.0f / 720;
+  p = p * f + 1.0f / 120;
+  p = p * f + 1.0f / 24;
+  p = p * f + 1.0f / 6;
+  p = p * f + 0.5f;
+  p = p * f + 1.0f;
+  p = p * f + 1.0f;
+  return p * (lanes)((n + 127) << 23);
+}
+/* exp(-x) for x >= 0; below 1e-37 it is held there. */
+LANES_INLINE lanes lanes_exp_negative(lanes x) {
+  return lanes_exp2(lanes_max(x * -1.44269504089f, lanes_set(-123.0f)));
+}
+/* log2(x) for normal x > 0, absolute error below 1e-6: x = 2^n m, m in [sqrt(1/2), sqrt(2)), and
+ * ln m = 2 atanh((m-1)/(m+1)) by its odd series to degree 9 (derived). */
+LANES_INLINE lanes lanes_log2(lanes x) {
+  lanes_int bits = (lanes_int)x - 0x3f3504f3;
+  lanes_int n = bits >> 23;
+  lanes m = (lanes)((bits & 0x007fffff) + 0x3f3504f3);
+  lanes t = (m - 1.0f) / (m + 1.0f), t2 = t * t;
+  lanes series = t2 * (1.0f / 9) + 1.0f / 7;
+  series = series * t2 + 1.0f / 5;
+  series = series * t2 + 1.0f / 3;
+  series = series * t2 + 1.0f;
+  return lanes_from_int(n) + t * series * 2.88539008178f;
+}
+
+LANES_INLINE float lanes_greatest(lanes x) {
+  float greatest = x[0];
+  for (int lane = 1; lane < LANES; lane++) greatest = x[lane] > greatest ? x[lane] : greatest;
+  return greatest;
+}
+LANES_INLINE float lanes_least(lanes x) {
+  float least = x[0];
+  for (int lane = 1; lane < LANES; lane++) least = x[lane] < least ? x[lane] : least;
+  return least;
+}
+
+#endif

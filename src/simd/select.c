@@ -1,0 +1,11 @@
+/* simd/select.c - the table of an instruction set. */
+#include "simd/hot.h"
+
+const hot_functions *hl_hot_functions(hl_instruction_set set) {
+#if defined(__x86_64__)
+  if (set == HL_INSTRUCTION_SET_AVX512) return &hl_hot_avx512;
+  if (set == HL_INSTRUCTION_SET_AVX2) return &hl_hot_avx2;
+#endif
+  (void)set;
+  return &hl_hot_scalar;
+}

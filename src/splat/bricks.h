@@ -1,0 +1,20 @@
+/* splat/bricks.h - making a grid from a volume: bounds of every brick, and which bricks matter. */
+#ifndef HL_SPLAT_BRICKS_H
+#define HL_SPLAT_BRICKS_H
+
+#include "splat/classify.h"
+
+/* Rows of stored values reduced to their elementwise bounds; count values. One per storage type, chosen
+ * per instruction set (see simd/hot.h). rows: row_count pointers. */
+typedef void bound_rows_function(const void *const *rows, int row_count, size_t count, float *least, float *greatest);
+
+/* volume: kept alive by the caller. to_frame: index space to frame space. empty: data value. */
+hl_status hl_grid_create(hl_context *context, hl_pool *pool, bound_rows_function *bound_rows,
+                         const hl_scene_volume *volume, affine3 index_to_frame, double empty, grid *grid,
+                         hl_error *error);
+void hl_grid_release(hl_context *context, grid *grid);
+
+/* Marks the bricks that the transfer function can show, and counts their voxels. */
+void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *pool);
+
+#endif

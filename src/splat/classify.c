@@ -1,0 +1,87 @@
+/* splat/classify.c - builds the tables of a transfer function. */
+#include "splat/classify.h"
+
+#include "core/memory.h"
+
+/* sigma = -ln(1 - alpha) / u, alpha clamped to 0.9999 (algorithm, optical model). */
+static double extinction_of(const hl_transfer_function *function, double value) {
+  double alpha = hl_transfer_function_opacity(function, value);
+  if (alpha <= 0) return 0;
+  if (alpha > 0.9999) alpha = 0.9999;
+  return -log1p(-alpha) / function->unit_distance;
+}
+
+/* True where nothing of the function is transparent and empty lies below all values: the stretch from
+ * empty to the least value is then transparent. */
+static bool below_all(const hl_scene_volume *volume, double value) {
+  return value < volume->volume->minimum && hl_transfer_function_opacity(&volume->transfer_function, value) > 0;
+}
+
+static void fill_tables(const hl_scene_volume *volume, double low, double high, classifier *classifier) {
+  const hl_transfer_function *function = &volume->transfer_function;
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
+    double value = low + (high - low) * entry / CLASSIFIER_ENTRIES, color[3];
+    double extinction = below_all(volume, value) ? 0 : extinction_of(function, value);
+    classifier->extinction[entry] = (float)extinction;
+    if (extinction > classifier->greatest_extinction) classifier->greatest_extinction = (float)extinction;
+    hl_transfer_function_color(function, value, color);
+    for (int c = 0; c < 3; c++) classifier->color[c][entry] = (float)color[c];
+  }
+  classifier->extinction[CLASSIFIER_ENTRIES + 1] = classifier->extinction[CLASSIFIER_ENTRIES];
+  for (int c = 0; c < 3; c++)
+    classifier->color[c][CLASSIFIER_ENTRIES + 1] = classifier->color[c][CLASSIFIER_ENTRIES];
+  int32_t next = CLASSIFIER_ENTRIES + 2;
+  for (int entry = CLASSIFIER_ENTRIES + 1; entry >= 0; entry--) {
+    if (classifier->extinction[entry] > 0) next = entry;
+    classifier->next_visible[entry] = next;
+  }
+}
+
+/* A gradient below a thousandth of the transfer function's span per voxel edge does not make a surface. */
+static float normal_edge(const hl_scene_volume *volume, const grid *grid) {
+  const hl_transfer_function *function = &volume->transfer_function;
+  double span = function->opacity_count == 0
+                    ? 0
+                    : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
+  if (!(span > 0)) span = 1;
+  double edge = INFINITY;
+  for (int axis = 0; axis < 3; axis++)
+    edge = fmin(edge, vec3_length(mat3_column(volume->volume->index_to_world.linear, axis)) * volume->scale);
+  return (float)(1e-3 * span / (edge * fabs(grid->value_scale)));
+}
+
+hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
+                               classifier *classifier, hl_error *error) {
+  enum { COUNT = CLASSIFIER_ENTRIES + 2 };
+  *classifier = (struct classifier){0};
+  classifier->extinction = hl_allocate(context, 4 * (size_t)COUNT, sizeof(float));
+  classifier->next_visible = hl_allocate(context, COUNT, sizeof(int32_t));
+  if (classifier->extinction == NULL || classifier->next_visible == NULL) {
+    hl_classifier_release(context, classifier);
+    return hl_fail_memory(error, 5 * COUNT * sizeof(float), "a transfer-function table");
+  }
+  for (int c = 0; c < 3; c++) classifier->color[c] = classifier->extinction + (size_t)(c + 1) * COUNT;
+  double empty = grid->empty * grid->value_scale + grid->value_offset;
+  double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
+  if (!(high > low)) high = low + 1;
+  classifier->scale = (float)(grid->value_scale * CLASSIFIER_ENTRIES / (high - low));
+  classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
+  classifier->normal_edge = normal_edge(volume, grid);
+  fill_tables(volume, low, high, classifier);
+  return HL_OK;
+}
+
+void hl_classifier_release(hl_context *context, classifier *classifier) {
+  hl_release(context, classifier->extinction);
+  hl_release(context, classifier->next_visible);
+  *classifier = (struct classifier){0};
+}
+
+bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high) {
+  float a = (fminf(low, grid->empty) - grid->empty) * classifier->scale + classifier->offset;
+  float b = (fmaxf(high, grid->empty) - grid->empty) * classifier->scale + classifier->offset;
+  float least = fminf(a, b), greatest = fmaxf(a, b);
+  int32_t first = least <= 0 ? 0 : (int32_t)least;
+  int32_t last = greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1 : (int32_t)greatest + 1;
+  return classifier->next_visible[first > CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : first] <= last;
+}

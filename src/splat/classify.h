@@ -1,0 +1,28 @@
+/* splat/classify.h - transfer functions as tables, for post-classification per pixel.
+ *
+ * Density on a sheet (stored units, relative to the grid's empty value) -> extinction and colour, linear
+ * between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. */
+#ifndef HL_SPLAT_CLASSIFY_H
+#define HL_SPLAT_CLASSIFY_H
+
+#include "splat/grid.h"
+
+enum { CLASSIFIER_ENTRIES = 4096 };
+
+typedef struct classifier {
+  float scale, offset;   /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
+  float *extinction;     /* owned; [CLASSIFIER_ENTRIES + 2]; per world unit */
+  float *color[3];       /* owned with extinction; [CLASSIFIER_ENTRIES + 2] each; linear RGB */
+  int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: first entry at or above with extinction > 0 */
+  float greatest_extinction;
+  float normal_edge;     /* the least gradient (density per world unit) that counts as a surface */
+} classifier;
+
+hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
+                               classifier *classifier, hl_error *error);
+void hl_classifier_release(hl_context *context, classifier *classifier);
+
+/* True if some stored value in [low, high], or between them and empty, is visible. */
+bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high);
+
+#endif

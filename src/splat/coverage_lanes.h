@@ -1,0 +1,38 @@
+/* splat/coverage_lanes.h - rays against a box (slab method), and the covered part of a sheet. */
+#ifndef HL_SPLAT_COVERAGE_LANES_H
+#define HL_SPLAT_COVERAGE_LANES_H
+
+#include "splat/coverage.h"
+#include "splat/fill.h"
+#include "splat/rays_lanes.h"
+
+static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave) {
+  for (int block = 0; block < TILE_BLOCKS; block++) {
+    lanes u = block_u(tile_x * TILE + block % 4 * BLOCK), v = block_v(tile_y * TILE + block / 4 * BLOCK);
+    lanes first = lanes_set(rays->perspective ? 0.0f : -1e30f), last = lanes_set(1e30f);
+    for (int axis = 0; axis < 3; axis++) {
+      lanes start = u * rays->start_u[axis] + (v * rays->start_v[axis] + rays->start[axis]);
+      lanes direction = u * rays->direction_u[axis] + (v * rays->direction_v[axis] + rays->direction[axis]);
+      /* a ray along the slab: a tiny direction sends both crossings far out on the right sides */
+      direction = lanes_select(lanes_abs(direction) < 1e-12f, lanes_set(1e-12f), direction);
+      lanes a = (rays->low[axis] - start) / direction, b = (rays->high[axis] - start) / direction;
+      first = lanes_max(first, lanes_min(a, b));
+      last = lanes_min(last, lanes_max(a, b));
+    }
+    lanes base = u * rays->start_height_u + (v * rays->start_height_v + rays->start_height);
+    lanes climb = u * rays->climb_u + (v * rays->climb_v + rays->climb);
+    lanes a = base + first * climb, b = base + last * climb;
+    lanes_int missed = first > last;
+    lanes_store(enter + block * BLOCK_PIXELS, lanes_select(missed, lanes_set(1e30f), lanes_min(a, b)));
+    lanes_store(leave + block * BLOCK_PIXELS, lanes_select(missed, lanes_set(-1e30f), lanes_max(a, b)));
+  }
+}
+
+/* The part of the slab [height - spacing/2, height + spacing/2] between enter and leave, 0 to 1. */
+LANES_INLINE lanes covered(lanes enter, lanes leave, float height, float spacing) {
+  lanes top = lanes_min(leave, lanes_set(height + 0.5f * spacing));
+  lanes bottom = lanes_max(enter, lanes_set(height - 0.5f * spacing));
+  return lanes_max((top - bottom) * (1.0f / spacing), lanes_set(0));
+}
+
+#endif

@@ -1,0 +1,37 @@
+/* splat/fill.h - filling the tiles of a sheet: one interface, two ways.
+ *
+ * splat pushes every voxel's footprint section onto the tile (the paper's way); gather pulls, for every
+ * pixel still needed, the same sum over the 4x4x4 voxels around it. Both give the same densities to
+ * rounding. A tile is 16x16 pixels, kept as sixteen 4x4 blocks of sixteen lanes. */
+#ifndef HL_SPLAT_FILL_H
+#define HL_SPLAT_FILL_H
+
+#include "splat/grid.h"
+#include "splat/view.h"
+
+enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
+
+/* Voxels sorted for splatting: by tile of the view, then by the first sheet that their kernels touch. */
+typedef struct voxel_lists {
+  int tiles_x, tiles_y;
+  int bucket_count; /* sheets + span - 1 */
+  int span;         /* sheets that a kernel can touch; sheet k reads buckets k .. k + span - 1 */
+  uint32_t *start;  /* owned; [tiles * bucket_count + 1] */
+  uint32_t *voxel;  /* owned; [start[last]]; index in the grid padded by 2 voxels on every side */
+} voxel_lists;
+
+/* What it takes to fill one sheet of one grid in one view. */
+typedef struct fill_source {
+  const grid *grid;
+  const kernel *kernel;
+  sheet_rays rays;          /* pixels -> index space */
+  const voxel_lists *lists; /* splat only */
+  int sheet;
+} fill_source;
+
+/* Fills density[16][16] (block, lane) for the blocks in need (one bit each); others are left alone.
+ * Returns the blocks in which some pixel lies in a relevant brick; blocks of need that are not returned
+ * were set to zero. */
+typedef uint32_t fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density);
+
+#endif

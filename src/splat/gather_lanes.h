@@ -1,0 +1,140 @@
+/* splat/gather_lanes.h - pulling: for each pixel the kernel-weighted sum of the 4x4x4 voxels around it.
+ *
+ * On a regular grid four u8 taps are one 32-bit load. The order of the sum is fixed: pairs along x, then
+ * y, then z. */
+#ifndef HL_SPLAT_GATHER_LANES_H
+#define HL_SPLAT_GATHER_LANES_H
+
+#include "splat/place_lanes.h"
+
+/* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t. */
+LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes weight[4]) {
+  lanes s = 1.0f - t;
+  weight[0] = kernel_piece(kernel->outer, degree, t);
+  weight[1] = kernel_piece(kernel->inner, degree, t);
+  weight[2] = kernel_piece(kernel->inner, degree, s);
+  weight[3] = kernel_piece(kernel->outer, degree, s);
+}
+
+/* Four neighbouring voxels along x for every lane; offset in bytes. */
+LANES_INLINE lanes row_u8(const unsigned char *row, lanes_int offset, const lanes weight[4]) {
+  lanes_int word = lanes_gather_bytes(row, offset);
+  lanes a = lanes_from_int(word & 255) * weight[0] + lanes_from_int((word >> 8) & 255) * weight[1];
+  lanes b = lanes_from_int((word >> 16) & 255) * weight[2] + lanes_from_int((word >> 24) & 255) * weight[3];
+  return a + b;
+}
+LANES_INLINE lanes row_u16(const unsigned char *row, lanes_int offset, const lanes weight[4]) {
+  lanes_int low = lanes_gather_bytes(row, offset), high = lanes_gather_bytes(row + 4, offset);
+  lanes a = lanes_from_int(low & 65535) * weight[0] + lanes_from_int((low >> 16) & 65535) * weight[1];
+  lanes b = lanes_from_int(high & 65535) * weight[2] + lanes_from_int((high >> 16) & 65535) * weight[3];
+  return a + b;
+}
+LANES_INLINE lanes row_f32(const unsigned char *row, lanes_int offset, const lanes weight[4]) {
+  lanes a = (lanes)lanes_gather_bytes(row, offset) * weight[0] + (lanes)lanes_gather_bytes(row + 4, offset) * weight[1];
+  lanes b =
+      (lanes)lanes_gather_bytes(row + 8, offset) * weight[2] + (lanes)lanes_gather_bytes(row + 12, offset) * weight[3];
+  return a + b;
+}
+
+/* All 64 taps lie inside the grid: offset is the byte offset of tap (0,0,0) from voxels. */
+LANES_INLINE lanes sum_inside(const grid *grid, hl_storage storage, const unsigned char *voxels, lanes_int offset,
+                              const lanes wx[4], const lanes wy[4], const lanes wz[4]) {
+  size_t bytes = hl_storage_bytes(storage), row_bytes = (size_t)grid->dimension[0] * bytes;
+  size_t slice_bytes = row_bytes * (size_t)grid->dimension[1];
+  lanes sum = lanes_set(0);
+  for (int z = 0; z < 4; z++) {
+    lanes plane = lanes_set(0);
+    for (int y = 0; y < 4; y++) {
+      const unsigned char *row = voxels + (size_t)z * slice_bytes + (size_t)y * row_bytes;
+      lanes along = storage == HL_STORAGE_U8    ? row_u8(row, offset, wx)
+                    : storage == HL_STORAGE_U16 ? row_u16(row, offset, wx)
+                                                : row_f32(row, offset, wx);
+      plane = plane + along * wy[y];
+    }
+    sum = sum + plane * wz[z];
+  }
+  return sum;
+}
+
+static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
+  int64_t at[3] = {x, y, z};
+  for (int a = 0; a < 3; a++) at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
+  size_t index = ((size_t)at[2] * (size_t)grid->dimension[1] + (size_t)at[1]) * (size_t)grid->dimension[0] + (size_t)at[0];
+  if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)grid->voxels)[index];
+  if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)grid->voxels)[index];
+  return ((const float *)grid->voxels)[index];
+}
+
+/* The same sum where taps fall outside: the border's values continue. One lane at a time, same order. */
+static lanes sum_at_border(const grid *grid, const block_place *place, uint32_t active, const lanes wx[4],
+                           const lanes wy[4], const lanes wz[4]) {
+  lanes sums = lanes_set(0);
+  for (; active != 0; active &= active - 1) {
+    int lane = __builtin_ctz(active);
+    int64_t x = place->cell[0][lane] - 1, y = place->cell[1][lane] - 1, z = place->cell[2][lane] - 1;
+    float sum = 0;
+    for (int c = 0; c < 4; c++) {
+      float plane = 0;
+      for (int b = 0; b < 4; b++) {
+        float first = stored_value(grid, x, y + b, z + c) * wx[0][lane] + stored_value(grid, x + 1, y + b, z + c) * wx[1][lane];
+        float last = stored_value(grid, x + 2, y + b, z + c) * wx[2][lane] + stored_value(grid, x + 3, y + b, z + c) * wx[3][lane];
+        plane = plane + (first + last) * wy[b][lane];
+      }
+      sum = sum + plane * wz[c][lane];
+    }
+    sums[lane] = sum;
+  }
+  return sums;
+}
+
+LANES_INLINE lanes_int taps_inside(const grid *grid, const block_place *place) {
+  lanes_int inside = lanes_set_int(-1);
+  for (int a = 0; a < 3; a++) inside &= (place->cell[a] >= 1) & (place->cell[a] < grid->dimension[a] - 2);
+  return inside;
+}
+
+LANES_INLINE lanes gather_block(const fill_source *source, const block_place *place, uint32_t active, int degree) {
+  const grid *grid = source->grid;
+  lanes wx[4], wy[4], wz[4];
+  tap_weights(source->kernel, degree, place->point.x - lanes_from_int(place->cell[0]), wx);
+  tap_weights(source->kernel, degree, place->point.y - lanes_from_int(place->cell[1]), wy);
+  tap_weights(source->kernel, degree, place->point.z - lanes_from_int(place->cell[2]), wz);
+  if ((lanes_bits(taps_inside(grid, place)) & active) != active)
+    return sum_at_border(grid, place, active, wx, wy, wz);
+  /* Offsets from the first active lane's cell fit 32 bits in any volume; idle lanes read there. */
+  int first = __builtin_ctz(active);
+  lanes_int mask = lanes_from_bits(active);
+  int32_t reference[3];
+  for (int a = 0; a < 3; a++) reference[a] = place->cell[a][first];
+  size_t bytes = hl_storage_bytes(grid->storage);
+  const unsigned char *voxels =
+      (const unsigned char *)grid->voxels +
+      (((size_t)(reference[2] - 1) * (size_t)grid->dimension[1] + (size_t)(reference[1] - 1)) *
+           (size_t)grid->dimension[0] + (size_t)(reference[0] - 1)) * bytes;
+  lanes_int offset = (place->cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
+                     (place->cell[1] - reference[1]) * grid->dimension[0] + (place->cell[0] - reference[0]);
+  offset = (offset * (int32_t)bytes) & mask;
+  if (grid->storage == HL_STORAGE_U8) return sum_inside(grid, HL_STORAGE_U8, voxels, offset, wx, wy, wz);
+  if (grid->storage == HL_STORAGE_U16) return sum_inside(grid, HL_STORAGE_U16, voxels, offset, wx, wy, wz);
+  return sum_inside(grid, HL_STORAGE_F32, voxels, offset, wx, wy, wz);
+}
+
+static uint32_t gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {
+  uint32_t filled = 0;
+  for (uint32_t left = need; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    block_place place = place_block(source, tile_x * TILE + block % 4 * BLOCK, tile_y * TILE + block / 4 * BLOCK);
+    uint32_t active = lanes_bits(place.inside);
+    lanes sum = lanes_set(0);
+    if (active != 0) {
+      sum = source->kernel->degree <= 3 ? gather_block(source, &place, active, 3)
+                                        : gather_block(source, &place, active, HL_KERNEL_DEGREE);
+      sum = lanes_keep(place.inside, sum - source->grid->empty);
+      filled |= 1u << block;
+    }
+    lanes_store(density + block * BLOCK_PIXELS, sum);
+  }
+  return filled;
+}
+
+#endif

@@ -1,0 +1,49 @@
+/* splat/grid.h - a volume as the sheets read it: voxels in place, bricks that tell where it can matter.
+ *
+ * Densities on sheets are differences from the grid's empty value, in stored units (what the voxels
+ * hold): nothing splatted means empty, and partial sums of dropped voxels stay between empty and what
+ * is transparent anyway.
+ *
+ * Bricks are 4x4x4 cells; the cell of a point p (index space, clamped to the box [-1/2, n-1/2]) is
+ * floor(p) + 1, from 0 to n. A point's density depends on the 4x4x4 voxels around its cell. */
+#ifndef HL_SPLAT_GRID_H
+#define HL_SPLAT_GRID_H
+
+#include "core/error.h"
+#include "core/pool.h"
+#include "scene/scene.h"
+#include "splat/kernel.h"
+
+enum { HL_BRICK_CELLS = 4 };
+
+typedef struct grid {
+  const void *voxels;          /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's */
+  hl_storage storage;
+  int32_t dimension[3];
+  float empty;                 /* stored units */
+  double value_scale, value_offset; /* data value = value_scale * stored + value_offset */
+  affine3 index_to_frame, frame_to_index;
+  double box_low[3], box_high[3]; /* index space: where the volume exists */
+  int32_t brick_count[3];
+  float *brick_minimum, *brick_maximum; /* owned; [bricks z][y][x]; stored units, over the voxels that the
+                                           brick's cells and their neighbours depend on */
+  unsigned char *relevant;     /* owned; [bricks z][y][x]; 1 where the volume can matter */
+  uint32_t *relevant_list;     /* owned; [relevant_count]; indices of the relevant bricks, rising */
+  uint32_t relevant_count;
+  bool cut;                    /* some relevant brick reaches the box's faces: rays need their entry and exit */
+  void *finite_voxels;         /* owned; a copy with non-finite voxels replaced, or null */
+  uint64_t kept_voxels;        /* 64 a relevant brick, cut at the borders */
+} grid;
+
+static inline size_t hl_grid_bricks(const grid *grid) {
+  return (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[2];
+}
+
+/* Brick coordinates of a brick's index. */
+static inline void hl_grid_brick_place(const grid *grid, uint32_t brick, int32_t b[3]) {
+  b[0] = (int32_t)(brick % (uint32_t)grid->brick_count[0]);
+  b[1] = (int32_t)(brick / (uint32_t)grid->brick_count[0] % (uint32_t)grid->brick_count[1]);
+  b[2] = (int32_t)(brick / (uint32_t)grid->brick_count[0] / (uint32_t)grid->brick_count[1]);
+}
+
+#endif

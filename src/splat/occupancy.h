@@ -1,0 +1,57 @@
+/* splat/occupancy.h - which tiles of which sheets can hold anything, for one view.
+ *
+ * Every relevant brick marks the tiles and sheets that it can touch: one bit each. A sheet then visits
+ * only its marked tiles; empty space costs nothing. */
+#ifndef HL_SPLAT_OCCUPANCY_H
+#define HL_SPLAT_OCCUPANCY_H
+
+#include "splat/fill.h"
+
+/* The sheets of a sweep: mid-plane of sheet k at height first + k * spacing along the unit normal. */
+typedef struct sheet_stack {
+  vec3 normal;    /* h; frame space */
+  double first, spacing;
+  int count;
+} sheet_stack;
+
+typedef struct occupancy {
+  int grid_count, tiles_x, tiles_y, sheets;
+  int words;            /* 64-bit words of one tile: sheets rounded up */
+  int tile_words;       /* 64-bit words of one sheet: tiles rounded up */
+  uint64_t *by_tile;    /* owned; [grids][tiles][words]; bit = sheet */
+  uint64_t *by_sheet;   /* owned; [words * 64][tile_words]; bit = tile, all grids together */
+  size_t by_tile_capacity, by_sheet_capacity; /* words allocated */
+} occupancy;
+
+/* Rebuilds for a view of width x height pixels; keeps its memory between frames. */
+hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
+                             const sheet_stack *sheets, occupancy *occupancy, hl_error *error);
+void hl_occupancy_release(hl_context *context, occupancy *occupancy);
+
+static inline int hl_occupancy_has(const occupancy *occupancy, int grid, size_t tile, int sheet) {
+  size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
+  const uint64_t *bits = occupancy->by_tile + ((size_t)grid * tiles + tile) * (size_t)occupancy->words;
+  return (int)(bits[sheet / 64] >> (sheet % 64) & 1);
+}
+
+/* Bounds of a box of index space (centre, half edges) in a view and in sheets. */
+typedef struct footprint_bounds {
+  double low[2], high[2];           /* continuous pixels */
+  double low_height, high_height;   /* along the normal */
+} footprint_bounds;
+
+/* Maps index space to a view and to heights; prepared once a grid and view. */
+typedef struct footprint_map {
+  double view[3][4]; /* (w, w u, w v) */
+  double height[4];
+} footprint_map;
+
+void hl_footprint_map(const view *view, vec3 normal, affine3 index_to_frame, footprint_map *map);
+/* False where the box lies wholly behind the view. */
+bool hl_footprint_bounds(const footprint_map *map, const double centre[3], const double half[3],
+                         footprint_bounds *bounds);
+
+/* Index-space bounds of the points that a brick's cells stand for, borders stretched by margin voxels. */
+void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double centre[3], double half[3]);
+
+#endif

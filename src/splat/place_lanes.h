@@ -1,0 +1,45 @@
+/* splat/place_lanes.h - what splat and gather share: kernels, and the places of a block's pixels in a grid. */
+#ifndef HL_SPLAT_PLACE_LANES_H
+#define HL_SPLAT_PLACE_LANES_H
+
+#include "splat/fill.h"
+#include "splat/rays_lanes.h"
+
+LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
+  lanes sum = lanes_set(piece[degree]);
+  for (int power = degree - 1; power >= 0; power--) sum = sum * a + piece[power];
+  return sum;
+}
+
+/* The point of a block's pixels in index space, clamped to the grid, and which of them matter. */
+typedef struct block_place {
+  lanes3 point;     /* index space, clamped to [-1/2, n-1/2] */
+  lanes_int cell[3]; /* floor(point): -1 .. n-1 */
+  lanes_int inside; /* within the grid or a little outside, and in a relevant brick */
+} block_place;
+
+/* How far outside its box a grid is still reconstructed (by its border values), for central differences. */
+static const float PLACE_MARGIN = 2.5f;
+
+LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
+  const grid *grid = source->grid;
+  lanes3 p = rays_positions(&source->rays, block_u(x), block_v(y));
+  block_place place;
+  lanes axis[3] = {p.x, p.y, p.z};
+  place.inside = lanes_set_int(-1);
+  for (int a = 0; a < 3; a++) {
+    float high = (float)grid->dimension[a] - 0.5f;
+    place.inside &= (axis[a] > -0.5f - PLACE_MARGIN) & (axis[a] < high + PLACE_MARGIN);
+    axis[a] = lanes_clamp(axis[a], -0.5f, high);
+    place.cell[a] = lanes_floor(axis[a]);
+  }
+  place.point = (lanes3){axis[0], axis[1], axis[2]};
+  if (lanes_bits(place.inside) == 0) return place;
+  lanes_int brick = (place.cell[2] + 1) >> 2;
+  brick = brick * grid->brick_count[1] + ((place.cell[1] + 1) >> 2);
+  brick = brick * grid->brick_count[0] + ((place.cell[0] + 1) >> 2);
+  place.inside &= (lanes_gather_bytes(grid->relevant, brick & place.inside) & 255) != 0;
+  return place;
+}
+
+#endif

@@ -1,0 +1,86 @@
+/* splat/splat_lanes.h - pushing: the sections of the voxels' kernels added to a tile (steps 8 to 11).
+ *
+ * A section is the voxel's kernel at the sheet's mid-plane, evaluated at every pixel: exact at any
+ * orientation, perspective and spacing, so there is no table to be too coarse. */
+#ifndef HL_SPLAT_SPLAT_LANES_H
+#define HL_SPLAT_SPLAT_LANES_H
+
+#include "splat/gather_lanes.h"
+
+/* A tile's pixels in index space, and the bounds of each block there (lane = block). */
+typedef struct tile_place {
+  block_place block[TILE_BLOCKS];
+  lanes3 low, high;
+} tile_place;
+
+static void place_tile(const fill_source *source, int tile_x, int tile_y, tile_place *tile) {
+  for (int block = 0; block < TILE_BLOCKS; block++) {
+    tile->block[block] = place_block(source, tile_x * TILE + block % 4 * BLOCK, tile_y * TILE + block / 4 * BLOCK);
+    const lanes3 *p = &tile->block[block].point;
+    tile->low.x[block] = lanes_least(p->x);
+    tile->low.y[block] = lanes_least(p->y);
+    tile->low.z[block] = lanes_least(p->z);
+    tile->high.x[block] = lanes_greatest(p->x);
+    tile->high.y[block] = lanes_greatest(p->y);
+    tile->high.z[block] = lanes_greatest(p->z);
+  }
+}
+
+/* Blocks within reach of a voxel at (x, y, z). */
+LANES_INLINE uint32_t blocks_in_reach(const tile_place *tile, float x, float y, float z, float reach) {
+  lanes_int mask = (tile->low.x < x + reach) & (tile->high.x > x - reach) & (tile->low.y < y + reach) &
+                   (tile->high.y > y - reach) & (tile->low.z < z + reach) & (tile->high.z > z - reach);
+  return lanes_bits(mask);
+}
+
+LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
+  lanes a = lanes_abs(distance);
+  lanes inner = kernel_piece(kernel->inner, degree, a), outer = kernel_piece(kernel->outer, degree, a - 1.0f);
+  return lanes_keep(a < kernel->support, lanes_select(a < 1.0f, inner, outer));
+}
+
+LANES_INLINE void splat_voxel(const fill_source *source, const tile_place *tile, uint32_t need, uint32_t voxel,
+                              int degree, float *density) {
+  const grid *grid = source->grid;
+  uint32_t padded_x = (uint32_t)grid->dimension[0] + 4, padded_y = (uint32_t)grid->dimension[1] + 4;
+  int32_t x = (int32_t)(voxel % padded_x) - 2, y = (int32_t)(voxel / padded_x % padded_y) - 2;
+  int32_t z = (int32_t)(voxel / padded_x / padded_y) - 2;
+  uint32_t blocks = need & blocks_in_reach(tile, (float)x, (float)y, (float)z, source->kernel->support);
+  if (blocks == 0) return;
+  float value = stored_value(grid, x, y, z) - grid->empty;
+  for (; blocks != 0; blocks &= blocks - 1) {
+    int block = __builtin_ctz(blocks);
+    const lanes3 *p = &tile->block[block].point;
+    lanes weight = kernel_at(source->kernel, degree, p->x - (float)x) *
+                   kernel_at(source->kernel, degree, p->y - (float)y) *
+                   kernel_at(source->kernel, degree, p->z - (float)z);
+    float *to = density + block * BLOCK_PIXELS;
+    lanes_store(to, lanes_load(to) + weight * value);
+  }
+}
+
+static uint32_t splat_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {
+  const voxel_lists *lists = source->lists;
+  tile_place tile;
+  place_tile(source, tile_x, tile_y, &tile);
+  for (uint32_t left = need; left != 0; left &= left - 1)
+    lanes_store(density + __builtin_ctz(left) * BLOCK_PIXELS, lanes_set(0));
+  const uint32_t *start = lists->start + ((size_t)tile_y * (size_t)lists->tiles_x + (size_t)tile_x) * (size_t)lists->bucket_count +
+                          (size_t)source->sheet;
+  for (uint32_t at = start[0]; at < start[lists->span]; at++) {
+    if (source->kernel->degree <= 3)
+      splat_voxel(source, &tile, need, lists->voxel[at], 3, density);
+    else
+      splat_voxel(source, &tile, need, lists->voxel[at], HL_KERNEL_DEGREE, density);
+  }
+  uint32_t filled = 0;
+  for (uint32_t left = need; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    float *to = density + block * BLOCK_PIXELS;
+    lanes_store(to, lanes_keep(tile.block[block].inside, lanes_load(to)));
+    if (lanes_bits(tile.block[block].inside) != 0) filled |= 1u << block;
+  }
+  return filled;
+}
+
+#endif

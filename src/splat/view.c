@@ -1,0 +1,78 @@
+/* splat/view.c - rays of pixels, their meeting points with sheets, and projection back. */
+#include "splat/view.h"
+
+bool hl_view_finish(view *view) {
+  mat3 forward = view->perspective ? mat3_from_columns(view->corner, view->du, view->dv)
+                                   : mat3_from_columns(view->direction, view->du, view->dv);
+  return mat3_invert(forward, &view->inverse);
+}
+
+bool hl_view_project(const view *view, vec3 point, double uv[2]) {
+  vec3 p = mat3_apply(view->inverse, vec3_subtract(point, view->perspective ? view->origin : view->corner));
+  double w = view->perspective ? p.x : 1;
+  if (w <= 0) return false;
+  uv[0] = p.y / w;
+  uv[1] = p.z / w;
+  return true;
+}
+
+void hl_view_ray(const view *view, double u, double v, vec3 *start, vec3 *direction) {
+  vec3 at = vec3_add(view->corner, vec3_add(vec3_scale(view->du, u), vec3_scale(view->dv, v)));
+  *start = view->perspective ? view->origin : at;
+  *direction = view->perspective ? at : view->direction;
+}
+
+void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]) {
+  affine3 to_view = {view->inverse,
+                     vec3_scale(mat3_apply(view->inverse, view->perspective ? view->origin : view->corner), -1)};
+  affine3 whole = affine3_multiply(to_view, to_frame);
+  const double offset[3] = {whole.offset.x, whole.offset.y, whole.offset.z};
+  for (int row = 0; row < 3; row++) {
+    rows[row][0] = whole.linear.row[row].x;
+    rows[row][1] = whole.linear.row[row].y;
+    rows[row][2] = whole.linear.row[row].z;
+    rows[row][3] = offset[row];
+  }
+  if (!view->perspective) {
+    rows[0][0] = rows[0][1] = rows[0][2] = 0;
+    rows[0][3] = 1;
+  }
+}
+
+static void store(float out[3], vec3 v) {
+  out[0] = (float)v.x;
+  out[1] = (float)v.y;
+  out[2] = (float)v.z;
+}
+
+/* The ray's point on the sheet is start + ((height - h.start) / (h.direction)) direction: linear in the pixel. */
+static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
+  return vec3_add(start,
+                  vec3_scale(direction, (height - vec3_dot(normal, start)) / vec3_dot(normal, direction)));
+}
+
+void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays) {
+  vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5));
+  rays->perspective = view->perspective;
+  if (view->perspective) {
+    store(rays->origin, affine3_apply(from_frame, view->origin));
+    store(rays->w0, mat3_apply(from_frame.linear, first));
+    store(rays->wu, mat3_apply(from_frame.linear, view->du));
+    store(rays->wv, mat3_apply(from_frame.linear, view->dv));
+    rays->h0 = (float)vec3_dot(normal, first);
+    rays->hu = (float)vec3_dot(normal, view->du);
+    rays->hv = (float)vec3_dot(normal, view->dv);
+    rays->step = (float)(height - vec3_dot(normal, view->origin));
+    return;
+  }
+  vec3 base = on_sheet(first, view->direction, normal, height);
+  vec3 along_u = vec3_subtract(on_sheet(vec3_add(first, view->du), view->direction, normal, height), base);
+  vec3 along_v = vec3_subtract(on_sheet(vec3_add(first, view->dv), view->direction, normal, height), base);
+  store(rays->origin, (vec3){0, 0, 0});
+  store(rays->w0, affine3_apply(from_frame, base));
+  store(rays->wu, mat3_apply(from_frame.linear, along_u));
+  store(rays->wv, mat3_apply(from_frame.linear, along_v));
+  rays->h0 = 1;
+  rays->hu = rays->hv = 0;
+  rays->step = 1;
+}
