@@ -40,6 +40,9 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
  * False if up was useless (along the line of sight): then z, or y where the sight is along z, stands in. */
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
 
+/* The light that a scene without lights gets: soft, from the upper left as the camera sees it. */
+void hl_scene_key_light(const hl_camera *camera, hl_light *light);
+
 /* A value with opacity zero that the volume's surroundings and missing voxels take: the most frequent
  * transparent value; if no value is transparent, one below the volume's range, treated as transparent. */
 double hl_scene_volume_empty_value(const hl_scene_volume *volume);

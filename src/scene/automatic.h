@@ -1,0 +1,38 @@
+/* scene/automatic.h - what kind of data a volume is, and the thresholds that separate its things from its air. */
+#ifndef HL_SCENE_AUTOMATIC_H
+#define HL_SCENE_AUTOMATIC_H
+
+#include "core/error.h"
+#include "volume/volume.h"
+
+#include <halflight/scene.h>
+
+typedef enum hl_data_kind {
+  HL_DATA_SURFACES = 0, /* things with boundaries: CT, MR, masks */
+  HL_DATA_FIELD = 1,    /* a smooth quantity that falls off: densities of simulations */
+  HL_DATA_SIGNED = 2,   /* the same to both sides of a background in the middle: wave functions */
+  HL_DATA_MEDIUM = 3,   /* smoke and clouds */
+  HL_DATA_CONSTANT = 4  /* one value everywhere */
+} hl_data_kind;
+
+/* Data values, except distances, which are from the background in the direction of the things. */
+typedef struct hl_data_analysis {
+  hl_data_kind kind;
+  double background;
+  double direction;      /* +1: things are above the background; -1: below */
+  double faint;          /* distance at which things begin */
+  double solid;          /* distance at which things surely are */
+  double dense;          /* distance that parts the things into two materials */
+  double top;            /* distance that almost nothing exceeds */
+  double mean;           /* mean distance of things beyond faint */
+  double depth;          /* voxel edges across the things: cube root of their number */
+} hl_data_analysis;
+
+hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
+
+/* hl_transfer_function_automatic() from an analysis. */
+hl_status hl_transfer_function_from_analysis(hl_context *context, const hl_volume *volume,
+                                             const hl_data_analysis *analysis, hl_transfer_function *function,
+                                             hl_error *error);
+
+#endif

@@ -1,0 +1,55 @@
+/* scene/for_volume.c - the scene that shows one volume well with no further choice. */
+#include "core/error.h"
+#include "scene/automatic.h"
+#include "scene/scene.h"
+
+#define AZIMUTH 30       /* three-quarter view, degrees */
+#define ELEVATION 20
+#define LIGHT_AZIMUTH -40 /* key light from the upper left, degrees from the line of sight */
+#define LIGHT_ELEVATION 45
+
+void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
+  hl_light_defaults(light);
+  hl_light_direction(camera, LIGHT_AZIMUTH, LIGHT_ELEVATION, light->direction);
+  light->angular_diameter_deg = 7;
+  light->intensity = 1.1;
+}
+
+static void choose_material(hl_data_kind kind, hl_scene_volume *volume) {
+  volume->shading = kind == HL_DATA_MEDIUM ? HL_SHADING_NONE : HL_SHADING_PHONG;
+  volume->material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
+}
+
+hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file, hl_scene **scene,
+                              hl_error *error) {
+  if (context == NULL || volume == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_volume: null context, volume or scene");
+  *scene = NULL;
+  hl_data_analysis analysis;
+  hl_status status = hl_data_analyse(volume, &analysis, error);
+  if (status != HL_OK) return status;
+  hl_scene_volume scene_volume;
+  hl_scene_volume_defaults(&scene_volume);
+  scene_volume.volume = volume;
+  scene_volume.file = file;
+  choose_material(analysis.kind, &scene_volume);
+  status = hl_transfer_function_from_analysis(context, volume, &analysis, &scene_volume.transfer_function, error);
+  if (status != HL_OK) return status;
+  hl_light light;
+  hl_scene_description description;
+  hl_scene_description_defaults(&description);
+  description.volumes = &scene_volume;
+  description.volume_count = 1;
+  status = hl_camera_frame(&description, AZIMUTH, ELEVATION, 1, &description.camera);
+  if (status != HL_OK) {
+    hl_fail(error, status, "the volume cannot be framed: mend its spacing");
+  } else {
+    hl_scene_key_light(&description.camera, &light);
+    description.lights = &light;
+    description.light_count = 1;
+    for (int channel = 0; channel < 3; channel++) description.ambient[channel] = 0.3;
+    status = hl_scene_create(context, &description, scene, error);
+  }
+  hl_transfer_function_release(context, &scene_volume.transfer_function);
+  return status;
+}

@@ -1,0 +1,57 @@
+/* scene/nearest.c - edit distance, and the known name nearest to a mistyped one. */
+#define _GNU_SOURCE /* strnlen */
+#include "scene/nearest.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define LONGEST 63
+
+static int least(int a, int b) { return a < b ? a : b; }
+
+/* Optimal string alignment distance (Damerau 1964, each part edited once): three rows of the table suffice. */
+int hl_edit_distance(const char *a, const char *b) {
+  int rows[3][LONGEST + 1];
+  int length_a = (int)strnlen(a, LONGEST), length_b = (int)strnlen(b, LONGEST);
+  int *before = rows[0], *last = rows[1], *row = rows[2];
+  for (int j = 0; j <= length_b; j++) last[j] = j;
+  for (int i = 1; i <= length_a; i++) {
+    row[0] = i;
+    for (int j = 1; j <= length_b; j++) {
+      int replace = last[j - 1] + (a[i - 1] != b[j - 1]);
+      row[j] = least(replace, least(last[j], row[j - 1]) + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = least(row[j], before[j - 2] + 1);
+    }
+    int *spare = before;
+    before = last;
+    last = row;
+    row = spare;
+  }
+  return last[length_b];
+}
+
+const char *hl_nearest_name(const char *name, const char *(*name_at)(size_t index)) {
+  const char *nearest = NULL;
+  int best = 1 + (int)strnlen(name, LONGEST) / 3; /* about every third letter may be wrong */
+  if (best < 3 && strlen(name) > 2) best = 3;
+  for (size_t n = 0; name_at(n) != NULL; n++) {
+    int distance = hl_edit_distance(name, name_at(n));
+    if (distance >= best) continue;
+    best = distance;
+    nearest = name_at(n);
+  }
+  return nearest;
+}
+
+hl_status hl_fail_name(hl_error *error, hl_status code, const char *kind, const char *name,
+                       const char *(*name_at)(size_t index)) {
+  const char *nearest = hl_nearest_name(name, name_at);
+  if (nearest != NULL)
+    return hl_fail(error, code, "unknown %s \"%.80s\": did you mean \"%s\"?", kind, name, nearest);
+  char all[500] = "";
+  for (size_t n = 0; name_at(n) != NULL && strlen(all) + strlen(name_at(n)) + 3 < sizeof all; n++) {
+    if (n > 0) strcat(all, ", ");
+    strcat(all, name_at(n));
+  }
+  return hl_fail(error, code, "unknown %s \"%.80s\": use one of %s", kind, name, all);
+}
