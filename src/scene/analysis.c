@@ -15,6 +15,7 @@
 
 #define BINS 32             /* of the histogram whose shape is looked at */
 #define ROUGH 0.65          /* between simulations and turbulence or noise */
+#define SMOOTH 0.18         /* smoother than any scanner's pictures */
 #define FLOOR 0.002         /* least mean of the background, as a part of top */
 
 typedef struct distances {
@@ -46,7 +47,7 @@ static bool falls(const distances *d, double low, double high) {
   shape_of(d, low, high, counts);
   for (int bin = 0; bin + 3 < BINS; bin++) {
     double count = counts[bin] + counts[bin + 1];
-    if (count > 1.35 * least + 4 * sqrt(least) && count > 1e-4 * (double)d->count) return false;
+    if (count > 1.2 * least + 4 * sqrt(least) && count > 1e-4 * (double)d->count) return false;
     least = fmin(least, count);
   }
   return true;
@@ -63,7 +64,7 @@ static double exact_share(const hl_sample *sample, double background) {
 static bool is_continuous(const hl_sample *sample) {
   size_t levels = 1;
   for (size_t n = 1; n < sample->count; n++) levels += sample->values[n] != sample->values[n - 1];
-  return levels > 256 && (double)levels > 0.01 * (double)sample->count;
+  return levels > 256;
 }
 
 /* One value in one tenth of the range: the body of a cloud. */
@@ -84,9 +85,10 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
   a->faint = fmin(hl_threshold_cross_entropy(d->values, d->count, FLOOR * a->top), a->solid);
   a->dense = hl_threshold_otsu(d->values, d->count, a->solid);
   /* Most of the border is background: things begin above its noise. */
-  size_t quiet = 0;
-  while (quiet < border_count && (double)border[quiet] < a->solid) quiet++;
-  if (quiet > 0) a->faint = fmax(a->faint, 1.1 * hl_quantile(border, quiet, 0.99));
+  if (border_count > 0) {
+    double middle = hl_quantile(border, border_count, 0.5), upper = hl_quantile(border, border_count, 0.75);
+    a->faint = fmax(a->faint, middle + 6 * (upper - middle)); /* about 3.5 sigma of one-sided Gaussian noise */
+  }
   a->faint = fmin(a->faint, 0.8 * a->solid);
   double sum = 0;
   size_t beyond = 0;
@@ -98,8 +100,9 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
 static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, const distances *d,
                             const hl_data_analysis *a) {
   double background = a->background;
-  bool rough = hl_roughness(volume, sample, background, a->faint) > ROUGH, falling = falls(d, a->faint, a->top);
-  if (!rough) return falling ? HL_DATA_FIELD : HL_DATA_SURFACES;
+  double roughness = hl_roughness(volume, sample, background, a->faint);
+  bool falling = falls(d, a->faint, a->top);
+  if (roughness < ROUGH) return falling || roughness < SMOOTH ? HL_DATA_FIELD : HL_DATA_SURFACES;
   bool fog = exact_share(sample, background) > 0.4 && is_continuous(sample);
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
