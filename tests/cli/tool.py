@@ -57,6 +57,7 @@ def coverage(path):
     """Width and height, in pixels, of the box of the pixels that are not empty."""
     height, width, channels, numbers = read_npy(path)
     covered = [(x, y) for y in range(height) for x in range(width) if numbers[channels * (y * width + x) + 3] > 0.01]
+    assert covered, f"{path} is empty"
     xs, ys = [x for x, _ in covered], [y for _, y in covered]
     print(max(xs) - min(xs) + 1, max(ys) - min(ys) + 1)
 

@@ -1,5 +1,6 @@
 tool ball 12 ball_12x12x12_uint8.raw
 halflight render ball_12x12x12_uint8.raw --size 32x32 --quiet -o a.npy
+tool coverage a.npy >box
 halflight render ball_12x12x12_uint8.raw --size 32x32 --quiet -o a.exr
 halflight render ball_12x12x12_uint8.raw --size 32x32 --quiet -o a.png --depth 16 --background transparent
 halflight diff a.npy a.exr --max-error 0 >text

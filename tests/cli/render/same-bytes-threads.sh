@@ -2,6 +2,7 @@
 tool ball 20 ball_20x20x20_uint8.raw
 for shadows in off hard soft; do
   halflight render ball_20x20x20_uint8.raw --size 61x47 --quiet --shadows $shadows --threads 1 -o first.npy
+  tool coverage first.npy >box
   for threads in 1 2 7; do
     halflight render ball_20x20x20_uint8.raw --size 61x47 --quiet --shadows $shadows --threads $threads -o again.npy
     cmp first.npy again.npy

@@ -9,6 +9,7 @@ END
 }
 scene -30 42 >steep.json # elevation 45 degrees
 halflight render steep.json --quiet --azimuth 70 -o a.npy
+tool coverage a.npy >box
 halflight render steep.json --quiet --azimuth 70 --elevation 45 -o b.npy
 halflight render steep.json --quiet --azimuth 70 --elevation 44 -o c.npy
 halflight diff a.npy b.npy --max-rmse 1e-5 >text

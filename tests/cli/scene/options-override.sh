@@ -13,6 +13,7 @@ END
 scene 40 30 25 10 phong soft cascade bspline 0.5 >plain.json
 scene 36 44 31 4 none soft paper linear 0.8 >wanted.json
 halflight render wanted.json --quiet -o wanted.npy
+tool coverage wanted.npy >box
 halflight render plain.json --quiet -o got.npy --size 36x44 --fovy 31 --light-size 4 --shading none \
   --soft-method paper --kernel linear --sheet-spacing 0.8
 cmp wanted.npy got.npy

@@ -8,6 +8,7 @@ cat >scene.json <<END
     "transfer_function": { "opacity": [[60, 0], [200, 0.8]], "color": [[0, 1, 0.8, 0.6]] } } ] }
 END
 halflight render scene.json --quiet -o perspective.npy
+tool coverage perspective.npy >box
 halflight render scene.json --quiet --ortho -o ortho.npy
 halflight diff perspective.npy ortho.npy --max-rmse 0.05 >text
 sed 's/"position": \[6, -300, 6\]/"type": "orthographic", "height": 16.025, "position": [6, -20, 6]/; s/, "fovy_deg": 3//' scene.json >flat.json
