@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "host.h"
 #include "json_writer.h"
+#include "output.h"
 
 enum diff_option {
   DIFF_MAX_RMSE,
@@ -181,9 +182,12 @@ static int compare(cli_host *host, image_pair *comparison) {
 static int run_diff(const cli_value *values, char **operands) {
   if (values[DIFF_AMPLIFY].given && !values[DIFF_OUTPUT].given)
     return fail(EXIT_CODE_USAGE, "--amplify is for --output: give both or none");
+  int exit_code =
+      values[DIFF_OUTPUT].given ? output_check(values[DIFF_OUTPUT].text, operands, 2) : EXIT_CODE_OK;
+  if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host host;
   cli_host_options options = {.subject = operands[0]};
-  int exit_code = host_open(&options, &host);
+  exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   image_pair comparison = {.values = values, .paths = operands};
   exit_code = compare(&host, &comparison);

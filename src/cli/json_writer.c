@@ -13,7 +13,8 @@ static int utf8_length(const unsigned char *c) {
   for (int i = 1; i < length; i++)
     if ((c[i] & 0xc0) != 0x80) return 0;
   if ((c[0] == 0xe0 || c[0] == 0xf0) && c[1] < least_second[length - 1]) return 0;
-  if ((c[0] == 0xed && c[1] > 0x9f) || (c[0] == 0xf4 && c[1] > 0x8f)) return 0; /* surrogates; beyond Unicode */
+  if ((c[0] == 0xed && c[1] > 0x9f) || (c[0] == 0xf4 && c[1] > 0x8f))
+    return 0; /* surrogates; beyond Unicode */
   return length;
 }
 

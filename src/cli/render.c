@@ -3,20 +3,19 @@
 #include "render.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "commands.h"
+#include "output.h"
 
 /* One run, from INPUT to OUT. */
 typedef struct render_job {
   cli_host host;
   const cli_value *values;
-  const char *input;
+  char *input;
   char *output;    /* owned */
   bool bare;       /* INPUT is a volume file */
   hl_scene *scene; /* owned */
@@ -29,11 +28,6 @@ typedef struct render_job {
 static const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash != NULL ? slash + 1 : path;
-}
-
-static bool has_extension(const char *path, const char *extension) {
-  size_t length = strlen(path), extension_length = strlen(extension);
-  return length > extension_length && strcasecmp(path + length - extension_length, extension) == 0;
 }
 
 /* "head.png" for "scans/head.nii.gz", in the current folder; owned by the caller. */
@@ -67,31 +61,13 @@ static bool is_scene(const char *path) {
   return c == '{';
 }
 
-/* Found out before the work, not after it: a folder that is not there or cannot be written. */
-static int check_output(const char *path) {
-  struct stat about;
-  if (stat(path, &about) == 0 && S_ISDIR(about.st_mode))
-    return fail(EXIT_CODE_FAILURE, "%s: is a folder: name a file in it", path);
-  char *folder = strdup(path);
-  if (folder == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  char *slash = strrchr(folder, '/');
-  if (slash != NULL) slash[slash == folder ? 1 : 0] = '\0';
-  const char *name = slash != NULL ? folder : ".";
-  int exit_code = EXIT_CODE_OK;
-  if (access(name, W_OK | X_OK) != 0)
-    exit_code =
-        fail(EXIT_CODE_FAILURE, "%s: its folder '%s' cannot be written: %s", path, name, strerror(errno));
-  free(folder);
-  return exit_code;
-}
-
 static int job_open(render_job *job) {
   const cli_value *values = job->values;
   int exit_code = render_check_options(values);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   job->output = values[RENDER_OUTPUT].given ? strdup(values[RENDER_OUTPUT].text) : default_output(job->input);
   if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  exit_code = check_output(job->output);
+  exit_code = output_check(job->output, &job->input, 1);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,

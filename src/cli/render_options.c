@@ -1,7 +1,7 @@
 /* cli/render_options.c - the options of `halflight render`: one table, and what contradicts. */
 #include <math.h>
-#include <string.h>
 
+#include "output.h"
 #include "render.h"
 
 static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
@@ -219,19 +219,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
 };
 
-static bool ends_with(const char *text, const char *end) {
-  size_t length = strlen(text), end_length = strlen(end);
-  return length > end_length && strcmp(text + length - end_length, end) == 0;
-}
-
 int render_check_options(const cli_value *values) {
-  const char *output = values[RENDER_OUTPUT].given ? values[RENDER_OUTPUT].text : ".picture.png";
-  bool png = ends_with(output, ".png");
-  if (!png && !ends_with(output, ".exr") && !ends_with(output, ".npy"))
-    return fail(EXIT_CODE_USAGE, "--output: '%s' must end in .png, .exr or .npy", output);
-  if (values[RENDER_DEPTH].given && !png)
+  const cli_value *output = &values[RENDER_OUTPUT];
+  if (values[RENDER_DEPTH].given && output->given && !has_extension(output->text, ".png"))
     return fail(EXIT_CODE_USAGE,
-                "--depth is for .png pictures, not for '%s': .exr and .npy hold 32-bit floats", output);
+                "--depth is for .png pictures, not for '%s': .exr and .npy hold 32-bit floats", output->text);
   if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
     return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
   for (int which = RENDER_LIGHT_POINTS; which <= RENDER_STEP; which++)
