@@ -1,4 +1,5 @@
-/* light/attenuate.h - step 17: a sheet's extinction, seen from the light, composited into the shadow buffer. */
+/* light/attenuate.h - step 17: the extinction from one sheet to the next, seen from the light, composited into the
+ * shadow buffer. */
 #ifndef HL_LIGHT_ATTENUATE_H
 #define HL_LIGHT_ATTENUATE_H
 
@@ -10,16 +11,17 @@ enum { HL_CHANNELS = 3 };
 /* One volume's part in a tile. */
 typedef struct attenuate_volume {
   const classifier *classifier;
-  const float *density;          /* [256], block-major */
+  const float *density;          /* [256], block-major; on this sheet */
+  const float *before;           /* [256], block-major; on the sheet before */
   const float *enter, *leave;    /* [256], block-major; null: the box does not cut anything visible */
-  uint32_t blocks;               /* blocks with density */
+  uint32_t blocks;               /* blocks with density on either */
   float weight[HL_CHANNELS];     /* relative extinction of R, G, B */
 } attenuate_volume;
 
 typedef struct attenuate_job {
   sheet_rays rays;               /* light pixels -> frame space */
   float path;                    /* parallel light: sheet spacing / |l.h|; point light: sheet spacing */
-  float height, spacing;         /* of the sheet above the first; frame units */
+  float height, spacing;         /* of the sheet above the first, and to the one before; frame units */
   const attenuate_volume *volumes;
   int volume_count;
   int channels;                  /* 1: attenuation is grey; 3 */

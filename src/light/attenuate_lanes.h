@@ -16,12 +16,10 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
   return lanes_keep(climb * rays->step > 0.0f, length);
 }
 
-LANES_INLINE lanes volume_extinction(const classifier *classifier, lanes density, const float *enter,
-                                     const float *leave, int block, float height, float spacing) {
-  lanes extinction = classify_value(classifier->extinction, classify_place(classifier, density));
-  if (enter == NULL) return extinction;
-  return extinction * covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS),
-                              height, spacing);
+/* The part of the slab before the sheet that lies in the volume's box, block by block. */
+LANES_INLINE lanes covered_block(const float *enter, const float *leave, int block, float height, float spacing) {
+  if (enter == NULL) return lanes_set(1.0f);
+  return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height, spacing);
 }
 
 static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, int block) {
@@ -29,8 +27,10 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
   for (int i = 0; i < job->volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
     if ((volume->blocks >> block & 1) == 0) continue;
-    lanes extinction = volume_extinction(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS),
-                                         volume->enter, volume->leave, block, job->height, job->spacing);
+    table_place a = classify_place(volume->classifier, lanes_load(volume->before + block * BLOCK_PIXELS));
+    table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
+    lanes extinction = mean_extinction(volume->classifier, a, b) *
+                       covered_block(volume->enter, volume->leave, block, job->height, job->spacing);
     for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
   }
   lanes any = depth[0] + depth[1] + depth[2];

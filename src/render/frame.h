@@ -30,7 +30,10 @@ typedef struct frame {
   int light_count;
 } frame;
 
-/* The eye's view of a scene. */
+/* Pixels filled around the picture, whose densities the outermost central differences read: one block. */
+enum { FRAME_MARGIN = BLOCK };
+
+/* The eye's view of a scene, FRAME_MARGIN pixels larger on every side than the picture. */
 hl_status hl_frame_eye(const hl_scene_description *scene, vec3 centre, view *eye, hl_error *error);
 
 /* Corners of the box around a grid's relevant bricks. */

@@ -154,6 +154,15 @@ static void look(frame *frame, vec3 middle) {
   frame->pixel = pixel_at_content(frame, frame->eye.perspective ? vec3_dot(forward, way) : 1);
 }
 
+/* Rays then start at the eye, within the box. */
+static bool inside_box(const grid *grid, vec3 eye) {
+  vec3 p = affine3_apply(grid->frame_to_index, eye);
+  const double at[3] = {p.x, p.y, p.z};
+  for (int axis = 0; axis < 3; axis++)
+    if (at[axis] < grid->box_low[axis] || at[axis] > grid->box_high[axis]) return false;
+  return true;
+}
+
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
                               hl_error *error) {
   hl_context *context = renderer->context;
@@ -164,14 +173,15 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   work->sweeps = hl_allocate_zeroed(context, scene->light_count + 1, sizeof(frame_sweep));
   if (frame->points == NULL || frame->lights == NULL || work->grids == NULL || work->sweeps == NULL)
     return hl_fail_memory(error, scene->light_count * sizeof(frame_sweep), "the frame");
+  hl_status status = hl_frame_eye(scene, frame->centre, &frame->eye, error);
+  if (status != HL_OK) return status;
   for (size_t i = 0; i < scene->volume_count; i++) {
     work->grids[i] = renderer->prepared[i].grid;
     if (work->grids[i].relevant_count == 0) continue;
+    work->grids[i].cut = work->grids[i].cut || (frame->eye.perspective && inside_box(&work->grids[i], frame->eye.origin));
     hl_frame_content(&work->grids[i], frame->points + frame->point_count);
     frame->point_count += 8;
   }
-  hl_status status = hl_frame_eye(scene, frame->centre, &frame->eye, error);
-  if (status != HL_OK) return status;
   vec3 middle = content_middle(frame);
   look(frame, middle);
   frame->spacing = scene->render.sheet_spacing * smallest_edge(renderer);
@@ -181,8 +191,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
   status = hl_frame_check_sweeps(frame, work->sweeps, work->sweep_count, error);
   if (status != HL_OK) return status;
-  work->tiles_x = (size_t)(scene->width + TILE - 1) / TILE;
-  work->tiles = work->tiles_x * ((size_t)(scene->height + TILE - 1) / TILE);
+  work->tiles_x = (size_t)(frame->eye.width + TILE - 1) / TILE;
+  work->tiles = work->tiles_x * ((size_t)(frame->eye.height + TILE - 1) / TILE);
   work->pixels = hl_allocate_zeroed(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
   if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
   return HL_OK;
@@ -231,12 +241,13 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
 
 /* Blocks back to rows; contributions of lights add, opacity is the same in every sweep. */
 static void write_pixels(const frame_work *work, const hl_scene_description *scene, float *pixels, size_t row_stride) {
-  for (int y = 0; y < scene->height; y++)
-    for (int x = 0; x < scene->width; x++) {
+  for (int row = 0; row < scene->height; row++)
+    for (int column = 0; column < scene->width; column++) {
+      int x = column + FRAME_MARGIN, y = row + FRAME_MARGIN;
       size_t tile = (size_t)(y / TILE) * work->tiles_x + (size_t)(x / TILE);
       size_t block = (size_t)(y % TILE / BLOCK * 4 + x % TILE / BLOCK), lane = (size_t)(y % BLOCK * 4 + x % BLOCK);
       const float *from = work->pixels + (tile * TILE_BLOCKS + block) * 4 * BLOCK_PIXELS + lane;
-      float *to = pixels + (size_t)y * row_stride + 4 * (size_t)x;
+      float *to = pixels + (size_t)row * row_stride + 4 * (size_t)column;
       for (int c = 0; c < 4; c++) to[c] = from[c * BLOCK_PIXELS];
       for (int s = 1; s < work->sweep_count; s++)
         for (int c = 0; c < 3; c++)

@@ -1,4 +1,7 @@
-/* render/shade.h - steps 12 to 16: gradient, classification, shadow lookup, illumination, compositing. */
+/* render/shade.h - steps 12 to 16: gradient, classification, shadow lookup, illumination, compositing.
+ *
+ * What is shaded is the slab between two sheets: density runs linearly from one to the other along each ray, the
+ * gradient is central in the middle, and the shadow buffer holds the light that reaches the first sheet. */
 #ifndef HL_RENDER_SHADE_H
 #define HL_RENDER_SHADE_H
 
@@ -8,7 +11,7 @@ enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 typedef struct shade_volume {
   const classifier *classifier;
-  const float *before, *current, *after; /* sheets k-1, k, k+1 of the image; pixel (0,0); rows stride apart */
+  const float *before, *current;         /* sheets k-1 and k of the image; pixel (0,0); rows stride apart */
   const float *enter, *leave;            /* [tiles][256]; null: the box does not cut anything visible */
   int phong, visible, receives_shadow;
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
@@ -31,12 +34,12 @@ typedef struct shade_light {
 } shade_light;
 
 typedef struct shade_job {
-  sheet_rays rays;                /* image pixels -> frame space */
+  sheet_rays rays;                /* image pixels -> frame space, in the middle between the two sheets */
   float through[3];               /* parallel: from one sheet to the next along the eye's rays */
   float towards_eye[3];           /* parallel: unit direction to the eye */
   float normal[3];                /* h */
   float path;                     /* parallel: sheet spacing / |w.h|; perspective: sheet spacing */
-  float height, spacing;          /* of the sheet above the first; frame units */
+  float height, spacing;          /* of sheet k above the first, and to sheet k-1; frame units */
   int back_to_front;
   const shade_volume *volumes;
   int volume_count;

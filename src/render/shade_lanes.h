@@ -1,4 +1,4 @@
-/* render/shade_lanes.h - one sheet's pixels lit and composited, a 4x4 block at a time (steps 12 to 16). */
+/* render/shade_lanes.h - one slab's pixels lit and composited, a 4x4 block at a time (steps 12 to 16). */
 #ifndef HL_RENDER_SHADE_LANES_H
 #define HL_RENDER_SHADE_LANES_H
 
@@ -23,7 +23,7 @@ LANES_INLINE lanes3 normalise3(lanes3 a) {
 
 /* What the volumes of a block share: where its pixels are and how they look. */
 typedef struct block_geometry {
-  lanes3 position;       /* frame space, on the sheet */
+  lanes3 position;       /* frame space, in the middle of the slab */
   lanes3 step_u, step_v; /* to the next pixel along the sheet */
   lanes3 step_sheet;     /* to the next sheet along the ray */
   lanes3 towards_eye;    /* unit */
@@ -55,20 +55,43 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
   return g;
 }
 
+/* Sum of a block on both sheets. */
+LANES_INLINE lanes on_both(const shade_volume *volume, ptrdiff_t at, size_t stride) {
+  return lanes_load_block(volume->before + at, stride) + lanes_load_block(volume->current + at, stride);
+}
+
 /* Step 12. World gradient = B^-T differences, B the columns step_u, step_v, step_sheet; the rows of the inverse are
- * cross products over the determinant. */
-LANES_INLINE lanes3 gradient(const block_geometry *g, const shade_volume *volume, size_t at, size_t stride) {
-  const float *here = volume->current + at;
-  lanes du = (lanes_load_block(here + 1, stride) - lanes_load_block(here - 1, stride)) * 0.5f;
-  lanes dv = (lanes_load_block(here + stride, stride) - lanes_load_block(here - stride, stride)) * 0.5f;
-  lanes dz = (lanes_load_block(volume->after + at, stride) - lanes_load_block(volume->before + at, stride)) * 0.5f;
+ * cross products over the determinant. Differences along the sheets are the mean of both sheets'. */
+LANES_INLINE lanes3 gradient(const block_geometry *g, const shade_volume *volume, size_t start, size_t stride) {
+  ptrdiff_t at = (ptrdiff_t)start, row = (ptrdiff_t)stride;
+  lanes du = (on_both(volume, at + 1, stride) - on_both(volume, at - 1, stride)) * 0.25f;
+  lanes dv = (on_both(volume, at + row, stride) - on_both(volume, at - row, stride)) * 0.25f;
+  lanes dz = lanes_load_block(volume->current + at, stride) - lanes_load_block(volume->before + at, stride);
   lanes3 a = cross3(g->step_v, g->step_sheet), b = cross3(g->step_sheet, g->step_u), c = cross3(g->step_u, g->step_v);
   lanes determinant = dot3(g->step_u, a);
   lanes inverse = 1.0f / lanes_select(lanes_abs(determinant) > 0.0f, determinant, lanes_set(1.0f));
   return scale3(add3(add3(scale3(a, du), scale3(b, dv)), scale3(c, dz)), inverse);
 }
 
-/* Light reaching the sample before its own sheet: the shadow buffer's transmittance, 1 outside it. */
+/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1]. */
+LANES_INLINE lanes mean_transmittance(lanes x) {
+  lanes near = 1.0f - x * (0.5f - x * (1.0f / 6));
+  lanes safe = lanes_max(x, lanes_set(0.01f));
+  return lanes_select(x < 0.01f, near, (1.0f - lanes_exp_negative(safe)) / safe);
+}
+
+/* Light left within the slab, averaged as the eye sees it: with e and l the slab's optical depths for the eye and for
+ * the light (derived; exact for any extinction that varies along the normal only). Entering on the same side:
+ *     int e exp(-e s) exp(-l s) ds / (1 - exp(-e)) = phi(e + l) / phi(e);
+ * entering on opposite sides, exp(-l (1 - s)) in place of exp(-l s):
+ *     (exp(-l) - exp(-e)) / (e - l) / phi(e) = exp(-min) phi(|e - l|) / phi(e). */
+LANES_INLINE lanes own_transmittance(int back_to_front, lanes e, lanes l) {
+  lanes seen = back_to_front ? lanes_exp_negative(lanes_min(e, l)) * mean_transmittance(lanes_abs(e - l))
+                             : mean_transmittance(e + l);
+  return lanes_min(seen / mean_transmittance(e), lanes_set(1.0f));
+}
+
+/* Light reaching the slab: the shadow buffer's transmittance at its first sheet, 1 outside it. */
 LANES_INLINE lanes look_up(const shade_light *light, const float *buffer, lanes u, lanes v) {
   lanes_int inside = (u > 0.0f) & (v > 0.0f) & (u < (float)light->width) & (v < (float)light->height);
   lanes x = lanes_clamp(u - 0.5f, 0, (float)(light->width - 1)), y = lanes_clamp(v - 0.5f, 0, (float)(light->height - 1));
@@ -92,7 +115,7 @@ typedef struct arriving_light {
 } arriving_light;
 
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_geometry *g,
-                                     const lanes cast[HL_CHANNELS]) {
+                                     lanes depth, const lanes cast[HL_CHANNELS]) {
   arriving_light arriving;
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
   if (light->parallel) {
@@ -115,9 +138,9 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   lanes u = place[1] / place[0], v = place[2] / place[0];
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
-    /* the square root of the sheet's own transmittance: its middle lies half a sheet deep */
     if (c < light->channels)
-      transmittance = look_up(light, light->transmittance[c], u, v) * lanes_exp_negative(cast[c] * path * 0.5f);
+      transmittance = look_up(light, light->transmittance[c], u, v) *
+                      own_transmittance(job->back_to_front, depth, cast[c] * path);
     arriving.shadowed.c[c] = arriving.shadowed.c[c] * transmittance;
   }
   return arriving;
@@ -163,17 +186,27 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   return alpha;
 }
 
-/* The block's volumes at one sheet: extinctions, covered parts included. */
-typedef struct block_density { lanes density, extinction; } block_density;
+/* One volume's way through the slab: where it starts and ends in the tables, and its mean extinction, the part
+ * outside the box counting as none. */
+typedef struct block_density {
+  lanes middle; /* density */
+  table_place before, after;
+  lanes extinction;
+} block_density;
 
 /* Step 13 for one volume. */
 LANES_INLINE block_density classify_block(const shade_job *job, const shade_volume *volume, size_t at, size_t tile,
                                           int block) {
   block_density d;
-  d.density = lanes_load_block(volume->current + at, job->stride);
+  lanes before = lanes_load_block(volume->before + at, job->stride);
+  lanes after = lanes_load_block(volume->current + at, job->stride);
   const float *enter = volume->enter == NULL ? NULL : volume->enter + tile * TILE_PIXELS;
   const float *leave = volume->leave == NULL ? NULL : volume->leave + tile * TILE_PIXELS;
-  d.extinction = volume_extinction(volume->classifier, d.density, enter, leave, block, job->height, job->spacing);
+  d.middle = (before + after) * 0.5f;
+  d.before = classify_place(volume->classifier, before);
+  d.after = classify_place(volume->classifier, after);
+  d.extinction = mean_extinction(volume->classifier, d.before, d.after) *
+                 covered_block(enter, leave, block, job->height, job->spacing);
   return d;
 }
 
@@ -187,12 +220,12 @@ static color_lanes color_of_block(const shade_job *job, const block_geometry *g,
     if (!volume->visible) continue;
     block_density d = classify_block(job, volume, at, tile, block);
     if (lanes_bits(d.extinction > 0.0f) == 0) continue;
-    table_place place = classify_place(volume->classifier, d.density);
+    table_place place = mean_place(volume->classifier, d.before, d.after);
     color_lanes color;
-    for (int c = 0; c < 3; c++) color.c[c] = classify_value(volume->classifier->color[c], place);
+    for (int c = 0; c < 3; c++) color.c[c] = table_value(volume->classifier->color[c], place);
     lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
     if (volume->phong) slope = gradient(g, volume, at, job->stride);
-    color_lanes lit = illuminate(job, volume, g, lights, color, slope, d.density);
+    color_lanes lit = illuminate(job, volume, g, lights, color, slope, d.middle);
     lanes weight = job->volume_count == 1 ? lanes_set(1.0f) : d.extinction * inverse;
     for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
   }
@@ -216,10 +249,11 @@ static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile
   if (bits == 0) return 1;
   block_geometry g = geometry_of_block(job, block_u(x), block_v(y));
   arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
-  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, cast);
+  lanes depth = total * g.path;
+  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, depth, cast);
   color_lanes lit = color_of_block(job, &g, lights, at, tile, block, total);
   for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(seen, lit.c[c]);
-  lanes opacity = lanes_keep(seen, 1.0f - lanes_exp_negative(total * g.path));
+  lanes opacity = lanes_keep(seen, 1.0f - lanes_exp_negative(depth));
   lanes alpha = composite(job->back_to_front, opacity, lit, pixels);
   *samples += (uint64_t)__builtin_popcount(bits);
   return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;

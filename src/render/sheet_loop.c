@@ -13,17 +13,17 @@
  *            (soft: convolve for the next sheet)             hl_sweep_soften
  *   18. end
  *
- * A sheet's gradient needs the next sheet, so image sheets are filled one ahead; its light must not yet hold
- * its own attenuation, so the shadow sheet is taken up one behind. Both fall in the same stage. */
+ * What is lit, classified and composited is the slab between a sheet and the one before, so that nothing of a sharp
+ * transfer function falls between sheets. A slab is lit by what passed the slabs before it: the shadow sheet runs one
+ * behind the image sheet, and both are filled in the same stage. The first and last sheets lie outside the content. */
 #include "core/context.h"
 #include "render/sweep.h"
 
 hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
   int sheets = sweep->geometry->sheets.count;
-  hl_sweep_fill(sweep, 0, -1);
-  for (int sheet = 0; sheet < sheets; sheet++) {
-    hl_sweep_fill(sweep, sheet + 1, sheet - 1);
-    if (sheet > 0) hl_sweep_soften(sweep, sheet - 1);
+  for (int sheet = 1; sheet < sheets; sheet++) {
+    hl_sweep_fill(sweep, sheet, sheet - 1);
+    hl_sweep_soften(sweep, sheet - 1);
     hl_sweep_shade(sweep, sheet);
     if ((sheet & 7) == 0) {
       hl_progress(sweep->context, "render", (double)sheet / sheets);

@@ -21,7 +21,7 @@ typedef struct prepared_volume {
   int clipped;
 } prepared_volume;
 
-enum { RING = 3 }; /* sheets k-1, k, k+1 */
+enum { RING = 2 }; /* sheets k-1 and k */
 
 /* The image's sheets of one volume. */
 typedef struct image_sheets {
@@ -38,6 +38,9 @@ typedef struct sweep_light {
   occupancy occupancy;
   voxel_lists *lists;             /* owned; [grids]; splat only */
   float *enter, *leave;           /* owned; [grids][tiles][256]; null where no box cuts */
+  float *density;                 /* owned; [grids][tiles][RING][256]; the last sheets, block-major */
+  int32_t *density_sheet;         /* owned; [grids][tiles][RING]; which sheet that is */
+  uint16_t *density_blocks;       /* owned; [grids][tiles][RING]; blocks with density */
   soft_paper soft;
   double pixel;
 } sweep_light;
@@ -76,7 +79,7 @@ typedef struct sweep {
   size_t task_capacity;
   int task_start[FRAME_LIGHTS + 2]; /* where each kind starts */
   fill_source *image_sources;     /* [grids]; of fill_sheet */
-  fill_source *light_sources;     /* [lights][grids]; of light_sheet */
+  fill_source *light_sources;     /* [lights][RING][grids]; of light_sheet and the one before */
   shade_volume *shade_volumes;    /* [grids] */
   shade_light shade_lights[FRAME_LIGHTS];
   shade_job shade;
@@ -95,8 +98,8 @@ void hl_sweep_end(sweep *sweep);
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
 /* Stages (sweep_stages.c). */
-void hl_sweep_fill(sweep *sweep, int image_sheet, int light_sheet); /* steps 6 to 11, and 17 for light_sheet */
-void hl_sweep_shade(sweep *sweep, int sheet);                      /* steps 12 to 16 */
+void hl_sweep_fill(sweep *sweep, int image_sheet, int light_sheet); /* steps 6 to 11, and 17 for the slab before light_sheet */
+void hl_sweep_shade(sweep *sweep, int sheet);                      /* steps 12 to 16 for the slab before sheet */
 void hl_sweep_soften(sweep *sweep, int sheet);                     /* section 5 */
 
 #endif

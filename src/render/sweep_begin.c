@@ -37,9 +37,10 @@ static void open_blocks(sweep *sweep) {
   for (size_t tile = 0; tile < sweep->tiles; tile++) {
     uint32_t open = 0;
     int x0 = (int)(tile % (size_t)sweep->tiles_x) * TILE, y0 = (int)(tile / (size_t)sweep->tiles_x) * TILE;
-    for (int block = 0; block < TILE_BLOCKS; block++)
-      if (x0 + block % 4 * BLOCK < sweep->frame->eye.width && y0 + block / 4 * BLOCK < sweep->frame->eye.height)
-        open |= 1u << block;
+    for (int block = 0; block < TILE_BLOCKS; block++) {
+      int x = x0 + block % 4 * BLOCK - FRAME_MARGIN, y = y0 + block / 4 * BLOCK - FRAME_MARGIN;
+      if (x >= 0 && y >= 0 && x < sweep->scene->width && y < sweep->scene->height) open |= 1u << block;
+    }
     sweep->open[tile] = (uint16_t)open;
   }
 }
@@ -94,6 +95,18 @@ static hl_status cover_light(sweep *sweep, sweep_light *light, hl_error *error) 
   return HL_OK;
 }
 
+/* The light's last two sheets: a slab needs both. */
+static hl_status keep_light_sheets(sweep *sweep, sweep_light *light, hl_error *error) {
+  size_t count = (size_t)sweep->volume_count * (size_t)light->occupancy.tiles_x * (size_t)light->occupancy.tiles_y * RING;
+  light->density = hl_allocate(sweep->context, count * TILE_PIXELS, sizeof(float));
+  light->density_sheet = hl_allocate(sweep->context, count, sizeof(int32_t));
+  light->density_blocks = hl_allocate(sweep->context, count, sizeof(uint16_t));
+  if (light->density == NULL || light->density_sheet == NULL || light->density_blocks == NULL)
+    return hl_fail_memory(error, count * TILE_PIXELS * sizeof(float), "the light's sheets");
+  for (size_t i = 0; i < count; i++) light->density_sheet[i] = -1;
+  return HL_OK;
+}
+
 static hl_status sort_voxels(sweep *sweep, const view *view, voxel_lists **lists, hl_error *error) {
   if (!sweep->splat) return HL_OK;
   *lists = hl_allocate_zeroed(sweep->context, (size_t)sweep->volume_count, sizeof **lists);
@@ -145,6 +158,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
                                 &sweep->geometry->sheets, &light->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sweep, &view, &light->lists, error);
   if (status == HL_OK) status = cover_light(sweep, light, error);
+  if (status == HL_OK) status = keep_light_sheets(sweep, light, error);
   return status;
 }
 
@@ -156,7 +170,7 @@ static hl_status allocate_stages(sweep *sweep, hl_error *error) {
     sweep->task_capacity += (size_t)sweep->lights[i].occupancy.tiles_x * (size_t)sweep->lights[i].occupancy.tiles_y;
   sweep->tasks = hl_allocate(context, sweep->task_capacity, sizeof *sweep->tasks);
   sweep->image_sources = hl_allocate_zeroed(context, grids, sizeof *sweep->image_sources);
-  sweep->light_sources = hl_allocate_zeroed(context, grids * FRAME_LIGHTS, sizeof *sweep->light_sources);
+  sweep->light_sources = hl_allocate_zeroed(context, grids * FRAME_LIGHTS * RING, sizeof *sweep->light_sources);
   sweep->shade_volumes = hl_allocate_zeroed(context, grids, sizeof *sweep->shade_volumes);
   sweep->scratch = hl_allocate(context, threads * grids * TILE_PIXELS, sizeof(float));
   sweep->scratch_volumes = hl_allocate(context, threads * grids, sizeof *sweep->scratch_volumes);
@@ -286,6 +300,9 @@ void hl_sweep_end(sweep *sweep) {
     release_lists(sweep, light->lists);
     hl_release(context, light->enter);
     hl_release(context, light->leave);
+    hl_release(context, light->density);
+    hl_release(context, light->density_sheet);
+    hl_release(context, light->density_blocks);
   }
   hl_occupancy_release(context, &sweep->occupancy);
   release_lists(sweep, sweep->lists);

@@ -76,37 +76,56 @@ static void fill_image_tile(sweep *sweep, size_t tile, int g, int worker) {
   sheets->filled[slot][tile] = (uint16_t)filled;
 }
 
+/* One volume's densities on a sheet of a light's tile: kept from the slab before, or filled now. Null: empty. */
+static const float *light_density(sweep *sweep, int light_index, size_t tile, int g, int sheet, uint32_t *blocks) {
+  sweep_light *light = &sweep->lights[light_index];
+  if (sheet < 0 || !hl_occupancy_has(&light->occupancy, g, tile, sheet)) return NULL;
+  size_t tiles = (size_t)light->occupancy.tiles_x * (size_t)light->occupancy.tiles_y;
+  size_t at = ((size_t)g * tiles + tile) * RING + (size_t)(sheet % RING);
+  if (light->density_sheet[at] != sheet) {
+    int source = (light_index * RING + (sweep->light_sheet - sheet)) * sweep->volume_count + g;
+    light->density_blocks[at] =
+        (uint16_t)fill_tile(sweep, &sweep->light_sources[source], (int)(tile % (size_t)light->occupancy.tiles_x),
+                            (int)(tile / (size_t)light->occupancy.tiles_x), ALL_BLOCKS, light->density + at * TILE_PIXELS);
+    light->density_sheet[at] = sheet;
+  }
+  *blocks |= light->density_blocks[at];
+  return light->density + at * TILE_PIXELS;
+}
+
 /* Steps 7 to 11 and 17 for one tile of a light's shadow sheet and buffer. */
 static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int worker) {
+  static const float nothing[TILE_PIXELS];
   sweep_light *light = &sweep->lights[light_index];
   shadow_buffer *buffer = light->buffer;
-  sweep_counts *counts = &sweep->counts[worker];
   if (buffer->tile_greatest[tile] < DARK) {
-    counts->skipped_light++;
+    sweep->counts[worker].skipped_light++;
     return;
   }
-  int tile_x = (int)(tile % (size_t)buffer->tiles_x), tile_y = (int)(tile / (size_t)buffer->tiles_x), found = 0;
-  float *density = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * TILE_PIXELS;
+  int found = 0;
   attenuate_volume *volumes = sweep->scratch_volumes + (size_t)worker * (size_t)sweep->volume_count;
   size_t pixels = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y * TILE_PIXELS;
   for (int g = 0; g < sweep->volume_count; g++) {
     const hl_scene_volume *scene = sweep->volumes[g].scene;
-    if (!scene->casts_shadow || !hl_occupancy_has(&light->occupancy, g, tile, sweep->light_sheet)) continue;
-    const fill_source *source = &sweep->light_sources[light_index * sweep->volume_count + g];
-    uint32_t blocks = fill_tile(sweep, source, tile_x, tile_y, ALL_BLOCKS, density + (size_t)found * TILE_PIXELS);
+    if (!scene->casts_shadow) continue;
+    uint32_t blocks = 0;
+    const float *before = light_density(sweep, light_index, tile, g, sweep->light_sheet - 1, &blocks);
+    const float *density = light_density(sweep, light_index, tile, g, sweep->light_sheet, &blocks);
     if (blocks == 0) continue;
-    bool cut = sweep->grids[g].cut;
     size_t at = (size_t)g * pixels + tile * TILE_PIXELS;
+    bool cut = sweep->grids[g].cut;
     volumes[found] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = blocks,
-                                        .density = density + (size_t)found * TILE_PIXELS,
+                                        .before = before == NULL ? nothing : before,
+                                        .density = density == NULL ? nothing : density,
                                         .enter = cut ? light->enter + at : NULL,
                                         .leave = cut ? light->leave + at : NULL};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[found].weight[c] = (float)scene->attenuation_color[c];
     found++;
   }
-  counts->filled_light++;
+  sweep->counts[worker].filled_light++;
   if (found == 0) return;
   attenuate_job job = sweep->attenuate[light_index];
+  int tile_x = (int)(tile % (size_t)buffer->tiles_x), tile_y = (int)(tile / (size_t)buffer->tiles_x);
   job.volumes = volumes;
   job.volume_count = found;
   for (int c = 0; c < job.channels; c++)
@@ -145,9 +164,10 @@ static void prepare_light(sweep *sweep, int light_index, int sheet) {
   const affine3 identity = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
   sweep_light *light = &sweep->lights[light_index];
   attenuate_job *job = &sweep->attenuate[light_index];
-  for (int g = 0; g < sweep->volume_count; g++)
-    set_source(sweep, &light->buffer->view, g, light->lists, sheet,
-               &sweep->light_sources[light_index * sweep->volume_count + g]);
+  for (int back = 0; back < RING; back++)
+    for (int g = 0; g < sweep->volume_count; g++)
+      set_source(sweep, &light->buffer->view, g, light->lists, sheet - back,
+                 &sweep->light_sources[(light_index * RING + back) * sweep->volume_count + g]);
   hl_view_sheet_rays(&light->buffer->view, sweep->geometry->sheets.normal, sheet_height(sweep, sheet), identity,
                      &job->rays);
   job->height = (float)(sheet * sweep->geometry->sheets.spacing);
@@ -167,7 +187,7 @@ void hl_sweep_fill(sweep *sweep, int image_sheet, int light_sheet) {
     int count = 0;
     if (light_sheet >= 0 && sweep->lights[i].buffer != NULL) {
       const occupancy *light = &sweep->lights[i].occupancy;
-      count = list_tiles(tiles_of_sheet(light, light_sheet), NULL, light->tile_words,
+      count = list_tiles(tiles_of_sheet(light, light_sheet), tiles_of_sheet(light, light_sheet - 1), light->tile_words,
                          sweep->tasks + sweep->task_start[i + 1]);
       if (count > 0) prepare_light(sweep, i, light_sheet);
     }
@@ -181,7 +201,8 @@ void hl_sweep_fill(sweep *sweep, int image_sheet, int light_sheet) {
 /* Steps 12 to 16 for one tile. */
 static void shade_one(sweep *sweep, size_t tile, int worker) {
   uint32_t blocks = 0;
-  for (int g = 0; g < sweep->volume_count; g++) blocks |= sweep->sheets[g].filled[sweep->sheet % RING][tile];
+  for (int g = 0; g < sweep->volume_count; g++)
+    blocks |= (uint32_t)sweep->sheets[g].filled[0][tile] | sweep->sheets[g].filled[1][tile];
   blocks &= sweep->open[tile];
   if (blocks == 0) return;
   uint32_t open = sweep->hot->shade_tile(&sweep->shade, (int)(tile % (size_t)sweep->tiles_x),
@@ -200,17 +221,17 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
   const affine3 identity = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
   sweep->sheet = sheet;
-  hl_view_sheet_rays(&sweep->frame->eye, sweep->geometry->sheets.normal, sheet_height(sweep, sheet), identity,
+  hl_view_sheet_rays(&sweep->frame->eye, sweep->geometry->sheets.normal,
+                     sheet_height(sweep, sheet) - 0.5 * sweep->geometry->sheets.spacing, identity,
                      &sweep->shade.rays);
   sweep->shade.height = (float)(sheet * sweep->geometry->sheets.spacing);
   for (int g = 0; g < sweep->volume_count; g++) {
     shade_volume *volume = &sweep->shade_volumes[g];
-    volume->before = sweep->sheets[g].density[(sheet + RING - 1) % RING];
+    volume->before = sweep->sheets[g].density[(sheet - 1) % RING];
     volume->current = sweep->sheets[g].density[sheet % RING];
-    volume->after = sweep->sheets[g].density[(sheet + 1) % RING];
   }
-  sweep->task_start[1] = list_tiles(tiles_of_sheet(&sweep->occupancy, sheet), NULL, sweep->occupancy.tile_words,
-                                    sweep->tasks);
+  sweep->task_start[1] = list_tiles(tiles_of_sheet(&sweep->occupancy, sheet), tiles_of_sheet(&sweep->occupancy, sheet - 1),
+                                    sweep->occupancy.tile_words, sweep->tasks);
   hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task, sweep);
   sweep->seconds_shade += hl_clock_seconds() - start;
 }

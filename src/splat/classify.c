@@ -17,6 +17,20 @@ static bool below_all(const hl_scene_volume *volume, double value) {
   return value < volume->volume->minimum && hl_transfer_function_opacity(&volume->transfer_function, value) > 0;
 }
 
+/* Exact for the piecewise linear table: over one step the mean extinction e is (e0 + e1) / 2, its moment about the
+ * step's start (e0 + 2 e1) / 6 (derived). */
+static void integrate(classifier *classifier) {
+  double integral = 0, moment = 0;
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
+    classifier->integral[entry] = (float)integral;
+    classifier->moment[entry] = (float)moment;
+    if (entry > CLASSIFIER_ENTRIES) break;
+    double e0 = classifier->extinction[entry], e1 = classifier->extinction[entry + 1];
+    integral += (e0 + e1) / 2;
+    moment += entry * (e0 + e1) / 2 + (e0 + 2 * e1) / 6;
+  }
+}
+
 static void fill_tables(const hl_scene_volume *volume, double low, double high, classifier *classifier) {
   const hl_transfer_function *function = &volume->transfer_function;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
@@ -30,6 +44,7 @@ static void fill_tables(const hl_scene_volume *volume, double low, double high, 
   classifier->extinction[CLASSIFIER_ENTRIES + 1] = classifier->extinction[CLASSIFIER_ENTRIES];
   for (int c = 0; c < 3; c++)
     classifier->color[c][CLASSIFIER_ENTRIES + 1] = classifier->color[c][CLASSIFIER_ENTRIES];
+  integrate(classifier);
   int32_t next = CLASSIFIER_ENTRIES + 2;
   for (int entry = CLASSIFIER_ENTRIES + 1; entry >= 0; entry--) {
     if (classifier->extinction[entry] > 0) next = entry;
@@ -54,13 +69,15 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
                                classifier *classifier, hl_error *error) {
   enum { COUNT = CLASSIFIER_ENTRIES + 2 };
   *classifier = (struct classifier){0};
-  classifier->extinction = hl_allocate(context, 4 * (size_t)COUNT, sizeof(float));
+  classifier->extinction = hl_allocate(context, 6 * (size_t)COUNT, sizeof(float));
   classifier->next_visible = hl_allocate(context, COUNT, sizeof(int32_t));
   if (classifier->extinction == NULL || classifier->next_visible == NULL) {
     hl_classifier_release(context, classifier);
-    return hl_fail_memory(error, 5 * COUNT * sizeof(float), "a transfer-function table");
+    return hl_fail_memory(error, 7 * COUNT * sizeof(float), "a transfer-function table");
   }
-  for (int c = 0; c < 3; c++) classifier->color[c] = classifier->extinction + (size_t)(c + 1) * COUNT;
+  classifier->integral = classifier->extinction + COUNT;
+  classifier->moment = classifier->extinction + 2 * COUNT;
+  for (int c = 0; c < 3; c++) classifier->color[c] = classifier->extinction + (size_t)(c + 3) * COUNT;
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
   if (!(high > low)) high = low + 1;

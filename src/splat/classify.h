@@ -1,7 +1,9 @@
 /* splat/classify.h - transfer functions as tables, for post-classification per pixel.
  *
  * Density on a sheet (stored units, relative to the grid's empty value) -> extinction and colour, linear
- * between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. */
+ * between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. Along a ray from one sheet to
+ * the next, density runs from a to b; its mean extinction is the integral of the table from a to b over (b - a), so
+ * the table is kept integrated too: a sharp transfer function is never stepped over. */
 #ifndef HL_SPLAT_CLASSIFY_H
 #define HL_SPLAT_CLASSIFY_H
 
@@ -12,7 +14,9 @@ enum { CLASSIFIER_ENTRIES = 4096 };
 typedef struct classifier {
   float scale, offset;   /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
   float *extinction;     /* owned; [CLASSIFIER_ENTRIES + 2]; per world unit */
-  float *color[3];       /* owned with extinction; [CLASSIFIER_ENTRIES + 2] each; linear RGB */
+  float *integral;       /* owned with extinction; [same]; of extinction over entries, from entry 0 */
+  float *moment;         /* owned with extinction; [same]; of extinction * entry */
+  float *color[3];       /* owned with extinction; [same] each; linear RGB */
   int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: first entry at or above with extinction > 0 */
   float greatest_extinction;
   float normal_edge;     /* the least gradient (density per world unit) that counts as a surface */

@@ -1,21 +1,48 @@
-/* splat/classify_lanes.h - table lookups for sixteen densities. */
+/* splat/classify_lanes.h - classification of the way from one sheet to the next, sixteen rays at a time. */
 #ifndef HL_SPLAT_CLASSIFY_LANES_H
 #define HL_SPLAT_CLASSIFY_LANES_H
 
 #include "simd/lanes.h"
 #include "splat/classify.h"
 
-typedef struct table_place { lanes_int entry; lanes fraction; } table_place;
+/* A place in the tables: entry + fraction. */
+typedef struct table_place { lanes x; lanes_int entry; lanes fraction; } table_place;
 
-LANES_INLINE table_place classify_place(const classifier *classifier, lanes density) {
-  lanes x = lanes_clamp(density * classifier->scale + classifier->offset, 0, CLASSIFIER_ENTRIES);
+LANES_INLINE table_place place_of_coordinate(lanes x) {
   lanes_int entry = lanes_truncate(x);
-  return (table_place){entry, x - lanes_from_int(entry)};
+  return (table_place){x, entry, x - lanes_from_int(entry)};
 }
 
-LANES_INLINE lanes classify_value(const float *table, table_place place) {
+LANES_INLINE table_place classify_place(const classifier *classifier, lanes density) {
+  return place_of_coordinate(lanes_clamp(density * classifier->scale + classifier->offset, 0, CLASSIFIER_ENTRIES));
+}
+
+LANES_INLINE lanes table_value(const float *table, table_place place) {
   lanes a = lanes_gather(table, place.entry), b = lanes_gather(table + 1, place.entry);
   return a + (b - a) * place.fraction;
+}
+
+/* Closer than this many entries the integral's difference loses digits; the ends' mean is as good there. */
+static const float NEAR_ENTRIES = 4;
+
+/* Mean extinction between two places: (I(b) - I(a)) / (b - a). */
+LANES_INLINE lanes mean_extinction(const classifier *classifier, table_place a, table_place b) {
+  lanes ends = (table_value(classifier->extinction, a) + table_value(classifier->extinction, b)) * 0.5f;
+  lanes distance = b.x - a.x;
+  lanes_int far = lanes_abs(distance) > NEAR_ENTRIES;
+  if (lanes_bits(far) == 0) return ends;
+  lanes difference = table_value(classifier->integral, b) - table_value(classifier->integral, a);
+  return lanes_select(far, lanes_max(difference / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0)), ends);
+}
+
+/* The place between a and b where, weighted by extinction, the density lies: what colour is taken from. */
+LANES_INLINE table_place mean_place(const classifier *classifier, table_place a, table_place b) {
+  lanes low = lanes_min(a.x, b.x), high = lanes_max(a.x, b.x), middle = (low + high) * 0.5f;
+  lanes weight = table_value(classifier->integral, b) - table_value(classifier->integral, a);
+  lanes moment = table_value(classifier->moment, b) - table_value(classifier->moment, a);
+  lanes_int usable = (high - low > NEAR_ENTRIES) & (lanes_abs(weight) > 0.0f);
+  lanes mean = moment / lanes_select(usable, weight, lanes_set(1.0f));
+  return place_of_coordinate(lanes_min(lanes_max(lanes_select(usable, mean, middle), low), high));
 }
 
 #endif

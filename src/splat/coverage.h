@@ -1,8 +1,8 @@
 /* splat/coverage.h - how much of a sheet's slab along a ray lies inside a volume's box.
  *
- * A homogeneous box must be as thick as it is: samples at sheets' mid-planes would round its depth to whole
- * sheets. So each ray keeps the heights at which it enters and leaves the box, and a sheet counts with the
- * part of its slab in between (derived; exact for a homogeneous medium). */
+ * A homogeneous box must be as thick as it is: counting sheets would round its depth to whole sheets.
+ * So each ray keeps the heights at which it enters and leaves the box, and the slab between two sheets counts with
+ * the part that lies in between (derived; exact for a homogeneous medium). */
 #ifndef HL_SPLAT_COVERAGE_H
 #define HL_SPLAT_COVERAGE_H
 
@@ -19,7 +19,7 @@ typedef struct box_rays {
   int perspective;
 } box_rays;
 
-/* enter, leave: [256], block-major, one tile; heights above the first sheet's mid-plane. A ray that misses
+/* enter, leave: [256], block-major, one tile; heights above the first sheet. A ray that misses
  * has enter > leave. */
 typedef void coverage_tile_function(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave);
 

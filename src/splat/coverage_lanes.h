@@ -28,10 +28,10 @@ static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *e
   }
 }
 
-/* The part of the slab [height - spacing/2, height + spacing/2] between enter and leave, 0 to 1. */
+/* The part of the slab [height - spacing, height] between enter and leave, 0 to 1. */
 LANES_INLINE lanes covered(lanes enter, lanes leave, float height, float spacing) {
-  lanes top = lanes_min(leave, lanes_set(height + 0.5f * spacing));
-  lanes bottom = lanes_max(enter, lanes_set(height - 0.5f * spacing));
+  lanes top = lanes_min(leave, lanes_set(height));
+  lanes bottom = lanes_max(enter, lanes_set(height - spacing));
   return lanes_max((top - bottom) * (1.0f / spacing), lanes_set(0));
 }
 

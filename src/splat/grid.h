@@ -14,7 +14,10 @@
 #include "scene/scene.h"
 #include "splat/kernel.h"
 
-enum { HL_BRICK_CELLS = 4 };
+enum {
+  HL_BRICK_CELLS = 4,
+  GRID_MARGIN = 4 /* voxels outside its box that a grid still continues, for central differences at its faces */
+};
 
 typedef struct grid {
   const void *voxels;          /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's */

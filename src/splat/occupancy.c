@@ -59,7 +59,6 @@ typedef struct occupancy_job {
   int grid_index;
   footprint_map map;
   const sheet_stack *sheets;
-  double margin;
 } occupancy_job;
 
 enum { BRICKS_A_TASK = 1024 };
@@ -83,7 +82,7 @@ static void mark_brick(const occupancy_job *job, uint32_t brick) {
   double centre[3], half[3];
   footprint_bounds bounds;
   hl_grid_brick_place(job->grid, brick, b);
-  hl_brick_bounds(job->grid, b, job->margin, centre, half);
+  hl_brick_bounds(job->grid, b, GRID_MARGIN, centre, half);
   if (!hl_footprint_bounds(&job->map, centre, half, &bounds)) return;
   double low = ceil((bounds.low_height - job->sheets->first) / job->sheets->spacing - 1e-6);
   double high = floor((bounds.high_height - job->sheets->first) / job->sheets->spacing + 1e-6);
@@ -150,10 +149,7 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *gri
                      (size_t)occupancy->words * 64 * (size_t)occupancy->tile_words, error);
   if (status != HL_OK) return status;
   for (int g = 0; g < grid_count; g++) {
-    double edge = INFINITY;
-    for (int axis = 0; axis < 3; axis++)
-      edge = fmin(edge, vec3_length(mat3_column(grids[g].index_to_frame.linear, axis)));
-    occupancy_job job = {occupancy, &grids[g], g, {{{0}}, {0}}, sheets, 1 + sheets->spacing / edge};
+    occupancy_job job = {occupancy, &grids[g], g, {{{0}}, {0}}, sheets};
     hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &job.map);
     hl_pool_run(pool, (grids[g].relevant_count + BRICKS_A_TASK - 1) / BRICKS_A_TASK, mark_bricks, &job);
   }

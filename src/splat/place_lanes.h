@@ -18,9 +18,6 @@ typedef struct block_place {
   lanes_int inside; /* within the grid or a little outside, and in a relevant brick */
 } block_place;
 
-/* How far outside its box a grid is still reconstructed (by its border values), for central differences. */
-static const float PLACE_MARGIN = 2.5f;
-
 LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
   const grid *grid = source->grid;
   lanes3 p = rays_positions(&source->rays, block_u(x), block_v(y));
@@ -29,7 +26,7 @@ LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
   place.inside = lanes_set_int(-1);
   for (int a = 0; a < 3; a++) {
     float high = (float)grid->dimension[a] - 0.5f;
-    place.inside &= (axis[a] > -0.5f - PLACE_MARGIN) & (axis[a] < high + PLACE_MARGIN);
+    place.inside &= (axis[a] > -0.5f - GRID_MARGIN) & (axis[a] < high + GRID_MARGIN);
     axis[a] = lanes_clamp(axis[a], -0.5f, high);
     place.cell[a] = lanes_floor(axis[a]);
   }
