@@ -119,13 +119,22 @@ bool hl_colormap_evaluate(const char *name, double t, double linear[3]) {
   return true;
 }
 
+static hl_status fail_unknown(const char *name, hl_error *error) {
+  const char *names[TABLE_COUNT + 1 + CORNERED_COUNT + 1];
+  char mend[400];
+  size_t index = 0;
+  do names[index] = hl_colormap_name(index);
+  while (names[index++] != NULL);
+  hl_suggest_name(name, names, mend, sizeof mend);
+  return hl_fail(error, HL_ERROR_INPUT, "unknown colormap \"%.80s\": %s", name, mend);
+}
+
 hl_status hl_transfer_function_colormap(hl_context *context, const char *name, double low, double high,
                                         hl_transfer_function *function, hl_error *error) {
   double ignored[3];
   if (context == NULL || name == NULL || function == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_colormap: null context, name or function");
-  if (!hl_colormap_evaluate(name, 0, ignored))
-    return hl_fail_name(error, HL_ERROR_INPUT, "colormap", name, hl_colormap_name);
+  if (!hl_colormap_evaluate(name, 0, ignored)) return fail_unknown(name, error);
   if (!(low < high) || !isfinite(high - low))
     return hl_fail(error, HL_ERROR_INPUT, "colormap range %.9g to %.9g: give two values, the lower one first", low, high);
   size_t count = HL_COLORMAP_POINTS;

@@ -15,6 +15,10 @@ void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
   light->intensity = 1.1;
 }
 
+hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera) {
+  return hl_camera_frame(description, AZIMUTH, ELEVATION, 1, camera);
+}
+
 static void choose_material(hl_data_kind kind, hl_scene_volume *volume) {
   volume->shading = kind == HL_DATA_MEDIUM ? HL_SHADING_NONE : HL_SHADING_PHONG;
   volume->material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
@@ -40,7 +44,7 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   hl_scene_description_defaults(&description);
   description.volumes = &scene_volume;
   description.volume_count = 1;
-  status = hl_camera_frame(&description, AZIMUTH, ELEVATION, 1, &description.camera);
+  status = hl_scene_frame(&description, &description.camera);
   if (status != HL_OK) {
     hl_fail(error, status, "the volume cannot be framed: mend its spacing");
   } else {

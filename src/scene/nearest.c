@@ -30,28 +30,26 @@ int hl_edit_distance(const char *a, const char *b) {
   return last[length_b];
 }
 
-const char *hl_nearest_name(const char *name, const char *(*name_at)(size_t index)) {
+const char *hl_nearest_name(const char *name, const char *const *names) {
   const char *nearest = NULL;
-  int best = 1 + (int)strnlen(name, LONGEST) / 3; /* about every third letter may be wrong */
-  if (best < 3 && strlen(name) > 2) best = 3;
-  for (size_t n = 0; name_at(n) != NULL; n++) {
-    int distance = hl_edit_distance(name, name_at(n));
+  int allowed = (int)strnlen(name, LONGEST) / 3, best; /* about every third letter may be wrong */
+  best = 1 + (allowed < 2 && strlen(name) > 2 ? 2 : allowed);
+  for (size_t n = 0; names[n] != NULL; n++) {
+    int distance = hl_edit_distance(name, names[n]);
     if (distance >= best) continue;
     best = distance;
-    nearest = name_at(n);
+    nearest = names[n];
   }
   return nearest;
 }
 
-hl_status hl_fail_name(hl_error *error, hl_status code, const char *kind, const char *name,
-                       const char *(*name_at)(size_t index)) {
-  const char *nearest = hl_nearest_name(name, name_at);
-  if (nearest != NULL)
-    return hl_fail(error, code, "unknown %s \"%.80s\": did you mean \"%s\"?", kind, name, nearest);
-  char all[500] = "";
-  for (size_t n = 0; name_at(n) != NULL && strlen(all) + strlen(name_at(n)) + 3 < sizeof all; n++) {
-    if (n > 0) strcat(all, ", ");
-    strcat(all, name_at(n));
+void hl_suggest_name(const char *name, const char *const *names, char *text, size_t size) {
+  const char *nearest = hl_nearest_name(name, names);
+  size_t used = 0;
+  if (nearest != NULL) {
+    snprintf(text, size, "did you mean \"%s\"?", nearest);
+    return;
   }
-  return hl_fail(error, code, "unknown %s \"%.80s\": use one of %s", kind, name, all);
+  for (size_t n = 0; names[n] != NULL && used < size; n++)
+    used += (size_t)snprintf(text + used, size - used, "%s%s", n == 0 ? "use one of " : ", ", names[n]);
 }

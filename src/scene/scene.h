@@ -40,6 +40,9 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
  * False if up was useless (along the line of sight): then z, or y where the sight is along z, stands in. */
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
 
+/* The camera that a scene without one gets: a three-quarter view that frames the volumes. Its type and fovy_deg stay. */
+hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera);
+
 /* The light that a scene without lights gets: soft, from the upper left as the camera sees it. */
 void hl_scene_key_light(const hl_camera *camera, hl_light *light);
 

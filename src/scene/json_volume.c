@@ -1,0 +1,134 @@
+/* scene/json_volume.c - one volume of a scene from JSON: its file, place, material and transfer function. */
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/automatic.h"
+#include "scene/json_parts.h"
+#include "scene/scene.h"
+
+static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"axis", "angle_deg", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "rotate");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "axis", 3, volume->rotate_axis);
+  if (status == HL_OK) status = hl_json_number(reader, value, "angle_deg", &volume->rotate_angle_deg);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+static hl_status read_transform(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"scale", "rotate", "translate", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "transform");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_number(reader, value, "scale", &volume->scale);
+  if (status == HL_OK) status = read_rotate(reader, json_object_get(value, "rotate"), volume);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "translate", 3, volume->translate);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+static hl_status read_material(hl_json_reader *reader, const json_t *value, hl_material *material) {
+  static const char *const keys[] = {"ambient", "diffuse", "specular", "shininess", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "material");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_number(reader, value, "ambient", &material->ambient);
+  if (status == HL_OK) status = hl_json_number(reader, value, "diffuse", &material->diffuse);
+  if (status == HL_OK) status = hl_json_number(reader, value, "specular", &material->specular);
+  if (status == HL_OK) status = hl_json_number(reader, value, "shininess", &material->shininess);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"min", "max", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "clip");
+  hl_status status = hl_json_object(reader, value, keys);
+  for (int k = 0; status == HL_OK && k < 2; k++)
+    if (json_object_get(value, keys[k]) == NULL)
+      status = hl_json_fail(reader, HL_ERROR_INPUT, keys[k], "is missing: give both min and max");
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "min", 3, volume->clip_min);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "max", 3, volume->clip_max);
+  volume->clipped = 1;
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+/* The volume of a file, loaded now or earlier. */
+static hl_status load(hl_json_reader *reader, const char *file, hl_loaded_volume *loaded, size_t *loaded_count,
+                      hl_scene_volume *volume) {
+  char *path = hl_path_join(reader->context, reader->folder, file);
+  if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
+  for (size_t v = 0; v < *loaded_count; v++)
+    if (strcmp(loaded[v].path, path) == 0) {
+      hl_release(reader->context, path);
+      volume->volume = loaded[v].volume;
+      volume->file = loaded[v].path;
+      return HL_OK;
+    }
+  hl_status status = hl_volume_load(reader->context, path, &volume->volume, reader->error);
+  if (status != HL_OK) {
+    hl_release(reader->context, path);
+    hl_json_enter(reader, "file");
+    hl_json_prefix(reader, reader->place);
+    return status;
+  }
+  volume->file = path;
+  loaded[(*loaded_count)++] = (hl_loaded_volume){path, volume->volume};
+  return HL_OK;
+}
+
+static hl_status read_file(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded, size_t *loaded_count,
+                           hl_scene_volume *volume) {
+  static const char *const procedural[] = {"shapes", "voxel_size"};
+  for (int k = 0; k < 2; k++)
+    if (json_object_get(value, procedural[k]) != NULL)
+      return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, procedural[k],
+                          "procedural volumes in scenes are not supported by this version: write a volume file and name it");
+  const char *file = NULL;
+  hl_status status = hl_json_text(reader, value, "file", &file);
+  if (status != HL_OK) return status;
+  if (file == NULL) return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is missing: name the volume's file");
+  if (file[0] == 0) return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is empty: name the volume's file");
+  return load(reader, file, loaded, loaded_count, volume);
+}
+
+/* Without a word on it, smoke is a medium and the rest has surfaces. */
+static hl_status read_shading(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  int shading = HL_SHADING_PHONG;
+  if (json_object_get(value, "shading") == NULL && json_object_get(value, "transfer_function") == NULL) {
+    hl_data_analysis analysis;
+    hl_status status = hl_data_analyse(volume->volume, &analysis, reader->error);
+    if (status != HL_OK) return hl_json_prefix(reader, reader->place), status;
+    if (analysis.kind == HL_DATA_MEDIUM) shading = HL_SHADING_NONE;
+  }
+  hl_status status = hl_json_choice(reader, value, "shading", hl_shading_names, 0, &shading);
+  volume->shading = (hl_shading)shading;
+  return status;
+}
+
+hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded,
+                              size_t *loaded_count, hl_scene_volume *volume) {
+  static const char *const keys[] = {"name", "file", "shapes", "voxel_size", "transform", "transfer_function", "shading",
+                                     "material", "attenuation_color", "visible", "casts_shadow", "receives_shadow",
+                                     "clip", NULL};
+  hl_scene_volume_defaults(volume);
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_text(reader, value, "name", &volume->name);
+  if (status == HL_OK) status = read_transform(reader, json_object_get(value, "transform"), volume);
+  if (status == HL_OK) status = read_material(reader, json_object_get(value, "material"), &volume->material);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "attenuation_color", 3, volume->attenuation_color);
+  if (status == HL_OK) status = hl_json_flag(reader, value, "visible", &volume->visible);
+  if (status == HL_OK) status = hl_json_flag(reader, value, "casts_shadow", &volume->casts_shadow);
+  if (status == HL_OK) status = hl_json_flag(reader, value, "receives_shadow", &volume->receives_shadow);
+  if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
+  if (status == HL_OK) status = read_file(reader, value, loaded, loaded_count, volume);
+  if (status == HL_OK) status = read_shading(reader, value, volume);
+  if (status != HL_OK) return status;
+  return hl_json_read_transfer_function(reader, json_object_get(value, "transfer_function"), volume->volume,
+                                        &volume->transfer_function);
+}

@@ -1,0 +1,167 @@
+/* scene/scene_json.c - a scene file: the top level, and the loading of what it names.
+ *
+ * In: JSON text. Out: an hl_scene. Order matters: volumes are loaded before the camera, which frames them where the
+ * file does not say, and the camera is known before the lights, which stand as it sees them where the file has none.
+ */
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/check.h"
+#include "scene/json_parts.h"
+#include "scene/scene.h"
+
+/* What reading gathers and must let go of, whatever happens. */
+typedef struct gathered {
+  hl_scene_description description;
+  hl_light *lights;           /* owned; [light_count] */
+  hl_scene_volume *volumes;   /* owned, with their transfer functions' points; [volume_count] */
+  hl_loaded_volume *loaded;   /* owned; [volume_count], loaded_count of them filled */
+  size_t loaded_count;
+  hl_light key_light;
+} gathered;
+
+static void release(hl_context *context, gathered *g) {
+  for (size_t v = 0; v < g->description.volume_count; v++)
+    hl_transfer_function_release(context, &g->volumes[v].transfer_function);
+  for (size_t v = 0; v < g->loaded_count; v++) {
+    hl_volume_release(g->loaded[v].volume);
+    hl_release(context, g->loaded[v].path);
+  }
+  hl_release(context, g->loaded);
+  hl_release(context, g->volumes);
+  hl_release(context, g->lights);
+}
+
+static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene_description *d) {
+  static const char *const keys[] = {"width", "height", "background", "background_transparent", NULL};
+  const json_t *value = json_object_get(root, "image");
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "image");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_integer(reader, value, "width", &d->width);
+  if (status == HL_OK) status = hl_json_integer(reader, value, "height", &d->height);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "background", 3, d->background);
+  if (status == HL_OK) status = hl_json_flag(reader, value, "background_transparent", &d->background_transparent);
+  if (status != HL_OK) return status;
+  if (d->width < 1 || d->height < 1 || d->width > HL_LIMIT_PIXELS || d->height > HL_LIMIT_PIXELS)
+    return hl_json_fail(reader, HL_ERROR_INPUT, d->width < 1 || d->width > HL_LIMIT_PIXELS ? "width" : "height",
+                        "%d is out of range: give a number of pixels from 1 to %d",
+                        d->width < 1 || d->width > HL_LIMIT_PIXELS ? d->width : d->height, HL_LIMIT_PIXELS);
+  hl_json_leave(reader, mark);
+  return HL_OK;
+}
+
+static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gathered *g) {
+  const json_t *value = json_object_get(root, "volumes");
+  if (value == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "volumes", "is missing: name at least one volume, [ { \"file\": ... } ]");
+  size_t mark = hl_json_enter(reader, "volumes");
+  hl_status status = hl_json_array(reader, value, 1, HL_LIMIT_VOLUMES);
+  if (status != HL_OK) return status;
+  size_t count = json_array_size(value);
+  g->volumes = hl_allocate_zeroed(reader->context, count, sizeof *g->volumes);
+  g->loaded = hl_allocate_zeroed(reader->context, count, sizeof *g->loaded);
+  if (g->volumes == NULL || g->loaded == NULL)
+    return hl_fail_memory(reader->error, count * sizeof *g->volumes, "a scene's volumes");
+  g->description.volumes = g->volumes;
+  for (size_t v = 0; v < count; v++) {
+    g->description.volume_count = v + 1;
+    size_t inner = hl_json_enter_index(reader, v);
+    status = hl_json_read_volume(reader, json_array_get(value, v), g->loaded, &g->loaded_count, &g->volumes[v]);
+    if (status != HL_OK) return status;
+    hl_json_leave(reader, inner);
+  }
+  hl_json_leave(reader, mark);
+  return HL_OK;
+}
+
+static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathered *g) {
+  const json_t *value = json_object_get(root, "lights");
+  if (value == NULL) {
+    hl_scene_key_light(&g->description.camera, &g->key_light);
+    g->description.lights = &g->key_light;
+    g->description.light_count = 1;
+    return HL_OK;
+  }
+  size_t mark = hl_json_enter(reader, "lights");
+  hl_status status = hl_json_array(reader, value, 0, HL_LIMIT_LIGHTS);
+  if (status != HL_OK) return status;
+  size_t count = json_array_size(value);
+  g->lights = hl_allocate_zeroed(reader->context, count, sizeof *g->lights);
+  if (g->lights == NULL) return hl_fail_memory(reader->error, count * sizeof *g->lights, "a scene's lights");
+  g->description.lights = g->lights;
+  g->description.light_count = count;
+  for (size_t l = 0; l < count; l++) {
+    size_t inner = hl_json_enter_index(reader, l);
+    status = hl_json_read_light(reader, json_array_get(value, l), &g->lights[l]);
+    if (status != HL_OK) return status;
+    hl_json_leave(reader, inner);
+  }
+  hl_json_leave(reader, mark);
+  return HL_OK;
+}
+
+static hl_status read_version(hl_json_reader *reader, const json_t *root) {
+  int version = 0;
+  if (json_object_get(root, "halflight") == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "halflight", "is missing: begin with \"halflight\": 1, the format's version");
+  hl_status status = hl_json_integer(reader, root, "halflight", &version);
+  if (status != HL_OK || version == 1) return status;
+  return hl_json_fail(reader, version > 1 ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, "halflight",
+                      "version %d is not known: this program reads version 1", version);
+}
+
+static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
+  static const char *const keys[] = {"halflight", "image", "camera", "ambient", "lights", "volumes", "render",
+                                     "$schema", NULL};
+  hl_scene_description *d = &g->description;
+  const char *schema = NULL;
+  hl_status status = hl_json_object(reader, root, keys);
+  if (status == HL_OK) status = read_version(reader, root);
+  if (status == HL_OK) status = hl_json_text(reader, root, "$schema", &schema);
+  if (status == HL_OK) status = read_image(reader, root, d);
+  if (status == HL_OK) status = hl_json_numbers(reader, root, "ambient", 3, d->ambient);
+  if (status == HL_OK) status = hl_json_read_render(reader, json_object_get(root, "render"), &d->render);
+  if (status == HL_OK) status = read_volumes(reader, root, g);
+  if (status == HL_OK) status = hl_json_read_camera(reader, json_object_get(root, "camera"), d);
+  return status == HL_OK ? read_lights(reader, root, g) : status;
+}
+
+hl_status hl_scene_from_json(hl_context *context, const char *text, size_t length, const char *base_folder,
+                             const char *name, hl_scene **scene, hl_error *error) {
+  if (context == NULL || text == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_from_json: null context, text or scene");
+  *scene = NULL;
+  hl_json_reader reader = {.context = context, .name = name != NULL ? name : "scene", .folder = base_folder,
+                           .error = error};
+  json_t *root = NULL;
+  hl_status status = hl_json_parse(text, length, reader.name, &root, error);
+  if (status != HL_OK) return status;
+  gathered g = {0};
+  hl_scene_description_defaults(&g.description);
+  status = read_scene(&reader, root, &g);
+  if (status == HL_OK) {
+    status = hl_scene_create(context, &g.description, scene, error);
+    if (status == HL_ERROR_INPUT || status == HL_ERROR_UNSUPPORTED) hl_json_prefix(&reader, NULL);
+  }
+  release(context, &g);
+  json_decref(root);
+  return status;
+}
+
+hl_status hl_scene_load(hl_context *context, const char *path, hl_scene **scene, hl_error *error) {
+  if (context == NULL || path == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_load: null context, path or scene");
+  *scene = NULL;
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  hl_status status = hl_file_read(context, path, HL_JSON_LIMIT, &bytes, &length, error);
+  if (status != HL_OK) return status;
+  char *folder = hl_path_folder(context, path);
+  if (folder != NULL) status = hl_scene_from_json(context, (const char *)bytes, length, folder, path, scene, error);
+  else status = hl_fail_memory(error, strlen(path) + 1, "a path");
+  hl_release(context, folder);
+  hl_release(context, bytes);
+  return status;
+}
