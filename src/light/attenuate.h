@@ -29,7 +29,11 @@ typedef struct attenuate_job {
   size_t stride;
 } attenuate_job;
 
-/* Multiplies the tile's transmittance by exp(-sum of extinction * path); returns its greatest value after. */
-typedef float attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
+/* Multiplies the tile's transmittance by exp(-sum of extinction * path) where volumes have density; returns which of
+ * those blocks light still reaches. */
+typedef uint32_t attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
+
+/* The blocks of a tile that light reaches. transmittance: the tile's first pixel of each channel. */
+typedef uint32_t lit_blocks_function(const float *const transmittance[HL_CHANNELS], int channels, size_t stride);
 
 #endif

@@ -6,6 +6,9 @@
 #include "splat/classify_lanes.h"
 #include "splat/coverage_lanes.h"
 
+/* Pixels of the shadow buffer that get less than this of the light are done: 1/4 of a step of 8 bits. */
+static const float DARK = 1.0f / 1024;
+
 /* Length of the rays' way through one sheet: spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|). Lanes whose
  * sheet lies behind the view's origin get 0. */
 LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
@@ -22,6 +25,25 @@ LANES_INLINE lanes covered_block(const float *enter, const float *leave, int blo
   return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height, spacing);
 }
 
+/* Of the given blocks of a tile, those with a pixel that some light reaches. */
+LANES_INLINE uint32_t lit_blocks(const float *const transmittance[HL_CHANNELS], int channels, size_t stride,
+                                 uint32_t blocks) {
+  uint32_t lit = 0;
+  for (; blocks != 0; blocks &= blocks - 1) {
+    int block = __builtin_ctz(blocks);
+    lanes greatest = lanes_set(0);
+    for (int c = 0; c < channels; c++)
+      greatest = lanes_max(greatest, lanes_load_block(transmittance[c] + (size_t)(block / 4 * BLOCK) * stride +
+                                                          block % 4 * BLOCK, stride));
+    if (lanes_bits(greatest >= DARK) != 0) lit |= 1u << block;
+  }
+  return lit;
+}
+
+static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], int channels, size_t stride) {
+  return lit_blocks(transmittance, channels, stride, ALL_BLOCKS);
+}
+
 static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, int block) {
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int i = 0; i < job->volume_count; i++) {
@@ -29,6 +51,7 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
     if ((volume->blocks >> block & 1) == 0) continue;
     table_place a = classify_place(volume->classifier, lanes_load(volume->before + block * BLOCK_PIXELS));
     table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
+    if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
     lanes extinction = mean_extinction(volume->classifier, a, b) *
                        covered_block(volume->enter, volume->leave, block, job->height, job->spacing);
     for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
@@ -43,17 +66,11 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
   }
 }
 
-static float attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
+static uint32_t attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
   uint32_t blocks = 0;
-  lanes greatest = lanes_set(0);
   for (int i = 0; i < job->volume_count; i++) blocks |= job->volumes[i].blocks;
-  for (int block = 0; block < TILE_BLOCKS; block++) {
-    if (blocks >> block & 1) attenuate_block(job, tile_x, tile_y, block);
-    for (int c = 0; c < job->channels; c++)
-      greatest = lanes_max(greatest, lanes_load_block(job->transmittance[c] + (size_t)(block / 4 * BLOCK) * job->stride +
-                                                          block % 4 * BLOCK, job->stride));
-  }
-  return lanes_greatest(greatest);
+  for (uint32_t left = blocks; left != 0; left &= left - 1) attenuate_block(job, tile_x, tile_y, __builtin_ctz(left));
+  return lit_blocks((const float *const *)job->transmittance, job->channels, job->stride, blocks);
 }
 
 #endif

@@ -2,7 +2,7 @@
 #ifndef HL_LIGHT_BLUR_H
 #define HL_LIGHT_BLUR_H
 
-#include "splat/fill.h"
+#include "light/attenuate.h"
 
 /* A box of width 2 reach + 1 + 2 edge pixels: whole weights out to reach, weight edge (0 to 1) one further. */
 typedef struct blur_box {
@@ -19,6 +19,12 @@ typedef struct blur_job {
 } blur_job;
 
 typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
+
+/* What a soft method needs of the instruction set. */
+typedef struct blur_functions {
+  blur_tile_function *rows, *columns;
+  lit_blocks_function *lit_blocks;
+} blur_functions;
 
 /* The box of the given width in pixels (at least 1): even whole widths become centred by half weights. */
 static inline blur_box hl_blur_box(float width) {

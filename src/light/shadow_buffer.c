@@ -82,14 +82,14 @@ static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floa
     buffer->capacity = buffer->memory == NULL ? 0 : floats;
   }
   if (buffer->tile_capacity < tiles) {
-    hl_release(context, buffer->tile_greatest);
+    hl_release(context, buffer->tile_lit);
     hl_release(context, buffer->tile_touched);
-    buffer->tile_greatest = hl_allocate(context, tiles, sizeof(float));
+    buffer->tile_lit = hl_allocate(context, tiles, sizeof(uint16_t));
     buffer->tile_touched = hl_allocate(context, tiles, 2);
-    buffer->tile_capacity = buffer->tile_greatest == NULL || buffer->tile_touched == NULL ? 0 : tiles;
+    buffer->tile_capacity = buffer->tile_lit == NULL || buffer->tile_touched == NULL ? 0 : tiles;
   }
   if (buffer->capacity == 0 || buffer->tile_capacity == 0)
-    return hl_fail_memory(error, floats * sizeof(float) + tiles * 6, "a shadow buffer");
+    return hl_fail_memory(error, floats * sizeof(float) + tiles * 4, "a shadow buffer");
   return HL_OK;
 }
 
@@ -107,7 +107,7 @@ hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, con
   hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < planes * buffer->plane; i++) buffer->memory[i] = 1;
-  for (size_t tile = 0; tile < tiles; tile++) buffer->tile_greatest[tile] = 1;
+  for (size_t tile = 0; tile < tiles; tile++) buffer->tile_lit[tile] = ALL_BLOCKS;
   memset(buffer->tile_touched, 0, 2 * tiles);
   for (int c = 0; c < HL_CHANNELS; c++) {
     bool used = c < channels;
@@ -119,7 +119,7 @@ hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, con
 
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer) {
   hl_release(context, buffer->memory);
-  hl_release(context, buffer->tile_greatest);
+  hl_release(context, buffer->tile_lit);
   hl_release(context, buffer->tile_touched);
   *buffer = (shadow_buffer){0};
 }

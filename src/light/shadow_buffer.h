@@ -22,7 +22,7 @@ typedef struct shadow_buffer {
   float *scratch[HL_CHANNELS];  /* pixel (0,0); soft shadows only; in memory */
   float *memory;                /* owned; all planes */
   size_t capacity;              /* floats in memory */
-  float *tile_greatest;         /* owned; [tiles]; greatest transmittance */
+  uint16_t *tile_lit;           /* owned; [tiles]; blocks that light still reaches */
   unsigned char *tile_touched;  /* owned; [2][tiles]; 1 where some transmittance is below 1 */
   size_t tile_capacity;
 } shadow_buffer;

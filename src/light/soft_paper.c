@@ -37,6 +37,7 @@ typedef struct convolve_job {
   shadow_buffer *buffer;
   blur_job blur;
   blur_tile_function *blur_tile;
+  lit_blocks_function *lit_blocks;
   const unsigned char *wanted; /* [tiles] */
 } convolve_job;
 
@@ -66,31 +67,26 @@ static void refresh_tile(void *data, size_t index, int worker) {
   shadow_buffer *buffer = job->buffer;
   if (!job->wanted[index]) return;
   size_t at = index / (size_t)buffer->tiles_x * TILE * buffer->stride + index % (size_t)buffer->tiles_x * TILE;
-  float greatest = 0;
-  for (int c = 0; c < buffer->channels; c++)
-    for (int i = 0; i < TILE_PIXELS; i++) {
-      float value = buffer->transmittance[c][at + (size_t)(i / TILE) * buffer->stride + (size_t)(i % TILE)];
-      greatest = value > greatest ? value : greatest;
-    }
-  buffer->tile_greatest[index] = greatest;
+  const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
+  for (int c = 0; c < buffer->channels; c++) transmittance[c] = buffer->transmittance[c] + at;
+  buffer->tile_lit[index] = (uint16_t)job->lit_blocks(transmittance, buffer->channels, buffer->stride);
 }
 
 /* Rows go from the buffer to the scratch, columns back: both for the tiles that can change. Tiles outside hold 1 in
  * either. */
-static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, blur_tile_function *blur_rows,
-                     blur_tile_function *blur_columns) {
+static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, const blur_functions *blur) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
-  convolve_job job = {buffer, {NULL, NULL, buffer->stride, hl_blur_box((float)width)}, blur_rows, spread};
+  convolve_job job = {buffer, {NULL, NULL, buffer->stride, hl_blur_box((float)width)}, blur->rows, blur->lit_blocks, spread};
   spread_touched(buffer, (job.blur.box.reach + TILE) / TILE, touched, spread);
   for (int c = 0; c < buffer->channels; c++) {
     job.blur.from = buffer->transmittance[c];
     job.blur.to = buffer->scratch[c];
-    job.blur_tile = blur_rows;
+    job.blur_tile = blur->rows;
     hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_tile, &job);
     job.blur.from = buffer->scratch[c];
     job.blur.to = buffer->transmittance[c];
-    job.blur_tile = blur_columns;
+    job.blur_tile = blur->columns;
     hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_tile, &job);
   }
   memcpy(touched, spread, tiles);
@@ -99,11 +95,11 @@ static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, blur_tile_
 
 /* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest. */
 void hl_soft_paper_convolve(soft_paper *soft, shadow_buffer *buffer, double next, hl_pool *pool,
-                            blur_tile_function *blur_rows, blur_tile_function *blur_columns) {
+                            const blur_functions *blur) {
   double width = soft->remainder + hl_soft_paper_width(soft, soft->last, next);
   if (width <= 2) return;
   double whole = fmin(floor(width), 2048);
-  convolve(buffer, (int)whole, pool, blur_rows, blur_columns);
+  convolve(buffer, (int)whole, pool, blur);
   soft->remainder = width - whole;
   soft->last = next;
 }

@@ -30,6 +30,6 @@ int hl_soft_paper_reach(const soft_paper *soft, double first, double spacing, in
 
 /* After a sheet's composite: convolves the buffer for the next sheet, at height next, if it is time to. */
 void hl_soft_paper_convolve(soft_paper *soft, shadow_buffer *buffer, double next, hl_pool *pool,
-                            blur_tile_function *blur_rows, blur_tile_function *blur_columns);
+                            const blur_functions *blur);
 
 #endif

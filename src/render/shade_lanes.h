@@ -205,8 +205,10 @@ LANES_INLINE block_density classify_block(const shade_job *job, const shade_volu
   d.middle = (before + after) * 0.5f;
   d.before = classify_place(volume->classifier, before);
   d.after = classify_place(volume->classifier, after);
-  d.extinction = mean_extinction(volume->classifier, d.before, d.after) *
-                 covered_block(enter, leave, block, job->height, job->spacing);
+  d.extinction = lanes_set(0);
+  if (lanes_bits(may_be_visible(volume->classifier, d.before, d.after)) != 0)
+    d.extinction = mean_extinction(volume->classifier, d.before, d.after) *
+                   covered_block(enter, leave, block, job->height, job->spacing);
   return d;
 }
 

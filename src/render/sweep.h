@@ -31,6 +31,12 @@ typedef struct image_sheets {
   float *enter, *leave;           /* [tiles][256]; null where the box cuts nothing visible */
 } image_sheets;
 
+/* A light's tile of one sheet, kept for the next slab. */
+typedef struct kept_tile {
+  int32_t sheet;                  /* -1: none */
+  uint16_t need, blocks;          /* blocks that were filled; those of them with density */
+} kept_tile;
+
 /* One light of a sweep with its buffer. */
 typedef struct sweep_light {
   const light_source *source;
@@ -39,8 +45,7 @@ typedef struct sweep_light {
   voxel_lists *lists;             /* owned; [grids]; splat only */
   float *enter, *leave;           /* owned; [grids][tiles][256]; null where no box cuts */
   float *density;                 /* owned; [grids][tiles][RING][256]; the last sheets, block-major */
-  int32_t *density_sheet;         /* owned; [grids][tiles][RING]; which sheet that is */
-  uint16_t *density_blocks;       /* owned; [grids][tiles][RING]; blocks with density */
+  kept_tile *kept;                /* owned; [grids][tiles][RING]; what is in density */
   soft_paper soft;
   double pixel;
 } sweep_light;

@@ -99,11 +99,10 @@ static hl_status cover_light(sweep *sweep, sweep_light *light, hl_error *error) 
 static hl_status keep_light_sheets(sweep *sweep, sweep_light *light, hl_error *error) {
   size_t count = (size_t)sweep->volume_count * (size_t)light->occupancy.tiles_x * (size_t)light->occupancy.tiles_y * RING;
   light->density = hl_allocate(sweep->context, count * TILE_PIXELS, sizeof(float));
-  light->density_sheet = hl_allocate(sweep->context, count, sizeof(int32_t));
-  light->density_blocks = hl_allocate(sweep->context, count, sizeof(uint16_t));
-  if (light->density == NULL || light->density_sheet == NULL || light->density_blocks == NULL)
+  light->kept = hl_allocate_zeroed(sweep->context, count, sizeof *light->kept);
+  if (light->density == NULL || light->kept == NULL)
     return hl_fail_memory(error, count * TILE_PIXELS * sizeof(float), "the light's sheets");
-  for (size_t i = 0; i < count; i++) light->density_sheet[i] = -1;
+  for (size_t i = 0; i < count; i++) light->kept[i].sheet = -1;
   return HL_OK;
 }
 
@@ -301,8 +300,7 @@ void hl_sweep_end(sweep *sweep) {
     hl_release(context, light->enter);
     hl_release(context, light->leave);
     hl_release(context, light->density);
-    hl_release(context, light->density_sheet);
-    hl_release(context, light->density_blocks);
+    hl_release(context, light->kept);
   }
   hl_occupancy_release(context, &sweep->occupancy);
   release_lists(sweep, sweep->lists);

@@ -4,9 +4,6 @@
 #include "render/clock.h"
 #include "render/sweep.h"
 
-/* A tile of the shadow buffer that gets less than this of the light is done: 1/4 of a step of 8 bits. */
-static const float DARK = 1.0f / 1024;
-
 static double sheet_height(const sweep *sweep, int sheet) {
   return sweep->geometry->sheets.first + sheet * sweep->geometry->sheets.spacing;
 }
@@ -76,20 +73,24 @@ static void fill_image_tile(sweep *sweep, size_t tile, int g, int worker) {
   sheets->filled[slot][tile] = (uint16_t)filled;
 }
 
-/* One volume's densities on a sheet of a light's tile: kept from the slab before, or filled now. Null: empty. */
-static const float *light_density(sweep *sweep, int light_index, size_t tile, int g, int sheet, uint32_t *blocks) {
+/* One volume's densities on a sheet of a light's tile, in the needed blocks at least: kept from the slab before, or
+ * filled now. Null: empty. */
+static const float *light_density(sweep *sweep, int light_index, size_t tile, int g, int sheet, uint32_t need,
+                                  uint32_t *blocks) {
   sweep_light *light = &sweep->lights[light_index];
   if (sheet < 0 || !hl_occupancy_has(&light->occupancy, g, tile, sheet)) return NULL;
   size_t tiles = (size_t)light->occupancy.tiles_x * (size_t)light->occupancy.tiles_y;
   size_t at = ((size_t)g * tiles + tile) * RING + (size_t)(sheet % RING);
-  if (light->density_sheet[at] != sheet) {
+  kept_tile *kept = &light->kept[at];
+  if (kept->sheet != sheet || (need & ~(uint32_t)kept->need) != 0) {
     int source = (light_index * RING + (sweep->light_sheet - sheet)) * sweep->volume_count + g;
-    light->density_blocks[at] =
-        (uint16_t)fill_tile(sweep, &sweep->light_sources[source], (int)(tile % (size_t)light->occupancy.tiles_x),
-                            (int)(tile / (size_t)light->occupancy.tiles_x), ALL_BLOCKS, light->density + at * TILE_PIXELS);
-    light->density_sheet[at] = sheet;
+    kept->blocks = (uint16_t)fill_tile(sweep, &sweep->light_sources[source], (int)(tile % (size_t)light->occupancy.tiles_x),
+                                       (int)(tile / (size_t)light->occupancy.tiles_x), need,
+                                       light->density + at * TILE_PIXELS);
+    kept->sheet = sheet;
+    kept->need = (uint16_t)need;
   }
-  *blocks |= light->density_blocks[at];
+  *blocks |= kept->blocks & need;
   return light->density + at * TILE_PIXELS;
 }
 
@@ -98,7 +99,8 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
   static const float nothing[TILE_PIXELS];
   sweep_light *light = &sweep->lights[light_index];
   shadow_buffer *buffer = light->buffer;
-  if (buffer->tile_greatest[tile] < DARK) {
+  uint32_t need = buffer->tile_lit[tile];
+  if (need == 0) {
     sweep->counts[worker].skipped_light++;
     return;
   }
@@ -109,8 +111,8 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
     const hl_scene_volume *scene = sweep->volumes[g].scene;
     if (!scene->casts_shadow) continue;
     uint32_t blocks = 0;
-    const float *before = light_density(sweep, light_index, tile, g, sweep->light_sheet - 1, &blocks);
-    const float *density = light_density(sweep, light_index, tile, g, sweep->light_sheet, &blocks);
+    const float *before = light_density(sweep, light_index, tile, g, sweep->light_sheet - 1, need, &blocks);
+    const float *density = light_density(sweep, light_index, tile, g, sweep->light_sheet, need, &blocks);
     if (blocks == 0) continue;
     size_t at = (size_t)g * pixels + tile * TILE_PIXELS;
     bool cut = sweep->grids[g].cut;
@@ -130,7 +132,9 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
   job.volume_count = found;
   for (int c = 0; c < job.channels; c++)
     job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
-  buffer->tile_greatest[tile] = sweep->hot->attenuate_tile(&job, tile_x, tile_y);
+  uint32_t worked = 0;
+  for (int i = 0; i < found; i++) worked |= volumes[i].blocks;
+  buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | sweep->hot->attenuate_tile(&job, tile_x, tile_y));
   buffer->tile_touched[tile] = 1;
 }
 
@@ -241,8 +245,8 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
-    hl_soft_paper_convolve(&light->soft, light->buffer, sheet_height(sweep, sheet + 1), sweep->pool,
-                           sweep->hot->blur_rows_tile, sweep->hot->blur_columns_tile);
+    const blur_functions blur = {sweep->hot->blur_rows_tile, sweep->hot->blur_columns_tile, sweep->hot->lit_blocks_tile};
+    hl_soft_paper_convolve(&light->soft, light->buffer, sheet_height(sweep, sheet + 1), sweep->pool, &blur);
   }
   sweep->seconds_soften += hl_clock_seconds() - start;
 }

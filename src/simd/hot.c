@@ -12,6 +12,7 @@ const hot_functions HL_HOT_TABLE = {
     .gather_tile = gather_tile,
     .coverage_tile = coverage_tile,
     .attenuate_tile = attenuate_tile,
+    .lit_blocks_tile = lit_blocks_tile,
     .shade_tile = shade_tile,
     .blur_rows_tile = blur_rows_tile,
     .blur_columns_tile = blur_columns_tile,

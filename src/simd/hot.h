@@ -17,6 +17,7 @@ typedef struct hot_functions {
   fill_tile_function *splat_tile, *gather_tile;
   coverage_tile_function *coverage_tile;
   attenuate_tile_function *attenuate_tile;
+  lit_blocks_function *lit_blocks_tile;
   shade_tile_function *shade_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
 } hot_functions;

@@ -50,6 +50,10 @@ static void fill_tables(const hl_scene_volume *volume, double low, double high, 
     if (classifier->extinction[entry] > 0) next = entry;
     classifier->next_visible[entry] = next;
   }
+  int last = CLASSIFIER_ENTRIES;
+  while (last > 0 && !(classifier->extinction[last] > 0)) last--;
+  classifier->first_visible = (float)classifier->next_visible[0] - 1;
+  classifier->last_visible = (float)last + 1;
 }
 
 /* A gradient below a thousandth of the transfer function's span per voxel edge does not make a surface. */

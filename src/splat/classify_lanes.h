@@ -35,6 +35,11 @@ LANES_INLINE lanes mean_extinction(const classifier *classifier, table_place a, 
   return lanes_select(far, lanes_max(difference / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0)), ends);
 }
 
+/* Lanes in which anything between the two places can have extinction. */
+LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_place a, table_place b) {
+  return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
+}
+
 /* The place between a and b where, weighted by extinction, the density lies: what colour is taken from. */
 LANES_INLINE table_place mean_place(const classifier *classifier, table_place a, table_place b) {
   lanes low = lanes_min(a.x, b.x), high = lanes_max(a.x, b.x), middle = (low + high) * 0.5f;

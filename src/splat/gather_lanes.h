@@ -65,9 +65,8 @@ static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t
   return ((const float *)grid->voxels)[index];
 }
 
-/* The same sum where taps fall outside: the border's values continue. One lane at a time, same order. */
-static lanes sum_at_border(const grid *grid, const block_place *place, uint32_t active, const lanes wx[4],
-                           const lanes wy[4], const lanes wz[4]) {
+/* The same sum in grids less than four voxels thick somewhere. One lane at a time, same order. */
+static lanes sum_in_thin_grid(const grid *grid, const block_place *place, uint32_t active, const lanes weight[3][4]) {
   lanes sums = lanes_set(0);
   for (; active != 0; active &= active - 1) {
     int lane = __builtin_ctz(active);
@@ -76,15 +75,30 @@ static lanes sum_at_border(const grid *grid, const block_place *place, uint32_t 
     for (int c = 0; c < 4; c++) {
       float plane = 0;
       for (int b = 0; b < 4; b++) {
-        float first = stored_value(grid, x, y + b, z + c) * wx[0][lane] + stored_value(grid, x + 1, y + b, z + c) * wx[1][lane];
-        float last = stored_value(grid, x + 2, y + b, z + c) * wx[2][lane] + stored_value(grid, x + 3, y + b, z + c) * wx[3][lane];
-        plane = plane + (first + last) * wy[b][lane];
+        float along[4];
+        for (int a = 0; a < 4; a++) along[a] = stored_value(grid, x + a, y + b, z + c) * weight[0][a][lane];
+        plane = plane + ((along[0] + along[1]) + (along[2] + along[3])) * weight[1][b][lane];
       }
-      sum = sum + plane * wz[c][lane];
+      sum = sum + plane * weight[2][c][lane];
     }
     sums[lane] = sum;
   }
   return sums;
+}
+
+/* Beyond the border its values continue: taps outside fold their weights onto the border's voxel, and the window of
+ * four moves inside. The cells -1, 0 and n-2, n-1 are the ones with taps outside. */
+LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4]) {
+  lanes zero = lanes_set(0);
+  lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2, last = cell == count - 1;
+  lanes w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
+  weight[0] = lanes_select(first, w0 + w1 + w2, lanes_select(second, w0 + w1, lanes_select(last | last_but_one, zero, w0)));
+  weight[1] = lanes_select(first, w3, lanes_select(second, w2, lanes_select(last, zero, lanes_select(last_but_one, w0, w1))));
+  weight[2] = lanes_select(first, zero, lanes_select(second, w3, lanes_select(last, w0, lanes_select(last_but_one, w1, w2))));
+  weight[3] = lanes_select(first | second, zero,
+                           lanes_select(last, w1 + w2 + w3, lanes_select(last_but_one, w2 + w3, w3)));
+  lanes_int inside = lanes_select_int(cell < 1, lanes_set_int(1), cell);
+  return lanes_select_int(inside > count - 3, lanes_set_int(count - 3), inside);
 }
 
 LANES_INLINE lanes_int taps_inside(const grid *grid, const block_place *place) {
@@ -95,28 +109,31 @@ LANES_INLINE lanes_int taps_inside(const grid *grid, const block_place *place) {
 
 LANES_INLINE lanes gather_block(const fill_source *source, const block_place *place, uint32_t active, int degree) {
   const grid *grid = source->grid;
-  lanes wx[4], wy[4], wz[4];
-  tap_weights(source->kernel, degree, place->point.x - lanes_from_int(place->cell[0]), wx);
-  tap_weights(source->kernel, degree, place->point.y - lanes_from_int(place->cell[1]), wy);
-  tap_weights(source->kernel, degree, place->point.z - lanes_from_int(place->cell[2]), wz);
-  if ((lanes_bits(taps_inside(grid, place)) & active) != active)
-    return sum_at_border(grid, place, active, wx, wy, wz);
+  lanes weight[3][4];
+  lanes_int cell[3] = {place->cell[0], place->cell[1], place->cell[2]};
+  tap_weights(source->kernel, degree, place->point.x - lanes_from_int(cell[0]), weight[0]);
+  tap_weights(source->kernel, degree, place->point.y - lanes_from_int(cell[1]), weight[1]);
+  tap_weights(source->kernel, degree, place->point.z - lanes_from_int(cell[2]), weight[2]);
+  if ((lanes_bits(taps_inside(grid, place)) & active) != active) {
+    if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
+      return sum_in_thin_grid(grid, place, active, (const lanes(*)[4])weight);
+    for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
+  }
   /* Offsets from the first active lane's cell fit 32 bits in any volume; idle lanes read there. */
   int first = __builtin_ctz(active);
-  lanes_int mask = lanes_from_bits(active);
   int32_t reference[3];
-  for (int a = 0; a < 3; a++) reference[a] = place->cell[a][first];
+  for (int a = 0; a < 3; a++) reference[a] = cell[a][first];
   size_t bytes = hl_storage_bytes(grid->storage);
   const unsigned char *voxels =
       (const unsigned char *)grid->voxels +
       (((size_t)(reference[2] - 1) * (size_t)grid->dimension[1] + (size_t)(reference[1] - 1)) *
            (size_t)grid->dimension[0] + (size_t)(reference[0] - 1)) * bytes;
-  lanes_int offset = (place->cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
-                     (place->cell[1] - reference[1]) * grid->dimension[0] + (place->cell[0] - reference[0]);
-  offset = (offset * (int32_t)bytes) & mask;
-  if (grid->storage == HL_STORAGE_U8) return sum_inside(grid, HL_STORAGE_U8, voxels, offset, wx, wy, wz);
-  if (grid->storage == HL_STORAGE_U16) return sum_inside(grid, HL_STORAGE_U16, voxels, offset, wx, wy, wz);
-  return sum_inside(grid, HL_STORAGE_F32, voxels, offset, wx, wy, wz);
+  lanes_int offset = (cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
+                     (cell[1] - reference[1]) * grid->dimension[0] + (cell[0] - reference[0]);
+  offset = (offset * (int32_t)bytes) & lanes_from_bits(active);
+  if (grid->storage == HL_STORAGE_U8) return sum_inside(grid, HL_STORAGE_U8, voxels, offset, weight[0], weight[1], weight[2]);
+  if (grid->storage == HL_STORAGE_U16) return sum_inside(grid, HL_STORAGE_U16, voxels, offset, weight[0], weight[1], weight[2]);
+  return sum_inside(grid, HL_STORAGE_F32, voxels, offset, weight[0], weight[1], weight[2]);
 }
 
 static uint32_t gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {
