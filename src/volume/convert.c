@@ -13,10 +13,10 @@ static const struct {
   hl_storage storage;
   double bias;
 } types[] = {
-    [HL_VOXEL_U8] = {"uint8", 1, HL_STORAGE_U8, 0},      [HL_VOXEL_I8] = {"int8", 1, HL_STORAGE_U8, 128},
-    [HL_VOXEL_U16] = {"uint16", 2, HL_STORAGE_U16, 0},   [HL_VOXEL_I16] = {"int16", 2, HL_STORAGE_U16, 32768},
-    [HL_VOXEL_U32] = {"uint32", 4, HL_STORAGE_F32, 0},   [HL_VOXEL_I32] = {"int32", 4, HL_STORAGE_F32, 0},
-    [HL_VOXEL_F32] = {"float32", 4, HL_STORAGE_F32, 0},  [HL_VOXEL_F64] = {"float64", 8, HL_STORAGE_F32, 0},
+    [HL_VOXEL_U8] = {"uint8", 1, HL_STORAGE_U8, 0},     [HL_VOXEL_I8] = {"int8", 1, HL_STORAGE_U8, 128},
+    [HL_VOXEL_U16] = {"uint16", 2, HL_STORAGE_U16, 0},  [HL_VOXEL_I16] = {"int16", 2, HL_STORAGE_U16, 32768},
+    [HL_VOXEL_U32] = {"uint32", 4, HL_STORAGE_F32, 0},  [HL_VOXEL_I32] = {"int32", 4, HL_STORAGE_F32, 0},
+    [HL_VOXEL_F32] = {"float32", 4, HL_STORAGE_F32, 0}, [HL_VOXEL_F64] = {"float64", 8, HL_STORAGE_F32, 0},
 };
 
 static bool known(hl_voxel_type type) { return (int)type >= HL_VOXEL_U8 && (int)type <= HL_VOXEL_F64; }
@@ -34,7 +34,8 @@ static void store_8(uint8_t flip, const unsigned char *source, size_t count, uns
   for (size_t n = 0; n < count; n++) destination[n] = source[n] ^ flip;
 }
 
-static void store_16(uint16_t flip, bool swap, const unsigned char *source, size_t count, unsigned char *destination) {
+static void store_16(uint16_t flip, bool swap, const unsigned char *source, size_t count,
+                     unsigned char *destination) {
   if (!swap && flip == 0) {
     if (source != destination) memcpy(destination, source, 2 * count);
     return;

@@ -27,6 +27,15 @@ bool hl_raw_name(const char *path, hl_payload *payload);
 /* Pushes a decompressor if the next bytes are gzip's mark. */
 hl_status hl_stream_inflate_if_gzip(hl_stream **stream, hl_error *error);
 
+/* What a format calls a voxel type; name may list alternatives, as for hl_text_is_one_of. */
+typedef struct hl_named_type {
+  const char *name;
+  hl_voxel_type type;
+} hl_named_type;
+
+/* Finds the type of that name; false if there is none. */
+bool hl_find_type(const hl_named_type *types, size_t count, const char *name, hl_voxel_type *type);
+
 /* For text headers: "PATH, line N: ..." */
 #define HL_FAIL_LINE(error, code, stream, line, format, ...) \
   hl_fail_at(error, code, line, 0, "%s, line %d: " format, (stream)->path, line, __VA_ARGS__)

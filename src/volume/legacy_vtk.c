@@ -1,7 +1,7 @@
 /* volume/legacy_vtk.c - legacy .vtk files with STRUCTURED_POINTS, ASCII or BINARY (big-endian).
  *
- * After four lines (mark, title, ASCII or BINARY, DATASET) come keywords; the first array of one component
- * under POINT_DATA is the volume, whether it is a SCALARS attribute or part of a FIELD.
+ * After three lines (mark, title, ASCII or BINARY) come keywords; the first array of one component
+ * under POINT_DATA is the volume, whether it is SCALARS, COLOR_SCALARS or part of a FIELD.
  */
 #include <string.h>
 
@@ -35,7 +35,7 @@ static hl_status read_opening(vtk_header *header, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended;
   hl_status status = next_line(header, line, &ended, error); /* "# vtk DataFile Version x.y" */
-  if (status == HL_OK) status = next_line(header, line, &ended, error); /* a title */
+  if (status == HL_OK) status = next_line(header, line, &ended, error);
   do {
     if (status == HL_OK) status = next_line(header, line, &ended, error);
   } while (status == HL_OK && !ended && *hl_text_trim(line) == 0);
@@ -47,19 +47,12 @@ static hl_status read_opening(vtk_header *header, hl_error *error) {
 }
 
 static hl_status read_type(const vtk_header *header, const char *name, hl_voxel_type *type, hl_error *error) {
-  static const struct { const char *name; hl_voxel_type type; } types[] = {
-      {"unsigned_char", HL_VOXEL_U8},   {"char", HL_VOXEL_I8},   {"signed_char", HL_VOXEL_I8},
-      {"unsigned_short", HL_VOXEL_U16}, {"short", HL_VOXEL_I16}, {"unsigned_int", HL_VOXEL_U32},
-      {"int", HL_VOXEL_I32},            {"float", HL_VOXEL_F32}, {"double", HL_VOXEL_F64}};
-  for (size_t n = 0; n < sizeof types / sizeof *types; n++)
-    if (hl_text_equal(name, types[n].name)) {
-      *type = types[n].type;
-      return HL_OK;
-    }
-  static const char *const others[] = {"bit", "long", "unsigned_long", "vtkIdType", "vtktypeint64", "vtktypeuint64",
-                                       "string"};
-  bool known = false;
-  for (size_t n = 0; n < sizeof others / sizeof *others; n++) known = known || hl_text_equal(name, others[n]);
+  static const hl_named_type types[] = {{"unsigned_char", HL_VOXEL_U8},   {"char|signed_char", HL_VOXEL_I8},
+                                        {"unsigned_short", HL_VOXEL_U16}, {"short", HL_VOXEL_I16},
+                                        {"unsigned_int", HL_VOXEL_U32},   {"int", HL_VOXEL_I32},
+                                        {"float", HL_VOXEL_F32},          {"double", HL_VOXEL_F64}};
+  if (hl_find_type(types, sizeof types / sizeof *types, name, type)) return HL_OK;
+  bool known = hl_text_is_one_of(name, "bit|long|unsigned_long|vtkIdType|vtktypeint64|vtktypeuint64|string");
   char shown[HL_PRINTABLE_BYTES];
   return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
                       "values of type \"%s\" are not read: 8, 16 and 32 bit integers, float and double are",
@@ -122,6 +115,29 @@ static hl_status read_scalars(vtk_header *header, const char *arguments, hl_erro
   return status == HL_OK ? meet_array(header, type, components, header->tuples, error) : status;
 }
 
+/* "COLOR_SCALARS name components", which VTK writes for 8 bit scalars: bytes, or fractions of 255 as text. */
+static hl_status read_color_scalars(vtk_header *header, const char *arguments, hl_error *error) {
+  char name[WORD_BYTES];
+  const char *cursor = arguments;
+  size_t components;
+  if (!hl_text_word(&cursor, name, sizeof name) || hl_text_sizes(cursor, &components, 1) != 1 ||
+      components < 1 || components > 1024)
+    return fail(header, "expected \"COLOR_SCALARS name components\", not", arguments, error);
+  hl_status status = meet_array(header, "unsigned_char", components, header->tuples, error);
+  header->payload.text_is_fraction = header->found;
+  return status;
+}
+
+/* What newer files say about the array before, up to an empty line. */
+static hl_status skip_metadata(vtk_header *header, hl_error *error) {
+  char line[HL_LINE_BYTES];
+  bool ended;
+  hl_status status;
+  do status = next_line(header, line, &ended, error);
+  while (status == HL_OK && !ended && *hl_text_trim(line) != 0);
+  return status;
+}
+
 /* "FIELD name n", then n times "name components tuples type" and the values. */
 static hl_status read_fields(vtk_header *header, const char *arguments, hl_error *error) {
   char word[WORD_BYTES], line[HL_LINE_BYTES];
@@ -135,8 +151,8 @@ static hl_status read_fields(vtk_header *header, const char *arguments, hl_error
     if (status != HL_OK || ended) return status;
     cursor = line;
     if (!hl_text_word(&cursor, word, sizeof word)) continue; /* the line's end after the values */
-    if (hl_text_equal(word, "METADATA")) { /* of the array before, up to an empty line */
-      while (status == HL_OK && !ended && *hl_text_trim(line) != 0) status = next_line(header, line, &ended, error);
+    if (hl_text_equal(word, "METADATA")) {
+      status = skip_metadata(header, error);
       if (status != HL_OK) return status;
       continue;
     }
@@ -152,7 +168,8 @@ static hl_status read_fields(vtk_header *header, const char *arguments, hl_error
   return HL_OK;
 }
 
-static hl_status read_geometry(vtk_header *header, const char *keyword, const char *arguments, hl_error *error) {
+static hl_status read_geometry(vtk_header *header, const char *keyword, const char *arguments,
+                               hl_error *error) {
   hl_volume_description *grid = &header->payload.grid;
   double numbers[3];
   bool sound = true;
@@ -162,8 +179,10 @@ static hl_status read_geometry(vtk_header *header, const char *keyword, const ch
     sound = false;
   } else {
     for (int axis = 0; axis < 3; axis++)
-      if (hl_text_equal(keyword, "ORIGIN")) grid->origin[axis] = numbers[axis];
-      else grid->axis[axis][axis] = numbers[axis];
+      if (hl_text_equal(keyword, "ORIGIN"))
+        grid->origin[axis] = numbers[axis];
+      else
+        grid->axis[axis][axis] = numbers[axis];
   }
   return sound ? HL_OK : fail(header, "expected three numbers, not", arguments, error);
 }
@@ -175,7 +194,8 @@ static hl_status begin_section(vtk_header *header, bool points, const char *argu
   return HL_OK;
 }
 
-static hl_status read_keyword(vtk_header *header, const char *keyword, const char *arguments, hl_error *error) {
+static hl_status read_keyword(vtk_header *header, const char *keyword, const char *arguments,
+                              hl_error *error) {
   char shown[HL_PRINTABLE_BYTES];
   if (hl_text_equal(keyword, "DATASET")) {
     if (hl_text_equal(arguments, "STRUCTURED_POINTS")) return HL_OK;
@@ -189,17 +209,13 @@ static hl_status read_keyword(vtk_header *header, const char *keyword, const cha
   if (hl_text_equal(keyword, "POINT_DATA")) return begin_section(header, true, arguments, error);
   if (hl_text_equal(keyword, "CELL_DATA")) return begin_section(header, false, arguments, error);
   if (hl_text_equal(keyword, "SCALARS")) return read_scalars(header, arguments, error);
+  if (hl_text_equal(keyword, "COLOR_SCALARS")) return read_color_scalars(header, arguments, error);
   if (hl_text_equal(keyword, "FIELD")) return read_fields(header, arguments, error);
-  if (hl_text_equal(keyword, "METADATA")) {
-    char line[HL_LINE_BYTES] = "-";
-    bool ended = false;
-    hl_status status = HL_OK;
-    while (status == HL_OK && !ended && *hl_text_trim(line) != 0) status = next_line(header, line, &ended, error);
-    return status;
-  }
-  return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line,
-                      "\"%s\" is not read: the volume must be SCALARS or in a FIELD, and come before other data",
-                      hl_text_printable(shown, keyword));
+  if (hl_text_equal(keyword, "METADATA")) return skip_metadata(header, error);
+  return HL_FAIL_LINE(
+      error, HL_ERROR_UNSUPPORTED, header->stream, header->line,
+      "\"%s\" is not read: the volume must be SCALARS or in a FIELD, and come before other data",
+      hl_text_printable(shown, keyword));
 }
 
 static hl_status read_header(vtk_header *header, hl_error *error) {
@@ -210,14 +226,16 @@ static hl_status read_header(vtk_header *header, hl_error *error) {
     status = next_line(header, line, &ended, error);
     if (status != HL_OK) return status;
     if (ended && header->components > 1)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: voxels of %zu components: only one value per voxel is read",
-                     header->stream->path, header->components);
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: voxels of %zu components: only one value per voxel is read", header->stream->path,
+                     header->components);
     if (ended)
       return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "%s",
                           "the file ends without POINT_DATA and SCALARS, which hold the volume");
     const char *cursor = hl_text_trim(line);
     if (*cursor == 0) continue;
-    if (!hl_text_word(&cursor, keyword, sizeof keyword)) return fail(header, "expected a keyword, not", line, error);
+    if (!hl_text_word(&cursor, keyword, sizeof keyword))
+      return fail(header, "expected a keyword, not", line, error);
     while (hl_is_space(*cursor)) cursor++;
     status = read_keyword(header, keyword, cursor, error);
   }
@@ -236,8 +254,9 @@ hl_status hl_load_legacy_vtk(hl_stream **stream, hl_volume **volume, hl_error *e
   if (status != HL_OK) return status;
   const size_t *dimension = header.payload.grid.dimensions;
   if (header.tuples != dimension[0] * dimension[1] * dimension[2])
-    return hl_fail(error, HL_ERROR_INPUT, "%s: POINT_DATA has %zu values, DIMENSIONS %zu x %zu x %zu need %zu",
-                   (*stream)->path, header.tuples, dimension[0], dimension[1], dimension[2],
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: POINT_DATA has %zu values, DIMENSIONS %zu x %zu x %zu need %zu", (*stream)->path,
+                   header.tuples, dimension[0], dimension[1], dimension[2],
                    dimension[0] * dimension[1] * dimension[2]);
   return hl_payload_read(*stream, &header.payload, volume, error);
 }

@@ -25,7 +25,12 @@ static load_function *by_content(const unsigned char *bytes, size_t length) {
 
 /* Files that people will try, with what to do about them; null if this is none of them. */
 static const char *known_but_unsupported(const unsigned char *bytes, size_t length) {
-  static const struct { size_t place; const char *mark; size_t mark_length; const char *advice; } marks[] = {
+  static const struct {
+    size_t place;
+    const char *mark;
+    size_t mark_length;
+    const char *advice;
+  } marks[] = {
       {128, "DICM", 4, "a DICOM file: convert its series to NIfTI with dcm2niix"},
       {0, " BDV", 4, "an OpenVDB file: make it dense and save it as NRRD or NIfTI"},
       {0, "NanoVDB", 7, "a NanoVDB file: make it dense and save it as NRRD or NIfTI"},
@@ -36,13 +41,13 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
       {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, ...): export the volume as NRRD or NIfTI"},
       {0, "BZh", 3, "compressed with bzip2: decompress it first"},
       {0, "PK\3\4", 4, "a zip archive: unpack it first"},
-      {0, "\xfd" "7zXZ", 5, "compressed with xz: decompress it first"},
+      {0, "\3757zXZ", 5, "compressed with xz: decompress it first"},
       {0, "\x28\xb5\x2f\xfd", 4, "compressed with zstd: decompress it first"},
       {0, "11111\n", 6, "a VolVis SLC file: convert it to NRRD or raw"},
   };
   for (size_t n = 0; n < sizeof marks / sizeof *marks; n++)
-    if (length > marks[n].place && begins(bytes + marks[n].place, length - marks[n].place, marks[n].mark,
-                                          marks[n].mark_length))
+    if (length > marks[n].place &&
+        begins(bytes + marks[n].place, length - marks[n].place, marks[n].mark, marks[n].mark_length))
       return marks[n].advice;
   return NULL;
 }
@@ -53,52 +58,77 @@ static hl_status switch_to_pair_header(hl_stream **stream, bool *switched, hl_er
   char header[1024];
   size_t length = strlen(name);
   *switched = false;
-  if (hl_text_ends(name, ".img.gz")) length -= 7;
-  else if (hl_text_ends(name, ".img")) length -= 4;
-  else return HL_OK;
+  if (hl_text_ends(name, ".img.gz"))
+    length -= 7;
+  else if (hl_text_ends(name, ".img"))
+    length -= 4;
+  else
+    return HL_OK;
   if (length + 8 > sizeof header) return HL_OK;
   memcpy(header, name, length);
   static const char *const endings[] = {".hdr", ".hdr.gz"};
-  for (int n = 0; n < 2 && !*switched; n++) {
+  for (int n = 0; n < 2; n++) {
     strcpy(header + length, endings[n]);
-    *switched = hl_stream_switch(stream, header, NULL) == HL_OK;
+    hl_status status = hl_stream_switch(stream, header, error);
+    *switched = status == HL_OK;
+    if (status == HL_OK) return hl_stream_inflate_if_gzip(stream, error);
+    if (status != HL_ERROR_IO) return status;
   }
-  return *switched ? hl_stream_inflate_if_gzip(stream, error) : HL_OK;
+  return HL_OK;
 }
 
-static hl_status fail_unknown(const hl_stream *stream, const unsigned char *bytes, size_t length, hl_error *error) {
+static hl_status fail_unknown(const hl_stream *stream, const unsigned char *bytes, size_t length,
+                              hl_error *error) {
   const char *path = stream->path, *advice = known_but_unsupported(bytes, length);
   if (advice != NULL) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s", path, advice);
   if (length == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: the file is empty", path);
-  static const struct { const char *ending, *mark; } marks[] = {
-      {".nrrd", "\"NRRD000\""}, {".nhdr", "\"NRRD000\""},          {".mha", "\"ObjectType = Image\" or \"NDims = 3\""},
-      {".mhd", "\"ObjectType = Image\" or \"NDims = 3\""},         {".vti", "\"<VTKFile\""},
-      {".vtk", "\"# vtk DataFile Version\""},                     {".nii", "the bytes of a NIfTI header (348 or 540)"},
-      {".nii.gz", "the bytes of a NIfTI header (348 or 540)"},    {".hdr", "the bytes of a NIfTI header (348 or 540)"}};
+  static const struct {
+    const char *ending, *mark;
+  } marks[] = {{".nrrd", "\"NRRD000\""},
+               {".nhdr", "\"NRRD000\""},
+               {".mha", "\"ObjectType = Image\" or \"NDims = 3\""},
+               {".mhd", "\"ObjectType = Image\" or \"NDims = 3\""},
+               {".vti", "\"<VTKFile\""},
+               {".vtk", "\"# vtk DataFile Version\""},
+               {".nii", "the header of NIfTI"},
+               {".nii.gz", "the header of NIfTI"},
+               {".hdr", "the header of NIfTI"}};
   for (size_t n = 0; n < sizeof marks / sizeof *marks; n++)
     if (hl_text_ends(path, marks[n].ending))
       return hl_fail(error, HL_ERROR_INPUT, "%s: the file does not begin with %s, as %s files do", path,
                      marks[n].mark, marks[n].ending);
-  return hl_fail(error, HL_ERROR_INPUT,
-                 "%s: not a volume file that is known (NRRD, MetaImage, NIfTI, VTK .vti, .vtk); raw voxels need their "
-                 "size and type in the name: name_256x256x128_uint8.raw",
-                 path);
+  return hl_fail(
+      error, HL_ERROR_INPUT,
+      "%s: not a volume file that is known (NRRD, MetaImage, NIfTI, VTK .vti, .vtk); raw voxels need their "
+      "size and type in the name: name_256x256x128_uint8.raw",
+      path);
+}
+
+bool hl_find_type(const hl_named_type *types, size_t count, const char *name, hl_voxel_type *type) {
+  for (size_t n = 0; n < count; n++)
+    if (hl_text_is_one_of(name, types[n].name)) {
+      *type = types[n].type;
+      return true;
+    }
+  return false;
 }
 
 hl_status hl_stream_inflate_if_gzip(hl_stream **stream, hl_error *error) {
   const unsigned char *bytes;
   size_t length;
   hl_status status = hl_stream_peek(*stream, 3, &bytes, &length, error);
-  if (status == HL_OK && begins(bytes, length, "\x1f\x8b\x08", 3)) status = hl_stream_push_inflate(stream, error);
+  if (status == HL_OK && begins(bytes, length, "\x1f\x8b\x08", 3))
+    status = hl_stream_push_inflate(stream, error);
   return status;
 }
 
 static hl_status load(hl_stream **stream, hl_volume **volume, hl_error *error) {
   hl_payload raw;
   bool named = hl_raw_name((*stream)->path, &raw);
-  /* Raw voxels may begin with any bytes, gzip's mark too. */
-  bool plain = named && hl_stream_at_most(*stream) == hl_payload_bytes(&raw);
-  hl_status status = plain ? HL_OK : hl_stream_inflate_if_gzip(stream, error);
+  /* Raw voxels may begin with any bytes, also with those of another format. */
+  if (named && !hl_text_ends((*stream)->path, ".gz") && hl_stream_at_most(*stream) == hl_payload_bytes(&raw))
+    return hl_load_raw(stream, volume, error);
+  hl_status status = hl_stream_inflate_if_gzip(stream, error);
   if (status != HL_OK) return status;
   const unsigned char *bytes;
   size_t length;

@@ -29,8 +29,8 @@ typedef struct meta_header {
 } meta_header;
 
 bool hl_is_metaimage(const unsigned char *bytes, size_t length) {
-  static const char *const keys[] = {"ObjectType", "NDims", "Comment", "ObjectSubType", "ID", "DimSize", "BinaryData",
-                                     "ElementType"};
+  static const char *const keys[] = {"ObjectType", "NDims",   "Comment",    "ObjectSubType",
+                                     "ID",         "DimSize", "BinaryData", "ElementType"};
   for (size_t n = 0; n < sizeof keys / sizeof *keys; n++) {
     size_t place = strlen(keys[n]);
     if (length <= place || memcmp(bytes, keys[n], place) != 0) continue;
@@ -52,26 +52,25 @@ static bool read_flag(const char *value, bool *flag) {
 }
 
 static hl_status read_type(meta_header *header, const char *value, hl_error *error) {
-  static const struct { const char *name; hl_voxel_type type; } types[] = {
-      {"MET_UCHAR", HL_VOXEL_U8}, {"MET_CHAR", HL_VOXEL_I8},   {"MET_USHORT", HL_VOXEL_U16}, {"MET_SHORT", HL_VOXEL_I16},
-      {"MET_UINT", HL_VOXEL_U32}, {"MET_INT", HL_VOXEL_I32},   {"MET_ULONG", HL_VOXEL_U32},  {"MET_LONG", HL_VOXEL_I32},
-      {"MET_FLOAT", HL_VOXEL_F32}, {"MET_DOUBLE", HL_VOXEL_F64}};
-  for (size_t n = 0; n < sizeof types / sizeof *types; n++)
-    if (hl_text_equal(value, types[n].name)) {
-      header->type = types[n].type;
-      return HL_OK;
-    }
+  static const hl_named_type types[] = {
+      {"MET_UCHAR", HL_VOXEL_U8},           {"MET_CHAR", HL_VOXEL_I8},
+      {"MET_USHORT", HL_VOXEL_U16},         {"MET_SHORT", HL_VOXEL_I16},
+      {"MET_UINT|MET_ULONG", HL_VOXEL_U32}, {"MET_INT|MET_LONG", HL_VOXEL_I32},
+      {"MET_FLOAT", HL_VOXEL_F32},          {"MET_DOUBLE", HL_VOXEL_F64}};
+  if (hl_find_type(types, sizeof types / sizeof *types, value, &header->type)) return HL_OK;
   char shown[HL_PRINTABLE_BYTES];
-  return HL_FAIL_LINE(error, hl_text_starts(value, "MET_") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream,
-                      header->line,
-                      "ElementType \"%s\" is not read: MET_ with CHAR, SHORT, INT, their U forms, FLOAT and DOUBLE are",
-                      hl_text_printable(shown, value));
+  return HL_FAIL_LINE(
+      error, hl_text_starts(value, "MET_") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream,
+      header->line,
+      "ElementType \"%s\" is not read: MET_ with CHAR, SHORT, INT, their U forms, FLOAT and DOUBLE are",
+      hl_text_printable(shown, value));
 }
 
-static hl_status read_numbers(meta_header *header, const char *key, const char *value, double *numbers, int count,
-                              bool *present, hl_error *error) {
+static hl_status read_numbers(meta_header *header, const char *key, const char *value, double *numbers,
+                              int count, bool *present, hl_error *error) {
   if (header->dimension == 0)
-    return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "NDims must come before %s", key);
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "NDims must come before %s",
+                        key);
   if (hl_text_numbers(value, numbers, count) != count) return refuse(header, key, value, error);
   *present = true;
   return HL_OK;
@@ -87,48 +86,49 @@ static hl_status read_dimension(meta_header *header, const char *key, const char
 
 static hl_status read_data_file(meta_header *header, const char *key, const char *value, hl_error *error) {
   if (hl_text_starts(value, "LIST") || strchr(value, '%') != NULL)
-    return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
-                        "voxels in several files (ElementDataFile LIST or a pattern) are not read: save them as one");
+    return HL_FAIL_LINE(
+        error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
+        "voxels in several files (ElementDataFile LIST or a pattern) are not read: save them as one");
   if (*value == 0 || strlen(value) >= sizeof header->data_file) return refuse(header, key, value, error);
   strcpy(header->data_file, value);
   return HL_OK;
-}
-
-static bool is_one_of(const char *key, const char *a, const char *b, const char *c) {
-  return hl_text_equal(key, a) || hl_text_equal(key, b) || (c != NULL && hl_text_equal(key, c));
 }
 
 static hl_status read_key(meta_header *header, const char *key, const char *value, hl_error *error) {
   int n = header->dimension;
   bool sound = true, flag, unused;
   if (hl_text_equal(key, "NDims")) return read_dimension(header, key, value, error);
-  if (hl_text_equal(key, "DimSize"))
-    sound = header->has_sizes = n > 0 && hl_text_sizes(value, header->size, MOST_AXES) == n;
-  else if (hl_text_equal(key, "ElementType")) return read_type(header, value, error);
-  else if (hl_text_equal(key, "ElementSpacing"))
+  if (hl_text_equal(key, "ElementType")) return read_type(header, value, error);
+  if (hl_text_equal(key, "ElementDataFile")) return read_data_file(header, key, value, error);
+  if (hl_text_equal(key, "ElementSpacing"))
     return read_numbers(header, key, value, header->spacing, n, &header->has_spacing, error);
-  else if (hl_text_equal(key, "ElementSize"))
+  if (hl_text_equal(key, "ElementSize"))
     return read_numbers(header, key, value, header->element_size, n, &header->has_element_size, error);
-  else if (is_one_of(key, "Offset", "Position", "Origin"))
+  if (hl_text_is_one_of(key, "Offset|Position|Origin"))
     return read_numbers(header, key, value, header->offset, n, &header->has_offset, error);
-  else if (is_one_of(key, "TransformMatrix", "Rotation", "Orientation"))
+  if (hl_text_is_one_of(key, "TransformMatrix|Rotation|Orientation"))
     return read_numbers(header, key, value, header->matrix, n * n, &header->has_matrix, error);
-  else if (hl_text_equal(key, "ElementNumberOfChannels")) sound = hl_text_sizes(value, &header->channels, 1) == 1;
-  else if (is_one_of(key, "ElementByteOrderMSB", "BinaryDataByteOrderMSB", NULL))
+  if (hl_text_equal(key, "ElementToIntensityFunctionSlope"))
+    return read_numbers(header, key, value, &header->slope, 1, &unused, error);
+  if (hl_text_equal(key, "ElementToIntensityFunctionOffset"))
+    return read_numbers(header, key, value, &header->intercept, 1, &unused, error);
+  if (hl_text_equal(key, "DimSize")) {
+    sound = header->has_sizes = n > 0 && hl_text_sizes(value, header->size, MOST_AXES) == n;
+  } else if (hl_text_equal(key, "ElementNumberOfChannels")) {
+    sound = hl_text_sizes(value, &header->channels, 1) == 1;
+  } else if (hl_text_is_one_of(key, "ElementByteOrderMSB|BinaryDataByteOrderMSB")) {
     sound = read_flag(value, &header->big_endian);
-  else if (hl_text_equal(key, "CompressedData")) sound = read_flag(value, &header->compressed);
-  else if (hl_text_equal(key, "BinaryData")) {
+  } else if (hl_text_equal(key, "CompressedData")) {
+    sound = read_flag(value, &header->compressed);
+  } else if (hl_text_equal(key, "BinaryData")) {
     sound = read_flag(value, &flag);
     header->text = !flag;
   } else if (hl_text_equal(key, "HeaderSize")) {
     header->header_is_rest = hl_text_equal(value, "-1");
     sound = header->header_is_rest || hl_text_sizes(value, &header->header_bytes, 1) == 1;
-  } else if (hl_text_equal(key, "ObjectType")) sound = hl_text_equal(value, "Image");
-  else if (hl_text_equal(key, "ElementToIntensityFunctionSlope"))
-    return read_numbers(header, key, value, &header->slope, 1, &unused, error);
-  else if (hl_text_equal(key, "ElementToIntensityFunctionOffset"))
-    return read_numbers(header, key, value, &header->intercept, 1, &unused, error);
-  else if (hl_text_equal(key, "ElementDataFile")) return read_data_file(header, key, value, error);
+  } else if (hl_text_equal(key, "ObjectType")) {
+    sound = hl_text_equal(value, "Image");
+  }
   return sound ? HL_OK : refuse(header, key, value, error);
 }
 
@@ -161,12 +161,17 @@ static hl_status read_header(hl_stream *stream, meta_header *header, hl_error *e
 static hl_status make_grid(const meta_header *header, hl_volume_description *grid, hl_error *error) {
   for (int axis = 3; axis < header->dimension; axis++)
     if (header->size[axis] != 1)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %d dimensions, and dimension %d has %zu samples: at most three "
-                     "may have more than one", header->stream->path, header->dimension, axis + 1, header->size[axis]);
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: %d dimensions, and dimension %d has %zu samples: at most three "
+                     "may have more than one",
+                     header->stream->path, header->dimension, axis + 1, header->size[axis]);
   if (header->channels != 1)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: voxels of %zu components: only one value per voxel is read",
-                   header->stream->path, header->channels);
-  const double *spacing = header->has_spacing ? header->spacing : header->has_element_size ? header->element_size : NULL;
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: voxels of %zu components: only one value per voxel is read", header->stream->path,
+                   header->channels);
+  const double *spacing = header->has_spacing        ? header->spacing
+                          : header->has_element_size ? header->element_size
+                                                     : NULL;
   for (int axis = 0; axis < 3 && axis < header->dimension; axis++) {
     grid->dimensions[axis] = header->size[axis];
     grid->origin[axis] = header->has_offset ? header->offset[axis] : 0;

@@ -16,12 +16,14 @@ enum { HEADER_1_BYTES = 348, HEADER_2_BYTES = 540, NAME_BYTES = 1024 };
 /* Where the fields of a version lie in its header. */
 typedef struct nifti_layout {
   int version;
-  size_t header_bytes, magic, dim, datatype, pixdim, vox_offset, slope, intercept, qform_code, sform_code, quaternion,
-      qoffset, srow;
+  size_t header_bytes, magic, dim, datatype, pixdim, vox_offset, slope, intercept, qform_code, sform_code,
+      quaternion, qoffset, srow;
 } nifti_layout;
 
-static const nifti_layout layout_1 = {1, HEADER_1_BYTES, 344, 40, 70, 76, 108, 112, 116, 252, 254, 256, 268, 280};
-static const nifti_layout layout_2 = {2, HEADER_2_BYTES, 4, 16, 12, 104, 168, 176, 184, 344, 348, 352, 376, 400};
+static const nifti_layout layout_1 = {1,  HEADER_1_BYTES, 344, 40, 70, 76, 108, 112, 116, 252, 254, 256, 268,
+                                      280};
+static const nifti_layout layout_2 = {2,  HEADER_2_BYTES, 4, 16, 12, 104, 168, 176, 184, 344, 348, 352, 376,
+                                      400};
 
 typedef struct nifti_header {
   unsigned char bytes[HEADER_2_BYTES];
@@ -38,7 +40,9 @@ static uint64_t load_bits(const nifti_header *header, size_t place, size_t lengt
 }
 
 /* The two versions differ in the width of almost every number. */
-static int64_t load_short(const nifti_header *header, size_t place) { return (int16_t)load_bits(header, place, 2); }
+static int64_t load_short(const nifti_header *header, size_t place) {
+  return (int16_t)load_bits(header, place, 2);
+}
 static int64_t load_code(const nifti_header *header, size_t place) {
   return header->layout->version == 1 ? load_short(header, place) : (int32_t)load_bits(header, place, 4);
 }
@@ -61,7 +65,8 @@ static int64_t load_dimension(const nifti_header *header, int index) {
 
 /* The layout and byte order that the first four bytes state; null if they state none. */
 static const nifti_layout *identify(const unsigned char *bytes, bool *big_endian) {
-  uint32_t little = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+  uint32_t little =
+      (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
   uint32_t big = __builtin_bswap32(little);
   *big_endian = big == HEADER_1_BYTES || big == HEADER_2_BYTES;
   uint32_t size = *big_endian ? big : little;
@@ -70,7 +75,8 @@ static const nifti_layout *identify(const unsigned char *bytes, bool *big_endian
 
 static bool has_magic(const unsigned char *bytes, const nifti_layout *layout) {
   const unsigned char *magic = bytes + layout->magic;
-  return magic[0] == 'n' && (magic[1] == '+' || magic[1] == 'i') && magic[2] == '0' + layout->version && magic[3] == 0;
+  return magic[0] == 'n' && (magic[1] == '+' || magic[1] == 'i') && magic[2] == '0' + layout->version &&
+         magic[3] == 0;
 }
 
 bool hl_is_nifti(const unsigned char *bytes, size_t length) {
@@ -85,13 +91,14 @@ static hl_status read_header(hl_stream *stream, nifti_header *header, hl_error *
   if (status != HL_OK) return status;
   header->layout = identify(header->bytes, &header->big_endian);
   if (header->layout == NULL)
-    return hl_fail_offset(error, HL_ERROR_INPUT, 0, "%s, byte 0: a NIfTI header begins with 348 or 540", stream->path);
+    return hl_fail_offset(error, HL_ERROR_INPUT, 0, "%s, byte 0: a NIfTI header begins with 348 or 540",
+                          stream->path);
   status = hl_stream_read_all(stream, header->bytes + 4, header->layout->header_bytes - 4, error);
   if (status != HL_OK) return status;
   if (!has_magic(header->bytes, header->layout))
     return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, (int64_t)header->layout->magic,
-                          "%s, byte %zu: no NIfTI mark: ANALYZE headers are not read, convert to NIfTI", stream->path,
-                          header->layout->magic);
+                          "%s, byte %zu: no NIfTI mark: ANALYZE headers are not read, convert to NIfTI",
+                          stream->path, header->layout->magic);
   header->is_pair = header->bytes[header->layout->magic + 1] == 'i';
   return HL_OK;
 }
@@ -106,24 +113,37 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
     int64_t size = load_dimension(header, n);
     if (size < 1)
       return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->dim,
-                            "%s, byte %zu: dim[%d] is %lld, must be at least 1", header->path, header->layout->dim, n,
-                            (long long)size);
-    if (n <= 3) dimensions[n - 1] = (size_t)size;
+                            "%s, byte %zu: dim[%d] is %lld, must be at least 1", header->path,
+                            header->layout->dim, n, (long long)size);
+    if (n <= 3)
+      dimensions[n - 1] = (size_t)size;
     else if (size > 1)
       return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, (int64_t)header->layout->dim,
-                            "%s: %s %lld (dim[%d]): only single volumes of one value per voxel are read", header->path,
-                            n == 4 ? "a series of volumes," : "voxels of several components,", (long long)size, n);
+                            "%s: %s %lld (dim[%d]): only single volumes of one value per voxel are read",
+                            header->path, n == 4 ? "a series of volumes," : "voxels of several components,",
+                            (long long)size, n);
   }
   return HL_OK;
 }
 
 static hl_status read_type(const nifti_header *header, hl_voxel_type *type, hl_error *error) {
-  static const struct { int code; hl_voxel_type type; } types[] = {
-      {2, HL_VOXEL_U8},   {256, HL_VOXEL_I8}, {512, HL_VOXEL_U16}, {4, HL_VOXEL_I16},
-      {768, HL_VOXEL_U32}, {8, HL_VOXEL_I32}, {16, HL_VOXEL_F32},  {64, HL_VOXEL_F64}};
-  static const struct { int code; const char *name; } others[] = {
-      {1, "one bit"}, {32, "complex, 2 components"}, {128, "RGB, 3 components"}, {1024, "int64"}, {1280, "uint64"},
-      {1536, "float128"}, {1792, "complex, 2 components"}, {2048, "complex, 2 components"}, {2304, "RGBA, 4 components"}};
+  static const struct {
+    int code;
+    hl_voxel_type type;
+  } types[] = {{2, HL_VOXEL_U8},    {256, HL_VOXEL_I8}, {512, HL_VOXEL_U16}, {4, HL_VOXEL_I16},
+               {768, HL_VOXEL_U32}, {8, HL_VOXEL_I32},  {16, HL_VOXEL_F32},  {64, HL_VOXEL_F64}};
+  static const struct {
+    int code;
+    const char *name;
+  } others[] = {{1, "one bit"},
+                {32, "complex, 2 components"},
+                {128, "RGB, 3 components"},
+                {1024, "int64"},
+                {1280, "uint64"},
+                {1536, "float128"},
+                {1792, "complex, 2 components"},
+                {2048, "complex, 2 components"},
+                {2304, "RGBA, 4 components"}};
   int64_t code = load_short(header, header->layout->datatype);
   for (size_t n = 0; n < sizeof types / sizeof *types; n++)
     if (types[n].code == code) {
@@ -132,22 +152,24 @@ static hl_status read_type(const nifti_header *header, hl_voxel_type *type, hl_e
     }
   for (size_t n = 0; n < sizeof others / sizeof *others; n++)
     if (others[n].code == code)
-      return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, (int64_t)header->layout->datatype,
-                            "%s: voxels of type %lld (%s) are not read: convert them to one number of at most 32 bits",
-                            header->path, (long long)code, others[n].name);
+      return hl_fail_offset(
+          error, HL_ERROR_UNSUPPORTED, (int64_t)header->layout->datatype,
+          "%s: voxels of type %lld (%s) are not read: convert them to one number of at most 32 bits",
+          header->path, (long long)code, others[n].name);
   return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->datatype,
-                        "%s, byte %zu: there is no NIfTI datatype %lld", header->path, header->layout->datatype,
-                        (long long)code);
+                        "%s, byte %zu: there is no NIfTI datatype %lld", header->path,
+                        header->layout->datatype, (long long)code);
 }
 
 /* A slope of 0, NaN or infinity means that there is none. */
 static hl_status read_scale(const nifti_header *header, hl_volume_description *grid, hl_error *error) {
-  double slope = load_real(header, header->layout->slope, 0), intercept = load_real(header, header->layout->intercept, 0);
+  double slope = load_real(header, header->layout->slope, 0),
+         intercept = load_real(header, header->layout->intercept, 0);
   if (slope == 0 || !isfinite(slope)) return HL_OK;
   if (!isfinite(intercept))
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->intercept,
-                          "%s, byte %zu: scl_inter is not a finite number though scl_slope is %g", header->path,
-                          header->layout->intercept, slope);
+                          "%s, byte %zu: scl_inter is not a finite number though scl_slope is %g",
+                          header->path, header->layout->intercept, slope);
   grid->value_scale = slope;
   grid->value_offset = intercept;
   return HL_OK;
@@ -156,14 +178,16 @@ static hl_status read_scale(const nifti_header *header, hl_volume_description *g
 /* Method 3: an affine matrix by rows. */
 static void place_by_sform(const nifti_header *header, hl_volume_description *grid) {
   for (int row = 0; row < 3; row++) {
-    for (int axis = 0; axis < 3; axis++) grid->axis[axis][row] = load_real(header, header->layout->srow, 4 * row + axis);
+    for (int axis = 0; axis < 3; axis++)
+      grid->axis[axis][row] = load_real(header, header->layout->srow, 4 * row + axis);
     grid->origin[row] = load_real(header, header->layout->srow, 4 * row + 3);
   }
 }
 
 /* Method 2: a rotation as the unit quaternion (a, b, c, d), a >= 0 left out, voxel sizes and an offset. */
 static void place_by_qform(const nifti_header *header, const double spacing[3], hl_volume_description *grid) {
-  double b = load_real(header, header->layout->quaternion, 0), c = load_real(header, header->layout->quaternion, 1);
+  double b = load_real(header, header->layout->quaternion, 0),
+         c = load_real(header, header->layout->quaternion, 1);
   double d = load_real(header, header->layout->quaternion, 2), square = 1 - (b * b + c * c + d * d);
   double a = square > 0 ? sqrt(square) : 0, length = sqrt(a * a + b * b + c * c + d * d);
   a /= length, b /= length, c /= length, d /= length;
@@ -207,24 +231,30 @@ static hl_status switch_to_image(hl_stream **stream, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
   char image[NAME_BYTES];
   size_t length = strlen(name);
-  if (hl_text_ends(name, ".hdr")) length -= 4;
-  else if (hl_text_ends(name, ".hdr.gz")) length -= 7;
-  else if (hl_text_ends(name, ".nii")) length -= 4;
-  if (length + 8 > sizeof image) return hl_fail(error, HL_ERROR_INPUT, "%s: the name is too long", (*stream)->path);
+  if (hl_text_ends(name, ".hdr"))
+    length -= 4;
+  else if (hl_text_ends(name, ".hdr.gz"))
+    length -= 7;
+  else if (hl_text_ends(name, ".nii"))
+    length -= 4;
+  if (length + 8 > sizeof image)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the name is too long", (*stream)->path);
   memcpy(image, name, length);
   strcpy(image + length, ".img");
   hl_status status = hl_stream_switch(stream, image, error);
   if (status == HL_ERROR_IO) {
     strcpy(image + length, ".img.gz");
-    if (hl_stream_switch(stream, image, NULL) == HL_OK) status = HL_OK;
+    hl_status compressed = hl_stream_switch(stream, image, NULL);
+    if (compressed != HL_ERROR_IO) status = compressed;
   }
   return status;
 }
 
 static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, const hl_payload *payload,
                               hl_error *error) {
-  double offset = header->layout->version == 1 ? load_real(header, header->layout->vox_offset, 0)
-                                               : (double)(int64_t)load_bits(header, header->layout->vox_offset, 8);
+  double offset = header->layout->version == 1
+                      ? load_real(header, header->layout->vox_offset, 0)
+                      : (double)(int64_t)load_bits(header, header->layout->vox_offset, 8);
   if (!(offset >= 0 && offset < 9e15) || offset != floor(offset))
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->vox_offset,
                           "%s, byte %zu: vox_offset is %g, must be a whole number of bytes", header->path,

@@ -68,8 +68,8 @@ static hl_status read_sizes(nrrd_header *header, const char *value, hl_error *er
   if (hl_text_sizes(value, sizes, MOST_AXES) != header->dimension) {
     char shown[HL_PRINTABLE_BYTES];
     return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line,
-                        "sizes must be %d whole numbers, as the dimension says, not \"%s\"", header->dimension,
-                        hl_text_printable(shown, value));
+                        "sizes must be %d whole numbers, as the dimension says, not \"%s\"",
+                        header->dimension, hl_text_printable(shown, value));
   }
   for (int axis = 0; axis < header->dimension; axis++) header->axis[axis].size = sizes[axis];
   header->has_sizes = true;
@@ -77,23 +77,20 @@ static hl_status read_sizes(nrrd_header *header, const char *value, hl_error *er
 }
 
 static hl_status read_type(nrrd_header *header, const char *value, hl_error *error) {
-  static const struct { const char *name; hl_voxel_type type; } types[] = {
-      {"unsigned char", HL_VOXEL_U8},       {"uchar", HL_VOXEL_U8},               {"uint8", HL_VOXEL_U8},
-      {"uint8_t", HL_VOXEL_U8},             {"signed char", HL_VOXEL_I8},         {"char", HL_VOXEL_I8},
-      {"int8", HL_VOXEL_I8},                {"int8_t", HL_VOXEL_I8},              {"unsigned short", HL_VOXEL_U16},
-      {"unsigned short int", HL_VOXEL_U16}, {"ushort", HL_VOXEL_U16},             {"uint16", HL_VOXEL_U16},
-      {"uint16_t", HL_VOXEL_U16},           {"short", HL_VOXEL_I16},              {"short int", HL_VOXEL_I16},
-      {"signed short", HL_VOXEL_I16},       {"signed short int", HL_VOXEL_I16},   {"int16", HL_VOXEL_I16},
-      {"int16_t", HL_VOXEL_I16},            {"unsigned int", HL_VOXEL_U32},       {"uint", HL_VOXEL_U32},
-      {"uint32", HL_VOXEL_U32},             {"uint32_t", HL_VOXEL_U32},           {"int", HL_VOXEL_I32},
-      {"signed int", HL_VOXEL_I32},         {"int32", HL_VOXEL_I32},              {"int32_t", HL_VOXEL_I32},
-      {"float", HL_VOXEL_F32},              {"double", HL_VOXEL_F64}};
-  for (size_t n = 0; n < sizeof types / sizeof *types; n++)
-    if (hl_text_equal(value, types[n].name)) {
-      header->type = types[n].type;
-      return HL_OK;
-    }
-  bool known = strstr(value, "long") != NULL || strstr(value, "64") != NULL || hl_text_equal(value, "block");
+  static const hl_named_type types[] = {
+      {"uchar|unsigned char|uint8|uint8_t", HL_VOXEL_U8},
+      {"signed char|char|int8|int8_t", HL_VOXEL_I8},
+      {"ushort|unsigned short|unsigned short int|uint16|uint16_t", HL_VOXEL_U16},
+      {"short|short int|signed short|signed short int|int16|int16_t", HL_VOXEL_I16},
+      {"uint|unsigned int|uint32|uint32_t", HL_VOXEL_U32},
+      {"int|signed int|int32|int32_t", HL_VOXEL_I32},
+      {"float", HL_VOXEL_F32},
+      {"double", HL_VOXEL_F64}};
+  if (hl_find_type(types, sizeof types / sizeof *types, value, &header->type)) return HL_OK;
+  bool known = hl_text_is_one_of(value,
+                                 "longlong|long long|long long int|signed long long|signed long long int|"
+                                 "ulonglong|unsigned long long|unsigned long long int|int64|int64_t|uint64|"
+                                 "uint64_t|block");
   char shown[HL_PRINTABLE_BYTES];
   return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
                       "type \"%s\" is not read: 8, 16 and 32 bit integers, float and double are",
@@ -101,26 +98,26 @@ static hl_status read_type(nrrd_header *header, const char *value, hl_error *err
 }
 
 static hl_status read_encoding(nrrd_header *header, const char *value, hl_error *error) {
-  static const struct { const char *name; nrrd_encoding encoding; } encodings[] = {
-      {"raw", NRRD_RAW},   {"gzip", NRRD_GZIP},  {"gz", NRRD_GZIP}, {"ascii", NRRD_TEXT},
-      {"text", NRRD_TEXT}, {"txt", NRRD_TEXT},   {"hex", NRRD_HEX}};
-  for (size_t n = 0; n < sizeof encodings / sizeof *encodings; n++)
-    if (hl_text_equal(value, encodings[n].name)) {
-      header->encoding = encodings[n].encoding;
+  static const char *const names[] = {"raw", "gzip|gz", "ascii|text|txt", "hex"}; /* as in nrrd_encoding */
+  for (int n = NRRD_RAW; n <= NRRD_HEX; n++)
+    if (hl_text_is_one_of(value, names[n])) {
+      header->encoding = (nrrd_encoding)n;
       header->has_encoding = true;
       return HL_OK;
     }
-  bool known = hl_text_equal(value, "bzip2") || hl_text_equal(value, "bz2") || hl_text_equal(value, "zrl");
+  bool known = hl_text_is_one_of(value, "bzip2|bz2|zrl");
   char shown[HL_PRINTABLE_BYTES];
-  return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
-                      "encoding \"%s\" is not read: raw, gzip, ascii and hex are (unu save -f nrrd -e gzip converts)",
-                      hl_text_printable(shown, value));
+  return HL_FAIL_LINE(
+      error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
+      "encoding \"%s\" is not read: raw, gzip, ascii and hex are (unu save -f nrrd -e gzip converts)",
+      hl_text_printable(shown, value));
 }
 
 static hl_status read_endian(nrrd_header *header, const char *value, hl_error *error) {
   header->big_endian = hl_text_equal(value, "big");
   header->has_endian = true;
-  return header->big_endian || hl_text_equal(value, "little") ? HL_OK : refuse(header, "endian", value, error);
+  return header->big_endian || hl_text_equal(value, "little") ? HL_OK
+                                                              : refuse(header, "endian", value, error);
 }
 
 /* One number per axis, NaN allowed; place is the offset of the number in nrrd_axis. */
@@ -129,7 +126,8 @@ static hl_status read_per_axis(nrrd_header *header, const char *field, const cha
   double numbers[MOST_AXES];
   hl_status status = need_dimension(header, field, error);
   if (status != HL_OK) return status;
-  if (hl_text_numbers(value, numbers, MOST_AXES) != header->dimension) return refuse(header, field, value, error);
+  if (hl_text_numbers(value, numbers, MOST_AXES) != header->dimension)
+    return refuse(header, field, value, error);
   for (int axis = 0; axis < header->dimension; axis++)
     memcpy((char *)&header->axis[axis] + place, &numbers[axis], sizeof *numbers);
   return HL_OK;
@@ -160,7 +158,8 @@ static hl_status read_kinds(nrrd_header *header, const char *value, hl_error *er
   hl_status status = need_dimension(header, "kinds", error);
   const char *cursor = value;
   for (int axis = 0; status == HL_OK && axis < header->dimension; axis++)
-    if (!hl_text_word(&cursor, header->axis[axis].kind, KIND_BYTES)) return refuse(header, "kinds", value, error);
+    if (!hl_text_word(&cursor, header->axis[axis].kind, KIND_BYTES))
+      return refuse(header, "kinds", value, error);
   return status;
 }
 
@@ -208,7 +207,8 @@ static hl_status read_data_file(nrrd_header *header, const char *value, hl_error
   if (hl_text_starts(value, "LIST") || strchr(value, '%') != NULL)
     return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
                         "voxels in several data files are not read: join them with unu join or unu save");
-  if (*value == 0 || strlen(value) >= sizeof header->data_file) return refuse(header, "data file", value, error);
+  if (*value == 0 || strlen(value) >= sizeof header->data_file)
+    return refuse(header, "data file", value, error);
   strcpy(header->data_file, value);
   return HL_OK;
 }
@@ -229,21 +229,30 @@ static hl_status pass_over(nrrd_header *header, const char *value, hl_error *err
 }
 
 static field_function *find_field(const char *name) {
-  static const struct { const char *name; field_function *read; } fields[] = {
-      {"dimension", read_dimension}, {"sizes", read_sizes}, {"type", read_type}, {"encoding", read_encoding},
-      {"endian", read_endian}, {"spacings", read_spacings}, {"axis mins", read_minima}, {"axismins", read_minima},
-      {"axis maxs", read_maxima}, {"axismaxs", read_maxima}, {"centers", read_centers},
-      {"centerings", read_centers}, {"kinds", read_kinds}, {"space directions", read_directions},
-      {"space origin", read_origin}, {"data file", read_data_file}, {"datafile", read_data_file},
-      {"line skip", read_line_skip}, {"lineskip", read_line_skip}, {"byte skip", read_byte_skip},
-      {"byteskip", read_byte_skip}, {"space", pass_over}, {"space dimension", pass_over},
-      {"space units", pass_over}, {"measurement frame", pass_over}, {"content", pass_over}, {"number", pass_over},
-      {"block size", pass_over}, {"blocksize", pass_over}, {"min", pass_over}, {"max", pass_over},
-      {"old min", pass_over}, {"oldmin", pass_over}, {"old max", pass_over}, {"oldmax", pass_over},
-      {"thicknesses", pass_over}, {"labels", pass_over}, {"units", pass_over}, {"sample units", pass_over},
-      {"sampleunits", pass_over}};
+  static const struct {
+    const char *names;
+    field_function *read;
+  } fields[] = {
+      {"dimension", read_dimension},
+      {"sizes", read_sizes},
+      {"type", read_type},
+      {"encoding", read_encoding},
+      {"endian", read_endian},
+      {"spacings", read_spacings},
+      {"axis mins|axismins", read_minima},
+      {"axis maxs|axismaxs", read_maxima},
+      {"centers|centerings", read_centers},
+      {"kinds", read_kinds},
+      {"space directions", read_directions},
+      {"space origin", read_origin},
+      {"data file|datafile", read_data_file},
+      {"line skip|lineskip", read_line_skip},
+      {"byte skip|byteskip", read_byte_skip},
+      {"space|space dimension|space units|measurement frame|content|number|block size|blocksize|min|max|"
+       "old min|oldmin|old max|oldmax|thicknesses|labels|units|sample units|sampleunits",
+       pass_over}};
   for (size_t n = 0; n < sizeof fields / sizeof *fields; n++)
-    if (hl_text_equal(name, fields[n].name)) return fields[n].read;
+    if (hl_text_is_one_of(name, fields[n].names)) return fields[n].read;
   return NULL;
 }
 
@@ -251,16 +260,18 @@ static hl_status read_field_line(nrrd_header *header, char *line, hl_error *erro
   char shown[HL_PRINTABLE_BYTES];
   char *colon = strchr(line, ':');
   if (colon == NULL)
-    return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line,
-                        "expected \"field: value\", an empty line before the voxels, or a # comment, not \"%s\"",
-                        hl_text_printable(shown, line));
+    return HL_FAIL_LINE(
+        error, HL_ERROR_INPUT, header->stream, header->line,
+        "expected \"field: value\", an empty line before the voxels, or a # comment, not \"%s\"",
+        hl_text_printable(shown, line));
   if (colon[1] == '=') return HL_OK;
   *colon = 0;
   char *name = hl_text_trim(line), *value = hl_text_trim(colon + 1);
   field_function *read = find_field(name);
   if (read != NULL) return read(header, value, error);
-  hl_log(header->stream->context, HL_LOG_WARNING, "%s, line %d: the field \"%s\" is not known and has no effect",
-         header->stream->path, header->line, hl_text_printable(shown, name));
+  hl_log(header->stream->context, HL_LOG_WARNING,
+         "%s, line %d: the field \"%s\" is not known and has no effect", header->stream->path, header->line,
+         hl_text_printable(shown, name));
   return HL_OK;
 }
 
@@ -286,22 +297,25 @@ static hl_status read_header(hl_stream *stream, nrrd_header *header, hl_error *e
   if (header->type == 0 || !header->has_sizes || !header->has_encoding)
     return HL_FAIL_LINE(error, HL_ERROR_INPUT, stream, header->line,
                         "the header ends without a field \"%s\", which NRRD needs",
-                        header->type == 0 ? "type" : !header->has_sizes ? "sizes" : "encoding");
+                        header->type == 0    ? "type"
+                        : !header->has_sizes ? "sizes"
+                                             : "encoding");
   if (ended && header->data_file[0] == 0)
-    return HL_FAIL_LINE(error, HL_ERROR_INPUT, stream, header->line, "%s",
-                        "the file ends with its header: neither an empty line and voxels, nor a \"data file\"");
+    return HL_FAIL_LINE(
+        error, HL_ERROR_INPUT, stream, header->line, "%s",
+        "the file ends with its header: neither an empty line and voxels, nor a \"data file\"");
   return HL_OK;
 }
 
 /* Whether the samples along an axis are several values of one voxel. */
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
   if (header->has_directions) return !axis->has_direction;
-  return axis->kind[0] != 0 && !hl_text_equal(axis->kind, "domain") && !hl_text_equal(axis->kind, "space") &&
-         !hl_text_equal(axis->kind, "time") && !hl_text_equal(axis->kind, "none") && !hl_text_equal(axis->kind, "???");
+  return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|time|none|???");
 }
 
 /* The indices of at most 3 axes of the grid; the others must have one sample. */
-static hl_status choose_axes(const nrrd_header *header, const nrrd_axis *chosen[3], int *count, hl_error *error) {
+static hl_status choose_axes(const nrrd_header *header, const nrrd_axis *chosen[3], int *count,
+                             hl_error *error) {
   size_t components = 1;
   *count = 0;
   for (int n = 0; n < header->dimension; n++) {
@@ -312,15 +326,17 @@ static hl_status choose_axes(const nrrd_header *header, const nrrd_axis *chosen[
     } else if (!is_component && *count < 3) {
       chosen[(*count)++] = axis;
     } else if (!is_component && axis->size != 1) {
-      return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "%s: %d dimensions, and the one after the third has %zu samples: take one out with unu slice",
-                     header->stream->path, header->dimension, axis->size);
+      return hl_fail(
+          error, HL_ERROR_UNSUPPORTED,
+          "%s: %d dimensions, and the one after the third has %zu samples: take one out with unu slice",
+          header->stream->path, header->dimension, axis->size);
     }
   }
   if (components != 1)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: voxels of %zu components: only one value per voxel is read (unu slice or unu project)",
-                   header->stream->path, components);
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "%s: voxels of %zu components: only one value per voxel is read (unu slice or unu project)",
+        header->stream->path, components);
   return HL_OK;
 }
 
@@ -329,7 +345,9 @@ static hl_status choose_axes(const nrrd_header *header, const nrrd_axis *chosen[
 static void place_axis(const nrrd_axis *axis, double *spacing, double *first) {
   double width = axis->maximum - axis->minimum;
   double intervals = axis->is_node ? (double)axis->size - 1 : (double)axis->size;
-  *spacing = isfinite(axis->spacing) ? axis->spacing : isfinite(width) && intervals > 0 ? width / intervals : 1;
+  *spacing = isfinite(axis->spacing)            ? axis->spacing
+             : isfinite(width) && intervals > 0 ? width / intervals
+                                                : 1;
   *first = isfinite(axis->minimum) ? axis->minimum + (axis->is_node ? 0 : *spacing / 2) : 0;
 }
 
@@ -394,7 +412,8 @@ hl_status hl_load_nrrd(hl_stream **stream, hl_volume **volume, hl_error *error) 
   payload.big_endian = header.big_endian;
   payload.text = header.encoding == NRRD_TEXT;
   if (!header.has_endian && !payload.text && hl_voxel_type_bytes(header.type) > 1)
-    hl_log((*stream)->context, HL_LOG_WARNING, "%s: no field \"endian\": little-endian is assumed", (*stream)->path);
+    hl_log((*stream)->context, HL_LOG_WARNING, "%s: no field \"endian\": little-endian is assumed",
+           (*stream)->path);
   if (header.data_file[0] != 0) status = hl_stream_switch(stream, header.data_file, error);
   if (status == HL_OK) status = skip_to_voxels(stream, &header, &payload, error);
   return status == HL_OK ? hl_payload_read(*stream, &payload, volume, error) : status;

@@ -38,23 +38,27 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
   hl_status status = hl_volume_check_grid(&payload->grid, stream->path, error);
   if (status != HL_OK) return status;
   uint64_t most = hl_stream_at_most(stream), promised = hl_payload_bytes(payload);
-  if (payload->text) promised = 2 * (uint64_t)voxel_count(payload) - 1; /* a digit each, and what separates them */
+  if (payload->text)
+    promised = 2 * (uint64_t)voxel_count(payload) - 1; /* a digit each, and what separates them */
   if (promised <= most) return HL_OK;
-  return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
-                        "%s: %s promises %llu bytes of voxels%s (%zu x %zu x %zu %s), the file %s %llu bytes",
-                        stream->path, payload->promiser, (unsigned long long)promised, payload->text ? " as text or more" : "",
-                        payload->grid.dimensions[0], payload->grid.dimensions[1], payload->grid.dimensions[2],
-                        hl_voxel_type_name(payload->grid.type),
-                        stream->below == NULL ? "has only" : "can decode to at most", (unsigned long long)most);
+  return hl_fail_offset(
+      error, HL_ERROR_INPUT, (int64_t)stream->offset,
+      "%s: %s promises %llu bytes of voxels%s (%zu x %zu x %zu %s), the file %s %llu bytes", stream->path,
+      payload->promiser, (unsigned long long)promised, payload->text ? " as text or more" : "",
+      payload->grid.dimensions[0], payload->grid.dimensions[1], payload->grid.dimensions[2],
+      hl_voxel_type_name(payload->grid.type), stream->below == NULL ? "has only" : "can decode to at most",
+      (unsigned long long)most);
 }
 
 /* Progress, and whether to go on. */
 static hl_status report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
   hl_progress(stream->context, "load", (double)done / (double)count);
-  return hl_cancelled(stream->context) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path) : HL_OK;
+  return hl_cancelled(stream->context) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path)
+                                       : HL_OK;
 }
 
-static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, uint64_t found, hl_error *error) {
+static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, uint64_t found,
+                            hl_error *error) {
   return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
                         "%s: %s promises %llu bytes of voxels (%zu x %zu x %zu %s), but the data end after "
                         "%llu%s",
@@ -64,10 +68,12 @@ static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, 
                         stream->cut_short ? ": the file is cut short" : ": correct its sizes or type");
 }
 
-static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsigned char *voxels, hl_error *error) {
+static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsigned char *voxels,
+                             hl_error *error) {
   hl_voxel_type type = payload->grid.type;
   size_t file_bytes = hl_voxel_type_bytes(type), stored_bytes = hl_storage_bytes(hl_voxel_type_storage(type));
-  size_t count = voxel_count(payload), piece = file_bytes > stored_bytes ? STAGE_VOXELS : PIECE_BYTES / file_bytes;
+  size_t count = voxel_count(payload),
+         piece = file_bytes > stored_bytes ? STAGE_VOXELS : PIECE_BYTES / file_bytes;
   unsigned char stage[STAGE_VOXELS * 8];
   bool swap = payload->big_endian != native_is_big_endian;
   for (size_t done = 0; done < count;) {
@@ -75,7 +81,8 @@ static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsig
     unsigned char *place = voxels + done * stored_bytes, *raw = file_bytes > stored_bytes ? stage : place;
     hl_status status = hl_stream_read(stream, raw, wanted * file_bytes, &got, error);
     if (status != HL_OK) return status;
-    if (got < wanted * file_bytes) return fail_short(stream, payload, (uint64_t)done * file_bytes + got, error);
+    if (got < wanted * file_bytes)
+      return fail_short(stream, payload, (uint64_t)done * file_bytes + got, error);
     hl_voxels_store(type, swap, raw, wanted, place);
     done += wanted;
     status = report(stream, done, count, error);
@@ -101,12 +108,14 @@ static hl_status next_number(hl_stream *stream, double *value, bool *found, hl_e
   bytes += begin;
   available -= begin;
   size_t length = 0;
-  while (length < available && length < HL_NUMBER_CHARACTERS && !is_separator(bytes[length]) && bytes[length] != '<')
+  while (length < available && length < HL_NUMBER_CHARACTERS && !is_separator(bytes[length]) &&
+         bytes[length] != '<')
     length++;
   if (length == 0) return HL_OK;
   if (!hl_text_number((const char *)bytes, length, value))
-    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset, "%s, byte %llu: expected a number here",
-                          stream->path, (unsigned long long)stream->offset);
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                          "%s, byte %llu: expected a number here", stream->path,
+                          (unsigned long long)stream->offset);
   hl_stream_take(stream, length);
   *found = true;
   return HL_OK;
@@ -116,8 +125,8 @@ static bool fits_type(hl_voxel_type type, double value) {
   static const double low[HL_VOXEL_F64 + 1] = {
       [HL_VOXEL_I8] = INT8_MIN, [HL_VOXEL_I16] = INT16_MIN, [HL_VOXEL_I32] = INT32_MIN};
   static const double high[HL_VOXEL_F64 + 1] = {
-      [HL_VOXEL_U8] = UINT8_MAX,   [HL_VOXEL_I8] = INT8_MAX,     [HL_VOXEL_U16] = UINT16_MAX,
-      [HL_VOXEL_I16] = INT16_MAX,  [HL_VOXEL_U32] = UINT32_MAX,  [HL_VOXEL_I32] = INT32_MAX};
+      [HL_VOXEL_U8] = UINT8_MAX,  [HL_VOXEL_I8] = INT8_MAX,    [HL_VOXEL_U16] = UINT16_MAX,
+      [HL_VOXEL_I16] = INT16_MAX, [HL_VOXEL_U32] = UINT32_MAX, [HL_VOXEL_I32] = INT32_MAX};
   if (type == HL_VOXEL_F32 || type == HL_VOXEL_F64) return true;
   return value >= low[type] && value <= high[type] && value == floor(value);
 }
@@ -141,12 +150,14 @@ static hl_status read_text(hl_stream *stream, const hl_payload *payload, void *v
     if (status != HL_OK) return status;
     if (!found)
       return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
-                            "%s: %s promises %zu voxels, but only %zu numbers follow", stream->path, payload->promiser, count,
-                            done);
+                            "%s: %s promises %zu voxels, but only %zu numbers follow", stream->path,
+                            payload->promiser, count, done);
+    if (payload->text_is_fraction) value = floor(255 * value + 0.5);
     if (!fits_type(payload->grid.type, value))
       return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
                             "%s, before byte %llu: %.17g does not fit the type %s", stream->path,
-                            (unsigned long long)stream->offset, value, hl_voxel_type_name(payload->grid.type));
+                            (unsigned long long)stream->offset, value,
+                            hl_voxel_type_name(payload->grid.type));
     store_number(&payload->grid, value, done, voxels);
   }
   return HL_OK;
@@ -164,14 +175,16 @@ static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_erro
   }
   if (status != HL_OK || available == 0) return status;
   if (payload->trailing == HL_TRAILING_REFUSED)
-    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
-                          "%s: %s promises %zu x %zu x %zu %s, %llu bytes, but the data are longer: correct the sizes "
-                          "or the type",
-                          stream->path, payload->promiser, payload->grid.dimensions[0], payload->grid.dimensions[1],
-                          payload->grid.dimensions[2], hl_voxel_type_name(payload->grid.type),
-                          (unsigned long long)hl_payload_bytes(payload));
-  hl_log(stream->context, HL_LOG_WARNING, "%s: the data go on after the %llu bytes of voxels that the header promises",
-         stream->path, (unsigned long long)hl_payload_bytes(payload));
+    return hl_fail_offset(
+        error, HL_ERROR_INPUT, (int64_t)stream->offset,
+        "%s: %s promises %zu x %zu x %zu %s, %llu bytes, but the data are longer: correct the sizes "
+        "or the type",
+        stream->path, payload->promiser, payload->grid.dimensions[0], payload->grid.dimensions[1],
+        payload->grid.dimensions[2], hl_voxel_type_name(payload->grid.type),
+        (unsigned long long)hl_payload_bytes(payload));
+  hl_log(stream->context, HL_LOG_WARNING,
+         "%s: the data go on after the %llu bytes of voxels that the header promises", stream->path,
+         (unsigned long long)hl_payload_bytes(payload));
   return HL_OK;
 }
 
@@ -182,8 +195,9 @@ hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, hl_volum
   void *voxels = hl_allocate(stream->context, voxel_count(payload), stored_bytes);
   if (voxels == NULL) return hl_fail_memory(error, voxel_count(payload) * stored_bytes, stream->path);
   status = report(stream, 0, voxel_count(payload), error);
-  if (status == HL_OK) status = payload->text ? read_text(stream, payload, voxels, error)
-                                              : read_binary(stream, payload, voxels, error);
+  if (status == HL_OK)
+    status = payload->text ? read_text(stream, payload, voxels, error)
+                           : read_binary(stream, payload, voxels, error);
   if (status == HL_OK) status = check_end(stream, payload, error);
   if (status != HL_OK) {
     hl_release(stream->context, voxels);

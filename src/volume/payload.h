@@ -16,6 +16,7 @@ typedef struct hl_payload {
   hl_volume_description grid; /* dimensions, type, origin, axis, value_scale, value_offset; nothing else */
   bool big_endian;
   bool text; /* decimal numbers separated by white space or commas, not binary */
+  bool text_is_fraction; /* the numbers 0 to 1 of the text stand for the values 0 to 255 of u8 */
   hl_trailing trailing;
   const char *promiser; /* who states size and type, for error lines: "the header" */
 } hl_payload;

@@ -51,7 +51,8 @@ bool hl_raw_name(const char *path, hl_payload *payload) {
   for (const char *place = name; *place != 0; place++) {
     if (!is_digit(*place) || (place > name && is_digit(place[-1]))) continue;
     const char *cursor = place;
-    if (scan_sizes(&cursor, payload->grid.dimensions) && scan_type(&cursor, &payload->grid.type, &payload->big_endian))
+    if (scan_sizes(&cursor, payload->grid.dimensions) &&
+        scan_type(&cursor, &payload->grid.type, &payload->big_endian))
       return true;
   }
   return false;
@@ -60,11 +61,12 @@ bool hl_raw_name(const char *path, hl_payload *payload) {
 hl_status hl_load_raw(hl_stream **stream, hl_volume **volume, hl_error *error) {
   hl_payload payload;
   if (!hl_raw_name((*stream)->path, &payload))
-    return hl_fail(error, HL_ERROR_INPUT,
-                   "%s: raw voxels need their size and type in the file's name, as in name_256x256x128_uint8.raw "
-                   "(uint8, int8, uint16, int16, uint32, int32, float32 or float64; _be after the type for "
-                   "big-endian; .raw or .raw.gz)",
-                   (*stream)->path);
+    return hl_fail(
+        error, HL_ERROR_INPUT,
+        "%s: raw voxels need their size and type in the file's name, as in name_256x256x128_uint8.raw "
+        "(uint8, int8, uint16, int16, uint32, int32, float32 or float64; _be after the type for "
+        "big-endian; .raw or .raw.gz)",
+        (*stream)->path);
   return hl_payload_read(*stream, &payload, volume, error);
 }
 
@@ -72,20 +74,6 @@ bool hl_is_raw_descriptor(const unsigned char *bytes, size_t length) {
   static const char *const keys[] = {"ObjectFileName:", "TaggedFileName:", "Resolution:"};
   for (int n = 0; n < 3; n++)
     if (length > strlen(keys[n]) && memcmp(bytes, keys[n], strlen(keys[n])) == 0) return true;
-  return false;
-}
-
-static bool format_type(const char *name, hl_voxel_type *type) {
-  static const struct { const char *name; hl_voxel_type type; } formats[] = {
-      {"UCHAR", HL_VOXEL_U8},   {"UINT8", HL_VOXEL_U8},   {"CHAR", HL_VOXEL_I8},    {"INT8", HL_VOXEL_I8},
-      {"USHORT", HL_VOXEL_U16}, {"UINT16", HL_VOXEL_U16}, {"USHORT_12", HL_VOXEL_U16}, {"SHORT", HL_VOXEL_I16},
-      {"INT16", HL_VOXEL_I16},  {"UINT", HL_VOXEL_U32},   {"INT", HL_VOXEL_I32},    {"FLOAT", HL_VOXEL_F32},
-      {"FLOAT32", HL_VOXEL_F32}, {"DOUBLE", HL_VOXEL_F64}};
-  for (size_t n = 0; n < sizeof formats / sizeof *formats; n++)
-    if (hl_text_equal(name, formats[n].name)) {
-      *type = formats[n].type;
-      return true;
-    }
   return false;
 }
 
@@ -97,6 +85,10 @@ typedef struct descriptor {
 
 static hl_status read_field(const hl_stream *stream, int line_number, const char *key, const char *value,
                             descriptor *header, hl_error *error) {
+  static const hl_named_type formats[] = {
+      {"UCHAR|UINT8", HL_VOXEL_U8},    {"CHAR|INT8", HL_VOXEL_I8}, {"USHORT|UINT16|USHORT_12", HL_VOXEL_U16},
+      {"SHORT|INT16", HL_VOXEL_I16},   {"UINT", HL_VOXEL_U32},     {"INT", HL_VOXEL_I32},
+      {"FLOAT|FLOAT32", HL_VOXEL_F32}, {"DOUBLE", HL_VOXEL_F64}};
   hl_volume_description *grid = &header->payload.grid;
   bool sound = true;
   if (hl_text_equal(key, "ObjectFileName")) {
@@ -109,7 +101,7 @@ static hl_status read_field(const hl_stream *stream, int line_number, const char
     sound = hl_text_numbers(value, spacing, 3) == 3;
     for (int axis = 0; sound && axis < 3; axis++) grid->axis[axis][axis] = spacing[axis];
   } else if (hl_text_equal(key, "Format")) {
-    sound = header->has_type = format_type(value, &grid->type);
+    sound = header->has_type = hl_find_type(formats, sizeof formats / sizeof *formats, value, &grid->type);
   }
   char shown[HL_PRINTABLE_BYTES];
   return sound ? HL_OK
@@ -135,7 +127,8 @@ hl_status hl_load_raw_descriptor(hl_stream **stream, hl_volume **volume, hl_erro
     if (status != HL_OK) return status;
   }
   if (header.data_file[0] == 0 || !header.has_sizes || !header.has_type)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: a .dat descriptor needs the lines ObjectFileName, Resolution and Format",
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: a .dat descriptor needs the lines ObjectFileName, Resolution and Format",
                    (*stream)->path);
   hl_status status = hl_stream_switch(stream, header.data_file, error);
   if (status == HL_OK) status = hl_volume_check_grid(&header.payload.grid, (*stream)->path, error);

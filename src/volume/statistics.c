@@ -118,8 +118,9 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   volume->maximum = fmax(first, last);
   volume->mean = volume->value_scale * (total.sum / (double)total.finite) + volume->value_offset;
   if (!isfinite(volume->maximum - volume->minimum))
-    return hl_fail(error, HL_ERROR_INPUT, "%s: values scaled by %g and shifted by %g leave the range of numbers",
-                   subject, volume->value_scale, volume->value_offset);
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: values scaled by %g and shifted by %g leave the range of numbers", subject,
+                   volume->value_scale, volume->value_offset);
   return HL_OK;
 }
 

@@ -42,7 +42,8 @@ void hl_stream_close(hl_stream *stream) {
   }
 }
 
-static hl_status file_pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+static hl_status file_pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count,
+                           hl_error *error) {
   file_stream *file = (file_stream *)stream;
   ssize_t got;
   do got = read(file->descriptor, bytes, capacity);
@@ -77,8 +78,7 @@ static hl_status file_begin(file_stream *file, const char *path, bool regular_on
   file->size = file->regular && information.st_size > 0 ? (uint64_t)information.st_size : 0;
   if (S_ISDIR(information.st_mode))
     return hl_fail(error, HL_ERROR_IO, "%s: is a folder, expected a volume file", path);
-  if (regular_only && !file->regular)
-    return hl_fail(error, HL_ERROR_IO, "%s: is not a regular file", path);
+  if (regular_only && !file->regular) return hl_fail(error, HL_ERROR_IO, "%s: is not a regular file", path);
   return HL_OK;
 }
 
@@ -123,7 +123,8 @@ hl_status hl_stream_restart(hl_stream **stream, hl_error *error) {
   return HL_OK;
 }
 
-static hl_status pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+static hl_status pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count,
+                      hl_error *error) {
   *count = 0;
   if (stream->ended) return HL_OK;
   hl_status status = stream->pull(stream, bytes, capacity, count, error);
@@ -160,7 +161,8 @@ hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *
   hl_status status = HL_OK;
   while (status == HL_OK && *count < wanted) {
     size_t left = wanted - *count, got;
-    if (stream->begin == stream->end && left >= HL_STREAM_BUFFER_BYTES) { /* past the buffer: no second copy */
+    if (stream->begin == stream->end &&
+        left >= HL_STREAM_BUFFER_BYTES) { /* past the buffer: no second copy */
       status = pull(stream, destination + *count, left, &got, error);
       stream->offset += got;
     } else {
@@ -194,8 +196,8 @@ hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error) {
     if (status != HL_OK) return status;
     if (available == 0)
       return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
-                            "%s: the file ends at byte %llu, %llu bytes before its voxels begin", stream->path,
-                            (unsigned long long)stream->offset, (unsigned long long)count);
+                            "%s: the file ends at byte %llu, %llu bytes before its voxels begin",
+                            stream->path, (unsigned long long)stream->offset, (unsigned long long)count);
     size_t step = available < count ? available : (size_t)count;
     hl_stream_take(stream, step);
     count -= step;

@@ -26,14 +26,16 @@ static hl_status fail_character(const coded_stream *stream, hl_error *error) {
   const hl_stream *below = stream->base.below;
   return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)below->offset,
                         "%s, byte %llu: a group of %s digits breaks off here", stream->base.path,
-                        (unsigned long long)below->offset, stream->digit_bits == 6 ? "base64" : "hexadecimal");
+                        (unsigned long long)below->offset,
+                        stream->digit_bits == 6 ? "base64" : "hexadecimal");
 }
 
 /* Turns a complete group into bytes; false if its padding is impossible. */
 static bool end_group(coded_stream *stream, unsigned char bytes[3], unsigned *count) {
   unsigned bits = stream->held * stream->digit_bits;
   *count = bits / 8;
-  if (*count == 0 || (stream->padding > 0 && stream->held + stream->padding != stream->group_digits)) return false;
+  if (*count == 0 || (stream->padding > 0 && stream->held + stream->padding != stream->group_digits))
+    return false;
   uint32_t aligned = stream->bits << (24 - bits);
   for (unsigned n = 0; n < *count; n++) bytes[n] = (unsigned char)(aligned >> (16 - 8 * n));
   stream->bits = 0;
@@ -41,7 +43,8 @@ static bool end_group(coded_stream *stream, unsigned char bytes[3], unsigned *co
   return true;
 }
 
-static hl_status coded_pull(hl_stream *base, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+static hl_status coded_pull(hl_stream *base, unsigned char *bytes, size_t capacity, size_t *count,
+                            hl_error *error) {
   coded_stream *stream = (coded_stream *)base;
   *count = 0;
   while (stream->left_count > 0 && *count < capacity) {
@@ -98,7 +101,8 @@ static hl_status push_coded(hl_stream **stream, const char *digits, unsigned dig
   made->digit_bits = digit_bits;
   made->group_digits = digit_bits == 6 ? 4 : 2;
   memset(made->digit, NOT_A_DIGIT, sizeof made->digit);
-  for (unsigned n = 0; digits[n] != 0; n++) made->digit[(unsigned char)digits[n]] = (unsigned char)(n & ((1u << digit_bits) - 1));
+  for (unsigned n = 0; digits[n] != 0; n++)
+    made->digit[(unsigned char)digits[n]] = (unsigned char)(n & ((1u << digit_bits) - 1));
   for (const char *space = " \t\r\n"; *space != 0; space++) made->digit[(unsigned char)*space] = SPACE;
   if (digit_bits == 6) made->digit['='] = PADDING;
   *stream = &made->base;

@@ -32,7 +32,9 @@ typedef struct blocks_stream {
   uint64_t plain_left, compressed_left;          /* bytes of the current block */
 } blocks_stream;
 
-static void *zlib_allocate(void *context, unsigned items, unsigned size) { return hl_allocate(context, items, size); }
+static void *zlib_allocate(void *context, unsigned items, unsigned size) {
+  return hl_allocate(context, items, size);
+}
 static void zlib_release(void *context, void *memory) { hl_release(context, memory); }
 
 static hl_status start_zlib(z_stream *zlib, hl_stream *stream, bool *started, hl_error *error) {
@@ -64,7 +66,8 @@ static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_
   if (*code == Z_DATA_ERROR || *code == Z_NEED_DICT || *code == Z_STREAM_ERROR)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->below->offset,
                           "%s, byte %llu: the compressed data are damaged (%s)", stream->path,
-                          (unsigned long long)stream->below->offset, zlib->msg != NULL ? zlib->msg : "bad stream");
+                          (unsigned long long)stream->below->offset,
+                          zlib->msg != NULL ? zlib->msg : "bad stream");
   return HL_OK;
 }
 
@@ -85,8 +88,8 @@ static hl_status inflate_pull(hl_stream *base, unsigned char *bytes, size_t capa
   while (*count < capacity && !stream->finished) {
     size_t consumed, made;
     int code;
-    hl_status status = inflate_step(base, &stream->zlib, UINT_MAX, bytes + *count, capacity - *count, &consumed,
-                                    &made, &code, error);
+    hl_status status = inflate_step(base, &stream->zlib, UINT_MAX, bytes + *count, capacity - *count,
+                                    &consumed, &made, &code, error);
     if (status == HL_OK && code == Z_STREAM_END) status = next_member(stream, error);
     if (status != HL_OK) return status;
     *count += made;
@@ -127,12 +130,12 @@ static void begin_block(blocks_stream *stream) {
 }
 
 static hl_status fail_block(const blocks_stream *stream, hl_error *error) {
-  return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->base.below->offset,
-                        "%s: compressed block %llu of %llu does not have the %llu bytes that its header promises",
-                        stream->base.path, (unsigned long long)stream->block + 1,
-                        (unsigned long long)stream->block_count,
-                        (unsigned long long)(stream->block + 1 == stream->block_count ? stream->last_bytes
-                                                                                      : stream->block_bytes));
+  return hl_fail_offset(
+      error, HL_ERROR_INPUT, (int64_t)stream->base.below->offset,
+      "%s: compressed block %llu of %llu does not have the %llu bytes that its header promises",
+      stream->base.path, (unsigned long long)stream->block + 1, (unsigned long long)stream->block_count,
+      (unsigned long long)(stream->block + 1 == stream->block_count ? stream->last_bytes
+                                                                    : stream->block_bytes));
 }
 
 /* The current block is full: let zlib see its check sum, and pass over what is left of its input. */
@@ -141,8 +144,8 @@ static hl_status end_block(blocks_stream *stream, hl_error *error) {
   while (code != Z_STREAM_END) {
     unsigned char surplus;
     size_t consumed, made;
-    hl_status status = inflate_step(&stream->base, &stream->zlib, stream->compressed_left, &surplus, 1, &consumed,
-                                    &made, &code, error);
+    hl_status status = inflate_step(&stream->base, &stream->zlib, stream->compressed_left, &surplus, 1,
+                                    &consumed, &made, &code, error);
     if (status != HL_OK) return status;
     stream->compressed_left -= consumed;
     if (made > 0 || (consumed == 0 && code != Z_STREAM_END)) return fail_block(stream, error);
@@ -153,15 +156,16 @@ static hl_status end_block(blocks_stream *stream, hl_error *error) {
   return status;
 }
 
-static hl_status blocks_pull(hl_stream *base, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+static hl_status blocks_pull(hl_stream *base, unsigned char *bytes, size_t capacity, size_t *count,
+                             hl_error *error) {
   blocks_stream *stream = (blocks_stream *)base;
   *count = 0;
   while (*count < capacity && stream->block < stream->block_count) {
     size_t room = capacity - *count < stream->plain_left ? capacity - *count : (size_t)stream->plain_left;
     size_t consumed, made;
     int code;
-    hl_status status = inflate_step(base, &stream->zlib, stream->compressed_left, bytes + *count, room, &consumed,
-                                    &made, &code, error);
+    hl_status status = inflate_step(base, &stream->zlib, stream->compressed_left, bytes + *count, room,
+                                    &consumed, &made, &code, error);
     if (status != HL_OK) return status;
     *count += made;
     stream->compressed_left -= consumed;
@@ -199,8 +203,8 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
 }
 
 /* The block sizes must add up to what the file promised elsewhere, which bounds their number too. */
-static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian, uint64_t promised,
-                                   hl_error *error) {
+static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
+                                   uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;
   uint64_t first[3]; /* number of blocks, bytes in each, bytes in the last (0: full) */
   hl_status status = read_integers(below, header_bytes, big_endian, first, 3, error);
@@ -213,22 +217,24 @@ static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, b
                !__builtin_mul_overflow(first[0] - 1, first[1], &total) &&
                !__builtin_add_overflow(total, stream->last_bytes, &total);
   if (!sound || total != promised)
-    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)below->offset,
-                          "%s: the header promises %llu bytes of voxels, the compressed blocks (%llu of %llu bytes, "
-                          "last %llu) hold another number",
-                          stream->base.path, (unsigned long long)promised, (unsigned long long)first[0],
-                          (unsigned long long)first[1], (unsigned long long)first[2]);
+    return hl_fail_offset(
+        error, HL_ERROR_INPUT, (int64_t)below->offset,
+        "%s: the header promises %llu bytes of voxels, the compressed blocks (%llu of %llu bytes, "
+        "last %llu) hold another number",
+        stream->base.path, (unsigned long long)promised, (unsigned long long)first[0],
+        (unsigned long long)first[1], (unsigned long long)first[2]);
   if (first[0] > hl_stream_at_most(below) / header_bytes)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)below->offset,
-                          "%s: the header promises %llu compressed blocks, only %llu bytes follow", stream->base.path,
-                          (unsigned long long)first[0], (unsigned long long)hl_stream_at_most(below));
+                          "%s: the header promises %llu compressed blocks, only %llu bytes follow",
+                          stream->base.path, (unsigned long long)first[0],
+                          (unsigned long long)hl_stream_at_most(below));
   stream->compressed_bytes = hl_allocate(stream->base.context, first[0], sizeof *stream->compressed_bytes);
   if (stream->compressed_bytes == NULL) return hl_fail_memory(error, first[0] * 8, stream->base.path);
   return read_integers(below, header_bytes, big_endian, stream->compressed_bytes, first[0], error);
 }
 
-hl_status hl_stream_push_vtk_blocks(hl_stream **stream, size_t header_bytes, bool big_endian, uint64_t promised,
-                                    hl_error *error) {
+hl_status hl_stream_push_vtk_blocks(hl_stream **stream, size_t header_bytes, bool big_endian,
+                                    uint64_t promised, hl_error *error) {
   blocks_stream *made = (blocks_stream *)hl_stream_make((*stream)->context, sizeof *made, *stream);
   if (made == NULL) return hl_fail_memory(error, HL_STREAM_BUFFER_BYTES, (*stream)->path);
   made->base.pull = blocks_pull;

@@ -30,6 +30,15 @@ bool hl_text_ends(const char *text, const char *suffix) {
   return length >= suffix_length && hl_text_equal(text + length - suffix_length, suffix);
 }
 
+bool hl_text_is_one_of(const char *text, const char *alternatives) {
+  size_t length = strlen(text);
+  for (const char *each = alternatives;; each++) {
+    if (hl_text_starts(each, text) && (each[length] == 0 || each[length] == '|')) return true;
+    each = strchr(each, '|');
+    if (each == NULL) return false;
+  }
+}
+
 /* sign digits [. digits] [e sign digits]; decimal = mantissa * 10^exponent, exact unless `long_form`. */
 typedef struct decimal {
   bool negative, long_form;
@@ -58,8 +67,10 @@ static bool scan_decimal(const char *text, const char *end, decimal *number) {
       continue;
     }
     any = true;
-    if (number->mantissa > (UINT64_MAX - 9) / 10) number->long_form = true;
-    else number->mantissa = 10 * number->mantissa + (uint64_t)(*text - '0');
+    if (number->mantissa > (UINT64_MAX - 9) / 10)
+      number->long_form = true;
+    else
+      number->mantissa = 10 * number->mantissa + (uint64_t)(*text - '0');
     if (point) number->exponent--;
   }
   if (!any) return false;
@@ -76,9 +87,12 @@ static bool scan_special(const char *text, size_t length, double *value) {
   }
   if (length == 0 || length >= sizeof word) return false;
   memcpy(word, text, length);
-  if (hl_text_equal(word, "nan")) *value = NAN;
-  else if (hl_text_equal(word, "inf") || hl_text_equal(word, "infinity")) *value = negative ? -INFINITY : INFINITY;
-  else return false;
+  if (hl_text_equal(word, "nan"))
+    *value = NAN;
+  else if (hl_text_equal(word, "inf") || hl_text_equal(word, "infinity"))
+    *value = negative ? -INFINITY : INFINITY;
+  else
+    return false;
   return true;
 }
 
@@ -94,14 +108,16 @@ static double convert_slowly(const char *text, size_t length) {
 }
 
 bool hl_text_number(const char *text, size_t length, double *value) {
-  static const double power_of_ten[23] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                          1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  static const double power_of_ten[23] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                          1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                          1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
   decimal number;
   if (length == 0 || length >= HL_NUMBER_CHARACTERS) return false;
   if (!scan_decimal(text, text + length, &number)) return scan_special(text, length, value);
   /* Both factors are doubles without error, so one rounding gives the nearest double (W. D. Clinger, "How to
    * read floating point numbers accurately", 1990, section 2). */
-  if (!number.long_form && number.mantissa <= (uint64_t)1 << 53 && number.exponent >= -22 && number.exponent <= 22) {
+  if (!number.long_form && number.mantissa <= (uint64_t)1 << 53 && number.exponent >= -22 &&
+      number.exponent <= 22) {
     double magnitude = number.exponent < 0 ? (double)number.mantissa / power_of_ten[-number.exponent]
                                            : (double)number.mantissa * power_of_ten[number.exponent];
     *value = number.negative ? -magnitude : magnitude;
@@ -167,7 +183,8 @@ bool hl_text_word(const char **cursor, char *word, size_t capacity) {
 
 const char *hl_text_printable(char buffer[HL_PRINTABLE_BYTES], const char *text) {
   size_t n = 0;
-  for (; n < HL_PRINTABLE_BYTES - 4 && text[n] != 0; n++) buffer[n] = text[n] >= ' ' && text[n] <= '~' ? text[n] : '?';
+  for (; n < HL_PRINTABLE_BYTES - 4 && text[n] != 0; n++)
+    buffer[n] = text[n] >= ' ' && text[n] <= '~' ? text[n] : '?';
   strcpy(buffer + n, text[n] != 0 ? "..." : "");
   return buffer;
 }

@@ -26,10 +26,14 @@ bool hl_text_equal(const char *a, const char *b);
 bool hl_text_starts(const char *text, const char *prefix);
 bool hl_text_ends(const char *text, const char *suffix);
 
+/* Whether text equals one of the alternatives, which '|' separates: "data file|datafile". */
+bool hl_text_is_one_of(const char *text, const char *alternatives);
+
 /* Cuts white space from both ends, in place; returns the new start. */
 char *hl_text_trim(char *text);
 
-/* The next word (up to white space) at *cursor, which moves past it; false if there is none or it is too long. */
+/* The next word (up to white space) at *cursor, which moves past it; false if there is none or it is too
+ * long. */
 bool hl_text_word(const char **cursor, char *word, size_t capacity);
 
 /* A short form of foreign text fit for an error line: unprintable bytes become '?'. Returns buffer. */

@@ -32,24 +32,28 @@ static hl_status check_size(const hl_volume_description *description, const char
   bool fits = true;
   for (int axis = 0; axis < 3; axis++) {
     if (dimension[axis] < 1)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: the size %zu x %zu x %zu has a zero: each must be at least 1", subject,
+      return hl_fail(error, HL_ERROR_INPUT,
+                     "%s: the size %zu x %zu x %zu has a zero: each must be at least 1", subject,
                      dimension[0], dimension[1], dimension[2]);
     fits = fits && dimension[axis] <= INT32_MAX && hl_multiply(bytes, dimension[axis], &bytes);
   }
   if (!fits || bytes > SIZE_MAX / 2)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the size %zu x %zu x %zu is beyond any memory", subject, dimension[0],
-                   dimension[1], dimension[2]);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the size %zu x %zu x %zu is beyond any memory", subject,
+                   dimension[0], dimension[1], dimension[2]);
   return HL_OK;
 }
 
-hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject, hl_error *error) {
+hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,
+                               hl_error *error) {
   if (hl_voxel_type_bytes(description->type) == 0)
     return hl_fail(error, HL_ERROR_INPUT, "%s: there is no voxel type %d", subject, (int)description->type);
   hl_status status = check_size(description, subject, error);
   if (status != HL_OK) return status;
-  if (!isfinite(description->value_scale) || !isfinite(description->value_offset) || description->value_scale == 0)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: value scale %g and offset %g: both must be finite, the scale not 0",
-                   subject, description->value_scale, description->value_offset);
+  if (!isfinite(description->value_scale) || !isfinite(description->value_offset) ||
+      description->value_scale == 0)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: value scale %g and offset %g: both must be finite, the scale not 0", subject,
+                   description->value_scale, description->value_offset);
   affine3 place = index_to_world(description), inverse;
   bool possible = affine3_invert(place, &inverse) && isfinite(vec3_length(inverse.offset)) &&
                   isfinite(vec3_length(place.offset));
@@ -60,7 +64,8 @@ hl_status hl_volume_check_grid(const hl_volume_description *description, const c
   }
   if (!possible)
     return hl_fail(error, HL_ERROR_INPUT,
-                   "%s: origin and axes must be finite numbers, the axes not zero and not in one plane", subject);
+                   "%s: origin and axes must be finite numbers, the axes not zero and not in one plane",
+                   subject);
   return HL_OK;
 }
 
@@ -74,7 +79,8 @@ static hl_volume *make_volume(hl_context *context, const hl_volume_description *
   volume->type = description->type;
   volume->storage = hl_voxel_type_storage(description->type);
   volume->value_scale = description->value_scale;
-  volume->value_offset = description->value_offset - description->value_scale * hl_voxel_type_bias(description->type);
+  volume->value_offset =
+      description->value_offset - description->value_scale * hl_voxel_type_bias(description->type);
   volume->index_to_world = index_to_world(description);
   return volume;
 }
@@ -105,16 +111,24 @@ hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *desc
 static void gather_row(const unsigned char *source, ptrdiff_t stride_bytes, size_t voxel_bytes, size_t count,
                        unsigned char *row) {
   switch (voxel_bytes) {
-    case 1: for (size_t i = 0; i < count; i++) row[i] = source[(ptrdiff_t)i * stride_bytes]; break;
-    case 2: for (size_t i = 0; i < count; i++) memcpy(row + 2 * i, source + (ptrdiff_t)i * stride_bytes, 2); break;
-    case 4: for (size_t i = 0; i < count; i++) memcpy(row + 4 * i, source + (ptrdiff_t)i * stride_bytes, 4); break;
-    default: for (size_t i = 0; i < count; i++) memcpy(row + 8 * i, source + (ptrdiff_t)i * stride_bytes, 8); break;
+    case 1:
+      for (size_t i = 0; i < count; i++) row[i] = source[(ptrdiff_t)i * stride_bytes];
+      break;
+    case 2:
+      for (size_t i = 0; i < count; i++) memcpy(row + 2 * i, source + (ptrdiff_t)i * stride_bytes, 2);
+      break;
+    case 4:
+      for (size_t i = 0; i < count; i++) memcpy(row + 4 * i, source + (ptrdiff_t)i * stride_bytes, 4);
+      break;
+    default:
+      for (size_t i = 0; i < count; i++) memcpy(row + 8 * i, source + (ptrdiff_t)i * stride_bytes, 8);
+      break;
   }
 }
 
 /* Copies strided voxels into stored form; row is scratch for one row in the caller's type. */
-static void copy_voxels(const hl_volume_description *description, const ptrdiff_t stride[3], unsigned char *row,
-                        unsigned char *destination) {
+static void copy_voxels(const hl_volume_description *description, const ptrdiff_t stride[3],
+                        unsigned char *row, unsigned char *destination) {
   const size_t *dimension = description->dimensions;
   size_t voxel_bytes = hl_voxel_type_bytes(description->type);
   size_t row_bytes = dimension[0] * hl_storage_bytes(hl_voxel_type_storage(description->type));
@@ -173,7 +187,8 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
     return finish_volume(made, subject, volume, error);
   }
   size_t count = hl_volume_voxel_count(made), voxel_bytes = hl_storage_bytes(made->storage);
-  unsigned char *row = hl_allocate(context, description->dimensions[0], hl_voxel_type_bytes(description->type));
+  unsigned char *row =
+      hl_allocate(context, description->dimensions[0], hl_voxel_type_bytes(description->type));
   made->voxels = made->owned_voxels = hl_allocate(context, count, voxel_bytes);
   if (row == NULL || made->voxels == NULL) {
     hl_release(context, row);
@@ -218,7 +233,8 @@ hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info) {
 }
 
 double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
-  if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2]) return NAN;
+  if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
+    return NAN;
   size_t index = (k * volume->dimension[1] + j) * volume->dimension[0] + i;
   double stored = 0;
   switch (volume->storage) {

@@ -41,12 +41,13 @@ size_t hl_voxel_type_bytes(hl_voxel_type type); /* 0 if there is no such type */
 
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
  * hl_allocate that the volume takes over, also on failure. description gives the grid, the type in the
- * file, and value_scale and value_offset of the type's own values; subject starts the error lines. */
-hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
-                          void *voxels, hl_volume **volume, hl_error *error);
+ * file, and value_scale and value_offset of that type's own values; subject starts the error lines. */
+hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description,
+                          const char *subject, void *voxels, hl_volume **volume, hl_error *error);
 
-/* True if the grid is possible: dimensions, their product in bytes, axes, scale and offset. */
-hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject, hl_error *error);
+/* Fails unless the grid is possible: type, dimensions, their product in bytes, axes, scale and offset. */
+hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,
+                               hl_error *error);
 
 /* Fills range, mean, nonfinite_count and histogram from the voxels. */
 hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *error);

@@ -32,10 +32,10 @@ typedef struct vti_header {
   double origin[3], spacing[3], direction[9];
   bool has_extent, has_piece;
   section section;
-  char active[NAME_BYTES];   /* name of the section's active scalars */
-  vti_array point, cell;     /* the best array so far of each kind */
-  size_t components;         /* of an array that was passed over for having several; 0: none */
-  uint64_t appended;         /* offset in the file of the appended data's first byte; 0: none */
+  char active[NAME_BYTES]; /* name of the section's active scalars */
+  vti_array point, cell;   /* the best array so far of each kind */
+  size_t components;       /* of an array that was passed over for having several; 0: none */
+  uint64_t appended;       /* offset in the file of the appended data's first byte; 0: none */
   bool appended_is_base64;
 } vti_header;
 
@@ -51,12 +51,14 @@ static hl_status refuse(const vti_header *header, hl_status code, const char *wh
   char shown[HL_PRINTABLE_BYTES];
   return hl_fail_offset(error, code, (int64_t)header->stream->offset, "%s, before byte %llu: %s \"%s\"%s",
                         header->stream->path, (unsigned long long)header->stream->offset, what,
-                        hl_text_printable(shown, value), code == HL_ERROR_UNSUPPORTED ? " is not read" : " is impossible");
+                        hl_text_printable(shown, value),
+                        code == HL_ERROR_UNSUPPORTED ? " is not read" : " is impossible");
 }
 
 static hl_status read_file_tag(vti_header *header, const hl_xml_tag *tag, hl_error *error) {
   const char *type = hl_xml_attribute(tag, "type"), *order = hl_xml_attribute(tag, "byte_order");
-  const char *header_type = hl_xml_attribute(tag, "header_type"), *compressor = hl_xml_attribute(tag, "compressor");
+  const char *header_type = hl_xml_attribute(tag, "header_type"),
+             *compressor = hl_xml_attribute(tag, "compressor");
   if (type == NULL || strcmp(type, "ImageData") != 0)
     return refuse(header, HL_ERROR_UNSUPPORTED, "a VTKFile of type", type == NULL ? "" : type, error);
   if (order != NULL && strcmp(order, "BigEndian") != 0 && strcmp(order, "LittleEndian") != 0)
@@ -71,8 +73,8 @@ static hl_status read_file_tag(vti_header *header, const hl_xml_tag *tag, hl_err
   return HL_OK;
 }
 
-static hl_status read_numbers(const vti_header *header, const hl_xml_tag *tag, const char *name, double *numbers,
-                              int count, hl_error *error) {
+static hl_status read_numbers(const vti_header *header, const hl_xml_tag *tag, const char *name,
+                              double *numbers, int count, hl_error *error) {
   const char *value = hl_xml_attribute(tag, name);
   if (value == NULL || hl_text_numbers(value, numbers, count) == count) return HL_OK;
   return refuse(header, HL_ERROR_INPUT, name, value, error);
@@ -84,8 +86,8 @@ static hl_status read_extent(vti_header *header, const hl_xml_tag *tag, const ch
   hl_status status = read_numbers(header, tag, name, header->extent, 6, error);
   for (int axis = 0; status == HL_OK && axis < 3; axis++) {
     double first = header->extent[2 * axis], last = header->extent[2 * axis + 1];
-    if (first != floor(first) || last != floor(last) || !(first >= -2147483648.0) || !(last <= 2147483647.0) ||
-        last < first)
+    if (first != floor(first) || last != floor(last) || !(first >= -2147483648.0) ||
+        !(last <= 2147483647.0) || last < first)
       status = refuse(header, HL_ERROR_INPUT, name, value, error);
   }
   header->has_extent = true;
@@ -118,7 +120,8 @@ static void begin_section(vti_header *header, const hl_xml_tag *tag, section whi
 /* Keeps the array if it is better than what there is. */
 static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_error *error) {
   const char *type = hl_xml_attribute(tag, "type"), *name = hl_xml_attribute(tag, "Name");
-  const char *format = hl_xml_attribute(tag, "format"), *components = hl_xml_attribute(tag, "NumberOfComponents");
+  const char *format = hl_xml_attribute(tag, "format"),
+             *components = hl_xml_attribute(tag, "NumberOfComponents");
   const char *offset = hl_xml_attribute(tag, "offset");
   if (header->section == SECTION_NONE) return HL_OK;
   vti_array array = {.present = true, .components = 1, .place = header->stream->offset};
@@ -135,13 +138,16 @@ static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_er
     return refuse(header, HL_ERROR_INPUT, "a DataArray's format", format, error);
   if (array.format == FORMAT_APPENDED) {
     if (offset == NULL || hl_text_sizes(offset, &appended, 1) != 1)
-      return refuse(header, HL_ERROR_INPUT, "an appended DataArray's offset", offset == NULL ? "" : offset, error);
+      return refuse(header, HL_ERROR_INPUT, "an appended DataArray's offset", offset == NULL ? "" : offset,
+                    error);
     array.place = appended;
   }
   array.is_active = header->active[0] != 0 && name != NULL && strcmp(name, header->active) == 0;
   vti_array *best = header->section == SECTION_POINTS ? &header->point : &header->cell;
-  if (!array.is_active && array.components != 1) header->components = array.components;
-  else if (!best->present || (array.is_active && !best->is_active)) *best = array;
+  if (!array.is_active && array.components != 1)
+    header->components = array.components;
+  else if (!best->present || (array.is_active && !best->is_active))
+    *best = array;
   return HL_OK;
 }
 
@@ -170,7 +176,8 @@ static hl_status read_appended_tag(vti_header *header, const hl_xml_tag *tag, hl
 
 static hl_status read_tag(vti_header *header, const hl_xml_tag *tag, hl_error *error) {
   if (!tag->is_start) {
-    if (strcmp(tag->name, "PointData") == 0 || strcmp(tag->name, "CellData") == 0) header->section = SECTION_NONE;
+    if (strcmp(tag->name, "PointData") == 0 || strcmp(tag->name, "CellData") == 0)
+      header->section = SECTION_NONE;
     return HL_OK;
   }
   if (header->header_bytes == 0 && strcmp(tag->name, "VTKFile") != 0)
@@ -197,16 +204,12 @@ static hl_status read_tags(vti_header *header, hl_error *error) {
 }
 
 static hl_status read_type(const vti_header *header, const char *name, hl_voxel_type *type, hl_error *error) {
-  static const struct { const char *name; hl_voxel_type type; } types[] = {
-      {"UInt8", HL_VOXEL_U8},   {"Int8", HL_VOXEL_I8},   {"UInt16", HL_VOXEL_U16},  {"Int16", HL_VOXEL_I16},
-      {"UInt32", HL_VOXEL_U32}, {"Int32", HL_VOXEL_I32}, {"Float32", HL_VOXEL_F32}, {"Float64", HL_VOXEL_F64}};
-  for (size_t n = 0; n < sizeof types / sizeof *types; n++)
-    if (strcmp(name, types[n].name) == 0) {
-      *type = types[n].type;
-      return HL_OK;
-    }
-  bool known = strcmp(name, "Int64") == 0 || strcmp(name, "UInt64") == 0 || strcmp(name, "String") == 0 ||
-               strcmp(name, "Bit") == 0;
+  static const hl_named_type types[] = {{"UInt8", HL_VOXEL_U8},    {"Int8", HL_VOXEL_I8},
+                                        {"UInt16", HL_VOXEL_U16},  {"Int16", HL_VOXEL_I16},
+                                        {"UInt32", HL_VOXEL_U32},  {"Int32", HL_VOXEL_I32},
+                                        {"Float32", HL_VOXEL_F32}, {"Float64", HL_VOXEL_F64}};
+  if (hl_find_type(types, sizeof types / sizeof *types, name, type)) return HL_OK;
+  bool known = hl_text_is_one_of(name, "Int64|UInt64|String|Bit");
   return refuse(header, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, "a DataArray of type", name, error);
 }
 
@@ -215,7 +218,8 @@ static void make_grid(const vti_header *header, bool cells, hl_volume_descriptio
     size_t points = (size_t)(header->extent[2 * axis + 1] - header->extent[2 * axis]) + 1;
     grid->dimensions[axis] = cells && points > 1 ? points - 1 : points;
     grid->origin[axis] = header->origin[axis];
-    for (int row = 0; row < 3; row++) grid->axis[axis][row] = header->direction[3 * row + axis] * header->spacing[axis];
+    for (int row = 0; row < 3; row++)
+      grid->axis[axis][row] = header->direction[3 * row + axis] * header->spacing[axis];
   }
   for (int axis = 0; axis < 3; axis++) {
     bool between = cells && header->extent[2 * axis + 1] > header->extent[2 * axis];
@@ -225,11 +229,13 @@ static void make_grid(const vti_header *header, bool cells, hl_volume_descriptio
 }
 
 /* Again from the file's start, to the first byte of the array's coded values. */
-static hl_status go_to_array(hl_stream **stream, const vti_header *header, const vti_array *array, hl_error *error) {
+static hl_status go_to_array(hl_stream **stream, const vti_header *header, const vti_array *array,
+                             hl_error *error) {
   uint64_t place = array->place;
   if (array->format == FORMAT_APPENDED) {
     if (header->appended == 0)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: the file ends without the AppendedData that its DataArray refers to",
+      return hl_fail(error, HL_ERROR_INPUT,
+                     "%s: the file ends without the AppendedData that its DataArray refers to",
                      (*stream)->path);
     if (__builtin_add_overflow(place, header->appended, &place))
       return hl_fail(error, HL_ERROR_INPUT, "%s: impossible offset %llu of a DataArray", (*stream)->path,
@@ -241,7 +247,8 @@ static hl_status go_to_array(hl_stream **stream, const vti_header *header, const
 }
 
 /* The number of bytes that stands before values which are not compressed. */
-static hl_status read_length(hl_stream *stream, const vti_header *header, uint64_t promised, hl_error *error) {
+static hl_status read_length(hl_stream *stream, const vti_header *header, uint64_t promised,
+                             hl_error *error) {
   unsigned char bytes[8];
   hl_status status = hl_stream_read_all(stream, bytes, header->header_bytes, error);
   if (status != HL_OK) return status;
@@ -257,7 +264,8 @@ static hl_status read_length(hl_stream *stream, const vti_header *header, uint64
 static hl_status decode_array(hl_stream **stream, const vti_header *header, const vti_array *array,
                               const hl_payload *payload, hl_error *error) {
   hl_status status = HL_OK;
-  bool is_base64 = array->format == FORMAT_BINARY || (array->format == FORMAT_APPENDED && header->appended_is_base64);
+  bool is_base64 =
+      array->format == FORMAT_BINARY || (array->format == FORMAT_APPENDED && header->appended_is_base64);
   if (array->format == FORMAT_ASCII) return HL_OK;
   if (is_base64) status = hl_stream_push_base64(stream, error);
   uint64_t promised = hl_payload_bytes(payload);
@@ -272,8 +280,9 @@ static hl_status choose_array(const vti_header *header, const vti_array **chosen
   *chosen = array;
   size_t components = array->present ? array->components : header->components;
   if (components > 1)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: voxels of %zu components: only one value per voxel is read",
-                   header->stream->path, components);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: voxels of %zu components: only one value per voxel is read", header->stream->path,
+                   components);
   if (!array->present || !header->has_extent)
     return hl_fail(error, HL_ERROR_INPUT, "%s: the file has no %s", header->stream->path,
                    header->has_extent ? "DataArray in PointData or CellData" : "WholeExtent or Extent");

@@ -60,8 +60,10 @@ static size_t tag_length(const unsigned char *bytes, size_t length) {
 
 /* Resolves &lt; &gt; &amp; &quot; &apos; in place; others stay as they are. */
 static void resolve_entities(char *value) {
-  static const struct { const char *name; char character; } entities[] = {
-      {"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&quot;", '"'}, {"&apos;", '\''}};
+  static const struct {
+    const char *name;
+    char character;
+  } entities[] = {{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&quot;", '"'}, {"&apos;", '\''}};
   char *out = value;
   while (*value != 0) {
     size_t length = 0;

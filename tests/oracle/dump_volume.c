@@ -49,8 +49,8 @@ static int dump(hl_context *context, const char *path, const char *voxels) {
   }
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume, &info) != HL_OK) return 1;
-  printf("{\"status\": 0, \"dimensions\": [%zu, %zu, %zu], \"type\": \"%s\", ", info.dimensions[0], info.dimensions[1],
-         info.dimensions[2], hl_voxel_type_name(info.type));
+  printf("{\"status\": 0, \"dimensions\": [%zu, %zu, %zu], \"type\": \"%s\", ", info.dimensions[0],
+         info.dimensions[1], info.dimensions[2], hl_voxel_type_name(info.type));
   print_numbers("spacing", info.spacing, 3);
   print_numbers("origin", info.origin, 3);
   print_numbers("direction", &info.direction[0][0], 9);

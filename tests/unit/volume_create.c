@@ -18,7 +18,8 @@ static hl_context *make_context(void) {
   return context;
 }
 
-static hl_volume_description describe(size_t ni, size_t nj, size_t nk, hl_voxel_type type, const void *voxels) {
+static hl_volume_description describe(size_t ni, size_t nj, size_t nk, hl_voxel_type type,
+                                      const void *voxels) {
   hl_volume_description description;
   hl_volume_description_defaults(&description);
   description.dimensions[0] = ni;
@@ -39,14 +40,46 @@ static hl_volume_info info_of(const hl_volume *volume) {
 static double write_value(hl_voxel_type type, size_t n, unsigned char *place) {
   int value = (int)n - 3;
   switch (type) {
-    case HL_VOXEL_U8: { uint8_t v = (uint8_t)n; memcpy(place, &v, 1); return v; }
-    case HL_VOXEL_I8: { int8_t v = (int8_t)value; memcpy(place, &v, 1); return v; }
-    case HL_VOXEL_U16: { uint16_t v = (uint16_t)(n * 2000); memcpy(place, &v, 2); return v; }
-    case HL_VOXEL_I16: { int16_t v = (int16_t)(value * 1000); memcpy(place, &v, 2); return v; }
-    case HL_VOXEL_U32: { uint32_t v = (uint32_t)n * 100000; memcpy(place, &v, 4); return v; }
-    case HL_VOXEL_I32: { int32_t v = value * 100000; memcpy(place, &v, 4); return v; }
-    case HL_VOXEL_F32: { float v = (float)value * 0.25f; memcpy(place, &v, 4); return (double)v; }
-    case HL_VOXEL_F64: { double v = value * 0.125; memcpy(place, &v, 8); return v; }
+    case HL_VOXEL_U8: {
+      uint8_t v = (uint8_t)n;
+      memcpy(place, &v, 1);
+      return v;
+    }
+    case HL_VOXEL_I8: {
+      int8_t v = (int8_t)value;
+      memcpy(place, &v, 1);
+      return v;
+    }
+    case HL_VOXEL_U16: {
+      uint16_t v = (uint16_t)(n * 2000);
+      memcpy(place, &v, 2);
+      return v;
+    }
+    case HL_VOXEL_I16: {
+      int16_t v = (int16_t)(value * 1000);
+      memcpy(place, &v, 2);
+      return v;
+    }
+    case HL_VOXEL_U32: {
+      uint32_t v = (uint32_t)n * 100000;
+      memcpy(place, &v, 4);
+      return v;
+    }
+    case HL_VOXEL_I32: {
+      int32_t v = value * 100000;
+      memcpy(place, &v, 4);
+      return v;
+    }
+    case HL_VOXEL_F32: {
+      float v = (float)value * 0.25f;
+      memcpy(place, &v, 4);
+      return (double)v;
+    }
+    case HL_VOXEL_F64: {
+      double v = value * 0.125;
+      memcpy(place, &v, 8);
+      return v;
+    }
   }
   return 0;
 }
@@ -54,13 +87,15 @@ static double write_value(hl_voxel_type type, size_t n, unsigned char *place) {
 enum { NI = 4, NJ = 3, NK = 2, COUNT = NI * NJ * NK };
 
 /* Each type, scaled, through any strides: the values come back and the statistics follow from them. */
-static void check_type(hl_voxel_type type, const ptrdiff_t stride_voxels[3], size_t first, double scale, double shift) {
+static void check_type(hl_voxel_type type, const ptrdiff_t stride_voxels[3], size_t first, double scale,
+                       double shift) {
   hl_context *context = make_context();
   size_t bytes = hl_voxel_type_bytes(type);
   unsigned char *block = calloc(8 * COUNT, bytes);
   double expected[COUNT], sum = 0, low = INFINITY, high = -INFINITY;
   hl_volume_description description = describe(NI, NJ, NK, type, block + first * bytes);
-  for (int axis = 0; axis < 3; axis++) description.stride_bytes[axis] = stride_voxels[axis] * (ptrdiff_t)bytes;
+  for (int axis = 0; axis < 3; axis++)
+    description.stride_bytes[axis] = stride_voxels[axis] * (ptrdiff_t)bytes;
   for (size_t n = 0; n < COUNT; n++) {
     ptrdiff_t i = (ptrdiff_t)(n % NI), j = (ptrdiff_t)(n / NI % NJ), k = (ptrdiff_t)(n / NI / NJ);
     ptrdiff_t place = (ptrdiff_t)first + i * stride_voxels[0] + j * stride_voxels[1] + k * stride_voxels[2];
@@ -94,7 +129,8 @@ static void check_type(hl_voxel_type type, const ptrdiff_t stride_voxels[3], siz
 
 static void test_types_and_strides(void **state) {
   (void)state;
-  const ptrdiff_t packed[3] = {1, NI, NI * NJ}, spread[3] = {2, 2 * NI, 2 * NI * NJ}, transposed[3] = {NJ * NK, NK, 1};
+  const ptrdiff_t packed[3] = {1, NI, NI * NJ}, spread[3] = {2, 2 * NI, 2 * NI * NJ},
+                  transposed[3] = {NJ * NK, NK, 1};
   const ptrdiff_t backwards[3] = {-1, -NI, -NI * NJ};
   for (int type = HL_VOXEL_U8; type <= HL_VOXEL_F64; type++) {
     check_type((hl_voxel_type)type, packed, 0, 1, 0);
@@ -113,9 +149,15 @@ static void test_extremes_of_each_type(void **state) {
   const uint16_t u16[2] = {0, UINT16_MAX};
   const int32_t i32[2] = {INT32_MIN, INT32_MAX};
   const uint32_t u32[2] = {0, UINT32_MAX};
-  const struct { hl_voxel_type type; const void *voxels; double low, high; } cases[] = {
-      {HL_VOXEL_I8, i8, -128, 127}, {HL_VOXEL_I16, i16, -32768, 32767}, {HL_VOXEL_U16, u16, 0, 65535},
-      {HL_VOXEL_I32, i32, -2147483648.0, 2147483648.0}, {HL_VOXEL_U32, u32, 0, 4294967296.0}};
+  const struct {
+    hl_voxel_type type;
+    const void *voxels;
+    double low, high;
+  } cases[] = {{HL_VOXEL_I8, i8, -128, 127},
+               {HL_VOXEL_I16, i16, -32768, 32767},
+               {HL_VOXEL_U16, u16, 0, 65535},
+               {HL_VOXEL_I32, i32, -2147483648.0, 2147483648.0},
+               {HL_VOXEL_U32, u32, 0, 4294967296.0}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
     hl_volume_description description = describe(2, 1, 1, cases[n].type, cases[n].voxels);
     hl_volume *volume = NULL;
@@ -255,7 +297,9 @@ static void test_impossible_descriptions(void **state) {
     switch (fault) {
       case 0: description.dimensions[1] = 0; break;
       case 1: description.dimensions[2] = SIZE_MAX; break;
-      case 2: for (int axis = 0; axis < 3; axis++) description.dimensions[axis] = INT32_MAX; break;
+      case 2:
+        for (int axis = 0; axis < 3; axis++) description.dimensions[axis] = INT32_MAX;
+        break;
       case 3: description.type = (hl_voxel_type)0; break;
       case 4: description.type = (hl_voxel_type)9; break;
       case 5: description.axis[1][1] = 0; break;
@@ -329,11 +373,16 @@ static void test_byte_order(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_types_and_strides),      cmocka_unit_test(test_extremes_of_each_type),
-      cmocka_unit_test(test_borrowed_voxels_are_not_copied), cmocka_unit_test(test_nonfinite_voxels),
-      cmocka_unit_test(test_constant_volume),        cmocka_unit_test(test_histogram_bins),
-      cmocka_unit_test(test_place_in_the_world),     cmocka_unit_test(test_impossible_descriptions),
-      cmocka_unit_test(test_memory_limit_and_counting), cmocka_unit_test(test_byte_order),
+      cmocka_unit_test(test_types_and_strides),
+      cmocka_unit_test(test_extremes_of_each_type),
+      cmocka_unit_test(test_borrowed_voxels_are_not_copied),
+      cmocka_unit_test(test_nonfinite_voxels),
+      cmocka_unit_test(test_constant_volume),
+      cmocka_unit_test(test_histogram_bins),
+      cmocka_unit_test(test_place_in_the_world),
+      cmocka_unit_test(test_impossible_descriptions),
+      cmocka_unit_test(test_memory_limit_and_counting),
+      cmocka_unit_test(test_byte_order),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
