@@ -32,8 +32,8 @@ int hl_edit_distance(const char *a, const char *b) {
 
 const char *hl_nearest_name(const char *name, const char *const *names) {
   const char *nearest = NULL;
-  int allowed = (int)strnlen(name, LONGEST) / 3, best; /* about every third letter may be wrong */
-  best = 1 + (allowed < 2 && strlen(name) > 2 ? 2 : allowed);
+  int length = (int)strnlen(name, LONGEST), allowed = length * 2 / 5; /* two letters of five may be wrong */
+  int best = 1 + (allowed < 2 && length > 2 ? 2 : allowed);
   for (size_t n = 0; names[n] != NULL; n++) {
     int distance = hl_edit_distance(name, names[n]);
     if (distance >= best) continue;

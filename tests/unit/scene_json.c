@@ -1,0 +1,283 @@
+/* tests/unit/scene_json.c - scene files: every case of tests/scenes/cases.json, syntax, round trips, hostile bytes. */
+#define _GNU_SOURCE
+#include <jansson.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene_parts.h"
+
+static char folder[] = "/tmp/halflight-scene-XXXXXX";
+
+static void write_file(const char *name, const void *bytes, size_t length) {
+  char path[300];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(bytes, 1, length, file), length);
+  fclose(file);
+}
+
+static int make_folder(void **state) {
+  (void)state;
+  unsigned char cube[64];
+  for (int n = 0; n < 64; n++) cube[n] = (unsigned char)(4 * n);
+  if (mkdtemp(folder) == NULL) return -1;
+  write_file("cube_4x4x4_uint8.raw", cube, sizeof cube);
+  const char *function = "{\"opacity\": [[0, 0], [255, 1]], \"colormap\": \"hot\", \"range\": [0, 255]}";
+  write_file("function.json", function, strlen(function));
+  return 0;
+}
+
+static int remove_folder(void **state) {
+  (void)state;
+  const char *names[] = {"cube_4x4x4_uint8.raw", "function.json", "scene.json"};
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", folder, names[n]);
+    unlink(path);
+  }
+  return rmdir(folder);
+}
+
+static hl_status read_text(hl_context *context, const char *text, hl_scene **scene, hl_error *error) {
+  return hl_scene_from_json(context, text, strlen(text), folder, "S", scene, error);
+}
+
+/* Equal, or equal up to a star at the end of expected. */
+static void assert_message(const char *message, const char *expected) {
+  size_t length = strlen(expected);
+  if (length > 0 && expected[length - 1] == '*') assert_memory_equal(message, expected, length - 1);
+  else assert_string_equal(message, expected);
+}
+
+/* read(write(s)) == s, told by the text, which holds every field to the last digit. */
+static void assert_round_trip(hl_context *context, const hl_scene *scene) {
+  char *text = NULL, *again = NULL;
+  hl_scene *second = NULL;
+  assert_int_equal(hl_scene_to_json(context, scene, &text, NULL), HL_OK);
+  hl_error error = {0};
+  if (hl_scene_from_json(context, text, strlen(text), NULL, "again", &second, &error) != HL_OK) fail_msg("%s", error.message);
+  assert_int_equal(hl_scene_to_json(context, second, &again, NULL), HL_OK);
+  assert_string_equal(text, again);
+  const hl_scene_description *a = hl_scene_describe(scene), *b = hl_scene_describe(second);
+  assert_memory_equal(&a->camera.position, &b->camera.position, sizeof a->camera.position);
+  assert_memory_equal(&a->render, &b->render, sizeof a->render);
+  for (size_t l = 0; l < a->light_count; l++) assert_memory_equal(a->lights[l].color, b->lights[l].color, sizeof a->lights[l].color);
+  for (size_t v = 0; v < a->volume_count; v++) {
+    const hl_transfer_function *f = &a->volumes[v].transfer_function, *g = &b->volumes[v].transfer_function;
+    assert_int_equal(f->opacity_count, g->opacity_count);
+    if (f->opacity_count > 0) assert_memory_equal(f->opacity, g->opacity, f->opacity_count * sizeof *f->opacity);
+    if (f->color_count > 0) assert_memory_equal(f->color, g->color, f->color_count * sizeof *f->color);
+  }
+  hl_scene_release(second);
+  hl_text_release(context, text);
+  hl_text_release(context, again);
+}
+
+static void every_case(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  json_error_t fault;
+  json_t *cases = json_load_file(HALFLIGHT_SOURCE "/tests/scenes/cases.json", 0, &fault), *one;
+  assert_non_null(cases);
+  size_t index, refused = 0;
+  json_array_foreach(cases, index, one) {
+    char *text = json_dumps(json_object_get(one, "scene"), JSON_ENCODE_ANY);
+    const char *name = json_string_value(json_object_get(one, "name"));
+    bool accepted = json_is_true(json_object_get(one, "accepted"));
+    hl_scene *scene = NULL;
+    hl_error error = {0};
+    hl_status status = read_text(context, text, &scene, &error);
+    if ((status == HL_OK) != accepted) fail_msg("case \"%s\": status %d, %s", name, (int)status, error.message);
+    if (accepted) {
+      assert_round_trip(context, scene);
+      hl_scene_release(scene);
+    } else {
+      refused++;
+      assert_null(scene);
+      assert_message(error.message, json_string_value(json_object_get(one, "message")));
+      assert_null(strchr(error.message, '\n'));
+    }
+    assert_int_equal(hl_context_memory_held(context), 0);
+    free(text);
+  }
+  assert_true(refused >= 80);
+  json_decref(cases);
+  hl_context_destroy(context);
+}
+
+/* The names that the schema lists are the library's, in its order. */
+static void assert_enumeration(const json_t *schema, const char *key, const char *(*name_at)(size_t index)) {
+  const json_t *function = json_object_get(json_object_get(schema, "$defs"), "transfer_function");
+  const json_t *names = json_object_get(json_object_get(json_object_get(function, "properties"), key), "enum");
+  size_t count = 0;
+  for (; name_at(count) != NULL; count++)
+    assert_string_equal(json_string_value(json_array_get(names, count)), name_at(count));
+  assert_int_equal(json_array_size(names), count);
+  assert_true(count >= 5);
+}
+
+static void the_schema_knows_all_names(void **state) {
+  (void)state;
+  json_t *schema = json_load_file(HALFLIGHT_SOURCE "/share/halflight.schema.json", JSON_REJECT_DUPLICATES, NULL);
+  assert_non_null(schema);
+  assert_enumeration(schema, "colormap", hl_colormap_name);
+  assert_enumeration(schema, "preset", hl_preset_name);
+  json_decref(schema);
+}
+
+static void syntax_errors_have_line_and_column(void **state) {
+  (void)state;
+  const struct { const char *text; int line, column; const char *message; } faults[] = {
+      {"{\n  \"halflight\": 1,\n  // a comment\n}", 3, 3, "S:3:3: string or '}' expected near '/': JSON has no comments, remove them"},
+      {"{\"halflight\": 1,}", 1, 17, "S:1:17: string or '}' expected near '}'"},
+      {"{\"halflight\": 1", 1, 15, "S:1:15: '}' expected near end of file"},
+      {"", 1, 0, "S:1:0: '[' or '{' expected near end of file"},
+      {"{\"a\": 1,\n \"a\": 2}", 2, 4, "S:2:4: duplicate object key near '\"a\"'"},
+      {"{\"a\": NaN}", 1, 9, "S:1:9: invalid token near 'NaN'"},
+      {"{\"a\": 1e999}", 1, 11, "S:1:11: real number overflow near '1e999'"},
+      {"{\"a\": 1} x", 1, 10, "S:1:10: end of file expected near 'x'"},
+  };
+  hl_context *context = make_context();
+  for (size_t n = 0; n < sizeof faults / sizeof *faults; n++) {
+    hl_error error = {0};
+    hl_scene *scene = NULL;
+    assert_int_equal(read_text(context, faults[n].text, &scene, &error), HL_ERROR_INPUT);
+    assert_string_equal(error.message, faults[n].message);
+    assert_int_equal(error.line, faults[n].line);
+    assert_int_equal(error.column, faults[n].column);
+  }
+  char deep[20001];
+  memset(deep, '[', sizeof deep - 1);
+  deep[sizeof deep - 1] = 0;
+  assert_int_equal(read_text(context, deep, &(hl_scene *){NULL}, NULL), HL_ERROR_INPUT);
+  hl_context_destroy(context);
+}
+
+/* What the file does not say. */
+static void defaults_are_the_documented_ones(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = NULL;
+  const char *text = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"},"
+                     " {\"file\": \"cube_4x4x4_uint8.raw\", \"transfer_function\": {\"opacity\": [[0, 1]]}}]}";
+  assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
+  const hl_scene_description *d = hl_scene_describe(scene);
+  assert_true(d->width == 512 && d->height == 512 && d->ambient[0] == 0.2 && d->background[0] == 0);
+  assert_true(d->camera.type == HL_CAMERA_PERSPECTIVE && d->camera.fovy_deg == 30);
+  hl_camera framed = d->camera;
+  assert_int_equal(hl_scene_frame(d, &framed), HL_OK);
+  assert_memory_equal(framed.position, d->camera.position, sizeof framed.position);
+  hl_light key;
+  hl_scene_key_light(&d->camera, &key);
+  assert_int_equal(d->light_count, 1);
+  assert_memory_equal(key.direction, d->lights[0].direction, sizeof key.direction);
+  assert_true(d->lights[0].angular_diameter_deg == key.angular_diameter_deg && d->lights[0].shadows == HL_SHADOWS_DEFAULT);
+  assert_true(d->render.shadows == HL_SHADOWS_SOFT && d->render.soft_method == HL_SOFT_CASCADE);
+  assert_true(d->render.sheet_spacing == 0.5 && d->render.shadow_resolution == 0 && d->render.light_samples == 1);
+  assert_ptr_equal(d->volumes[0].volume, d->volumes[1].volume); /* one file, loaded once */
+  assert_true(d->volumes[0].transfer_function.opacity_count > 1); /* automatic */
+  assert_true(d->volumes[1].transfer_function.opacity_count == 1 && d->volumes[1].transfer_function.unit_distance == 1);
+  assert_true(d->volumes[1].material.specular == 0.3 && d->volumes[1].visible == 1);
+  hl_scene_release(scene);
+  hl_context_destroy(context);
+}
+
+static void files_are_relative_to_the_scene_file(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = NULL;
+  char path[300], volume[300];
+  const char *text = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}]}";
+  write_file("scene.json", text, strlen(text));
+  snprintf(path, sizeof path, "%s/scene.json", folder);
+  snprintf(volume, sizeof volume, "%s/cube_4x4x4_uint8.raw", folder);
+  assert_int_equal(hl_scene_load(context, path, &scene, NULL), HL_OK);
+  assert_string_equal(hl_scene_describe(scene)->volumes[0].file, volume);
+  assert_round_trip(context, scene);
+  hl_scene_release(scene);
+  hl_error error = {0};
+  assert_int_equal(hl_scene_load(context, "/nowhere/scene.json", &scene, &error), HL_ERROR_IO);
+  assert_null(scene);
+  hl_context_destroy(context);
+}
+
+static void volumes_from_memory_cannot_be_written(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  hl_scene *scene = NULL;
+  char *text = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
+  assert_int_equal(hl_scene_to_json(p.context, scene, &text, &error), HL_ERROR_ARGUMENT);
+  assert_string_equal(error.message,
+                      "/volumes/0/file: the volume came from memory: write it to a file and name that in the scene");
+  assert_null(text);
+  hl_scene_release(scene);
+  parts_release(&p);
+}
+
+/* Numbers that need all their digits, and names that need escapes. */
+static void odd_values_survive(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = NULL;
+  const char *text = "{\"halflight\": 1, \"ambient\": [0.1, 1e-300, 3.0000000000000004], \"camera\": {\"position\": [-0.0, "
+                     "-12345678901234.5, 0.3333333333333333], \"target\": [0, 0, 0]}, \"volumes\": [{\"file\": "
+                     "\"cube_4x4x4_uint8.raw\", \"name\": \"a \\\"quoted\\\" \\\\ \\u0007 \\u00e9 name\"}]}";
+  assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
+  const hl_scene_description *d = hl_scene_describe(scene);
+  assert_true(d->ambient[1] == 1e-300 && d->ambient[2] == 3.0000000000000004 && signbit(d->camera.position[0]));
+  assert_string_equal(d->volumes[0].name, "a \"quoted\" \\ \a \xc3\xa9 name");
+  assert_round_trip(context, scene);
+  hl_scene_release(scene);
+  hl_context_destroy(context);
+}
+
+/* One byte of a good scene replaced, removed or doubled: an answer, and never a leak. */
+static void damaged_scenes_are_answered(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  const char good[] = "{\"halflight\": 1, \"camera\": {\"fovy_deg\": 40}, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\","
+                      " \"clip\": {\"min\": [0, 0, 0], \"max\": [2, 3, 2]}, \"transfer_function\": {\"opacity\": [[0, 0], "
+                      "[9, 0.5]], \"colormap\": \"hot\"}}], \"lights\": [{\"type\": \"point\", \"radius\": 0.5}]}";
+  srand(3);
+  int accepted = 0, refused = 0;
+  for (size_t at = 0; at + 1 < sizeof good; at++)
+    for (int kind = 0; kind < 4; kind++) {
+      char text[sizeof good + 1];
+      size_t keep = kind == 1 ? at + 1 : at; /* what follows the damage */
+      memcpy(text, good, at);
+      if (kind == 0) text[at] = (char)(rand() % 256), memcpy(text + at + 1, good + at + 1, sizeof good - at - 1);
+      else if (kind == 1) memcpy(text + at, good + keep, sizeof good - keep);
+      else if (kind == 2) text[at] = good[at], memcpy(text + at + 1, good + at, sizeof good - at);
+      else text[at] = 0;
+      hl_error error = {0};
+      hl_scene *scene = NULL;
+      hl_status status = read_text(context, text, &scene, &error);
+      if (status == HL_OK) accepted++;
+      else refused++;
+      assert_true((status == HL_OK) == (scene != NULL) && (status == HL_OK || error.message[0] != 0));
+      hl_scene_release(scene);
+      assert_int_equal(hl_context_memory_held(context), 0);
+    }
+  assert_true(accepted > 20 && refused > 500);
+  hl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_case),
+      cmocka_unit_test(the_schema_knows_all_names),
+      cmocka_unit_test(syntax_errors_have_line_and_column),
+      cmocka_unit_test(defaults_are_the_documented_ones),
+      cmocka_unit_test(files_are_relative_to_the_scene_file),
+      cmocka_unit_test(volumes_from_memory_cannot_be_written),
+      cmocka_unit_test(odd_values_survive),
+      cmocka_unit_test(damaged_scenes_are_answered),
+  };
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
