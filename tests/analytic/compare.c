@@ -45,9 +45,10 @@ static double plate(double x, double y, double z) {
   double inside = fabs(x) < 0.6 && fabs(y) < 0.5 ? fmax(0, 1 - fabs(z - 0.5) / 0.1) : 0;
   return fmax(inside, ball(x, y, z, 0, 0, -0.4, 0.5));
 }
-/* A wall with a slit before a floor, as sharp as the grid. */
+/* A wall with a slit on a floor, as sharp as the grid. */
 static double wall(double x, double y, double z) {
-  if (z < -0.75) return 1;
+  if (fabs(x) > 0.9 || fabs(y) > 0.9 || z < -0.9) return 0;
+  if (z < -0.65) return 1;
   return x > -0.2 && x < 0.25 && z < 0.5 && fabs(y) < 0.8 && !(fabs(y) < 0.15 && z < 0.1) ? 1 : 0;
 }
 static double smoke(double x, double y, double z) {
@@ -158,9 +159,17 @@ static void make_plate(stage *set) {
   stage_add_directional(set, (vec3){0.2, 0.1, -1})->angular_diameter_deg = 20;
 }
 static void make_wall(stage *set) {
-  OPACITY(add_cube(set, wall, 40), SHARP);
+  add_cube(set, wall, 40);
   look_from_corner(set);
   stage_add_directional(set, (vec3){-1, 0.2, -0.7})->angular_diameter_deg = 20;
+}
+static void make_wall_medium(stage *set) {
+  make_wall(set);
+  set->volumes[0].shading = HL_SHADING_NONE;
+}
+static void make_wall_sharp(stage *set) {
+  make_wall_medium(set);
+  OPACITY(&set->volumes[0], SHARP);
 }
 static void make_smoke_lit(stage *set, vec3 direction) {
   hl_scene_volume *volume = add_cube(set, smoke, 40);
@@ -259,6 +268,8 @@ static const scenario SCENARIOS[] = {
     {"balls-two-lights", make_balls_two_lights, 0.006},
     {"plate", make_plate, 0.006},
     {"wall", make_wall, 0.006},
+    {"wall-medium", make_wall_medium, 0.006},
+    {"wall-sharp", make_wall_sharp, 0.02},
     {"smoke", make_smoke, 0.006},
     {"smoke-backlit", make_smoke_backlit, 0.006},
     {"smoke-silhouette", make_smoke_silhouette, 0.006},
