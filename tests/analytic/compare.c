@@ -2,12 +2,11 @@
  *
  *     compare [--size N] [--spacing S] [--only TEXT] [--soft] [--points N] [--write FOLDER]
  *
- * Prints one line per scene and shadow setting: the root mean square, greatest and mean signed differences of
- * renderer - reference over R, G, B, A, and the pixel of the greatest one. Without options it is a test: exit
- * status 1 if a picture is further from the reference than its bar. --only picks scenes by part of their
- * name,
- * --soft adds the soft methods (without bars), --write keeps the pictures as
- * FOLDER/NAME-SHADOWS-{renderer,reference}.npy.
+ * Prints one line per scene and shadow setting: the root mean square, greatest and mean signed differences
+ * of renderer - reference over R, G, B, A, and the pixel of the greatest one. Without options it is a test:
+ * exit status 1 if a picture is further from the reference than its bar. --only picks scenes by part of their
+ * name, --soft adds the soft methods (without bars), --write keeps the pictures as
+ * FOLDER/NAME-SHADOWS-renderer.npy and -reference.npy.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,9 +39,9 @@ static double balls(double x, double y, double z) {
   double a = ball(x, y, z, -0.35, -0.3, -0.25, 0.5), b = ball(x, y, z, 0.4, 0.35, 0.1, 0.45);
   return fmax(fmax(a, b), ball(x, y, z, 0.1, -0.35, 0.55, 0.35));
 }
-/* A slab two to three voxels thick in 40, and a ball below it. */
+/* A slab about three voxels thick in 28, and a ball below it. */
 static double plate(double x, double y, double z) {
-  double inside = fabs(x) < 0.6 && fabs(y) < 0.5 ? fmax(0, 1 - fabs(z - 0.5) / 0.1) : 0;
+  double inside = fabs(x) < 0.6 && fabs(y) < 0.5 ? fmax(0, 1 - fabs(z - 0.5) / 0.15) : 0;
   return fmax(inside, ball(x, y, z, 0, 0, -0.4, 0.5));
 }
 /* A wall with a slit on a floor, as sharp as the grid. */
@@ -99,7 +98,7 @@ static hl_scene_volume *add_cube(stage *set, field_function *field, size_t n) {
 
 static void look_from_corner(stage *set) {
   stage_look(set, (vec3){46, -70, 52}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
-  set->scene.camera.height = 62;
+  set->scene.camera.height = 44;
 }
 static void perspective(stage *set, double fovy_deg) {
   set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
@@ -107,7 +106,7 @@ static void perspective(stage *set, double fovy_deg) {
 }
 
 static void make_balls(stage *set) {
-  add_cube(set, balls, 40);
+  add_cube(set, balls, 28);
   look_from_corner(set);
   stage_add_directional(set, (vec3){-0.5, 0.3, -1});
 }
@@ -137,14 +136,14 @@ static void make_balls_splat(stage *set) {
 }
 static void make_balls_perspective(stage *set) {
   make_balls(set);
-  stage_look(set, (vec3){34, -38, 30}, (vec3){0, 0, -2}, (vec3){0, 0, 1});
+  stage_look(set, (vec3){24, -27, 21}, (vec3){0, 0, -1}, (vec3){0, 0, 1});
   perspective(set, 50);
 }
 static void make_balls_point_light(stage *set) {
   make_balls_medium(set);
   set->scene.light_count = 0;
-  hl_light *light = stage_add_point(set, (vec3){25, -12, 45});
-  light->radius = 8;
+  hl_light *light = stage_add_point(set, (vec3){17, -8, 32});
+  light->radius = 6;
 }
 static void make_balls_two_lights(stage *set) {
   make_balls(set);
@@ -153,13 +152,13 @@ static void make_balls_two_lights(stage *set) {
   stage_add_directional(set, (vec3){1, 0.2, -0.4})->color[0] = 0.1;
 }
 static void make_plate(stage *set) {
-  OPACITY(add_cube(set, plate, 40), SHARP);
+  OPACITY(add_cube(set, plate, 28), SHARP);
   set->volumes[0].shading = HL_SHADING_NONE;
   look_from_corner(set);
   stage_add_directional(set, (vec3){0.2, 0.1, -1})->angular_diameter_deg = 20;
 }
 static void make_wall(stage *set) {
-  add_cube(set, wall, 40);
+  add_cube(set, wall, 28);
   look_from_corner(set);
   stage_add_directional(set, (vec3){-1, 0.2, -0.7})->angular_diameter_deg = 20;
 }
@@ -172,7 +171,7 @@ static void make_wall_sharp(stage *set) {
   OPACITY(&set->volumes[0], SHARP);
 }
 static void make_smoke_lit(stage *set, vec3 direction) {
-  hl_scene_volume *volume = add_cube(set, smoke, 40);
+  hl_scene_volume *volume = add_cube(set, smoke, 28);
   OPACITY(volume, HAZE);
   volume->shading = HL_SHADING_NONE;
   volume->attenuation_color[0] = 0.3;
@@ -190,7 +189,7 @@ static void make_smoke_headlight(stage *set) {
 } /* e parallel to l */
 static void make_smoke_across(stage *set) { make_smoke_lit(set, (vec3){70, 46, 0}); } /* e.l = 0 */
 static void make_oblique(stage *set) {
-  hl_scene_volume *volume = add_field(set, balls, (size_t[3]){36, 30, 16}, (double[3]){1, 1.2, 2.2});
+  hl_scene_volume *volume = add_field(set, balls, (size_t[3]){26, 22, 12}, (double[3]){1, 1.2, 2.2});
   volume->rotate_axis[0] = 1;
   volume->rotate_axis[1] = -0.5;
   volume->rotate_angle_deg = 35;
@@ -203,25 +202,25 @@ static void make_oblique_phong(stage *set) {
   set->volumes[0].shading = HL_SHADING_PHONG;
 }
 static void make_two_volumes(stage *set) {
-  hl_scene_volume *haze = add_cube(set, full, 24);
+  hl_scene_volume *haze = add_cube(set, full, 17);
   OPACITY(haze, THIN);
   haze->shading = HL_SHADING_NONE;
   haze->scale = 1.3;
   haze->rotate_axis[1] = 1;
   haze->rotate_angle_deg = 25;
-  haze->translate[0] = 5;
+  haze->translate[0] = 3.5;
   haze->attenuation_color[2] = 0.4;
-  add_cube(set, balls, 32);
+  add_cube(set, balls, 22);
   look_from_corner(set);
   stage_add_directional(set, (vec3){-0.5, 0.3, -1});
 }
 /* The box's faces cut through matter: they must be where they are, at full strength. */
 static void make_clipped(stage *set) {
-  hl_scene_volume *volume = add_cube(set, full, 32);
+  hl_scene_volume *volume = add_cube(set, full, 24);
   OPACITY(volume, THIN);
   volume->shading = HL_SHADING_NONE;
   volume->clipped = 1;
-  const double low[3] = {-11.3, -20, -9.2}, high[3] = {20, 7.4, 8.6};
+  const double low[3] = {-8.3, -20, -7.2}, high[3] = {20, 5.4, 6.6};
   memcpy(volume->clip_min, low, sizeof low);
   memcpy(volume->clip_max, high, sizeof high);
   look_from_corner(set);
@@ -229,22 +228,22 @@ static void make_clipped(stage *set) {
 }
 static void make_clipped_perspective(stage *set) {
   make_clipped(set);
-  stage_look(set, (vec3){30, -34, 24}, (vec3){4, -4, 0}, (vec3){0, 0, 1});
+  stage_look(set, (vec3){23, -26, 18}, (vec3){3, -3, 0}, (vec3){0, 0, 1});
   perspective(set, 60);
 }
 static void make_eye_inside(stage *set) {
   make_smoke(set);
-  stage_look(set, (vec3){3, -6, 4}, (vec3){-10, 12, -4}, (vec3){0, 0, 1});
+  stage_look(set, (vec3){2, -4, 3}, (vec3){-7, 8, -3}, (vec3){0, 0, 1});
   perspective(set, 70);
 }
 static void make_lamp_inside(stage *set) {
   make_smoke(set);
   set->scene.light_count = 0;
-  stage_add_point(set, (vec3){4, -3, 5});
+  stage_add_point(set, (vec3){3, -2, 3.5});
 }
 static void make_hidden_occluder(stage *set) {
   make_plate(set);
-  hl_scene_volume *screen = stage_add_box(set, (vec3){-6, -30, 24}, (vec3){30, 30, 25});
+  hl_scene_volume *screen = stage_add_box(set, (vec3){-4, -20, 17}, (vec3){20, 20, 18});
   stage_set_opacity(set, screen, 0.9, 1);
   screen->visible = 0;
 }
@@ -252,7 +251,7 @@ static void make_hidden_occluder(stage *set) {
 typedef struct scenario {
   const char *name;
   void (*make)(stage *set);
-  double bar; /* RMSE at sheet spacing 0.5 and 96 pixels or more; 0: none yet */
+  double bar; /* RMSE at sheet spacing 0.5 and 64 pixels or more; 0: none yet */
 } scenario;
 
 /* Walls lit at a grazing angle want shadow pixels well below a voxel (at 0.3 voxels both are within 0.006 and
@@ -356,7 +355,8 @@ static int compare_one(stage *set, const scenario *scene, const shadow_setting *
   keep(set->context, chosen, scene->name, setting->name, "reference", reference);
   keep(set->context, chosen, scene->name, setting->name, "renderer", rendered);
   hl_image_destroy(rendered);
-  int barred = setting->shadows != HL_SHADOWS_SOFT && scene->bar > 0 && chosen->spacing <= 0.5 && chosen->size >= 96;
+  int barred =
+      setting->shadows != HL_SHADOWS_SOFT && scene->bar > 0 && chosen->spacing <= 0.5 && chosen->size >= 64;
   return !barred || difference.rmse <= scene->bar;
 }
 
@@ -389,7 +389,7 @@ static int compare_all(const scenario *scene, const choices *chosen) {
 }
 
 static int read_choices(int argc, char **argv, choices *chosen) {
-  *chosen = (choices){.size = 96, .spacing = 0.5, .light_points = 64};
+  *chosen = (choices){.size = 64, .spacing = 0.5, .light_points = 64};
   for (int i = 1; i < argc; i++) {
     const char *value = i + 1 < argc ? argv[i + 1] : NULL;
     if (strcmp(argv[i], "--soft") == 0) {
