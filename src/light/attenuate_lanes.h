@@ -62,7 +62,11 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
   lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
   for (int c = 0; c < job->channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;
-    lanes_store_block(at, job->stride, lanes_load_block(at, job->stride) * lanes_exp_negative(depth[c] * path));
+    lanes passing = lanes_exp_negative(depth[c] * path);
+    lanes_store_block(at, job->stride, lanes_load_block(at, job->stride) * passing);
+    if (job->also[c] == NULL) continue;
+    at = job->also[c] + (size_t)y * job->also_stride + x;
+    lanes_store_block(at, job->also_stride, lanes_load_block(at, job->also_stride) * passing);
   }
 }
 

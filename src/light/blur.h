@@ -13,8 +13,8 @@ typedef struct blur_box {
 
 typedef struct blur_job {
   const float *from; /* pixel (0,0); rows stride apart; readable reach + 1 pixels beyond the tiles */
-  float *to;
-  size_t stride;
+  float *to;         /* pixel (0,0); rows stride_to apart */
+  size_t stride, stride_to;
   blur_box box;
 } blur_job;
 

@@ -7,13 +7,13 @@
 
 LANES_INLINE void blur_tile(const blur_job *job, int tile_x, int tile_y, ptrdiff_t step) {
   const blur_box *box = &job->box;
-  size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
-  for (int row = 0; row < TILE; row++, at += job->stride) {
-    const float *from = job->from + at;
+  const float *from = job->from + (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  float *to = job->to + (size_t)tile_y * TILE * job->stride_to + (size_t)tile_x * TILE;
+  for (int row = 0; row < TILE; row++, from += job->stride, to += job->stride_to) {
     lanes ends = lanes_load(from - (box->reach + 1) * step) + lanes_load(from + (box->reach + 1) * step);
     lanes sum = lanes_load(from) + ends * box->edge;
     for (int i = 1; i <= box->reach; i++) sum = sum + (lanes_load(from - i * step) + lanes_load(from + i * step));
-    lanes_store(job->to + at, sum * box->scale);
+    lanes_store(to, sum * box->scale);
   }
 }
 

@@ -52,7 +52,10 @@ static double pixel_edge(const light_source *source, vec3 normal, const shadow_e
 
 void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view) {
   double low[2], high[2], size[2];
-  vec3 u = vec3_perpendicular(plane_normal), v = vec3_cross(plane_normal, u), zero = {0, 0, 0};
+  /* u runs along the light's tilt against the plane, where penumbrae are longer */
+  vec3 tilt = vec3_subtract(source->direction, vec3_scale(plane_normal, vec3_dot(source->direction, plane_normal)));
+  vec3 u = vec3_length(tilt) > 1e-3 ? vec3_normalise(tilt) : vec3_perpendicular(plane_normal);
+  vec3 v = vec3_cross(plane_normal, u), zero = {0, 0, 0};
   view->perspective = !source->parallel;
   view->origin = source->position;
   view->direction = source->direction;

@@ -77,7 +77,7 @@ static void refresh_tile(void *data, size_t index, int worker) {
 static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, const blur_functions *blur) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
-  convolve_job job = {buffer, {NULL, NULL, buffer->stride, hl_blur_box((float)width)}, blur->rows, blur->lit_blocks, spread};
+  convolve_job job = {buffer, {NULL, NULL, buffer->stride, buffer->stride, hl_blur_box((float)width)}, blur->rows, blur->lit_blocks, spread};
   spread_touched(buffer, (job.blur.box.reach + TILE) / TILE, touched, spread);
   for (int c = 0; c < buffer->channels; c++) {
     job.blur.from = buffer->transmittance[c];

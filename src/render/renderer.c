@@ -186,8 +186,11 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   look(frame, middle);
   frame->spacing = scene->render.sheet_spacing * smallest_edge(renderer);
   frame->light_count = (int)scene->light_count;
-  for (size_t i = 0; i < scene->light_count; i++)
+  for (size_t i = 0; i < scene->light_count; i++) {
     frame->lights[i] = hl_light_source(&scene->lights[i], &scene->render, frame->centre, middle);
+    if (frame->lights[i].shadows == HL_SHADOWS_SOFT && frame->lights[i].soft_method == HL_SOFT_SUBLIGHTS)
+      return hl_fail(error, HL_ERROR_UNSUPPORTED, "/render/soft_method: sublights is not in this version: use cascade or paper");
+  }
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
   status = hl_frame_check_sweeps(frame, work->sweeps, work->sweep_count, error);
   if (status != HL_OK) return status;

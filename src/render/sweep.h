@@ -5,6 +5,7 @@
 #ifndef HL_RENDER_SWEEP_H
 #define HL_RENDER_SWEEP_H
 
+#include "light/soft_cascade.h"
 #include "light/soft_paper.h"
 #include "render/frame.h"
 #include "simd/hot.h"
@@ -46,7 +47,8 @@ typedef struct sweep_light {
   float *enter, *leave;           /* owned; [grids][tiles][256]; null where no box cuts */
   float *density;                 /* owned; [grids][tiles][RING][256]; the last sheets, block-major */
   kept_tile *kept;                /* owned; [grids][tiles][RING]; what is in density */
-  soft_paper soft;
+  soft_paper paper;               /* by the source's soft method */
+  soft_cascade cascade;
   double pixel;
 } sweep_light;
 

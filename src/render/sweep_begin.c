@@ -146,15 +146,18 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   hl_shadow_view(source, plane_normal, &extent, &view);
   light->pixel = vec3_length(view.du);
   int reach = 0;
-  if (soft) {
-    const sheet_stack *sheets = &sweep->geometry->sheets;
-    hl_soft_paper_begin(&light->soft, source, sheets->normal, sheets->first, light->pixel);
-    reach = hl_soft_paper_reach(&light->soft, sheets->first, sheets->spacing, sheets->count);
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  if (soft && source->soft_method == HL_SOFT_PAPER) {
+    hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, light->pixel);
+    reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
   }
   hl_status status = hl_shadow_buffer_reset(sweep->context, buffer, &view, sweep->channels, soft, reach, error);
+  if (status == HL_OK && soft && source->soft_method == HL_SOFT_CASCADE)
+    status = hl_soft_cascade_begin(sweep->context, &light->cascade, source, sheets->normal, sheets->first,
+                                   sheets->first + (sheets->count - 1) * sheets->spacing, light->pixel, buffer, error);
   if (status == HL_OK)
-    status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, &view,
-                                &sweep->geometry->sheets, &light->occupancy, error);
+    status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, &view, sheets,
+                                &light->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sweep, &view, &light->lists, error);
   if (status == HL_OK) status = cover_light(sweep, light, error);
   if (status == HL_OK) status = keep_light_sheets(sweep, light, error);
@@ -301,6 +304,7 @@ void hl_sweep_end(sweep *sweep) {
     hl_release(context, light->leave);
     hl_release(context, light->density);
     hl_release(context, light->kept);
+    hl_soft_cascade_release(context, &light->cascade);
   }
   hl_occupancy_release(context, &sweep->occupancy);
   release_lists(sweep, sweep->lists);

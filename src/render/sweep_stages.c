@@ -132,6 +132,10 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
   job.volume_count = found;
   for (int c = 0; c < job.channels; c++)
     job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
+  for (int c = 0; c < job.channels && light->cascade.level_count > 0; c++) {
+    job.also_stride = light->cascade.level[0].stride;
+    job.also[c] = light->cascade.current[c] + (size_t)tile_y * TILE * job.also_stride + (size_t)tile_x * TILE;
+  }
   uint32_t worked = 0;
   for (int i = 0; i < found; i++) worked |= volumes[i].blocks;
   buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | sweep->hot->attenuate_tile(&job, tile_x, tile_y));
@@ -246,7 +250,13 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
     const blur_functions blur = {sweep->hot->blur_rows_tile, sweep->hot->blur_columns_tile, sweep->hot->lit_blocks_tile};
-    hl_soft_paper_convolve(&light->soft, light->buffer, sheet_height(sweep, sheet + 1), sweep->pool, &blur);
+    const cascade_functions cascade = {blur, sweep->hot->multiply_tile, sweep->hot->multiply_half_tile,
+                                       sweep->hot->multiply_double_tile};
+    if (light->source->soft_method == HL_SOFT_PAPER)
+      hl_soft_paper_convolve(&light->paper, light->buffer, sheet_height(sweep, sheet + 1), sweep->pool, &blur);
+    else if (sheet > 0)
+      hl_soft_cascade_advance(&light->cascade, light->buffer, sheet_height(sweep, sheet - 1), sheet_height(sweep, sheet),
+                              sweep->pool, &cascade);
   }
   sweep->seconds_soften += hl_clock_seconds() - start;
 }

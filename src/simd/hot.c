@@ -2,6 +2,7 @@
 #include "simd/hot.h"
 
 #include "light/blur_lanes.h"
+#include "light/cascade_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
 #include "splat/splat_lanes.h"
@@ -16,4 +17,7 @@ const hot_functions HL_HOT_TABLE = {
     .shade_tile = shade_tile,
     .blur_rows_tile = blur_rows_tile,
     .blur_columns_tile = blur_columns_tile,
+    .multiply_tile = multiply_tile,
+    .multiply_half_tile = multiply_half_tile,
+    .multiply_double_tile = multiply_double_tile,
 };

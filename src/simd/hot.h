@@ -7,6 +7,7 @@
 
 #include "light/attenuate.h"
 #include "light/blur.h"
+#include "light/cascade_field.h"
 #include "render/shade.h"
 #include "splat/bricks.h"
 #include "splat/coverage.h"
@@ -20,6 +21,7 @@ typedef struct hot_functions {
   lit_blocks_function *lit_blocks_tile;
   shade_tile_function *shade_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
+  field_tile_function *multiply_tile, *multiply_half_tile, *multiply_double_tile;
 } hot_functions;
 
 const hot_functions *hl_hot_functions(hl_instruction_set set);

@@ -1,0 +1,40 @@
+/* light/cascade_lanes.h - tile operations on cascade fields, as plain loops over rows. */
+#ifndef HL_LIGHT_CASCADE_LANES_H
+#define HL_LIGHT_CASCADE_LANES_H
+
+#include "light/cascade_field.h"
+#include "simd/lanes.h"
+
+static void multiply_tile(const field_job *job, int tile_x, int tile_y) {
+  size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  for (int row = 0; row < TILE; row++, at += job->stride)
+    lanes_store(job->to + at, lanes_load(job->a + at) * lanes_load(job->b + at));
+}
+
+static void multiply_half_tile(const field_job *job, int tile_x, int tile_y) {
+  for (int row = 0; row < TILE; row++) {
+    size_t from = (size_t)(tile_y * TILE + row) * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
+    float *to = job->to + (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
+    const float *a = job->a + from, *b = job->b + from, *c = a + job->stride_in, *d = b + job->stride_in;
+    for (int i = 0; i < TILE; i++)
+      to[i] = 0.25f * ((a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1]) + (c[2 * i] * d[2 * i] + c[2 * i + 1] * d[2 * i + 1]));
+  }
+}
+
+/* Pixel 2i lies a quarter of a coarse pixel before coarse pixel i's centre, pixel 2i+1 a quarter after. */
+static void multiply_double_tile(const field_job *job, int tile_x, int tile_y) {
+  for (int row = 0; row < TILE; row++) {
+    int y = tile_y * TILE + row;
+    const float *near = job->b + (ptrdiff_t)(y / 2) * (ptrdiff_t)job->stride_in + tile_x * TILE / 2;
+    const float *far = y & 1 ? near + job->stride_in : near - job->stride_in;
+    size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
+    float coarse[TILE / 2 + 2];
+    for (int i = 0; i < TILE / 2 + 2; i++) coarse[i] = 0.75f * near[i - 1] + 0.25f * far[i - 1];
+    for (int i = 0; i < TILE / 2; i++) {
+      job->to[at + 2 * (size_t)i] = job->a[at + 2 * (size_t)i] * (0.75f * coarse[i + 1] + 0.25f * coarse[i]);
+      job->to[at + 2 * (size_t)i + 1] = job->a[at + 2 * (size_t)i + 1] * (0.75f * coarse[i + 1] + 0.25f * coarse[i + 2]);
+    }
+  }
+}
+
+#endif
