@@ -12,7 +12,7 @@ typedef struct hl_exr_channel {
 } hl_exr_channel;
 
 /* Writes width x height pixels of all channels to output->file: scanlines, ZIP, 32-bit float. */
-hl_status hl_exr_encode_channels(hl_context *context, int width, int height, const hl_exr_channel *channels,
-                                 size_t channel_count, hl_output *output, hl_error *error);
+hl_status hl_exr_encode_channels(int width, int height, const hl_exr_channel *channels, size_t channel_count,
+                                 hl_output *output, hl_error *error);
 
 #endif

@@ -14,7 +14,6 @@
 #include "image/image.h"
 
 typedef struct exr_writing {
-  hl_context *context;
   int width, height;
   const hl_exr_channel *channels; /* borrowed; [channel_count] */
   size_t channel_count;
@@ -98,17 +97,16 @@ static exr_result_t write_chunks(exr_writing *writing, exr_context_t file, hl_st
   int32_t lines = 1;
   exr_result_t result = exr_get_scanlines_per_chunk(file, 0, &lines);
   for (int y = 0; y < writing->height && result == EXR_ERR_SUCCESS && *status == HL_OK; y += lines) {
-    *status = hl_encode_step(writing->context, y, writing->height, error);
+    *status = hl_encode_step(writing->output->context, y, writing->height, error);
     if (*status == HL_OK) result = write_chunk(writing, file, &pipeline, y);
   }
   exr_encoding_destroy(file, &pipeline);
   return result;
 }
 
-hl_status hl_exr_encode_channels(hl_context *context, int width, int height, const hl_exr_channel *channels,
-                                 size_t channel_count, hl_output *output, hl_error *error) {
-  exr_writing writing = {.context = context,
-                         .width = width,
+hl_status hl_exr_encode_channels(int width, int height, const hl_exr_channel *channels, size_t channel_count,
+                                 hl_output *output, hl_error *error) {
+  exr_writing writing = {.width = width,
                          .height = height,
                          .channels = channels,
                          .channel_count = channel_count,
@@ -143,5 +141,5 @@ hl_status hl_exr_encode(const hl_image *image, const hl_image_write_options *opt
                                       {"B", image->pixels + 2, 4},
                                       {"G", image->pixels + 1, 4},
                                       {"R", image->pixels, 4}};
-  return hl_exr_encode_channels(image->context, image->width, image->height, channels, 4, output, error);
+  return hl_exr_encode_channels(image->width, image->height, channels, 4, output, error);
 }

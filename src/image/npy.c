@@ -56,21 +56,21 @@ hl_status hl_npy_encode(const hl_image *image, const hl_image_write_options *opt
                         hl_error *error) {
   (void)options; /* depth and background are PNG's */
   size_t row_floats = (size_t)image->width * 4;
-  unsigned char header[HEADER_BYTES + 1], *row = hl_allocate(image->context, row_floats, 4);
+  unsigned char header[HEADER_BYTES + 1], *row = hl_allocate(output->context, row_floats, 4);
   if (row == NULL) return hl_fail_memory(error, row_floats * 4, output->path);
   make_header(image, header);
   errno = 0;
   bool written = fwrite(header, 1, HEADER_BYTES, output->file) == HEADER_BYTES;
   hl_status status = HL_OK;
   for (int y = 0; y < image->height && written && status == HL_OK; y++) {
-    status = hl_encode_step(image->context, y, image->height, error);
+    status = hl_encode_step(output->context, y, image->height, error);
     if (status != HL_OK) break;
     for (size_t i = 0; i < row_floats; i++) put_float(row + 4 * i, image->pixels[(size_t)y * row_floats + i]);
     errno = 0;
     written = fwrite(row, 4, row_floats, output->file) == row_floats;
   }
   if (!written) status = hl_fail_write(error, output, errno);
-  hl_release(image->context, row);
+  hl_release(output->context, row);
   return status;
 }
 

@@ -52,14 +52,14 @@ static void on_warning(png_structp png, png_const_charp message) {
 
 static png_voidp on_allocate(png_structp png, png_alloc_size_t size) {
   png_writing *writing = png_get_mem_ptr(png);
-  void *memory = hl_allocate(writing->image->context, size, 1);
+  void *memory = hl_allocate(writing->output->context, size, 1);
   if (memory == NULL) writing->status = hl_fail_memory(writing->error, size, writing->output->path);
   return memory;
 }
 
 static void on_release(png_structp png, png_voidp memory) {
   png_writing *writing = png_get_mem_ptr(png);
-  hl_release(writing->image->context, memory);
+  hl_release(writing->output->context, memory);
 }
 
 static void on_write(png_structp png, png_bytep bytes, size_t length) {
@@ -112,8 +112,8 @@ static void encode_row(png_writing *writing, int y) {
   for (int x = 0; x < writing->image->width; x++, pixel += 4) {
     float offset = depth == 16 || is_empty(pixel) ? 0.0f : dither_offset(x, y);
     for (int c = 0; c < 3; c++)
-      to = put_code(
-          to, hl_srgb_encode_offset(&writing->encoder, stored_value(writing, pixel, c), offset), depth);
+      to = put_code(to, hl_srgb_encode_offset(&writing->encoder, stored_value(writing, pixel, c), offset),
+                    depth);
     if (transparent) to = put_code(to, quantise(pixel[3], writing->encoder.maximum, offset), depth);
   }
 }
@@ -143,7 +143,7 @@ static void write_png(png_writing *writing) {
   if (writing->options->scene_json != NULL) write_scene(writing);
   png_write_info(writing->png, writing->info);
   for (int y = 0; y < image->height; y++) {
-    writing->status = hl_encode_step(image->context, y, image->height, writing->error);
+    writing->status = hl_encode_step(writing->output->context, y, image->height, writing->error);
     if (writing->status != HL_OK) return;
     encode_row(writing, y);
     png_write_row(writing->png, writing->row);
@@ -155,11 +155,11 @@ hl_status hl_png_encode(const hl_image *image, const hl_image_write_options *opt
                         hl_error *error) {
   png_writing writing = {.image = image, .options = options, .output = output, .error = error};
   for (int c = 0; c < 3; c++) writing.background[c] = (float)options->background[c];
-  hl_status status =
-      hl_srgb_encoder_create(image->context, options->png_depth == 16 ? 65535 : 255, &writing.encoder, error);
+  hl_status status = hl_srgb_encoder_create(output->context, options->png_depth == 16 ? 65535 : 255,
+                                            &writing.encoder, error);
   if (status != HL_OK) return status;
   size_t row_bytes = (size_t)image->width * 4 * (size_t)(options->png_depth / 8);
-  writing.row = hl_allocate(image->context, row_bytes, 1);
+  writing.row = hl_allocate(output->context, row_bytes, 1);
   writing.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &writing, on_error, on_warning, &writing,
                                           on_allocate, on_release);
   writing.info = writing.png == NULL ? NULL : png_create_info_struct(writing.png);
@@ -168,7 +168,7 @@ hl_status hl_png_encode(const hl_image *image, const hl_image_write_options *opt
   else
     write_png(&writing);
   png_destroy_write_struct(&writing.png, &writing.info);
-  hl_release(image->context, writing.row);
+  hl_release(output->context, writing.row);
   hl_srgb_encoder_destroy(&writing.encoder);
   return writing.status;
 }
