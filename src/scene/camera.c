@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "scene/scene.h"
+#include "scene/upright.h"
 
 #define FILLED 0.92                  /* of the picture's half width or height */
 #define FAINT 0.02                   /* of the greatest opacity: fainter voxels need not be in the picture */
@@ -183,18 +184,25 @@ static void place_camera(const extent *e, double aspect, double zoom, hl_camera 
   memcpy(camera->up, &e->up, sizeof camera->up);
 }
 
-/* azimuth 0: forward +y, right +x; positive azimuth turns the eye towards +x. At elevation 90 the picture's up is
- * where forward pointed on the horizon, so that up never jumps. */
-static void set_axes(extent *e, double azimuth_deg, double elevation_deg) {
+/* At azimuth 0 and elevation 0 the picture's axes are upright's; positive azimuth turns the eye to the right. At
+ * elevation 90 the picture's up is where forward pointed on the horizon, so that up never jumps. */
+static void set_axes(extent *e, hl_upright upright, double azimuth_deg, double elevation_deg) {
   double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
-  vec3 horizon = {-sin(azimuth), cos(azimuth), 0}, z = {0, 0, 1};
-  e->right = (vec3){cos(azimuth), sin(azimuth), 0};
-  e->forward = vec3_add(vec3_scale(horizon, cos(elevation)), vec3_scale(z, -sin(elevation)));
-  e->up = vec3_add(vec3_scale(horizon, sin(elevation)), vec3_scale(z, cos(elevation)));
+  vec3 ahead = vec3_cross(upright.up, upright.right);
+  vec3 horizon = vec3_add(vec3_scale(ahead, cos(azimuth)), vec3_scale(upright.right, -sin(azimuth)));
+  e->right = vec3_add(vec3_scale(upright.right, cos(azimuth)), vec3_scale(ahead, sin(azimuth)));
+  e->forward = vec3_add(vec3_scale(horizon, cos(elevation)), vec3_scale(upright.up, -sin(elevation)));
+  e->up = vec3_add(vec3_scale(horizon, sin(elevation)), vec3_scale(upright.up, cos(elevation)));
 }
 
 hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg, double elevation_deg,
                           double zoom, hl_camera *camera) {
+  hl_upright upright = {{0, 0, 1}, {1, 0, 0}, 0};
+  return hl_camera_frame_upright(description, upright, azimuth_deg, elevation_deg, zoom, camera);
+}
+
+hl_status hl_camera_frame_upright(const hl_scene_description *description, hl_upright upright, double azimuth_deg,
+                                  double elevation_deg, double zoom, hl_camera *camera) {
   if (description == NULL || camera == NULL || description->volume_count == 0 || description->width < 1 ||
       description->height < 1 || !isfinite(azimuth_deg) || !isfinite(elevation_deg) || !(zoom >= 1e-6 && zoom <= 1e6))
     return HL_ERROR_ARGUMENT;
@@ -204,7 +212,7 @@ hl_status hl_camera_frame(const hl_scene_description *description, double azimut
     if (description->volumes[n].volume == NULL) return HL_ERROR_ARGUMENT;
   double aspect = (double)description->width / description->height;
   extent e = {.side = {-INFINITY, -INFINITY, -INFINITY, -INFINITY}, .near = INFINITY, .far = -INFINITY};
-  set_axes(&e, azimuth_deg, elevation_deg);
+  set_axes(&e, upright, azimuth_deg, elevation_deg);
   if (perspective) {
     e.tangent_y = FILLED * tan(camera->fovy_deg * HL_PI / 360);
     e.tangent_x = e.tangent_y * aspect;

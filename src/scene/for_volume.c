@@ -2,8 +2,9 @@
 #include "core/error.h"
 #include "scene/automatic.h"
 #include "scene/scene.h"
+#include "scene/upright.h"
 
-#define AZIMUTH 30       /* three-quarter view, degrees */
+#define AZIMUTH 30        /* three-quarter view, degrees */
 #define ELEVATION 20
 #define LIGHT_AZIMUTH -40 /* key light from the upper left, degrees from the line of sight */
 #define LIGHT_ELEVATION 45
@@ -15,8 +16,19 @@ void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
   light->intensity = 1.1;
 }
 
+/* The camera of a scene whose only volume was analysed, or (analysis null) of any scene. */
+static hl_status frame(const hl_scene_description *description, const hl_data_analysis *analysis, hl_camera *camera) {
+  hl_upright upright = {{0, 0, 1}, {1, 0, 0}, AZIMUTH};
+  if (analysis != NULL) upright = hl_scene_upright(&description->volumes[0], analysis);
+  return hl_camera_frame_upright(description, upright, upright.azimuth_deg, ELEVATION, 1, camera);
+}
+
 hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera) {
-  return hl_camera_frame(description, AZIMUTH, ELEVATION, 1, camera);
+  const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
+  hl_data_analysis analysis;
+  bool asked = only != NULL && only->rotate_angle_deg == 0; /* who turns a volume knows its way up */
+  if (asked && hl_data_analyse(only->volume, &analysis, NULL) != HL_OK) asked = false;
+  return frame(description, asked ? &analysis : NULL, camera);
 }
 
 static void choose_material(hl_data_kind kind, hl_scene_volume *volume) {
@@ -44,7 +56,7 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   hl_scene_description_defaults(&description);
   description.volumes = &scene_volume;
   description.volume_count = 1;
-  status = hl_scene_frame(&description, &description.camera);
+  status = frame(&description, &analysis, &description.camera);
   if (status != HL_OK) {
     hl_fail(error, status, "the volume cannot be framed: mend its spacing");
   } else {

@@ -1,0 +1,215 @@
+/* scene/upright.c - which way up a volume is, where its file cannot say.
+ *
+ * In: a volume and the thresholds of its things. Out: up and right for the default camera. Only the picture's
+ * orientation follows from it, never a coordinate.
+ */
+#define _GNU_SOURCE /* strcasecmp */
+#include "scene/upright.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/memory.h"
+#include "scene/scene.h"
+
+#define LATTICE 5e5     /* places looked at, about */
+#define BEND 3          /* places over which relief is felt */
+#define AZIMUTH 30      /* of the three-quarter view, degrees */
+#define CLEARLY 1.1     /* so much more relief has a side that is worth turning for */
+
+/* What a thing looks like from its six sides. */
+typedef struct shape {
+  int size[3];             /* places of the lattice along each axis */
+  unsigned char *solid;    /* owned; [size[2]][size[1]][size[0]]; 1 where the things are */
+  double *area[3];         /* owned; [size[a]]; solid places in each slice across axis a */
+  int first[3], last[3];   /* slices that hold the things, but for one part in 500 at either end */
+} shape;
+
+static bool is_oriented(const hl_volume *volume) {
+  for (int a = 0; a < 3; a++) {
+    vec3 axis = vec3_normalise(mat3_column(volume->index_to_world.linear, a));
+    const double component[3] = {axis.x, axis.y, axis.z};
+    if (component[a] < 0.999999) return true;
+  }
+  return false;
+}
+
+static bool ends_with(const char *text, const char *end) {
+  size_t length = text != NULL ? strlen(text) : 0, tail = strlen(end);
+  return length >= tail && strcasecmp(text + length - tail, end) == 0;
+}
+
+static void release(hl_context *context, shape *s) {
+  for (int a = 0; a < 3; a++) hl_release(context, s->area[a]);
+  hl_release(context, s->solid);
+}
+
+static bool allocate(hl_context *context, const hl_volume *volume, size_t step, shape *s) {
+  size_t count = 1;
+  for (int a = 0; a < 3; a++) {
+    s->size[a] = (int)((volume->dimension[a] + step - 1) / step);
+    count *= (size_t)s->size[a];
+    s->area[a] = hl_allocate_zeroed(context, (size_t)s->size[a], sizeof(double));
+  }
+  s->solid = hl_allocate_zeroed(context, count, 1);
+  return s->solid != NULL && s->area[0] != NULL && s->area[1] != NULL && s->area[2] != NULL;
+}
+
+/* The lattice reaches both ends of each axis: the last place is the last voxel. */
+static size_t place_of(const hl_volume *volume, const shape *s, size_t step, int axis, int n) {
+  return n + 1 == s->size[axis] ? volume->dimension[axis] - 1 : (size_t)n * step;
+}
+
+static bool make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s) {
+  size_t step = (size_t)fmax(1, ceil(cbrt((double)hl_volume_voxel_count(volume) / LATTICE)));
+  memset(s, 0, sizeof *s);
+  if (!allocate(volume->context, volume, step, s)) return false;
+  double total = 0;
+  unsigned char *solid = s->solid;
+  for (int k = 0; k < s->size[2]; k++)
+    for (int j = 0; j < s->size[1]; j++)
+      for (int i = 0; i < s->size[0]; i++, solid++) {
+        double value = hl_volume_value(volume, place_of(volume, s, step, 0, i), place_of(volume, s, step, 1, j),
+                                       place_of(volume, s, step, 2, k));
+        if (!(analysis->direction * (value - analysis->background) > analysis->solid)) continue;
+        *solid = 1;
+        s->area[0][i]++, s->area[1][j]++, s->area[2][k]++, total++;
+      }
+  for (int a = 0; a < 3; a++) {
+    double sum = 0;
+    int n = 0;
+    while (n + 1 < s->size[a] && (sum += s->area[a][n]) <= 0.002 * total) n++;
+    s->first[a] = n;
+    for (sum = 0, n = s->size[a] - 1; n > 0 && (sum += s->area[a][n]) <= 0.002 * total;) n--;
+    s->last[a] = n > s->first[a] ? n : s->first[a];
+  }
+  return total > 0;
+}
+
+/* Part of the grid's face at one end of an axis that the things touch. */
+static double touch(const shape *s, int axis, int end) {
+  double face = (double)s->size[(axis + 1) % 3] * s->size[(axis + 2) % 3];
+  return s->area[axis][end ? s->size[axis] - 1 : 0] / face;
+}
+
+/* How blunt the things are at one end: mean area of the last slices over the greatest. */
+static double bluntness(const shape *s, int axis, int end) {
+  double greatest = 1e-9, sum = 0;
+  for (int n = s->first[axis]; n <= s->last[axis]; n++) greatest = fmax(greatest, s->area[axis][n]);
+  int slices = 1 + (s->last[axis] - s->first[axis]) / 32;
+  for (int n = 0; n < slices; n++) sum += s->area[axis][end ? s->last[axis] - n : s->first[axis] + n];
+  return sum / slices / greatest;
+}
+
+/* How like its mirror image the thing is: places that both have, over places that either has. */
+static double symmetry(const shape *s, int axis) {
+  double both = 0, either = 0;
+  int n[3];
+  for (n[2] = s->first[2]; n[2] <= s->last[2]; n[2]++)
+    for (n[1] = s->first[1]; n[1] <= s->last[1]; n[1]++)
+      for (n[0] = s->first[0]; n[0] <= s->last[0]; n[0]++) {
+        int m[3] = {n[0], n[1], n[2]};
+        m[axis] = s->first[axis] + s->last[axis] - n[axis];
+        int here = s->solid[((size_t)n[2] * (size_t)s->size[1] + (size_t)n[1]) * (size_t)s->size[0] + (size_t)n[0]];
+        int there = s->solid[((size_t)m[2] * (size_t)s->size[1] + (size_t)m[1]) * (size_t)s->size[0] + (size_t)m[0]];
+        both += here && there;
+        either += here || there;
+      }
+  return either > 0 ? both / either : 0;
+}
+
+/* Axis 0..2 of up and its sign as +-(axis + 1); +3 where nothing speaks for another. */
+static int up_of(const shape *s, const hl_volume *volume) {
+  double extent[3], most = 0;
+  int bottom = 0;
+  for (int a = 0; a < 3; a++)
+    extent[a] = (s->last[a] - s->first[a]) * vec3_length(mat3_column(volume->index_to_world.linear, a)) *
+                (double)volume->dimension[a] / s->size[a];
+  if (extent[2] > 1.4 * fmax(extent[0], extent[1])) return 3; /* a column stands */
+  for (int a = 0; a < 3; a++) /* cut off by a face of the grid */
+    for (int end = 0; end < 2; end++)
+      if (touch(s, a, end) > fmax(most, fmax(0.05, 4 * touch(s, a, !end)))) {
+        most = touch(s, a, end);
+        bottom = end ? a + 1 : -(a + 1);
+      }
+  if (bottom != 0) return -bottom;
+  for (int a = 0; a < 3; a++) /* or standing on a plate */
+    for (int end = 0; end < 2; end++)
+      if (bluntness(s, a, end) > fmax(most, 0.4) && bluntness(s, a, !end) < 0.1) {
+        most = bluntness(s, a, end);
+        bottom = end ? a + 1 : -(a + 1);
+      }
+  if (bottom != 0) return -bottom;
+  double z = symmetry(s, 2);
+  bool sideways = z > 0.55 && z > 0.1 + fmax(symmetry(s, 0), symmetry(s, 1));
+  return sideways ? -2 : 3; /* rows of pictures run downwards */
+}
+
+/* Places from one end of an axis to the thing, along the row (u, v) of the other two axes; -1: nothing there. */
+static int depth_at(const shape *s, int axis, int end, int u, int v) {
+  int n[3];
+  n[(axis + 1) % 3] = u;
+  n[(axis + 2) % 3] = v;
+  for (int depth = 0; s->first[axis] + depth <= s->last[axis]; depth++) {
+    n[axis] = end ? s->last[axis] - depth : s->first[axis] + depth;
+    if (s->solid[((size_t)n[2] * (size_t)s->size[1] + (size_t)n[1]) * (size_t)s->size[0] + (size_t)n[0]]) return depth;
+  }
+  return -1;
+}
+
+/* Relief of the side at one end of an axis: how depths bend over a few places both ways, cliffs counted as steps. */
+static double relief(const shape *s, int axis, int end) {
+  int u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
+  double sum = 0;
+  for (int v = s->first[v_axis] + BEND; v <= s->last[v_axis] - BEND; v++)
+    for (int u = s->first[u_axis] + BEND; u <= s->last[u_axis] - BEND; u++) {
+      int depth = depth_at(s, axis, end, u, v);
+      int across[4] = {depth_at(s, axis, end, u - BEND, v), depth_at(s, axis, end, u + BEND, v),
+                       depth_at(s, axis, end, u, v - BEND), depth_at(s, axis, end, u, v + BEND)};
+      for (int pair = 0; pair < 4; pair += 2)
+        if (depth >= 0 && across[pair] >= 0 && across[pair + 1] >= 0)
+          sum += fmin(abs(across[pair] - 2 * depth + across[pair + 1]), 4);
+    }
+  return sum;
+}
+
+static int axis_of(vec3 v, int *end) {
+  int axis = fabs(v.x) > 0.5 ? 0 : fabs(v.y) > 0.5 ? 1 : 2;
+  *end = v.x + v.y + v.z > 0;
+  return axis;
+}
+
+/* True if the side that v points to has clearly less relief than the opposite one. */
+static bool opposite_shows_more(const shape *s, vec3 v) {
+  int end, axis = axis_of(v, &end);
+  return relief(s, axis, !end) > CLEARLY * relief(s, axis, end);
+}
+
+static double best_azimuth(const shape *s, hl_upright upright) {
+  vec3 near_side = vec3_scale(vec3_cross(upright.up, upright.right), -1);
+  double azimuth = opposite_shows_more(s, near_side) ? 180 - AZIMUTH : AZIMUTH;
+  return opposite_shows_more(s, upright.right) ? -azimuth : azimuth;
+}
+
+static hl_upright upright_about(int up) {
+  vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  int axis = (up < 0 ? -up : up) - 1;
+  return (hl_upright){vec3_scale(axes[axis], up < 0 ? -1 : 1), axes[axis == 0 ? 1 : 0], AZIMUTH};
+}
+
+hl_upright hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis) {
+  if (ends_with(volume->file, ".nii") || ends_with(volume->file, ".nii.gz"))
+    return (hl_upright){{0, 0, 1}, {-1, 0, 0}, AZIMUTH}; /* RAS+: y points to the front, x to the patient's right */
+  if (is_oriented(volume->volume)) return upright_about(3);
+  if (analysis->kind == HL_DATA_MEDIUM) return upright_about(2);
+  if (analysis->kind != HL_DATA_SURFACES) return upright_about(3);
+  shape s;
+  hl_upright upright = upright_about(3);
+  if (make_shape(volume->volume, analysis, &s)) {
+    upright = upright_about(up_of(&s, volume->volume));
+    upright.azimuth_deg = best_azimuth(&s, upright);
+  }
+  release(volume->volume->context, &s);
+  return upright;
+}
