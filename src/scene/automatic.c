@@ -17,12 +17,13 @@ static void write_surfaces(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double ramp = a->solid - a->faint, dense = fmax(a->dense, a->solid + 1e-6 * a->top), top = fmax(a->top, dense * 1.001);
   hl_add_opacity(w, a->faint, 0);
-  hl_add_opacity(w, a->faint + 0.4 * ramp, 0.06);
+  hl_add_opacity(w, a->faint + 0.35 * ramp, 0.08);
+  hl_add_opacity(w, a->faint + 0.7 * ramp, 0.28);
   hl_add_opacity(w, a->solid, 0.5);
-  hl_add_opacity(w, a->solid + 0.5 * ramp, 0.85);
-  hl_add_opacity(w, a->solid + 1.5 * ramp, 0.95);
-  static const double outer[3] = {0.50, 0.24, 0.13}, skin[3] = {0.72, 0.42, 0.26}, inner[3] = {0.86, 0.72, 0.52},
-                      densest[3] = {0.93, 0.90, 0.82};
+  hl_add_opacity(w, a->solid + 0.5 * (dense - a->solid), 0.75);
+  hl_add_opacity(w, dense, 0.95);
+  static const double outer[3] = {0.36, 0.15, 0.08}, skin[3] = {0.66, 0.33, 0.19}, inner[3] = {0.88, 0.70, 0.48},
+                      densest[3] = {0.95, 0.93, 0.88};
   hl_add_color(w, a->faint, outer);
   hl_add_color(w, a->solid, skin);
   hl_add_color(w, dense, inner);
@@ -33,16 +34,22 @@ static void write_field(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001);
   hl_add_opacity(w, a->faint, 0);
-  hl_add_opacity(w, a->faint + 0.3 * ramp, hl_opacity_for(a, 0.8));
-  hl_add_opacity(w, a->faint + 0.8 * ramp, hl_opacity_for(a, 2));
-  hl_add_opacity(w, a->solid + 0.25 * (top - a->solid), hl_opacity_for(a, 20));
-  hl_add_opacity(w, top, hl_opacity_for(a, 60));
-  hl_add_colormap(w, "viridis", a->faint, top, 0.25, 1);
+  hl_add_opacity(w, a->faint + 0.15 * ramp, hl_opacity_for(a, 0.8));
+  hl_add_opacity(w, a->faint + 0.7 * ramp, hl_opacity_for(a, 1.2));
+  hl_add_opacity(w, a->solid, hl_opacity_for(a, 2.5));
+  hl_add_opacity(w, a->solid + 0.25 * (top - a->solid), hl_opacity_for(a, 15));
+  hl_add_opacity(w, top, hl_opacity_for(a, 80));
+  static const double shell[3] = {0.04, 0.20, 0.55}, flesh[3] = {0.16, 0.50, 0.72}, pale[3] = {0.94, 0.68, 0.30},
+                      core[3] = {0.88, 0.24, 0.06};
+  hl_add_color(w, a->faint, shell);
+  hl_add_color(w, a->solid, flesh);
+  hl_add_color(w, a->solid + 0.25 * (top - a->solid), pale);
+  hl_add_color(w, top, core);
 }
 
 void hl_write_medium(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
-  static const double white[3] = {0.9, 0.9, 0.9};
+  static const double white[3] = {0.8, 0.8, 0.8};
   for (int step = 0; step <= 32; step++) {
     double distance = a->top * step / 32;
     hl_add_opacity(w, distance, hl_opacity_for(a, MEDIUM_DEPTH * distance / a->mean));

@@ -1,4 +1,6 @@
 /* scene/for_volume.c - the scene that shows one volume well with no further choice. */
+#include <string.h>
+
 #include "core/error.h"
 #include "scene/automatic.h"
 #include "scene/scene.h"
@@ -13,7 +15,7 @@ void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
   hl_light_defaults(light);
   hl_light_direction(camera, LIGHT_AZIMUTH, LIGHT_ELEVATION, light->direction);
   light->angular_diameter_deg = 7;
-  light->intensity = 1.1;
+  light->intensity = 1.25;
 }
 
 /* The camera of a scene whose only volume was analysed, or (analysis null) of any scene. */
@@ -63,7 +65,8 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
     hl_scene_key_light(&description.camera, &light);
     description.lights = &light;
     description.light_count = 1;
-    for (int channel = 0; channel < 3; channel++) description.ambient[channel] = 0.3;
+    memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
+    for (int channel = 0; channel < 3; channel++) description.ambient[channel] = 0.25;
     status = hl_scene_create(context, &description, scene, error);
   }
   hl_transfer_function_release(context, &scene_volume.transfer_function);
