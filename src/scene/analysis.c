@@ -89,7 +89,7 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
     double middle = hl_quantile(border, border_count, 0.5), upper = hl_quantile(border, border_count, 0.75);
     a->faint = fmax(a->faint, middle + 6 * (upper - middle)); /* about 3.5 sigma of one-sided Gaussian noise */
   }
-  a->faint = fmin(a->faint, 0.8 * a->solid);
+  a->faint = fmin(fmax(a->faint, 0.3 * a->solid), 0.8 * a->solid);
   double sum = 0;
   size_t beyond = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->faint; n--, beyond++) sum += (double)d->values[n - 1];

@@ -1,0 +1,389 @@
+/* tests/unit/scene_automatic.c - automatic transfer functions, presets, colormaps, default scenes. */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <unistd.h>
+
+#include "scene/automatic.h"
+#include "scene/colormap.h"
+#include "scene/nearest.h"
+#include "scene/sample.h"
+#include "scene/upright.h"
+#include "scene_parts.h"
+
+enum { N = 40 };
+
+static float noise(unsigned *state) { /* 0..1 */
+  *state = *state * 1664525u + 1013904223u;
+  return (float)(*state >> 8) / 16777216.0f;
+}
+
+/* A soft-edged ball of material 1 with a core of material 2 in noisy air, as a scanner sees it. */
+static void make_ball(float *values, double noisy) {
+  unsigned state = 5;
+  for (int k = 0, v = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++, v++) {
+        double r = hypot(hypot(i - 20, j - 19), k - 21);
+        double thing = 1 / (1 + exp((r - 12) / 0.7)), core = 1 / (1 + exp((r - 5) / 0.7));
+        values[v] = (float)(thing + 1.2 * core + noisy * (double)noise(&state));
+      }
+}
+
+static hl_volume *scaled_volume(hl_context *context, const float *values, double scale, double offset) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  for (int a = 0; a < 3; a++) d.dimensions[a] = N;
+  d.type = HL_VOXEL_F32;
+  d.voxels = values;
+  d.value_scale = scale;
+  d.value_offset = offset;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  return volume;
+}
+
+static void assert_ascending(const hl_transfer_function *f) {
+  for (size_t p = 1; p < f->opacity_count; p++) assert_true(f->opacity[p].value >= f->opacity[p - 1].value);
+  for (size_t p = 1; p < f->color_count; p++) assert_true(f->color[p].value >= f->color[p - 1].value);
+}
+
+/* Air is transparent, the ball is seen, and the core has another colour than the rest. */
+static void separates_air_from_things(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  make_ball(values, 0.15);
+  hl_context *context = make_context();
+  hl_volume *volume = scaled_volume(context, values, 1, 0);
+  hl_data_analysis a;
+  assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+  assert_int_equal(a.kind, HL_DATA_SURFACES);
+  assert_true(a.background < 0.16 && a.direction == 1 && a.faint > 0.05 && a.faint < 0.6 && a.solid < 1);
+  hl_transfer_function f;
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  assert_ascending(&f);
+  assert_true(f.unit_distance == 1);
+  assert_true(hl_transfer_function_opacity(&f, 0.14) == 0 && hl_transfer_function_opacity(&f, 1.07) > 0.4);
+  double shell[3], core[3];
+  hl_transfer_function_color(&f, 1.07, shell);
+  hl_transfer_function_color(&f, 2.27, core);
+  assert_true(core[2] > shell[2] + 0.1);
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
+/* Scaled, shifted and turned upside down, the same volume gets the same function in its own units. */
+static void does_not_depend_on_units(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  make_ball(values, 0.15);
+  hl_context *context = make_context();
+  const double units[][2] = {{1, 0}, {1000, -1024}, {1e-6, 3e-6}, {37, 1e4}, {-1, 0}, {-200, 700}};
+  hl_transfer_function first = {0};
+  for (size_t u = 0; u < sizeof units / sizeof *units; u++) {
+    hl_volume *volume = scaled_volume(context, values, units[u][0], units[u][1]);
+    hl_transfer_function f;
+    assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+    assert_ascending(&f);
+    if (u == 0) first = f;
+    assert_int_equal(f.opacity_count, first.opacity_count);
+    for (int n = 0; n <= 200; n++) {
+      double value = n * 0.0123, other = units[u][0] * value + units[u][1], a[3], b[3];
+      assert_near(hl_transfer_function_opacity(&first, value), hl_transfer_function_opacity(&f, other), 2e-3);
+      hl_transfer_function_color(&first, value, a);
+      hl_transfer_function_color(&f, other, b);
+      for (int c = 0; c < 3; c++) assert_near(a[c], b[c], 2e-3);
+    }
+    if (u > 0) hl_transfer_function_release(context, &f);
+    hl_volume_release(volume);
+  }
+  hl_transfer_function_release(context, &first);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* Two lobes of a signed field, on any background value. */
+static void signed_fields_show_both_lobes(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  hl_context *context = make_context();
+  for (int k = 0, v = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++, v++) {
+        double r1 = hypot(hypot(i - 12.31, j - 20.17), k - 19.62), r2 = hypot(hypot(i - 27.73, j - 19.86), k - 20.41);
+        values[v] = (float)(exp(-r1 * r1 / 30) - 0.8 * exp(-r2 * r2 / 30));
+      }
+  for (int shifted = 0; shifted < 2; shifted++) {
+    double offset = shifted ? 5 : 0;
+    hl_volume *volume = scaled_volume(context, values, 1, offset);
+    hl_data_analysis a;
+    hl_transfer_function f;
+    assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+    assert_int_equal(a.kind, HL_DATA_SIGNED);
+    assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+    assert_ascending(&f);
+    assert_true(hl_transfer_function_opacity(&f, offset) == 0);
+    assert_true(hl_transfer_function_opacity(&f, offset + 0.7) > 0.2 && hl_transfer_function_opacity(&f, offset - 0.7) > 0.2);
+    double positive[3], negative[3];
+    hl_transfer_function_color(&f, offset + 0.7, positive);
+    hl_transfer_function_color(&f, offset - 0.7, negative);
+    assert_true(positive[0] > positive[2] + 0.2 && negative[2] > negative[0] + 0.2);
+    hl_transfer_function_release(context, &f);
+    hl_volume_release(volume);
+  }
+  hl_context_destroy(context);
+}
+
+/* A field that falls off smoothly, and rough smoke that does, are told apart; smoke is lit as a medium. */
+static void tells_fields_from_smoke(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  hl_context *context = make_context();
+  unsigned seed = 9;
+  for (int rough = 0; rough < 2; rough++) {
+    for (int k = 0, v = 0; k < N; k++)
+      for (int j = 0; j < N; j++)
+        for (int i = 0; i < N; i++, v++) {
+          double r = hypot(hypot(i - 20, j - 20), k - 20), smooth = fmax(0, exp(-r * r / 60) - 0.02);
+          values[v] = (float)(rough ? smooth * (0.2 + 1.6 * (double)noise(&seed)) : smooth);
+        }
+    hl_volume *volume = scaled_volume(context, values, 1, 0);
+    hl_data_analysis a;
+    assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+    assert_int_equal(a.kind, rough ? HL_DATA_MEDIUM : HL_DATA_FIELD);
+    hl_scene *scene = NULL;
+    assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+    assert_int_equal(hl_scene_describe(scene)->volumes[0].shading, rough ? HL_SHADING_NONE : HL_SHADING_PHONG);
+    hl_scene_release(scene);
+    hl_volume_release(volume);
+  }
+  hl_context_destroy(context);
+}
+
+/* Grids without anything to tell apart, and with hardly anything in them, still get a scene. */
+static void odd_volumes_get_a_scene(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  float constant = 7, two[2] = {0, 1}, holes[8] = {NAN, 1, INFINITY, 2, NAN, 0, 3, -INFINITY}, nothing[1] = {NAN};
+  const struct { float *values; size_t n[3]; } odd[] = {
+      {&constant, {1, 1, 1}}, {two, {2, 1, 1}}, {two, {1, 1, 2}}, {holes, {2, 2, 2}}, {nothing, {1, 1, 1}}};
+  for (size_t o = 0; o < sizeof odd / sizeof *odd; o++) {
+    hl_volume_description d;
+    hl_volume_description_defaults(&d);
+    memcpy(d.dimensions, odd[o].n, sizeof d.dimensions);
+    d.type = HL_VOXEL_F32;
+    d.voxels = odd[o].values;
+    hl_volume *volume = NULL;
+    hl_scene *scene = NULL;
+    hl_error error = {0};
+    assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+    if (hl_scene_for_volume(context, volume, NULL, &scene, &error) != HL_OK) fail_msg("%zu: %s", o, error.message);
+    for (size_t p = 0; hl_preset_name(p) != NULL; p++) {
+      hl_transfer_function f = {0};
+      assert_int_equal(hl_transfer_function_preset(context, hl_preset_name(p), volume, &f, NULL), HL_OK);
+      assert_ascending(&f);
+      hl_transfer_function_release(context, &f);
+    }
+    hl_scene_release(scene);
+    hl_volume_release(volume);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* A CT in Hounsfield units and the same squeezed into 8 bits: bone at the same places. */
+static void ct_presets_adapt(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  hl_context *context = make_context();
+  unsigned seed = 1;
+  for (int k = 0, v = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++, v++) {
+        double r = hypot(hypot(i - 20, j - 20), k - 20);
+        values[v] = (float)((r < 7 ? 1100 : r < 15 ? 40 : -1000) + 40 * (double)noise(&seed));
+      }
+  for (int squeezed = 0; squeezed < 2; squeezed++) {
+    double scale = squeezed ? 255 / 2200.0 : 1, offset = squeezed ? 1000 * scale : 0;
+    hl_volume *volume = scaled_volume(context, values, scale, offset);
+    hl_transfer_function f;
+    assert_int_equal(hl_transfer_function_preset(context, "ct-bone", volume, &f, NULL), HL_OK);
+    assert_true(hl_transfer_function_opacity(&f, scale * 1100 + offset) > 0.8);
+    assert_true(hl_transfer_function_opacity(&f, scale * 60 + offset) == 0);
+    hl_transfer_function_release(context, &f);
+    assert_int_equal(hl_transfer_function_preset(context, "ct-skin", volume, &f, NULL), HL_OK);
+    assert_true(hl_transfer_function_opacity(&f, scale * 60 + offset) > 0.8);
+    assert_true(hl_transfer_function_opacity(&f, scale * -960 + offset) == 0);
+    hl_transfer_function_release(context, &f);
+    hl_volume_release(volume);
+  }
+  hl_transfer_function f = {0};
+  hl_error error = {0};
+  hl_volume *volume = scaled_volume(context, values, 1, 0);
+  assert_int_equal(hl_transfer_function_preset(context, "ct-bones", volume, &f, &error), HL_ERROR_INPUT);
+  assert_string_equal(error.message, "unknown preset \"ct-bones\": did you mean \"ct-bone\"?");
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
+static void colormaps_have_their_published_colors(void **state) {
+  (void)state;
+  const struct { const char *name; double t; int srgb; } published[] = {
+      {"viridis", 0, 0x440154}, {"viridis", 0.5, 0x21918c}, {"viridis", 1, 0xfde725}, {"inferno", 0.5, 0xbc3754},
+      {"magma", 0.5, 0xb73779}, {"plasma", 0.5, 0xcc4778}, {"cividis", 1, 0xfee838}, {"coolwarm", 0, 0x3b4cc0},
+      {"coolwarm", 1, 0xb40426}, {"turbo", 0, 0x23171b}, {"grays", 1, 0xffffff}, {"hot", 1, 0xffffff}};
+  for (size_t n = 0; n < sizeof published / sizeof *published; n++) {
+    double linear[3];
+    assert_true(hl_colormap_evaluate(published[n].name, published[n].t, linear));
+    for (int c = 0; c < 3; c++) {
+      double srgb = (published[n].srgb >> (16 - 8 * c) & 255) / 255.0;
+      assert_near(linear[c], hl_srgb_to_linear(srgb), 0.01);
+    }
+  }
+  double ignored[3];
+  assert_false(hl_colormap_evaluate("no such map", 0.5, ignored));
+  hl_context *context = make_context();
+  hl_transfer_function f = {0};
+  assert_int_equal(hl_transfer_function_colormap(context, "viridis", 10, 20, &f, NULL), HL_OK);
+  assert_true(f.color[0].value == 10 && f.color[f.color_count - 1].value == 20);
+  for (int n = 0; n <= 100; n++) { /* the points stand for the whole map */
+    double exact[3], line[3];
+    hl_colormap_evaluate("viridis", n / 100.0, exact);
+    hl_transfer_function_color(&f, 10 + n / 10.0, line);
+    for (int c = 0; c < 3; c++) assert_near(exact[c], line[c], 0.004);
+  }
+  hl_error error = {0};
+  assert_int_equal(hl_transfer_function_colormap(context, "virdis", 0, 1, &f, &error), HL_ERROR_INPUT);
+  assert_string_equal(error.message, "unknown colormap \"virdis\": did you mean \"viridis\"?");
+  assert_int_equal(hl_transfer_function_colormap(context, "hot", 1, 1, &f, NULL), HL_ERROR_INPUT);
+  hl_transfer_function_release(context, &f);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void names_and_statistics(void **state) {
+  (void)state;
+  assert_int_equal(hl_edit_distance("", "abc"), 3);
+  assert_int_equal(hl_edit_distance("kitten", "sitting"), 3);
+  assert_int_equal(hl_edit_distance("ab", "ba"), 1);
+  const char *const names[] = {"radius", "direction", NULL};
+  assert_string_equal(hl_nearest_name("raduis", names), "radius");
+  assert_null(hl_nearest_name("colour", names));
+  float values[] = {9, -1, 3.5f, -20, 0, 3.5f, 8, 2}, sorted[] = {-20, -1, 0, 2, 3.5f, 3.5f, 8, 9};
+  hl_context *context = make_context();
+  assert_true(hl_sort(context, values, 8));
+  assert_memory_equal(values, sorted, sizeof values);
+  assert_near(hl_quantile(sorted, 8, 0.5), 2.75, 1e-9);
+  assert_near(hl_mode(sorted, 8), 3.5, 1e-6);
+  float two[] = {0, 0, 0, 1, 1, 10, 10, 11};
+  assert_near(hl_threshold_otsu(two, 8, -1), 5.5, 1e-6);
+  hl_context_destroy(context);
+}
+
+/* A pot on a plate at the lower y face: y is up, and the eye looks from the side with relief. */
+static void things_stand_upright(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  for (int k = 0, v = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++, v++) {
+        bool plate = j < 4, stem = j < 30 && hypot(i - 20, k - 20) < 5, knob = hypot(hypot(i - 20, j - 20), k - 13) < 4;
+        values[v] = plate || stem || knob ? 1.0f : 0.0f;
+      }
+  hl_context *context = make_context();
+  hl_volume *volume = scaled_volume(context, values, 1, 0);
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  const hl_camera *camera = &hl_scene_describe(scene)->camera;
+  vec3 right, up, forward;
+  hl_camera_basis(camera, &right, &up, &forward);
+  assert_true(up.y > 0.9);                             /* elevation 20 */
+  assert_true(camera->position[2] < camera->target[2]); /* the knob is on this side */
+  hl_scene_release(scene);
+  /* A NIfTI file knows: z up, y to the front. */
+  assert_int_equal(hl_scene_for_volume(context, volume, "x.nii.gz", &scene, NULL), HL_OK);
+  camera = &hl_scene_describe(scene)->camera;
+  hl_camera_basis(camera, &right, &up, &forward);
+  assert_true(up.z > 0.9 && camera->position[1] > camera->target[1] + 10);
+  hl_scene_release(scene);
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
+/* Real volumes: hardly any of the border is visible, something is, and little of it is not in the picture. */
+static void real_volumes(void **state) {
+  (void)state;
+  static const struct { const char *file; hl_data_kind kind; double border; } sets[] = {
+      {"bonsai/bonsai.nrrd", HL_DATA_SURFACES, 0.2}, {"boston_teapot/boston_teapot.nrrd", HL_DATA_SURFACES, 0.01},
+      {"bucky/Bucky_32x32x32_uint8.raw", HL_DATA_FIELD, 0.08}, {"cranium_mha/cranium.mha", HL_DATA_SURFACES, 0.15},
+      {"engine/engine.nrrd", HL_DATA_SURFACES, 0.12}, {"fuel/fuel_64x64x64_uint8.raw", HL_DATA_SURFACES, 0.01},
+      {"headmr_mhd/HeadMRVolume.mhd", HL_DATA_SURFACES, 0.05}, {"hydrogen_orbital/hydrogen.vti", HL_DATA_FIELD, 0.01},
+      {"hipip_signed/hipip_signed_64x64x64_int16.nrrd", HL_DATA_SIGNED, 0.12},
+      {"ironprot/ironProt.vtk", HL_DATA_FIELD, 0.01}, {"mrbrain/head256x256x109_uint8.raw.gz", HL_DATA_SURFACES, 0.06},
+      {"neghip/neghip_64x64x64_uint8.raw", HL_DATA_FIELD, 0.05}, {"nucleon/nucleon.nrrd", HL_DATA_FIELD, 0.01},
+      {"silicium/silicium_98x34x34_uint8.raw", HL_DATA_SURFACES, 0.01},
+      {"skull_malformed_nrrd/skull_256x256x68_uint8_fixed.nrrd", HL_DATA_SURFACES, 0.02},
+      {"smoke_plume_pbrt/smoke_plume_100x100x40_float.nrrd", HL_DATA_MEDIUM, 0.06},
+      {"smoke_vdb/smoke_density.nrrd", HL_DATA_MEDIUM, 0.06}, {"stent/stent.nrrd", HL_DATA_SURFACES, 0.12},
+      {"stroke_t1_nii/T1.nii.gz", HL_DATA_SURFACES, 0.01},
+      {"wdas_cloud/wdas_cloud_sixteenth_density.nrrd", HL_DATA_MEDIUM, 0.01}};
+  const char *data = getenv("HALFLIGHT_DATA");
+  if (data == NULL) data = HALFLIGHT_SOURCE "/../shared/data";
+  hl_context *context = make_context();
+  size_t tried = 0;
+  for (size_t n = 0; n < sizeof sets / sizeof *sets; n++) {
+    char path[500];
+    snprintf(path, sizeof path, "%s/%s", data, sets[n].file);
+    if (access(path, R_OK) != 0) continue;
+    hl_volume *volume = NULL;
+    hl_error error = {0};
+    if (hl_volume_load(context, path, &volume, &error) != HL_OK) fail_msg("%s", error.message);
+    hl_data_analysis a;
+    hl_transfer_function f;
+    hl_sample sample;
+    assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+    assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+    assert_int_equal(hl_sample_make(volume, &sample, NULL), HL_OK);
+    size_t seen = 0, seen_border = 0;
+    bool low = false, high = false;
+    for (size_t s = 0; s < sample.count; s++) {
+      double value = sample.low + sample.range * (double)sample.values[s];
+      if (hl_transfer_function_opacity(&f, value) < 0.02) continue;
+      seen++;
+      if (value < a.background) low = true;
+      else high = true;
+    }
+    for (size_t s = 0; s < sample.border_count; s++)
+      seen_border += hl_transfer_function_opacity(&f, sample.low + sample.range * (double)sample.border[s]) >= 0.02;
+    double part = (double)seen / (double)sample.count, border = (double)seen_border / (double)sample.border_count;
+    if (a.kind != sets[n].kind || border > sets[n].border || part < 0.005 || part > 0.5)
+      fail_msg("%s: kind %d, %.4f of the voxels and %.4f of the border visible", sets[n].file, (int)a.kind, part, border);
+    assert_true(high && (low == (a.kind == HL_DATA_SIGNED)));
+    hl_sample_release(&sample);
+    hl_transfer_function_release(context, &f);
+    hl_volume_release(volume);
+    tried++;
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+  if (tried == 0) {
+    print_message("# the real volumes are not there: name their folder in HALFLIGHT_DATA\n");
+    skip();
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(separates_air_from_things),
+      cmocka_unit_test(does_not_depend_on_units),
+      cmocka_unit_test(signed_fields_show_both_lobes),
+      cmocka_unit_test(tells_fields_from_smoke),
+      cmocka_unit_test(odd_volumes_get_a_scene),
+      cmocka_unit_test(ct_presets_adapt),
+      cmocka_unit_test(colormaps_have_their_published_colors),
+      cmocka_unit_test(names_and_statistics),
+      cmocka_unit_test(things_stand_upright),
+      cmocka_unit_test(real_volumes),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
