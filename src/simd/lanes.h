@@ -22,6 +22,14 @@ typedef uint32_t lanes_uint __attribute__((vector_size(64)));
 
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 
+/* Functions that are one instruction or a few where there are vectors of the size, and long without: there they are
+ * called, which keeps the baseline's code (and its compile time under sanitizers) within bounds. */
+#if defined(__AVX2__)
+#define LANES_CALL LANES_INLINE
+#else
+#define LANES_CALL static __attribute__((noinline, unused))
+#endif
+
 LANES_INLINE lanes lanes_set(float x) { return (lanes){x, x, x, x, x, x, x, x, x, x, x, x, x, x, x, x}; }
 LANES_INLINE lanes_int lanes_set_int(int32_t x) {
   return (lanes_int){x, x, x, x, x, x, x, x, x, x, x, x, x, x, x, x};
@@ -59,7 +67,7 @@ LANES_INLINE lanes_int lanes_select_int(lanes_int mask, lanes_int a, lanes_int b
 }
 
 /* One bit a lane, lane 0 lowest. */
-LANES_INLINE uint32_t lanes_bits(lanes_int mask) {
+LANES_CALL uint32_t lanes_bits(lanes_int mask) {
 #if defined(__AVX512F__)
   return (uint32_t)_mm512_movepi32_mask((__m512i)mask);
 #elif defined(__AVX2__)
@@ -72,13 +80,13 @@ LANES_INLINE uint32_t lanes_bits(lanes_int mask) {
   return bits;
 #endif
 }
-LANES_INLINE lanes_int lanes_from_bits(uint32_t bits) {
+LANES_CALL lanes_int lanes_from_bits(uint32_t bits) {
   const lanes_int one_bit = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
   return (lanes_set_int((int32_t)bits) & one_bit) != 0;
 }
 
 /* a < b ? a : b, and a > b ? a : b: the second where either is NaN, as the instructions do. */
-LANES_INLINE lanes lanes_min(lanes a, lanes b) {
+LANES_CALL lanes lanes_min(lanes a, lanes b) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
 #elif defined(__AVX2__)
@@ -93,7 +101,7 @@ LANES_INLINE lanes lanes_min(lanes a, lanes b) {
   return lanes_select(a < b, a, b);
 #endif
 }
-LANES_INLINE lanes lanes_max(lanes a, lanes b) {
+LANES_CALL lanes lanes_max(lanes a, lanes b) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_max_ps((__m512)a, (__m512)b);
 #elif defined(__AVX2__)
@@ -113,7 +121,7 @@ LANES_INLINE lanes lanes_clamp(lanes x, float low, float high) {
 }
 LANES_INLINE lanes lanes_abs(lanes x) { return (lanes)((lanes_int)x & lanes_set_int(0x7fffffff)); }
 
-LANES_INLINE lanes lanes_sqrt(lanes x) {
+LANES_CALL lanes lanes_sqrt(lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_sqrt_ps((__m512)x);
 #elif defined(__AVX2__)
@@ -132,13 +140,13 @@ LANES_INLINE lanes lanes_sqrt(lanes x) {
 LANES_INLINE lanes lanes_from_int(lanes_int x) { return __builtin_convertvector(x, lanes); }
 LANES_INLINE lanes_int lanes_truncate(lanes x) { return __builtin_convertvector(x, lanes_int); }
 /* Greatest integer not above x; |x| < 2^31. */
-LANES_INLINE lanes_int lanes_floor(lanes x) {
+LANES_CALL lanes_int lanes_floor(lanes x) {
   lanes_int i = lanes_truncate(x);
   return i + (lanes_from_int(i) > x);
 }
 
 /* table[index] of 4-byte elements. */
-LANES_INLINE lanes lanes_gather(const float *table, lanes_int index) {
+LANES_CALL lanes lanes_gather(const float *table, lanes_int index) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_i32gather_ps((__m512i)index, table, 4);
 #elif defined(__AVX2__)
@@ -156,7 +164,7 @@ LANES_INLINE lanes lanes_gather(const float *table, lanes_int index) {
 }
 
 /* Four bytes at base + offset (bytes), little-endian into each lane. */
-LANES_INLINE lanes_int lanes_gather_bytes(const unsigned char *base, lanes_int offset) {
+LANES_CALL lanes_int lanes_gather_bytes(const unsigned char *base, lanes_int offset) {
 #if defined(__AVX512F__)
   return (lanes_int)_mm512_i32gather_epi32((__m512i)offset, base, 1);
 #elif defined(__AVX2__)
@@ -179,7 +187,7 @@ LANES_INLINE lanes_int lanes_gather_bytes(const unsigned char *base, lanes_int o
 
 /* 2^x for |x| < 126, relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by its Taylor series in
  * f ln 2 to degree 7 (derived; the remainder (0.3466)^8/8! is 5e-9), 2^n by the exponent bits. */
-LANES_INLINE lanes lanes_exp2(lanes x) {
+LANES_CALL lanes lanes_exp2(lanes x) {
   lanes_int n = lanes_floor(x + 0.5f);
   lanes f = (x - lanes_from_int(n)) * 0.69314718056f;
   lanes p = f * (1.0f / 5040) + 1.0f / 720;
@@ -192,12 +200,12 @@ LANES_INLINE lanes lanes_exp2(lanes x) {
   return p * (lanes)((n + 127) << 23);
 }
 /* exp(-x) for x >= 0; below 1e-37 it is held there. */
-LANES_INLINE lanes lanes_exp_negative(lanes x) {
+LANES_CALL lanes lanes_exp_negative(lanes x) {
   return lanes_exp2(lanes_max(x * -1.44269504089f, lanes_set(-123.0f)));
 }
 /* log2(x) for normal x > 0, absolute error below 1e-6: x = 2^n m, m in [sqrt(1/2), sqrt(2)), and
  * ln m = 2 atanh((m-1)/(m+1)) by its odd series to degree 9 (derived). */
-LANES_INLINE lanes lanes_log2(lanes x) {
+LANES_CALL lanes lanes_log2(lanes x) {
   lanes_int bits = (lanes_int)x - 0x3f3504f3;
   lanes_int n = bits >> 23;
   lanes m = (lanes)((bits & 0x007fffff) + 0x3f3504f3);

@@ -36,24 +36,40 @@ LANES_INLINE lanes row_f32(const unsigned char *row, lanes_int offset, const lan
   return a + b;
 }
 
-/* All 64 taps lie inside the grid: offset is the byte offset of tap (0,0,0) from voxels. */
-LANES_INLINE lanes sum_inside(const grid *grid, hl_storage storage, const unsigned char *voxels, lanes_int offset,
-                              const lanes wx[4], const lanes wy[4], const lanes wz[4]) {
+/* All 64 taps lie inside the grid: offset is the byte offset of tap (0,0,0) from voxels. The loops stay loops:
+ * unrolled, they outgrow the instruction cache and take a compiler minutes. */
+LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const unsigned char *voxels, lanes_int offset,
+                            const lanes weight[3][4]) {
   size_t bytes = hl_storage_bytes(storage), row_bytes = (size_t)grid->dimension[0] * bytes;
   size_t slice_bytes = row_bytes * (size_t)grid->dimension[1];
   lanes sum = lanes_set(0);
+#pragma GCC unroll 1
   for (int z = 0; z < 4; z++) {
     lanes plane = lanes_set(0);
+#pragma GCC unroll 1
     for (int y = 0; y < 4; y++) {
       const unsigned char *row = voxels + (size_t)z * slice_bytes + (size_t)y * row_bytes;
-      lanes along = storage == HL_STORAGE_U8    ? row_u8(row, offset, wx)
-                    : storage == HL_STORAGE_U16 ? row_u16(row, offset, wx)
-                                                : row_f32(row, offset, wx);
-      plane = plane + along * wy[y];
+      lanes along = storage == HL_STORAGE_U8    ? row_u8(row, offset, weight[0])
+                    : storage == HL_STORAGE_U16 ? row_u16(row, offset, weight[0])
+                                                : row_f32(row, offset, weight[0]);
+      plane = plane + along * weight[1][y];
     }
-    sum = sum + plane * wz[z];
+    sum = sum + plane * weight[2][z];
   }
   return sum;
+}
+
+static __attribute__((noinline)) lanes sum_u8(const grid *grid, const unsigned char *voxels, lanes_int offset,
+                                              const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_U8, voxels, offset, weight);
+}
+static __attribute__((noinline)) lanes sum_u16(const grid *grid, const unsigned char *voxels, lanes_int offset,
+                                               const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_U16, voxels, offset, weight);
+}
+static __attribute__((noinline)) lanes sum_f32(const grid *grid, const unsigned char *voxels, lanes_int offset,
+                                               const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_F32, voxels, offset, weight);
 }
 
 static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
@@ -66,7 +82,7 @@ static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t
 }
 
 /* The same sum in grids less than four voxels thick somewhere. One lane at a time, same order. */
-static lanes sum_in_thin_grid(const grid *grid, const block_place *place, uint32_t active, const lanes weight[3][4]) {
+static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const block_place *place, uint32_t active, const lanes weight[3][4]) {
   lanes sums = lanes_set(0);
   for (; active != 0; active &= active - 1) {
     int lane = __builtin_ctz(active);
@@ -131,9 +147,10 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
   lanes_int offset = (cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
                      (cell[1] - reference[1]) * grid->dimension[0] + (cell[0] - reference[0]);
   offset = (offset * (int32_t)bytes) & lanes_from_bits(active);
-  if (grid->storage == HL_STORAGE_U8) return sum_inside(grid, HL_STORAGE_U8, voxels, offset, weight[0], weight[1], weight[2]);
-  if (grid->storage == HL_STORAGE_U16) return sum_inside(grid, HL_STORAGE_U16, voxels, offset, weight[0], weight[1], weight[2]);
-  return sum_inside(grid, HL_STORAGE_F32, voxels, offset, weight[0], weight[1], weight[2]);
+  const lanes(*weights)[4] = (const lanes(*)[4])weight;
+  if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, voxels, offset, weights);
+  if (grid->storage == HL_STORAGE_U16) return sum_u16(grid, voxels, offset, weights);
+  return sum_f32(grid, voxels, offset, weights);
 }
 
 static uint32_t gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {
