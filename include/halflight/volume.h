@@ -20,7 +20,9 @@ typedef enum hl_voxel_type {
   HL_VOXEL_U32 = 5,
   HL_VOXEL_I32 = 6,
   HL_VOXEL_F32 = 7,
-  HL_VOXEL_F64 = 8
+  HL_VOXEL_F64 = 8,
+  HL_VOXEL_U64 = 9,  /* 64 and 32 bit integers and doubles are kept to 24 bits, as float */
+  HL_VOXEL_I64 = 10
 } hl_voxel_type;
 
 typedef struct hl_volume hl_volume;

@@ -17,9 +17,10 @@ static const struct {
     [HL_VOXEL_U16] = {"uint16", 2, HL_STORAGE_U16, 0},  [HL_VOXEL_I16] = {"int16", 2, HL_STORAGE_U16, 32768},
     [HL_VOXEL_U32] = {"uint32", 4, HL_STORAGE_F32, 0},  [HL_VOXEL_I32] = {"int32", 4, HL_STORAGE_F32, 0},
     [HL_VOXEL_F32] = {"float32", 4, HL_STORAGE_F32, 0}, [HL_VOXEL_F64] = {"float64", 8, HL_STORAGE_F32, 0},
+    [HL_VOXEL_U64] = {"uint64", 8, HL_STORAGE_F32, 0},  [HL_VOXEL_I64] = {"int64", 8, HL_STORAGE_F32, 0},
 };
 
-static bool known(hl_voxel_type type) { return (int)type >= HL_VOXEL_U8 && (int)type <= HL_VOXEL_F64; }
+static bool known(hl_voxel_type type) { return (int)type >= HL_VOXEL_U8 && (int)type <= HL_VOXEL_I64; }
 
 const char *hl_voxel_type_name(hl_voxel_type type) { return known(type) ? types[type].name : "unknown"; }
 size_t hl_voxel_type_bytes(hl_voxel_type type) { return known(type) ? types[type].bytes : 0; }
@@ -80,11 +81,29 @@ static void store_f32(bool swap, const unsigned char *source, size_t count, unsi
   }
 }
 
+static uint64_t load_64(const unsigned char *source, bool swap) {
+  uint64_t value;
+  memcpy(&value, source, 8);
+  return swap ? __builtin_bswap64(value) : value;
+}
+
+static void store_u64(bool swap, const unsigned char *source, size_t count, unsigned char *destination) {
+  for (size_t n = 0; n < count; n++) {
+    float value = (float)load_64(source + 8 * n, swap);
+    memcpy(destination + 4 * n, &value, 4);
+  }
+}
+
+static void store_i64(bool swap, const unsigned char *source, size_t count, unsigned char *destination) {
+  for (size_t n = 0; n < count; n++) {
+    float value = (float)(int64_t)load_64(source + 8 * n, swap);
+    memcpy(destination + 4 * n, &value, 4);
+  }
+}
+
 static void store_f64(bool swap, const unsigned char *source, size_t count, unsigned char *destination) {
   for (size_t n = 0; n < count; n++) {
-    uint64_t bits;
-    memcpy(&bits, source + 8 * n, 8);
-    if (swap) bits = __builtin_bswap64(bits);
+    uint64_t bits = load_64(source + 8 * n, swap);
     double wide;
     memcpy(&wide, &bits, 8);
     float value = (float)wide;
@@ -102,5 +121,7 @@ void hl_voxels_store(hl_voxel_type type, bool swap, const void *source, size_t c
     case HL_VOXEL_I32: store_i32(swap, source, count, destination); break;
     case HL_VOXEL_F32: store_f32(swap, source, count, destination); break;
     case HL_VOXEL_F64: store_f64(swap, source, count, destination); break;
+    case HL_VOXEL_U64: store_u64(swap, source, count, destination); break;
+    case HL_VOXEL_I64: store_i64(swap, source, count, destination); break;
   }
 }

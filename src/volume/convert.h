@@ -1,7 +1,7 @@
 /* volume/convert.h - from the types of files and callers to the three storage types.
  *
  * signed integers   sign bit flipped: stored = value + 2^(bits-1), undone by the volume's value_offset
- * u32, i32, f64     nearest f32; doubles beyond its range become infinite (transparent)
+ * 32 and 64 bit      nearest f32; doubles beyond its range become infinite (transparent)
  */
 #ifndef HL_VOLUME_CONVERT_H
 #define HL_VOLUME_CONVERT_H

@@ -47,15 +47,22 @@ static hl_status read_opening(vtk_header *header, hl_error *error) {
 }
 
 static hl_status read_type(const vtk_header *header, const char *name, hl_voxel_type *type, hl_error *error) {
-  static const hl_named_type types[] = {{"unsigned_char", HL_VOXEL_U8},   {"char|signed_char", HL_VOXEL_I8},
-                                        {"unsigned_short", HL_VOXEL_U16}, {"short", HL_VOXEL_I16},
-                                        {"unsigned_int", HL_VOXEL_U32},   {"int", HL_VOXEL_I32},
-                                        {"float", HL_VOXEL_F32},          {"double", HL_VOXEL_F64}};
+  static const hl_named_type types[] = {
+      {"unsigned_char", HL_VOXEL_U8},
+      {"char|signed_char", HL_VOXEL_I8},
+      {"unsigned_short", HL_VOXEL_U16},
+      {"short", HL_VOXEL_I16},
+      {"unsigned_int", HL_VOXEL_U32},
+      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes its indices as int, whatever their width in memory */
+      {"unsigned_long|vtktypeuint64", HL_VOXEL_U64},
+      {"long|vtktypeint64", HL_VOXEL_I64},
+      {"float", HL_VOXEL_F32},
+      {"double", HL_VOXEL_F64}};
   if (hl_find_type(types, sizeof types / sizeof *types, name, type)) return HL_OK;
-  bool known = hl_text_is_one_of(name, "bit|long|unsigned_long|vtkIdType|vtktypeint64|vtktypeuint64|string");
   char shown[HL_PRINTABLE_BYTES];
-  return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
-                      "values of type \"%s\" are not read: 8, 16 and 32 bit integers, float and double are",
+  return HL_FAIL_LINE(error, hl_text_is_one_of(name, "bit|string") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT,
+                      header->stream, header->line,
+                      "values of type \"%s\" are not read: integers, float and double are",
                       hl_text_printable(shown, name));
 }
 

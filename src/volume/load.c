@@ -89,10 +89,7 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
                {".mha", "\"ObjectType = Image\" or \"NDims = 3\""},
                {".mhd", "\"ObjectType = Image\" or \"NDims = 3\""},
                {".vti", "\"<VTKFile\""},
-               {".vtk", "\"# vtk DataFile Version\""},
-               {".nii", "the header of NIfTI"},
-               {".nii.gz", "the header of NIfTI"},
-               {".hdr", "the header of NIfTI"}};
+               {".vtk", "\"# vtk DataFile Version\""}};
   for (size_t n = 0; n < sizeof marks / sizeof *marks; n++)
     if (hl_text_ends(path, marks[n].ending))
       return hl_fail(error, HL_ERROR_INPUT, "%s: the file does not begin with %s, as %s files do", path,
@@ -138,6 +135,9 @@ static hl_status load(hl_stream **stream, hl_volume **volume, hl_error *error) {
   if (format != NULL) return format(stream, volume, error);
   if (named || hl_text_ends((*stream)->path, ".raw") || hl_text_ends((*stream)->path, ".raw.gz"))
     return hl_load_raw(stream, volume, error);
+  if (length > 0 && (hl_text_ends((*stream)->path, ".nii") || hl_text_ends((*stream)->path, ".nii.gz") ||
+                     hl_text_ends((*stream)->path, ".hdr")))
+    return hl_load_nifti(stream, volume, error); /* which says what is wrong with it */
   bool switched;
   status = switch_to_pair_header(stream, &switched, error);
   if (status != HL_OK) return status;

@@ -56,14 +56,14 @@ static hl_status read_type(meta_header *header, const char *value, hl_error *err
       {"MET_UCHAR", HL_VOXEL_U8},           {"MET_CHAR", HL_VOXEL_I8},
       {"MET_USHORT", HL_VOXEL_U16},         {"MET_SHORT", HL_VOXEL_I16},
       {"MET_UINT|MET_ULONG", HL_VOXEL_U32}, {"MET_INT|MET_LONG", HL_VOXEL_I32},
-      {"MET_FLOAT", HL_VOXEL_F32},          {"MET_DOUBLE", HL_VOXEL_F64}};
+      {"MET_FLOAT", HL_VOXEL_F32},          {"MET_DOUBLE", HL_VOXEL_F64},
+      {"MET_ULONG_LONG", HL_VOXEL_U64},     {"MET_LONG_LONG", HL_VOXEL_I64}};
   if (hl_find_type(types, sizeof types / sizeof *types, value, &header->type)) return HL_OK;
   char shown[HL_PRINTABLE_BYTES];
-  return HL_FAIL_LINE(
-      error, hl_text_starts(value, "MET_") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream,
-      header->line,
-      "ElementType \"%s\" is not read: MET_ with CHAR, SHORT, INT, their U forms, FLOAT and DOUBLE are",
-      hl_text_printable(shown, value));
+  return HL_FAIL_LINE(error, hl_text_starts(value, "MET_") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT,
+                      header->stream, header->line,
+                      "ElementType \"%s\" is not read: MET_UCHAR, MET_SHORT, MET_FLOAT and the like are",
+                      hl_text_printable(shown, value));
 }
 
 static hl_status read_numbers(meta_header *header, const char *key, const char *value, double *numbers,

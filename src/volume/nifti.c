@@ -130,16 +130,15 @@ static hl_status read_type(const nifti_header *header, hl_voxel_type *type, hl_e
   static const struct {
     int code;
     hl_voxel_type type;
-  } types[] = {{2, HL_VOXEL_U8},    {256, HL_VOXEL_I8}, {512, HL_VOXEL_U16}, {4, HL_VOXEL_I16},
-               {768, HL_VOXEL_U32}, {8, HL_VOXEL_I32},  {16, HL_VOXEL_F32},  {64, HL_VOXEL_F64}};
+  } types[] = {{2, HL_VOXEL_U8},     {256, HL_VOXEL_I8},  {512, HL_VOXEL_U16}, {4, HL_VOXEL_I16},
+               {768, HL_VOXEL_U32},  {8, HL_VOXEL_I32},   {16, HL_VOXEL_F32},  {64, HL_VOXEL_F64},
+               {1280, HL_VOXEL_U64}, {1024, HL_VOXEL_I64}};
   static const struct {
     int code;
     const char *name;
   } others[] = {{1, "one bit"},
                 {32, "complex, 2 components"},
                 {128, "RGB, 3 components"},
-                {1024, "int64"},
-                {1280, "uint64"},
                 {1536, "float128"},
                 {1792, "complex, 2 components"},
                 {2048, "complex, 2 components"},
@@ -152,10 +151,9 @@ static hl_status read_type(const nifti_header *header, hl_voxel_type *type, hl_e
     }
   for (size_t n = 0; n < sizeof others / sizeof *others; n++)
     if (others[n].code == code)
-      return hl_fail_offset(
-          error, HL_ERROR_UNSUPPORTED, (int64_t)header->layout->datatype,
-          "%s: voxels of type %lld (%s) are not read: convert them to one number of at most 32 bits",
-          header->path, (long long)code, others[n].name);
+      return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, (int64_t)header->layout->datatype,
+                            "%s: voxels of type %lld (%s) are not read: convert them to one number each",
+                            header->path, (long long)code, others[n].name);
   return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->datatype,
                         "%s, byte %zu: there is no NIfTI datatype %lld", header->path,
                         header->layout->datatype, (long long)code);

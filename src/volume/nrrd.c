@@ -84,16 +84,14 @@ static hl_status read_type(nrrd_header *header, const char *value, hl_error *err
       {"short|short int|signed short|signed short int|int16|int16_t", HL_VOXEL_I16},
       {"uint|unsigned int|uint32|uint32_t", HL_VOXEL_U32},
       {"int|signed int|int32|int32_t", HL_VOXEL_I32},
+      {"ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t", HL_VOXEL_U64},
+      {"longlong|long long|long long int|signed long long|signed long long int|int64|int64_t", HL_VOXEL_I64},
       {"float", HL_VOXEL_F32},
       {"double", HL_VOXEL_F64}};
   if (hl_find_type(types, sizeof types / sizeof *types, value, &header->type)) return HL_OK;
-  bool known = hl_text_is_one_of(value,
-                                 "longlong|long long|long long int|signed long long|signed long long int|"
-                                 "ulonglong|unsigned long long|unsigned long long int|int64|int64_t|uint64|"
-                                 "uint64_t|block");
   char shown[HL_PRINTABLE_BYTES];
-  return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
-                      "type \"%s\" is not read: 8, 16 and 32 bit integers, float and double are",
+  return HL_FAIL_LINE(error, hl_text_equal(value, "block") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT,
+                      header->stream, header->line, "type \"%s\" is not read: integers, float and double are",
                       hl_text_printable(shown, value));
 }
 
@@ -313,30 +311,39 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
   return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|time|none|???");
 }
 
-/* The indices of at most 3 axes of the grid; the others must have one sample. */
-static hl_status choose_axes(const nrrd_header *header, const nrrd_axis *chosen[3], int *count,
+/* Of the axes that are not components, at most three: while there are more, the last of one sample goes. */
+static int drop_thin_axes(const nrrd_axis *axes[MOST_AXES], int count) {
+  for (int n = count - 1; n >= 0 && count > 3; n--)
+    if (axes[n]->size == 1) {
+      memmove(&axes[n], &axes[n + 1], (size_t)(count - 1 - n) * sizeof *axes);
+      count--;
+    }
+  return count;
+}
+
+/* The axes of the grid, fastest first. */
+static hl_status choose_axes(const nrrd_header *header, const nrrd_axis *chosen[MOST_AXES], int *count,
                              hl_error *error) {
   size_t components = 1;
   *count = 0;
   for (int n = 0; n < header->dimension; n++) {
     const nrrd_axis *axis = &header->axis[n];
-    bool is_component = is_component_axis(header, axis);
-    if (is_component && axis->size != 1) {
-      if (!hl_multiply(components, axis->size, &components)) components = SIZE_MAX;
-    } else if (!is_component && *count < 3) {
+    if (!is_component_axis(header, axis))
       chosen[(*count)++] = axis;
-    } else if (!is_component && axis->size != 1) {
-      return hl_fail(
-          error, HL_ERROR_UNSUPPORTED,
-          "%s: %d dimensions, and the one after the third has %zu samples: take one out with unu slice",
-          header->stream->path, header->dimension, axis->size);
-    }
+    else if (!hl_multiply(components, axis->size, &components))
+      components = SIZE_MAX;
   }
+  *count = drop_thin_axes(chosen, *count);
   if (components != 1)
     return hl_fail(
         error, HL_ERROR_UNSUPPORTED,
         "%s: voxels of %zu components: only one value per voxel is read (unu slice or unu project)",
         header->stream->path, components);
+  if (*count > 3)
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "%s: %d dimensions, and the one after the third has %zu samples: take one out with unu slice",
+        header->stream->path, header->dimension, chosen[3]->size);
   return HL_OK;
 }
 
@@ -364,7 +371,7 @@ static void complete_axes(hl_volume_description *grid, int count) {
 }
 
 static hl_status make_grid(const nrrd_header *header, hl_volume_description *grid, hl_error *error) {
-  const nrrd_axis *chosen[3];
+  const nrrd_axis *chosen[MOST_AXES];
   int count;
   hl_status status = choose_axes(header, chosen, &count, error);
   if (status != HL_OK) return status;

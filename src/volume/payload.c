@@ -122,11 +122,14 @@ static hl_status next_number(hl_stream *stream, double *value, bool *found, hl_e
 }
 
 static bool fits_type(hl_voxel_type type, double value) {
-  static const double low[HL_VOXEL_F64 + 1] = {
-      [HL_VOXEL_I8] = INT8_MIN, [HL_VOXEL_I16] = INT16_MIN, [HL_VOXEL_I32] = INT32_MIN};
-  static const double high[HL_VOXEL_F64 + 1] = {
+  static const double low[HL_VOXEL_I64 + 1] = {[HL_VOXEL_I8] = INT8_MIN,
+                                               [HL_VOXEL_I16] = INT16_MIN,
+                                               [HL_VOXEL_I32] = INT32_MIN,
+                                               [HL_VOXEL_I64] = -0x1p63};
+  static const double high[HL_VOXEL_I64 + 1] = {
       [HL_VOXEL_U8] = UINT8_MAX,  [HL_VOXEL_I8] = INT8_MAX,    [HL_VOXEL_U16] = UINT16_MAX,
-      [HL_VOXEL_I16] = INT16_MAX, [HL_VOXEL_U32] = UINT32_MAX, [HL_VOXEL_I32] = INT32_MAX};
+      [HL_VOXEL_I16] = INT16_MAX, [HL_VOXEL_U32] = UINT32_MAX, [HL_VOXEL_I32] = INT32_MAX,
+      [HL_VOXEL_U64] = 0x1p64,    [HL_VOXEL_I64] = 0x1p63};
   if (type == HL_VOXEL_F32 || type == HL_VOXEL_F64) return true;
   return value >= low[type] && value <= high[type] && value == floor(value);
 }

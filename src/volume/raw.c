@@ -31,7 +31,7 @@ static bool scan_sizes(const char **cursor, size_t sizes[3]) {
 static bool ends_word(char c) { return c == 0 || c == '.' || c == '_'; }
 
 static bool scan_type(const char **cursor, hl_voxel_type *type, bool *big_endian) {
-  for (int candidate = HL_VOXEL_U8; candidate <= HL_VOXEL_F64; candidate++) {
+  for (int candidate = HL_VOXEL_U8; candidate <= HL_VOXEL_I64; candidate++) {
     const char *name = hl_voxel_type_name((hl_voxel_type)candidate);
     const char *rest = *cursor + strlen(name);
     if (!hl_text_starts(*cursor, name) || !ends_word(*rest)) continue;
@@ -64,7 +64,7 @@ hl_status hl_load_raw(hl_stream **stream, hl_volume **volume, hl_error *error) {
     return hl_fail(
         error, HL_ERROR_INPUT,
         "%s: raw voxels need their size and type in the file's name, as in name_256x256x128_uint8.raw "
-        "(uint8, int8, uint16, int16, uint32, int32, float32 or float64; _be after the type for "
+        "(uint8, int8, uint16, ... int64, float32 or float64; _be after the type for "
         "big-endian; .raw or .raw.gz)",
         (*stream)->path);
   return hl_payload_read(*stream, &payload, volume, error);

@@ -67,35 +67,44 @@ static void bin_counts(const uint64_t *counts, int values, binning bins, uint64_
     if (counts[value] != 0) histogram[bin_of(bins, value)] += counts[value];
 }
 
-static tally tally_f32(const float *voxels, size_t count) {
+/* Partial results of the voxels whose number is the same modulo LANES, so that they need not wait for each
+ * other and compilers can take them together. */
+typedef struct lanes_f32 {
   float low[LANES], high[LANES];
-  double sum[LANES] = {0};
-  uint64_t finite[LANES] = {0};
+  double sum[LANES];
+  uint64_t finite[LANES];
+} lanes_f32;
+
+static void tally_group(const float group[LANES], lanes_f32 *lanes) {
   for (int lane = 0; lane < LANES; lane++) {
-    low[lane] = INFINITY;
-    high[lane] = -INFINITY;
+    float value = group[lane];
+    bool is_finite = fabsf(value) <= FLT_MAX;
+    float least = is_finite ? value : INFINITY, greatest = is_finite ? value : -INFINITY;
+    lanes->low[lane] = least < lanes->low[lane] ? least : lanes->low[lane];
+    lanes->high[lane] = greatest > lanes->high[lane] ? greatest : lanes->high[lane];
+    lanes->sum[lane] += is_finite ? (double)value : 0.0;
+    lanes->finite[lane] += is_finite;
   }
-  for (size_t start = 0; start < count; start += LANES) {
-    float group[LANES];
-    size_t present = count - start < LANES ? count - start : LANES;
-    for (size_t lane = present; lane < LANES; lane++) group[lane] = NAN;
-    memcpy(group, voxels + start, present * sizeof *group);
-    for (int lane = 0; lane < LANES; lane++) {
-      float value = group[lane];
-      bool is_finite = fabsf(value) <= FLT_MAX;
-      float least = is_finite ? value : INFINITY, greatest = is_finite ? value : -INFINITY;
-      low[lane] = least < low[lane] ? least : low[lane];
-      high[lane] = greatest > high[lane] ? greatest : high[lane];
-      sum[lane] += is_finite ? (double)value : 0.0;
-      finite[lane] += is_finite;
-    }
+}
+
+static tally tally_f32(const float *voxels, size_t count) {
+  lanes_f32 lanes = {.sum = {0}};
+  float rest[LANES];
+  for (int lane = 0; lane < LANES; lane++) {
+    lanes.low[lane] = INFINITY;
+    lanes.high[lane] = -INFINITY;
+    rest[lane] = NAN;
   }
+  size_t whole = count - count % LANES;
+  for (size_t start = 0; start < whole; start += LANES) tally_group(voxels + start, &lanes);
+  memcpy(rest, voxels + whole, (count - whole) * sizeof *rest);
+  tally_group(rest, &lanes);
   tally total = {INFINITY, -INFINITY, 0, 0};
   for (int lane = 0; lane < LANES; lane++) {
-    total.low = fmin(total.low, low[lane]);
-    total.high = fmax(total.high, high[lane]);
-    total.sum += sum[lane];
-    total.finite += finite[lane];
+    total.low = fmin(total.low, (double)lanes.low[lane]);
+    total.high = fmax(total.high, (double)lanes.high[lane]);
+    total.sum += lanes.sum[lane];
+    total.finite += lanes.finite[lane];
   }
   return total;
 }
@@ -103,7 +112,7 @@ static tally tally_f32(const float *voxels, size_t count) {
 static void bin_f32(const float *voxels, size_t count, binning bins, uint64_t *histogram) {
   uint64_t lanes[4][HL_HISTOGRAM_BINS] = {{0}};
   for (size_t n = 0; n < count; n++)
-    if (fabsf(voxels[n]) <= FLT_MAX) lanes[n & 3][bin_of(bins, voxels[n])]++;
+    if (fabsf(voxels[n]) <= FLT_MAX) lanes[n & 3][bin_of(bins, (double)voxels[n])]++;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
     histogram[bin] = lanes[0][bin] + lanes[1][bin] + lanes[2][bin] + lanes[3][bin];
 }

@@ -204,12 +204,12 @@ static hl_status read_tags(vti_header *header, hl_error *error) {
 }
 
 static hl_status read_type(const vti_header *header, const char *name, hl_voxel_type *type, hl_error *error) {
-  static const hl_named_type types[] = {{"UInt8", HL_VOXEL_U8},    {"Int8", HL_VOXEL_I8},
-                                        {"UInt16", HL_VOXEL_U16},  {"Int16", HL_VOXEL_I16},
-                                        {"UInt32", HL_VOXEL_U32},  {"Int32", HL_VOXEL_I32},
-                                        {"Float32", HL_VOXEL_F32}, {"Float64", HL_VOXEL_F64}};
+  static const hl_named_type types[] = {
+      {"UInt8", HL_VOXEL_U8},   {"Int8", HL_VOXEL_I8},   {"UInt16", HL_VOXEL_U16},  {"Int16", HL_VOXEL_I16},
+      {"UInt32", HL_VOXEL_U32}, {"Int32", HL_VOXEL_I32}, {"Float32", HL_VOXEL_F32}, {"Float64", HL_VOXEL_F64},
+      {"UInt64", HL_VOXEL_U64}, {"Int64", HL_VOXEL_I64}};
   if (hl_find_type(types, sizeof types / sizeof *types, name, type)) return HL_OK;
-  bool known = hl_text_is_one_of(name, "Int64|UInt64|String|Bit");
+  bool known = hl_text_is_one_of(name, "String|Bit");
   return refuse(header, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, "a DataArray of type", name, error);
 }
 

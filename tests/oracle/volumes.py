@@ -31,7 +31,7 @@ if UNU is None:
     print("skipped: teem-unu is not installed")
     sys.exit(77)
 
-TYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"]
+TYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64", "uint64", "int64"]
 SHAPE = (5, 4, 3)  # k, j, i: unequal, so that no two axes can be confused
 UNSUPPORTED = 5
 
@@ -71,7 +71,8 @@ def unu(*arguments):
 
 
 def teem_cases(folder):
-    names = dict(zip(TYPES, ["uchar", "signed char", "ushort", "short", "uint", "int", "float", "double"]))
+    names = dict(zip(TYPES, ["uchar", "signed char", "ushort", "short", "uint", "int", "float", "double",
+                             "unsigned long long", "long long"]))
     origin, axes = oblique()
     for kind in TYPES:
         voxels = sample(kind)
@@ -287,7 +288,7 @@ def legacy_cases(folder):
 
 
 def meta_cases(folder):
-    for kind in TYPES:
+    for kind in TYPES[:8]:  # VTK writes no 64 bit integers here
         for ending in "mha", "mhd":
             for compress in True, False:
                 path = os.path.join(folder, "%s_%d.%s" % (kind, compress, ending))
@@ -388,7 +389,7 @@ def differences(case, seen, voxels_path):
         return [] if os.path.basename(case.path) in seen["error"] else ["the error does not name the file"]
     expected = np.asarray(case.voxels)
     values = expected.astype(np.float64)
-    if case.kind in ("uint32", "int32", "float64"):  # kept as float32
+    if case.kind in ("uint32", "int32", "float64", "uint64", "int64"):  # kept as float32
         with np.errstate(over="ignore"):
             values = values.astype(np.float32).astype(np.float64)
     finite = values[np.isfinite(values)]

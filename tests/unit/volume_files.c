@@ -10,8 +10,11 @@
 #include <unistd.h>
 #include <zlib.h>
 
-static const hl_voxel_type all_types[] = {HL_VOXEL_U8,  HL_VOXEL_I8,  HL_VOXEL_U16, HL_VOXEL_I16,
-                                          HL_VOXEL_U32, HL_VOXEL_I32, HL_VOXEL_F32, HL_VOXEL_F64};
+enum { TYPES = 10 };
+
+static const hl_voxel_type all_types[TYPES] = {HL_VOXEL_U8,  HL_VOXEL_I8,  HL_VOXEL_U16, HL_VOXEL_I16,
+                                               HL_VOXEL_U32, HL_VOXEL_I32, HL_VOXEL_F32, HL_VOXEL_F64,
+                                               HL_VOXEL_U64, HL_VOXEL_I64};
 
 /* Each a float without rounding, and with a different byte pattern in either order. */
 double voxel_value(hl_voxel_type type, int n) {
@@ -24,6 +27,8 @@ double voxel_value(hl_voxel_type type, int n) {
     case HL_VOXEL_I32: return 268435456.0 * (n - 7) + 65536;
     case HL_VOXEL_F32: return 0.25 * n - 1.5;
     case HL_VOXEL_F64: return 0.125 * n - 0.5;
+    case HL_VOXEL_U64: return 0x1p59 * n + 0x1p40;
+    case HL_VOXEL_I64: return 0x1p59 * (n - 7) + 0x1p40;
   }
   return 0;
 }
@@ -74,7 +79,7 @@ void add_voxels(byte_buffer *target, hl_voxel_type type, bool big_endian) {
 
 void add_voxels_as_text(byte_buffer *target, hl_voxel_type type, const char *separator) {
   for (int n = 0; n < VOXELS; n++)
-    add_text(target, "%.17g%s", voxel_value(type, n), n % NI == NI - 1 ? "\n" : separator);
+    add_text(target, "%.20g%s", voxel_value(type, n), n % NI == NI - 1 ? "\n" : separator);
 }
 
 void add_base64(byte_buffer *target, const unsigned char *source, size_t length) {
@@ -121,7 +126,7 @@ static volume_sample begin(hl_voxel_type type, const char *name, ...) {
 /* ---- raw ---- */
 
 static void raw_samples(sample_function *function, void *data) {
-  for (size_t t = 0; t < 8; t++)
+  for (size_t t = 0; t < TYPES; t++)
     for (int big = 0; big < 2; big++)
       for (int gzip = 0; gzip < 2; gzip++) {
         volume_sample made = begin(all_types[t], "a4x4_3x2x2_%s%s.raw%s", hl_voxel_type_name(all_types[t]),
@@ -149,7 +154,8 @@ static void raw_samples(sample_function *function, void *data) {
 
 static const char *nrrd_type(hl_voxel_type type) {
   static const char *const names[] = {
-      "", "uchar", "int8", "unsigned short int", "signed short", "uint32_t", "int", "float", "double"};
+      "",      "uchar",  "int8",   "unsigned short int", "signed short", "uint32_t", "int",
+      "float", "double", "uint64", "long long"};
   return names[type];
 }
 
@@ -189,7 +195,7 @@ static void add_nrrd_payload(volume_sample *made, byte_buffer *target, const cha
 static void nrrd_samples(sample_function *function, void *data) {
   static const char *const encodings[] = {"raw", "gzip", "hex", "ascii"};
   static const char *const line_ends[] = {"\n", "\r\n", "\r"};
-  for (size_t t = 0; t < 8; t++)
+  for (size_t t = 0; t < TYPES; t++)
     for (size_t e = 0; e < 4; e++)
       for (int variant = 0; variant < 4; variant++) {
         bool big = variant & 1, detached = variant & 2;
@@ -225,6 +231,7 @@ static void nrrd_variants(sample_function *function, void *data) {
        {1.5, 1, 1.25}},
       {"dimension: 4\nsizes: 1 3 2 2\nkinds: scalar domain domain domain\n", {1, 1, 1}, {0, 0, 0}},
       {"dimension: 5\nsizes: 3 2 2 1 1\nspacings: 1 1 2 1 1\n", {1, 1, 2}, {0, 0, 0}},
+      {"dimension: 5\nsizes: 1 3 1 2 2\nspacings: 7 1 7 1 2\n", {1, 1, 2}, {0, 0, 0}},
       {"dimension: 4\nspace dimension: 3\nsizes: 1 3 2 2\nspace directions: none (2,0,0) (0,1,0) (0,0,1)\n",
        {2, 1, 1},
        {0, 0, 0}},
@@ -257,9 +264,10 @@ static void nrrd_variants(sample_function *function, void *data) {
 /* ---- MetaImage ---- */
 
 static void meta_samples(sample_function *function, void *data) {
-  static const char *const names[] = {"",         "MET_UCHAR", "MET_CHAR",  "MET_USHORT", "MET_SHORT",
-                                      "MET_UINT", "MET_INT",   "MET_FLOAT", "MET_DOUBLE"};
-  for (size_t t = 0; t < 8; t++)
+  static const char *const names[] = {"",           "MET_UCHAR",      "MET_CHAR",     "MET_USHORT",
+                                      "MET_SHORT",  "MET_UINT",       "MET_INT",      "MET_FLOAT",
+                                      "MET_DOUBLE", "MET_ULONG_LONG", "MET_LONG_LONG"};
+  for (size_t t = 0; t < TYPES; t++)
     for (int variant = 0; variant < 12; variant++) {
       bool big = variant & 1, detached = variant & 2;
       int coding = variant / 4; /* 0 raw, 1 zlib, 2 text */
@@ -319,7 +327,7 @@ static void put_float(byte_buffer *target, size_t place, double value, size_t le
  * on purpose. */
 static void add_nifti_header(byte_buffer *file, int version, hl_voxel_type type, bool big, bool pair,
                              nifti_place place, double slope, double intercept) {
-  static const int codes[] = {0, 2, 256, 512, 4, 768, 8, 16, 64};
+  static const int codes[] = {0, 2, 256, 512, 4, 768, 8, 16, 64, 1280, 1024};
   bool old = version == 1;
   size_t real = old ? 4 : 8, size = old ? 348 : 540, dim = old ? 40 : 16, pixdim = old ? 76 : 104;
   memset(file->data, 0, size);
@@ -364,7 +372,7 @@ static void place_nifti(volume_sample *made, nifti_place place) {
 
 static void nifti_samples(sample_function *function, void *data) {
   static const char *const endings[] = {".nii", ".nii.gz", ".hdr", ".img"};
-  for (size_t t = 0; t < 8; t++)
+  for (size_t t = 0; t < TYPES; t++)
     for (int variant = 0; variant < 16; variant++) {
       bool big = variant & 1;
       int version = variant & 2 ? 2 : 1, kind = variant / 4;
@@ -399,8 +407,8 @@ static void nifti_samples(sample_function *function, void *data) {
 /* ---- VTK ---- */
 
 static const char *vti_type(hl_voxel_type type) {
-  static const char *const names[] = {"",       "UInt8", "Int8",    "UInt16", "Int16",
-                                      "UInt32", "Int32", "Float32", "Float64"};
+  static const char *const names[] = {"",      "UInt8",   "Int8",    "UInt16", "Int16", "UInt32",
+                                      "Int32", "Float32", "Float64", "UInt64", "Int64"};
   return names[type];
 }
 
@@ -446,7 +454,7 @@ static void add_vti_head(byte_buffer *file, bool big, size_t header_bytes, bool 
 
 static void vti_samples(sample_function *function, void *data) {
   static const char *const codings[] = {"ascii", "binary", "appended", "appended"};
-  for (size_t t = 0; t < 8; t++)
+  for (size_t t = 0; t < TYPES; t++)
     for (int variant = 0; variant < 25; variant++) {
       bool big = variant & 1, wide = variant & 2, compressed = variant & 4;
       int coding = variant == 24 ? 0 : variant / 8 + 1; /* text, base64, appended base64, appended raw */
@@ -477,9 +485,10 @@ static void vti_samples(sample_function *function, void *data) {
 }
 
 static void legacy_samples(sample_function *function, void *data) {
-  static const char *const names[] = {
-      "", "unsigned_char", "char", "unsigned_short", "short", "unsigned_int", "int", "float", "double"};
-  for (size_t t = 0; t < 8; t++)
+  static const char *const names[] = {"",       "unsigned_char", "char",        "unsigned_short",
+                                      "short",  "unsigned_int",  "int",         "float",
+                                      "double", "unsigned_long", "vtktypeint64"};
+  for (size_t t = 0; t < TYPES; t++)
     for (int variant = 0; variant < 6; variant++) {
       bool text = variant & 1;
       int kind = variant / 2; /* SCALARS with a lookup table, without, FIELD */
