@@ -101,7 +101,7 @@ static void add_transmittance(const reference *all, vec3 point, vec3 direction, 
                               crossing *scratch, double sum[3]) {
   double depth[3] = {0, 0, 0};
   march walk;
-  hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, point, direction, distance, scratch, &walk);
+  hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, point, direction, 0, distance, scratch, &walk);
   while (hl_reference_march_next(&walk)) {
     for (size_t v = 0; v < walk.count; v++) {
       const crossing *part = &walk.crossings[v];

@@ -7,15 +7,15 @@
 #include "reference/reference.h"
 
 /* Entry and exit of the index-space box, by slabs. */
-static void clip_to_box(crossing *part, double distance) {
+static void clip_to_box(crossing *part, double nearest, double farthest) {
   const double o[3] = {part->origin.x, part->origin.y, part->origin.z};
   const double d[3] = {part->direction.x, part->direction.y, part->direction.z};
-  part->enter = 0;
-  part->leave = distance;
+  part->enter = nearest;
+  part->leave = farthest;
   for (int axis = 0; axis < 3; axis++) {
     double low = part->volume->low[axis], high = part->volume->high[axis];
     if (d[axis] == 0) {
-      if (o[axis] < low || o[axis] > high) part->leave = -1;
+      if (o[axis] < low || o[axis] > high) part->leave = -INFINITY;
       continue;
     }
     double a = (low - o[axis]) / d[axis], b = (high - o[axis]) / d[axis];
@@ -25,8 +25,8 @@ static void clip_to_box(crossing *part, double distance) {
 }
 
 void hl_reference_march_begin(const reference *all, reference_role role, vec3 origin, vec3 direction,
-                              double distance, crossing *crossings, march *walk) {
-  *walk = (march){.crossings = crossings, .longest_step = all->step};
+                              double nearest, double farthest, crossing *crossings, march *walk) {
+  *walk = (march){.crossings = crossings, .longest_step = all->step, .end = nearest};
   for (size_t v = 0; v < all->scene->volume_count; v++) {
     const reference_volume *volume = &all->volumes[v];
     if (!(role == REFERENCE_SEEN ? volume->described->visible : volume->described->casts_shadow)) continue;
@@ -34,7 +34,7 @@ void hl_reference_march_begin(const reference *all, reference_role role, vec3 or
     *part = (crossing){.volume = volume,
                        .origin = affine3_apply(volume->world_to_index, origin),
                        .direction = mat3_apply(volume->world_to_index.linear, direction)};
-    clip_to_box(part, distance);
+    clip_to_box(part, nearest, farthest);
     if (part->enter < part->leave) walk->count++;
   }
 }

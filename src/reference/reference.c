@@ -107,13 +107,15 @@ static double composite(const reference *all, const march *walk, double length, 
   return extinction;
 }
 
-/* Every step of the march is cut so finely that no part adds more than MOST_OPACITY, judged by the extinction
+/* A perspective eye sees what is before it; an orthographic one has no place along its rays, and sees all.
+ * Every step of the march is cut so finely that no part adds more than MOST_OPACITY, judged by the extinction
  * of the part before. */
 static void trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
                   double rgba[4]) {
   march walk;
+  double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0;
   rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
-  hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, INFINITY, worker->eye, &walk);
+  hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, nearest, INFINITY, worker->eye, &walk);
   while (rgba[3] < OPAQUE && hl_reference_march_next(&walk)) {
     double at = walk.at - walk.length / 2, end = at + walk.length, extinction = total_extinction(&walk);
     if (extinction <= 0) continue;

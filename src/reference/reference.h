@@ -109,9 +109,9 @@ double hl_reference_extinction(const reference_volume *volume, double value);
 /* Which volumes a march is about. */
 typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference_role;
 
-/* From `origin` along the unit vector `direction` (world), over at most `distance`. */
+/* From `origin` along the unit vector `direction` (world), between two distances, which may be infinite. */
 void hl_reference_march_begin(const reference *all, reference_role role, vec3 origin, vec3 direction,
-                              double distance, crossing *crossings, march *walk);
+                              double nearest, double farthest, crossing *crossings, march *walk);
 /* Puts the crossings at a distance within the present stretch; how far from there all of them are empty,
  * 0 where one is not. */
 double hl_reference_march_place(march *walk, double at);

@@ -248,6 +248,65 @@ static void make_hidden_occluder(stage *set) {
   screen->visible = 0;
 }
 
+/* A grid one voxel thick: nothing but borders along one axis. */
+static void make_single_layer(stage *set) {
+  hl_scene_volume *volume = add_field(set, balls, (size_t[3]){28, 28, 1}, (double[3]){1, 1, 2});
+  volume->shading = HL_SHADING_NONE;
+  add_cube(set, smoke, 12);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+/* No value is transparent; holes where voxels are not finite. Values far from 0 test the float arithmetic. */
+static double holes(double x, double y, double z) {
+  return x * x + y * y < 0.2 ? (double)NAN : 1000 + 0.3 * (double)stage_noise(3 * x, 3 * y, 3 * z);
+}
+static void make_holes(stage *set) {
+  hl_scene_volume *volume = add_cube(set, holes, 20);
+  volume->shading = HL_SHADING_NONE;
+  stage_set_opacity(set, volume, 0.15, 1);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static double thousand(double x, double y, double z) { return x + y + z > -9 ? 1000 : 0; }
+static void make_constant(stage *set) {
+  hl_scene_volume *volume = add_field(set, thousand, (size_t[3]){20, 14, 9}, (double[3]){1, 1, 1});
+  volume->shading = HL_SHADING_NONE;
+  stage_set_opacity(set, volume, 0.1, 1);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_wide_angle(stage *set) {
+  make_smoke(set);
+  stage_look(set, (vec3){9, -14, 9}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  perspective(set, 110);
+}
+static void make_lamp_near(stage *set) { /* outside, its widest rays nearly along the box's face */
+  make_smoke(set);
+  set->scene.light_count = 0;
+  stage_add_point(set, (vec3){3, -2, 17});
+}
+static void make_three_lights(stage *set) {
+  make_smoke(set);
+  stage_add_directional(set, (vec3){1, 0.8, 0.2});
+  stage_add_point(set, (vec3){-20, -30, 5})->falloff = HL_FALLOFF_INVERSE_SQUARE;
+  set->lights[2].intensity = 600;
+  set->lights[0].color[0] = set->lights[1].color[1] = set->lights[2].color[2] = 0.2;
+}
+static void make_flags(stage *set) {
+  make_two_volumes(set);
+  set->volumes[0].casts_shadow = 0;
+  set->volumes[1].receives_shadow = 0;
+}
+static void make_balls_backlit(stage *set) {
+  make_balls(set);
+  set->scene.light_count = 0;
+  stage_add_directional(set, (vec3){0.5, -0.9, -0.5});
+}
+static void make_eye_within_parallel(stage *set) {
+  make_smoke(set);
+  stage_look(set, (vec3){2, -4, 3}, (vec3){-7, 8, -3}, (vec3){0, 0, 1});
+}
+
 typedef struct scenario {
   const char *name;
   void (*make)(stage *set);
@@ -255,7 +314,8 @@ typedef struct scenario {
 } scenario;
 
 /* Walls lit at a grazing angle want shadow pixels well below a voxel (at 0.3 voxels both are within 0.006 and
- * 0.02); what lies behind a lamp, seen along its sheets, is not shadowed yet. */
+ * 0.02); what lies behind a lamp, seen along its sheets, is not shadowed yet; the borders of holes lie half
+ * way between empty and the least value in the reference, nearer to the least in the sheets. */
 static const scenario SCENARIOS[] = {
     {"balls", make_balls, 0.006},
     {"balls-medium", make_balls_medium, 0.006},
@@ -283,6 +343,15 @@ static const scenario SCENARIOS[] = {
     {"clipped-perspective", make_clipped_perspective, 0.006},
     {"eye-inside", make_eye_inside, 0.006},
     {"lamp-inside", make_lamp_inside, 0},
+    {"single-layer", make_single_layer, 0.006},
+    {"holes", make_holes, 0.009},
+    {"constant", make_constant, 0.006},
+    {"wide-angle", make_wide_angle, 0.006},
+    {"lamp-near", make_lamp_near, 0.006},
+    {"three-lights", make_three_lights, 0.006},
+    {"flags", make_flags, 0.006},
+    {"balls-backlit", make_balls_backlit, 0.006},
+    {"eye-within-parallel", make_eye_within_parallel, 0.006},
     {"hidden-occluder", make_hidden_occluder, 0.006},
 };
 

@@ -52,6 +52,19 @@ static void test_box_along_axis(void **state) {
   stage_close(&set);
 }
 
+/* An orthographic eye inside the box still sees all of it. */
+static void test_box_around_parallel_eye(void **state) {
+  (void)state;
+  stage set;
+  float pixels[16 * 16 * 4];
+  stage_open(&set);
+  stage_homogeneous(&set);
+  stage_look(&set, (vec3){0, 0, -2}, (vec3){0, 0, -3}, (vec3){0, 1, 0});
+  stage_render(&set, NULL, pixels);
+  assert_near(pixels[4 * (8 * 16 + 8) + 3], 1 - transmittance(0.2, 1.7, 8), 1e-6);
+  stage_close(&set);
+}
+
 static void test_box_obliquely(void **state) {
   (void)state;
   stage set;
@@ -333,6 +346,7 @@ static void test_shadow_settings(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_box_along_axis),
+      cmocka_unit_test(test_box_around_parallel_eye),
       cmocka_unit_test(test_box_obliquely),
       cmocka_unit_test(test_box_in_perspective),
       cmocka_unit_test(test_scaled_box),
