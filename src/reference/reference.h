@@ -34,8 +34,8 @@ typedef struct reference_volume {
   double surface_gradient;    /* data value per world unit from which a sample is a surface, not a medium */
   double smallest_edge;       /* of a voxel, world units */
   size_t bricks[3];           /* i, j, k */
-  unsigned char *clearance;   /* owned; [k][j][i] of bricks: 0 where something may be seen, else the number
-                                 of bricks (in the chessboard metric) to the nearest such brick, at most 255 */
+  unsigned char *clearance;   /* owned; [k][j][i] of bricks: 0 where something may be seen, else
+                                 the number of bricks (chessboard metric) to the nearest such, at most 255 */
 } reference_volume;
 
 /* One light. points is [point_count]: positions in the world, or unit directions to a directional light. */
@@ -94,7 +94,8 @@ typedef struct reference_worker {
 
 hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
                                      reference_volume *made, hl_error *error);
-hl_status hl_reference_bricks_create(hl_context *context, reference_volume *volume, hl_pool *pool, hl_error *error);
+hl_status hl_reference_bricks_create(hl_context *context, reference_volume *volume, hl_pool *pool,
+                                     hl_error *error);
 /* How far a ray may go from `point` (index space) before it can meet something: 0 where it may be here.
  * In units of `direction`. */
 double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction);

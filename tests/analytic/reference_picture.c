@@ -166,7 +166,7 @@ static void test_turning_everything(void **state) {
 static void test_convergence(void **state) {
   (void)state;
   static float pixels[3][PIXEL_FLOATS];
-  const double steps[3] = {0.5, 0.25, 0.0625};
+  const double steps[3] = {0.5, 0.25, 0.125};
   stage set;
   stage_lump(&set);
   stage_add_directional(&set, (vec3){-1, -0.4, -0.3});

@@ -10,7 +10,7 @@ enum { STAGE_VOLUMES = 4, STAGE_LIGHTS = 4 };
 
 typedef struct stage {
   hl_context *context;
-  hl_scene_description scene; /* its arrays are the ones below; camera, size, settings: to be changed at will */
+  hl_scene_description scene; /* its arrays are the ones below; camera, size and settings may be changed */
   hl_scene_volume volumes[STAGE_VOLUMES]; /* each holds a reference to its hl_volume */
   hl_light lights[STAGE_LIGHTS];
   hl_voxel_type type; /* of grids added from now on: f32; or u8, u16 for values from 0 to 1, scaled */
