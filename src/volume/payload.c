@@ -1,7 +1,7 @@
 /* volume/payload.c - reads the voxels that a header promises.
  *
  * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes go to their final
- * place and are converted there, piece by piece; only 8-byte voxels, which shrink, pass through a small stage.
+ * place and are converted there, piece by piece; only 8-byte voxels, which shrink, go through a small stage.
  */
 #include "volume/payload.h"
 
