@@ -188,7 +188,8 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context,
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *context, const char *name,
                                                               double low, double high,
                                                               hl_transfer_function *function, hl_error *error);
-/* Reads Halflight's own JSON object, ParaView's .json colour maps or Slicer's .vp.json. */
+/* Reads Halflight's own JSON object, ParaView's .json colour maps or Slicer's .vp.json. A file with colours
+ * alone gives no opacity points (opacity null): take them from elsewhere. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load(hl_context *context, const char *path,
                                                           hl_transfer_function *function, hl_error *error);
 HL_API void hl_transfer_function_release(hl_context *context, hl_transfer_function *function);

@@ -61,13 +61,13 @@ static void hsv_to_rgb(const double hsv[3], double rgb[3]) {
 }
 
 static void mix_hsv(const double a[3], const double b[3], double t, double mixed[3]) {
-  double from[3], to[3];
+  double from[3], to[3], between[3];
   rgb_to_hsv(a, from);
   rgb_to_hsv(b, to);
   if (to[0] - from[0] > 0.5) from[0] += 1;
   else if (from[0] - to[0] > 0.5) to[0] += 1;
-  mix(from, to, t, mixed);
-  hsv_to_rgb(mixed, mixed);
+  mix(from, to, t, between);
+  hsv_to_rgb(between, mixed);
 }
 
 /* Msh: magnitude, saturation angle and hue of a CIELAB colour (Moreland 2009, "Diverging color maps for scientific
@@ -106,16 +106,16 @@ static void mix_diverging(const double a[3], const double b[3], double t, double
 }
 
 void hl_color_mix(hl_color_space space, const double a[3], const double b[3], double t, double mixed[3]) {
-  double from[3], to[3];
+  double from[3], to[3], between[3];
   switch (space) {
     case HL_SPACE_HSV: mix_hsv(a, b, t, mixed); return;
     case HL_SPACE_DIVERGING: mix_diverging(a, b, t, mixed); return;
-    case HL_SPACE_STEP: memcpy(mixed, t < 1 ? a : b, 3 * sizeof *mixed); return;
+    case HL_SPACE_STEP: memcpy(mixed, t > 0 ? b : a, 3 * sizeof *mixed); return;
     case HL_SPACE_LAB:
       srgb_to_lab(a, from);
       srgb_to_lab(b, to);
-      mix(from, to, t, mixed);
-      lab_to_srgb(mixed, mixed);
+      mix(from, to, t, between);
+      lab_to_srgb(between, mixed);
       return;
     case HL_SPACE_RGB: break;
   }

@@ -7,7 +7,7 @@ typedef enum hl_color_space {
   HL_SPACE_HSV = 1,       /* the short way round the hues */
   HL_SPACE_LAB = 2,       /* CIELAB, white point D65 */
   HL_SPACE_DIVERGING = 3, /* Moreland's Msh, through white between distant hues */
-  HL_SPACE_STEP = 4       /* the first colour up to the second point */
+  HL_SPACE_STEP = 4       /* the second colour right after the first point, as VTK has it */
 } hl_color_space;
 
 /* mixed = the colour at t in [0,1] from a to b; all sRGB from 0 to 1. */

@@ -89,6 +89,18 @@ static hl_status read_colormap(hl_json_reader *reader, const json_t *value, cons
   return status;
 }
 
+/* For files that have colours only. */
+static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume *volume, hl_transfer_function *function) {
+  hl_transfer_function automatic;
+  hl_status status = hl_transfer_function_automatic(reader->context, volume, &automatic, reader->error);
+  if (status != HL_OK) return status;
+  function->unit_distance = automatic.unit_distance;
+  function->opacity = automatic.opacity;
+  function->opacity_count = automatic.opacity_count;
+  hl_release(reader->context, (void *)automatic.color);
+  return HL_OK;
+}
+
 /* The function that the rest changes. */
 static hl_status read_ground(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
                              hl_transfer_function *function) {
@@ -108,10 +120,13 @@ static hl_status read_ground(hl_json_reader *reader, const json_t *value, const 
     if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
     status = hl_transfer_function_load(reader->context, path, function, reader->error);
     hl_release(reader->context, path);
+    if (status == HL_OK && function->opacity == NULL && !has(value, "opacity"))
+      status = take_automatic_opacity(reader, volume, function);
   } else if (!has(value, "opacity")) {
     key = NULL;
-    if (volume == NULL) return hl_json_fail(reader, HL_ERROR_INPUT, "opacity", "is missing: give [[value, opacity], ...]");
-    status = hl_transfer_function_automatic(reader->context, volume, function, reader->error);
+    if (volume != NULL) status = hl_transfer_function_automatic(reader->context, volume, function, reader->error);
+    else if (!has(value, "color") && !has(value, "colormap"))
+      return hl_json_fail(reader, HL_ERROR_INPUT, "opacity", "is missing: give [[value, opacity], ...]");
   }
   if (status == HL_OK) return HL_OK;
   if (key != NULL) hl_json_enter(reader, key);
@@ -137,7 +152,7 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
     if (status != HL_OK) hl_json_prefix(reader, reader->place);
     return status;
   }
-  size_t mark = hl_json_enter(reader, "transfer_function");
+  size_t mark = volume != NULL ? hl_json_enter(reader, "transfer_function") : 0; /* a file of its own is the root */
   hl_status status = read_members(reader, value, volume, function);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;

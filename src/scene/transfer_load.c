@@ -62,15 +62,12 @@ static hl_status set_color(hl_context *context, const node *nodes, size_t count,
   size_t made = 0;
   for (size_t n = 0; n < count; n++) {
     bool last = n + 1 == count || nodes[n + 1].value == nodes[n].value;
-    for (int piece = 0; piece < (last ? 1 : PIECES); piece++) {
-      double t = piece / (double)PIECES, srgb[3], end = last ? nodes[n].value : nodes[n + 1].value;
-      if (space == HL_SPACE_STEP && piece == 1) t = 1; /* held up to the next point */
-      if (space == HL_SPACE_STEP && piece > 1) break;
-      hl_color_space mixing = space == HL_SPACE_STEP ? HL_SPACE_RGB : space;
-      double along = space == HL_SPACE_STEP ? 0 : ease(t, &nodes[n]);
-      hl_color_mix(mixing, nodes[n].y, last ? nodes[n].y : nodes[n + 1].y, along, srgb);
+    bool step = space == HL_SPACE_STEP && !last; /* two points at one value */
+    for (int piece = 0; piece < (last ? 1 : step ? 2 : PIECES); piece++) {
+      double t = step ? 0 : piece / (double)PIECES, srgb[3], end = last ? nodes[n].value : nodes[n + 1].value;
+      hl_color_mix(space, nodes[n].y, last ? nodes[n].y : nodes[n + 1].y, step ? piece : ease(t, &nodes[n]), srgb);
       hl_color_point *point = &points[made++];
-      point->value = t == 1 ? end : nodes[n].value + t * (end - nodes[n].value);
+      point->value = nodes[n].value + t * (end - nodes[n].value);
       for (int c = 0; c < 3; c++) point->color[c] = hl_srgb_to_linear(fmin(fmax(srgb[c], 0), 1));
     }
   }

@@ -27,12 +27,14 @@ static int make_folder(void **state) {
   write_file("cube_4x4x4_uint8.raw", cube, sizeof cube);
   const char *function = "{\"opacity\": [[0, 0], [255, 1]], \"colormap\": \"hot\", \"range\": [0, 255]}";
   write_file("function.json", function, strlen(function));
+  const char *colors = "[{\"RGBPoints\": [0, 1, 0, 0, 255, 0, 0, 1]}]";
+  write_file("colors.json", colors, strlen(colors));
   return 0;
 }
 
 static int remove_folder(void **state) {
   (void)state;
-  const char *names[] = {"cube_4x4x4_uint8.raw", "function.json", "scene.json"};
+  const char *names[] = {"cube_4x4x4_uint8.raw", "function.json", "colors.json", "scene.json"};
   for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
     char path[300];
     snprintf(path, sizeof path, "%s/%s", folder, names[n]);
@@ -185,6 +187,27 @@ static void defaults_are_the_documented_ones(void **state) {
   hl_context_destroy(context);
 }
 
+/* A colour map without opacities keeps the automatic ones. */
+static void colors_alone_keep_opacity(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *plain = NULL, *colored = NULL;
+  const char *a = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}]}";
+  const char *b = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\", \"transfer_function\": {\"file\": "
+                  "\"colors.json\"}}]}";
+  assert_int_equal(read_text(context, a, &plain, NULL), HL_OK);
+  assert_int_equal(read_text(context, b, &colored, NULL), HL_OK);
+  const hl_transfer_function *f = &hl_scene_describe(plain)->volumes[0].transfer_function;
+  const hl_transfer_function *g = &hl_scene_describe(colored)->volumes[0].transfer_function;
+  assert_int_equal(f->opacity_count, g->opacity_count);
+  assert_memory_equal(f->opacity, g->opacity, f->opacity_count * sizeof *f->opacity);
+  assert_true(g->color[0].color[0] == 1 && g->color[0].color[2] == 0);
+  hl_scene_release(plain);
+  hl_scene_release(colored);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void files_are_relative_to_the_scene_file(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -274,6 +297,7 @@ int main(void) {
       cmocka_unit_test(the_schema_knows_all_names),
       cmocka_unit_test(syntax_errors_have_line_and_column),
       cmocka_unit_test(defaults_are_the_documented_ones),
+      cmocka_unit_test(colors_alone_keep_opacity),
       cmocka_unit_test(files_are_relative_to_the_scene_file),
       cmocka_unit_test(volumes_from_memory_cannot_be_written),
       cmocka_unit_test(odd_values_survive),
