@@ -13,7 +13,7 @@
 
 #include <halflight/scene.h>
 
-#define HL_JSON_LIMIT ((size_t)64 << 20) /* bytes of one JSON text */
+#define HL_JSON_LIMIT ((size_t)16 << 20) /* bytes of one JSON text */
 
 typedef struct hl_json_reader {
   hl_context *context;
