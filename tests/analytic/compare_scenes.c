@@ -1,0 +1,336 @@
+/* analytic/compare_scenes.c - see compare_scenes.h. */
+#include "compare_scenes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* ---- voxels: value of a unit cube's point, each coordinate in [-1, 1] ---- */
+
+typedef double field_function(double x, double y, double z);
+
+static double ball(double x, double y, double z, double cx, double cy, double cz, double radius) {
+  double dx = x - cx, dy = y - cy, dz = z - cz;
+  return fmax(0, 1 - (dx * dx + dy * dy + dz * dz) / (radius * radius));
+}
+static double balls(double x, double y, double z) {
+  double a = ball(x, y, z, -0.35, -0.3, -0.25, 0.5), b = ball(x, y, z, 0.4, 0.35, 0.1, 0.45);
+  return fmax(fmax(a, b), ball(x, y, z, 0.1, -0.35, 0.55, 0.35));
+}
+/* A slab about three voxels thick in 28, and a ball below it. */
+static double plate(double x, double y, double z) {
+  double inside = fabs(x) < 0.6 && fabs(y) < 0.5 ? fmax(0, 1 - fabs(z - 0.5) / 0.15) : 0;
+  return fmax(inside, ball(x, y, z, 0, 0, -0.4, 0.5));
+}
+/* A wall with a slit on a floor, as sharp as the grid. */
+static double wall(double x, double y, double z) {
+  if (fabs(x) > 0.9 || fabs(y) > 0.9 || z < -0.9) return 0;
+  if (z < -0.65) return 1;
+  return x > -0.2 && x < 0.25 && z < 0.5 && fabs(y) < 0.8 && !(fabs(y) < 0.15 && z < 0.1) ? 1 : 0;
+}
+static double smoke(double x, double y, double z) {
+  double fade = fmax(0, 1 - (x * x + y * y + z * z));
+  return fade * (double)stage_noise(4 * x, 4 * y, 4 * z);
+}
+static double full(double x, double y, double z) {
+  return 0.2 + 0.8 * (double)stage_noise(3 * x, 3 * y, 3 * z);
+}
+
+/* ---- scenes ---- */
+
+static const hl_opacity_point SURFACE[] = {{0, 0}, {0.2, 0}, {0.45, 0.7}, {1, 0.9}};
+static const hl_opacity_point SHARP[] = {{0, 0}, {0.45, 0}, {0.55, 0.95}, {1, 0.95}};
+static const hl_opacity_point THIN[] = {{0, 0}, {0.1, 0}, {0.6, 0.12}, {1, 0.2}};
+static const hl_opacity_point HAZE[] = {{0, 0}, {0.03, 0}, {0.5, 0.3}, {1, 0.4}};
+static const hl_color_point WARM[] = {{0, {0.2, 0.3, 0.9}}, {0.5, {0.9, 0.4, 0.2}}, {1, {1, 0.9, 0.6}}};
+
+#define OPACITY(volume, points)                    \
+  ((volume)->transfer_function.opacity = (points), \
+   (volume)->transfer_function.opacity_count = sizeof(points) / sizeof *(points))
+
+/* An N^3-like grid of the field around the origin; the box is `edge` long along x. */
+static hl_scene_volume *add_field(stage *set, field_function *field, const size_t n[3],
+                                  const double spacing[3]) {
+  float *voxels = malloc(n[0] * n[1] * n[2] * sizeof *voxels), *out = voxels;
+  assert_non_null(voxels);
+  for (size_t k = 0; k < n[2]; k++)
+    for (size_t j = 0; j < n[1]; j++)
+      for (size_t i = 0; i < n[0]; i++)
+        *out++ =
+            (float)field((2.0 * (double)i + 1) / (double)n[0] - 1, (2.0 * (double)j + 1) / (double)n[1] - 1,
+                         (2.0 * (double)k + 1) / (double)n[2] - 1);
+  vec3 corner = {-0.5 * (double)n[0] * spacing[0], -0.5 * (double)n[1] * spacing[1],
+                 -0.5 * (double)n[2] * spacing[2]};
+  hl_scene_volume *volume = stage_add_grid(set, n, spacing, corner, voxels);
+  free(voxels);
+  volume->shading = HL_SHADING_PHONG;
+  OPACITY(volume, SURFACE);
+  volume->transfer_function.color = WARM;
+  volume->transfer_function.color_count = sizeof WARM / sizeof *WARM;
+  return volume;
+}
+
+static hl_scene_volume *add_cube(stage *set, field_function *field, size_t n) {
+  return add_field(set, field, (size_t[3]){n, n, n}, (double[3]){1, 1, 1});
+}
+
+static void look_from_corner(stage *set) {
+  stage_look(set, (vec3){46, -70, 52}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  set->scene.camera.height = 44;
+}
+static void perspective(stage *set, double fovy_deg) {
+  set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  set->scene.camera.fovy_deg = fovy_deg;
+}
+
+static void make_balls(stage *set) {
+  add_cube(set, balls, 28);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_balls_medium(stage *set) {
+  make_balls(set);
+  set->volumes[0].shading = HL_SHADING_NONE;
+}
+static void make_balls_bytes(stage *set) {
+  set->type = HL_VOXEL_U8;
+  make_balls_medium(set);
+}
+static void make_balls_words(stage *set) {
+  set->type = HL_VOXEL_U16;
+  make_balls_medium(set);
+}
+static void make_balls_gaussian(stage *set) {
+  make_balls_medium(set);
+  set->scene.render.kernel = HL_KERNEL_GAUSSIAN;
+}
+static void make_balls_linear(stage *set) {
+  make_balls_medium(set);
+  set->scene.render.kernel = HL_KERNEL_LINEAR;
+}
+static void make_balls_splat(stage *set) {
+  make_balls_medium(set);
+  set->scene.render.reconstruction = HL_RECONSTRUCTION_SPLAT;
+}
+static void make_balls_perspective(stage *set) {
+  make_balls(set);
+  stage_look(set, (vec3){24, -27, 21}, (vec3){0, 0, -1}, (vec3){0, 0, 1});
+  perspective(set, 50);
+}
+static void make_balls_point_light(stage *set) {
+  make_balls_medium(set);
+  set->scene.light_count = 0;
+  hl_light *light = stage_add_point(set, (vec3){17, -8, 32});
+  light->radius = 6;
+}
+static void make_balls_two_lights(stage *set) {
+  make_balls(set);
+  set->lights[0].color[2] = 0.2;
+  set->lights[0].intensity = 0.6;
+  stage_add_directional(set, (vec3){1, 0.2, -0.4})->color[0] = 0.1;
+}
+static void make_plate(stage *set) {
+  OPACITY(add_cube(set, plate, 28), SHARP);
+  set->volumes[0].shading = HL_SHADING_NONE;
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){0.2, 0.1, -1})->angular_diameter_deg = 20;
+}
+static void make_wall(stage *set) {
+  add_cube(set, wall, 28);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-1, 0.2, -0.7})->angular_diameter_deg = 20;
+}
+static void make_wall_medium(stage *set) {
+  make_wall(set);
+  set->volumes[0].shading = HL_SHADING_NONE;
+}
+static void make_wall_sharp(stage *set) {
+  make_wall_medium(set);
+  OPACITY(&set->volumes[0], SHARP);
+}
+static void make_smoke_lit(stage *set, vec3 direction) {
+  hl_scene_volume *volume = add_cube(set, smoke, 28);
+  OPACITY(volume, HAZE);
+  volume->shading = HL_SHADING_NONE;
+  volume->attenuation_color[0] = 0.3;
+  volume->attenuation_color[1] = 0.7;
+  look_from_corner(set);
+  stage_add_directional(set, direction)->angular_diameter_deg = 20;
+}
+static void make_smoke(stage *set) { make_smoke_lit(set, (vec3){-0.5, 0.3, -1}); }
+static void make_smoke_backlit(stage *set) { make_smoke_lit(set, (vec3){46, -60, 40}); }
+static void make_smoke_silhouette(stage *set) {
+  make_smoke_lit(set, (vec3){46, -70, 52});
+} /* e opposite to l */
+static void make_smoke_headlight(stage *set) {
+  make_smoke_lit(set, (vec3){-46, 70, -52});
+} /* e parallel to l */
+static void make_smoke_across(stage *set) { make_smoke_lit(set, (vec3){70, 46, 0}); } /* e.l = 0 */
+static void make_oblique(stage *set) {
+  hl_scene_volume *volume = add_field(set, balls, (size_t[3]){26, 22, 12}, (double[3]){1, 1.2, 2.2});
+  volume->rotate_axis[0] = 1;
+  volume->rotate_axis[1] = -0.5;
+  volume->rotate_angle_deg = 35;
+  volume->shading = HL_SHADING_NONE;
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_oblique_phong(stage *set) {
+  make_oblique(set);
+  set->volumes[0].shading = HL_SHADING_PHONG;
+}
+static void make_two_volumes(stage *set) {
+  hl_scene_volume *haze = add_cube(set, full, 17);
+  OPACITY(haze, THIN);
+  haze->shading = HL_SHADING_NONE;
+  haze->scale = 1.3;
+  haze->rotate_axis[1] = 1;
+  haze->rotate_angle_deg = 25;
+  haze->translate[0] = 3.5;
+  haze->attenuation_color[2] = 0.4;
+  add_cube(set, balls, 22);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+/* The box's faces cut through matter: they must be where they are, at full strength. */
+static void make_clipped(stage *set) {
+  hl_scene_volume *volume = add_cube(set, full, 24);
+  OPACITY(volume, THIN);
+  volume->shading = HL_SHADING_NONE;
+  volume->clipped = 1;
+  const double low[3] = {-8.3, -20, -7.2}, high[3] = {20, 5.4, 6.6};
+  memcpy(volume->clip_min, low, sizeof low);
+  memcpy(volume->clip_max, high, sizeof high);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_clipped_perspective(stage *set) {
+  make_clipped(set);
+  stage_look(set, (vec3){23, -26, 18}, (vec3){3, -3, 0}, (vec3){0, 0, 1});
+  perspective(set, 60);
+}
+static void make_eye_inside(stage *set) {
+  make_smoke(set);
+  stage_look(set, (vec3){2, -4, 3}, (vec3){-7, 8, -3}, (vec3){0, 0, 1});
+  perspective(set, 70);
+}
+static void make_lamp_inside(stage *set) {
+  make_smoke(set);
+  set->scene.light_count = 0;
+  stage_add_point(set, (vec3){3, -2, 3.5});
+}
+static void make_hidden_occluder(stage *set) {
+  make_plate(set);
+  hl_scene_volume *screen = stage_add_box(set, (vec3){-4, -20, 17}, (vec3){20, 20, 18});
+  stage_set_opacity(set, screen, 0.9, 1);
+  screen->visible = 0;
+}
+
+/* A grid one voxel thick: nothing but borders along one axis. */
+static void make_single_layer(stage *set) {
+  hl_scene_volume *volume = add_field(set, balls, (size_t[3]){28, 28, 1}, (double[3]){1, 1, 2});
+  volume->shading = HL_SHADING_NONE;
+  add_cube(set, smoke, 12);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+/* No value is transparent; holes where voxels are not finite. Values far from 0 test the float arithmetic. */
+static double holes(double x, double y, double z) {
+  return x * x + y * y < 0.2 ? (double)NAN : 1000 + 0.3 * (double)stage_noise(3 * x, 3 * y, 3 * z);
+}
+static void make_holes(stage *set) {
+  hl_scene_volume *volume = add_cube(set, holes, 20);
+  volume->shading = HL_SHADING_NONE;
+  stage_set_opacity(set, volume, 0.15, 1);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static double thousand(double x, double y, double z) { return x + y + z > -9 ? 1000 : 0; }
+static void make_constant(stage *set) {
+  hl_scene_volume *volume = add_field(set, thousand, (size_t[3]){20, 14, 9}, (double[3]){1, 1, 1});
+  volume->shading = HL_SHADING_NONE;
+  stage_set_opacity(set, volume, 0.1, 1);
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_wide_angle(stage *set) {
+  make_smoke(set);
+  stage_look(set, (vec3){9, -14, 9}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  perspective(set, 110);
+}
+static void make_lamp_near(stage *set) { /* outside, its widest rays nearly along the box's face */
+  make_smoke(set);
+  set->scene.light_count = 0;
+  stage_add_point(set, (vec3){3, -2, 17});
+}
+static void make_three_lights(stage *set) {
+  make_smoke(set);
+  stage_add_directional(set, (vec3){1, 0.8, 0.2});
+  stage_add_point(set, (vec3){-20, -30, 5})->falloff = HL_FALLOFF_INVERSE_SQUARE;
+  set->lights[2].intensity = 600;
+  set->lights[0].color[0] = set->lights[1].color[1] = set->lights[2].color[2] = 0.2;
+}
+static void make_flags(stage *set) {
+  make_two_volumes(set);
+  set->volumes[0].casts_shadow = 0;
+  set->volumes[1].receives_shadow = 0;
+}
+static void make_balls_backlit(stage *set) {
+  make_balls(set);
+  set->scene.light_count = 0;
+  stage_add_directional(set, (vec3){0.5, -0.9, -0.5});
+}
+static void make_eye_within_parallel(stage *set) {
+  make_smoke(set);
+  stage_look(set, (vec3){2, -4, 3}, (vec3){-7, 8, -3}, (vec3){0, 0, 1});
+}
+
+/* Walls lit at a grazing angle want shadow pixels well below a voxel (at 0.3 voxels both are within 0.006 and
+ * 0.02); what lies behind a lamp, seen along its sheets, is not shadowed yet; the borders of holes lie half
+ * way between empty and the least value in the reference, nearer to the least in the sheets. */
+static const scenario SCENARIOS[] = {
+    {"balls", make_balls, 0.006},
+    {"balls-medium", make_balls_medium, 0.006},
+    {"balls-u8", make_balls_bytes, 0.006},
+    {"balls-u16", make_balls_words, 0.006},
+    {"balls-gaussian", make_balls_gaussian, 0.006},
+    {"balls-linear", make_balls_linear, 0.006},
+    {"balls-splat", make_balls_splat, 0.006},
+    {"balls-perspective", make_balls_perspective, 0.006},
+    {"balls-point-light", make_balls_point_light, 0.006},
+    {"balls-two-lights", make_balls_two_lights, 0.006},
+    {"plate", make_plate, 0.006},
+    {"wall", make_wall, 0.006},
+    {"wall-medium", make_wall_medium, 0.012},
+    {"wall-sharp", make_wall_sharp, 0.03},
+    {"smoke", make_smoke, 0.006},
+    {"smoke-backlit", make_smoke_backlit, 0.006},
+    {"smoke-silhouette", make_smoke_silhouette, 0.006},
+    {"smoke-headlight", make_smoke_headlight, 0.006},
+    {"smoke-across", make_smoke_across, 0.006},
+    {"oblique", make_oblique, 0.006},
+    {"oblique-phong", make_oblique_phong, 0.006},
+    {"two-volumes", make_two_volumes, 0.006},
+    {"clipped", make_clipped, 0.006},
+    {"clipped-perspective", make_clipped_perspective, 0.006},
+    {"eye-inside", make_eye_inside, 0.006},
+    {"lamp-inside", make_lamp_inside, 0},
+    {"single-layer", make_single_layer, 0.006},
+    {"holes", make_holes, 0.009},
+    {"constant", make_constant, 0.006},
+    {"wide-angle", make_wide_angle, 0.006},
+    {"lamp-near", make_lamp_near, 0.006},
+    {"three-lights", make_three_lights, 0.006},
+    {"flags", make_flags, 0.006},
+    {"balls-backlit", make_balls_backlit, 0.006},
+    {"eye-within-parallel", make_eye_within_parallel, 0.006},
+    {"hidden-occluder", make_hidden_occluder, 0.006},
+};
+
+const scenario *compare_scenarios(size_t *count) {
+  *count = sizeof SCENARIOS / sizeof *SCENARIOS;
+  return SCENARIOS;
+}

@@ -1,0 +1,15 @@
+/* analytic/compare_scenes.h - the scenes on which the renderer is put beside the reference. */
+#ifndef COMPARE_SCENES_H
+#define COMPARE_SCENES_H
+
+#include "reference_stage.h"
+
+typedef struct scenario {
+  const char *name;
+  void (*make)(stage *set);
+  double bar; /* RMSE at sheet spacing 0.5 and 64 pixels or more; 0: none yet */
+} scenario;
+
+const scenario *compare_scenarios(size_t *count);
+
+#endif
