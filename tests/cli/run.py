@@ -10,7 +10,7 @@ Beside it may stand
     NAME.sh.stderr.glob    the same for standard error; without it, standard error must be empty
     NAME.sh.exit           the exit code; 0 without it
 In the script, `halflight` is the program, `tool` is tool.py, and $SOURCE the source folder. Exit code 77 skips the
-case; the last line of standard output is the reason.
+case; the last line of standard output is the reason. `await_handler PID` waits until a process catches SIGINT.
 """
 import fnmatch
 import os
@@ -27,6 +27,14 @@ SECONDS = 240
 PRELUDE = """
 halflight() { "$HALFLIGHT" "$@"; }
 tool() { "$PYTHON" "$SOURCE/tests/cli/tool.py" "$@"; }
+# Waits until process $1 catches SIGINT (bit 1 of the mask), and a little more, so that it is at work.
+await_handler() {
+  for _ in $(seq 300); do
+    if grep -q '^SigCgt:.*[2367abef]$' "/proc/$1/status"; then break; fi
+    sleep 0.1
+  done
+  sleep 0.5
+}
 . "$0"
 """
 
