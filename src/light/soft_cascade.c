@@ -18,9 +18,10 @@ static double omega_at(const soft_cascade *cascade, double height) {
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
 }
 
-/* Levels keep four pixels of their own to the penumbra that their nearest group gives. */
+/* Levels keep at least four pixels of their own to the narrowest penumbra that they give: level j starts about
+ * 2^(j+1) chunks behind the receiver. */
 static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = cascade->chunk * pow(2, level);
+  double penumbra = level == 0 ? 0 : cascade->chunk * pow(2, level + 1);
   int scale = 1;
   while (scale * 8 <= penumbra && scale < 1 << level) scale *= 2;
   return scale;
@@ -30,10 +31,15 @@ static void set_ones(float *values, size_t count) {
   for (size_t i = 0; i < count; i++) values[i] = 1;
 }
 
+/* Hands out the next plane of a level's memory. */
+static cascade_field next_field(cascade_level *level, size_t *used) {
+  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y, index = (*used)++;
+  return (cascade_field){level->memory + index * level->plane + level->origin, level->flags + index * tiles};
+}
+
 static hl_status open_level(hl_context *context, soft_cascade *cascade, int index, const shadow_buffer *buffer,
                             hl_error *error) {
   cascade_level *level = &cascade->level[index];
-  size_t channels = (size_t)cascade->channels;
   level->scale = level_scale(cascade, index);
   if (index > 0 && level->scale > 2 * cascade->level[index - 1].scale) level->scale = 2 * cascade->level[index - 1].scale;
   level->tiles_x = (buffer->tiles_x + level->scale - 1) / level->scale;
@@ -41,19 +47,21 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   level->stride = (size_t)level->tiles_x * TILE + 2 * CASCADE_MARGIN;
   level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
+  size_t channels = (size_t)cascade->channels, used = 0, tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
   size_t planes = channels * CASCADE_GROUPS * 2 + 2 + (index == 0 ? channels : 0);
   level->memory = hl_allocate(context, planes * level->plane, sizeof(float));
-  if (level->memory == NULL) return hl_fail_memory(error, planes * level->plane * sizeof(float), "a cascade of shadows");
+  level->flags = hl_allocate(context, planes, tiles);
+  if (level->memory == NULL || level->flags == NULL)
+    return hl_fail_memory(error, planes * level->plane * sizeof(float), "a cascade of shadows");
   set_ones(level->memory, planes * level->plane);
-  float *next = level->memory + level->origin;
+  memset(level->flags, 1, planes * tiles);
   for (int g = 0; g < CASCADE_GROUPS; g++)
     for (size_t c = 0; c < channels; c++) {
-      level->group[g].transmittance[c] = next;
-      level->group[g].passed[c] = next + level->plane;
-      next += 2 * level->plane;
+      level->group[g].transmittance[c] = next_field(level, &used);
+      level->group[g].passed[c] = next_field(level, &used);
     }
-  for (int i = 0; i < 2; i++, next += level->plane) level->scratch[i] = next;
-  for (size_t c = 0; c < channels && index == 0; c++, next += level->plane) cascade->current[c] = next;
+  for (int i = 0; i < 2; i++) level->scratch[i] = next_field(level, &used);
+  for (size_t c = 0; c < channels && index == 0; c++) cascade->current[c] = next_field(level, &used);
   cascade->level_count = index + 1;
   return HL_OK;
 }
@@ -68,8 +76,8 @@ hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, cons
   if (!isfinite(start)) start = end - 1e4; /* the light lies within the sheets: its nearest ones have no end of width */
   cascade->chunk = fmax(LEAST_CHUNK, (end - start) / GREATEST_CHUNKS);
   cascade->chunk_start = start;
-  /* level j is first used after 2^(j+1) - 1 chunks (derived: a level passes two of its three groups on) */
-  int levels = 1 + (int)floor(log2((end - start) / cascade->chunk + 3));
+  /* level j is first used after 2^(j+2) - 3 chunks (derived: a level keeps three of its five groups) */
+  int levels = 1 + (int)floor(log2((end - start) / cascade->chunk + 5)) - 1;
   hl_status status = HL_OK;
   for (int i = 0; i < levels && i < CASCADE_LEVELS && status == HL_OK; i++)
     status = open_level(context, cascade, i, buffer, error);
@@ -77,43 +85,100 @@ hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, cons
 }
 
 void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade) {
-  for (int i = 0; i < CASCADE_LEVELS; i++) hl_release(context, cascade->level[i].memory);
+  for (int i = 0; i < CASCADE_LEVELS; i++) {
+    hl_release(context, cascade->level[i].memory);
+    hl_release(context, cascade->level[i].flags);
+  }
   *cascade = (soft_cascade){0};
 }
 
-/* ---- whole-field operations, a row of tiles a task ---- */
+/* ---- whole-field operations, a row of tiles a task; tiles of ones are skipped ---- */
 
-typedef struct field_task {
-  int tiles_x;
-  field_job field;
-  field_tile_function *field_function;
-  blur_job blur;
-  blur_tile_function *blur_function;
-  shadow_buffer *buffer;
-  lit_blocks_function *lit_blocks;
-} field_task;
+static void store_ones(float *pixels, size_t stride, size_t tile_x, size_t tile_y) {
+  for (size_t row = 0; row < TILE; row++) set_ones(pixels + (tile_y * TILE + row) * stride + tile_x * TILE, TILE);
+}
 
-static void run_field_row(void *data, size_t index, int worker) {
+/* True if all tiles of the level's rectangle are ones; what lies outside is. */
+static bool all_ones(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1) {
+  for (int y = y0 < 0 ? 0 : y0; y <= y1 && y < level->tiles_y; y++)
+    for (int x = x0 < 0 ? 0 : x0; x <= x1 && x < level->tiles_x; x++)
+      if (!field->ones[y * level->tiles_x + x]) return false;
+  return true;
+}
+
+typedef struct multiply_task {
+  const cascade_level *level, *level_b; /* of a (unless halving) and to; of b */
+  const cascade_level *level_a;
+  const cascade_field *a, *b, *to;
+  field_job job;
+  field_tile_function *function;
+} multiply_task;
+
+static bool product_is_ones(const multiply_task *task, int x, int y) {
+  const cascade_level *levels[2] = {task->level_a, task->level_b};
+  const cascade_field *fields[2] = {task->a, task->b};
+  for (int i = 0; i < 2; i++) {
+    int coarse = levels[i]->scale, own = task->level->scale, x0 = x, y0 = y, x1 = x, y1 = y;
+    if (coarse < own) x0 = 2 * x, x1 = 2 * x + 1, y0 = 2 * y, y1 = 2 * y + 1;
+    if (coarse > own) x0 = (x - 1) / 2, x1 = (x + 1) / 2, y0 = (y - 1) / 2, y1 = (y + 1) / 2;
+    if (!all_ones(levels[i], fields[i], x0, x1, y0, y1)) return false;
+  }
+  return true;
+}
+
+static void multiply_row(void *data, size_t index, int worker) {
   (void)worker;
-  const field_task *task = data;
-  for (int x = 0; x < task->tiles_x; x++) {
-    if (task->field_function != NULL) task->field_function(&task->field, x, (int)index);
-    if (task->blur_function != NULL) task->blur_function(&task->blur, x, (int)index);
+  const multiply_task *task = data;
+  for (int x = 0; x < task->level->tiles_x; x++) {
+    unsigned char *ones = &task->to->ones[index * (size_t)task->level->tiles_x + (size_t)x];
+    bool skip = product_is_ones(task, x, (int)index);
+    if (!skip) task->function(&task->job, x, (int)index);
+    else if (!*ones) store_ones(task->to->pixels, task->level->stride, (size_t)x, index);
+    *ones = skip;
   }
 }
 
-static void run_field(hl_pool *pool, const cascade_level *level, field_tile_function *function, field_job job) {
-  field_task task = {.tiles_x = level->tiles_x, .field = job, .field_function = function};
-  hl_pool_run(pool, (size_t)level->tiles_y, run_field_row, &task);
+/* to = a * b, each on its level, which may be twice as fine (both) or, for b, twice as coarse. */
+static void multiply(hl_pool *pool, const cascade_functions *functions, const cascade_level *level_a,
+                     const cascade_field *a, const cascade_level *level_b, const cascade_field *b,
+                     const cascade_level *level, const cascade_field *to) {
+  field_tile_function *function = level_a->scale < level->scale   ? functions->multiply_half
+                                  : level_b->scale > level->scale ? functions->multiply_double
+                                                                  : functions->multiply;
+  multiply_task task = {level, level_b, level_a, a, b, to, {a->pixels, b->pixels, to->pixels, level_b->stride, level->stride},
+                        function};
+  hl_pool_run(pool, (size_t)level->tiles_y, multiply_row, &task);
 }
 
-static void run_blur(hl_pool *pool, const cascade_level *level, blur_tile_function *function, const float *from, float *to,
-                     size_t stride_to, double variance) {
+typedef struct blur_task {
+  const cascade_level *level;
+  const cascade_field *from, *to;
+  blur_job job;
+  blur_tile_function *function;
+  int reach_x, reach_y; /* tiles */
+} blur_task;
+
+static void blur_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const blur_task *task = data;
+  int y = (int)index;
+  for (int x = 0; x < task->level->tiles_x; x++) {
+    unsigned char *ones = &task->to->ones[index * (size_t)task->level->tiles_x + (size_t)x];
+    bool skip = all_ones(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
+    if (!skip) task->function(&task->job, x, y);
+    else if (!*ones) store_ones(task->to->pixels, task->job.stride_to, (size_t)x, index);
+    *ones = skip;
+  }
+}
+
+static void blur_once(hl_pool *pool, const cascade_level *level, const cascade_field *from, const cascade_field *to,
+                      size_t stride_to, double variance, bool along_rows, blur_tile_function *function) {
   /* a discrete box of odd width w has the variance (w^2 - 1) / 12 */
-  double width = fmin(sqrt(12 * variance + 1), 2 * CASCADE_MARGIN - 5);
-  field_task task = {.tiles_x = level->tiles_x, .blur = {from, to, level->stride, stride_to, hl_blur_box((float)width)},
-                     .blur_function = function};
-  hl_pool_run(pool, (size_t)level->tiles_y, run_field_row, &task);
+  blur_box box = hl_blur_box((float)fmin(sqrt(12 * variance + 1), 2 * CASCADE_MARGIN - 5));
+  int reach = (box.reach + TILE) / TILE;
+  blur_task task = {level, from, to, {from->pixels, to->pixels, level->stride, stride_to, box}, function,
+                    along_rows ? reach : 0, along_rows ? 0 : reach};
+  hl_pool_run(pool, (size_t)level->tiles_y, blur_row, &task);
 }
 
 /* ---- the cascade ---- */
@@ -126,37 +191,41 @@ static variances variance_between(const soft_cascade *cascade, double wide, doub
   return (variances){v * cascade->stretch * cascade->stretch, v};
 }
 
-static void copy_rows(const cascade_level *level, const float *from, float *to) {
-  memcpy(to - level->origin, from - level->origin, level->plane * sizeof(float));
+static void blur(hl_pool *pool, const cascade_functions *functions, cascade_level *level, const cascade_field *from,
+                 const cascade_field *to, size_t stride_to, variances variance) {
+  blur_once(pool, level, from, &level->scratch[0], level->stride, variance.u, true, functions->blur.rows);
+  blur_once(pool, level, &level->scratch[0], to, stride_to, variance.v, false, functions->blur.columns);
 }
 
 /* The two oldest groups of a level become one of the next. */
 static void merge_up(soft_cascade *cascade, int index, hl_pool *pool, const cascade_functions *functions) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
-  cascade_group *a = &level->group[0], *b = &level->group[1], *to = &next->group[next->count++];
-  bool halve = next->scale > level->scale;
+  cascade_group a = level->group[0], b = level->group[1], *to = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++)
-    run_field(pool, next, halve ? functions->multiply_half : functions->multiply,
-              (field_job){a->transmittance[c], b->transmittance[c], to->transmittance[c], level->stride, next->stride});
-  to->weight = a->weight + b->weight;
-  to->omega = (a->omega * a->weight + b->omega * b->weight) / to->weight;
+    multiply(pool, functions, level, &a.transmittance[c], level, &b.transmittance[c], next, &to->transmittance[c]);
+  to->weight = a.weight + b.weight;
+  to->omega = (a.omega * a.weight + b.omega * b.weight) / to->weight;
   to->renewed = true;
-  cascade_group oldest = *a, newest = level->group[2];
-  level->group[2] = level->group[1];
-  level->group[1] = oldest;
-  level->group[0] = newest;
+  for (int g = 2; g < CASCADE_GROUPS; g++) level->group[g - 2] = level->group[g];
+  level->group[CASCADE_GROUPS - 2] = a;
+  level->group[CASCADE_GROUPS - 1] = b;
   level->group[0].renewed = true;
-  level->count = 1;
+  level->count -= 2;
 }
 
 static void push_chunk(soft_cascade *cascade, hl_pool *pool, const cascade_functions *functions) {
   cascade_level *level = &cascade->level[0];
   cascade_group *to = &level->group[level->count++];
+  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
   for (int c = 0; c < cascade->channels; c++) {
-    float *fresh = to->transmittance[c];
+    cascade_field fresh = to->transmittance[c];
     to->transmittance[c] = cascade->current[c];
     cascade->current[c] = fresh;
-    set_ones(fresh - level->origin, level->plane);
+    for (size_t tile = 0; tile < tiles; tile++) {
+      if (!fresh.ones[tile])
+        store_ones(fresh.pixels, level->stride, tile % (size_t)level->tiles_x, tile / (size_t)level->tiles_x);
+      fresh.ones[tile] = 1;
+    }
   }
   to->weight = cascade->chunk_weight;
   to->omega = cascade->chunk_sum / cascade->chunk_weight;
@@ -168,18 +237,23 @@ static void push_chunk(soft_cascade *cascade, hl_pool *pool, const cascade_funct
 }
 
 /* What passed the group before (from, on its level), blurred for this group, times this group. */
-static void pass_group(const soft_cascade *cascade, const cascade_level *from_level, const cascade_group *from,
+static void pass_group(const soft_cascade *cascade, cascade_level *from_level, const cascade_group *from,
                        const cascade_level *level, cascade_group *group, double receiver, hl_pool *pool,
                        const cascade_functions *functions) {
   variances variance = variance_between(cascade, receiver - from->omega, receiver - group->omega, from_level->scale);
   for (int c = 0; c < cascade->channels; c++) {
-    run_blur(pool, from_level, functions->blur.rows, from->passed[c], from_level->scratch[0], from_level->stride, variance.u);
-    run_blur(pool, from_level, functions->blur.columns, from_level->scratch[0], from_level->scratch[1], from_level->stride,
-             variance.v);
-    bool finer = level->scale < from_level->scale;
-    run_field(pool, level, finer ? functions->multiply_double : functions->multiply,
-              (field_job){group->transmittance[c], from_level->scratch[1], group->passed[c], from_level->stride,
-                          level->stride});
+    blur(pool, functions, from_level, &from->passed[c], &from_level->scratch[1], from_level->stride, variance);
+    multiply(pool, functions, level, &group->transmittance[c], from_level, &from_level->scratch[1], level,
+             &group->passed[c]);
+  }
+}
+
+/* Nothing lies before the farthest group: what passes it is its own transmittance. */
+static void pass_first(const soft_cascade *cascade, const cascade_level *level, cascade_group *group) {
+  for (int c = 0; c < cascade->channels; c++) {
+    memcpy(group->passed[c].pixels - level->origin, group->transmittance[c].pixels - level->origin,
+           level->plane * sizeof(float));
+    memcpy(group->passed[c].ones, group->transmittance[c].ones, (size_t)level->tiles_x * (size_t)level->tiles_y);
   }
 }
 
@@ -187,7 +261,7 @@ static void pass_group(const soft_cascade *cascade, const cascade_level *from_le
 static const cascade_group *pass_all(soft_cascade *cascade, double receiver, hl_pool *pool,
                                      const cascade_functions *functions) {
   cascade_group *before = NULL;
-  const cascade_level *before_level = NULL;
+  cascade_level *before_level = NULL;
   bool due = false;
   for (int i = cascade->level_count - 1; i >= 0; i--) {
     cascade_level *level = &cascade->level[i];
@@ -197,7 +271,7 @@ static const cascade_group *pass_all(soft_cascade *cascade, double receiver, hl_
       cascade_group *group = &level->group[g];
       due = due || group->renewed;
       if (due && before == NULL)
-        for (int c = 0; c < cascade->channels; c++) copy_rows(level, group->transmittance[c], group->passed[c]);
+        pass_first(cascade, level, group);
       else if (due)
         pass_group(cascade, before_level, before, level, group, receiver, pool, functions);
       group->renewed = false;
@@ -208,16 +282,21 @@ static const cascade_group *pass_all(soft_cascade *cascade, double receiver, hl_
   return before;
 }
 
+typedef struct lit_task {
+  shadow_buffer *buffer;
+  lit_blocks_function *lit_blocks;
+} lit_task;
+
 static void find_lit(void *data, size_t index, int worker) {
   (void)worker;
-  const field_task *task = data;
+  const lit_task *task = data;
   shadow_buffer *buffer = task->buffer;
-  for (int x = 0; x < task->tiles_x; x++) {
+  for (int x = 0; x < buffer->tiles_x; x++) {
+    size_t tile = index * (size_t)buffer->tiles_x + (size_t)x;
     const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
     for (int c = 0; c < buffer->channels; c++)
       transmittance[c] = buffer->transmittance[c] + index * TILE * buffer->stride + (size_t)x * TILE;
-    buffer->tile_lit[index * (size_t)buffer->tiles_x + (size_t)x] =
-        (uint16_t)task->lit_blocks(transmittance, buffer->channels, buffer->stride);
+    buffer->tile_lit[tile] = (uint16_t)task->lit_blocks(transmittance, buffer->channels, buffer->stride);
   }
 }
 
@@ -225,13 +304,17 @@ static void find_lit(void *data, size_t index, int worker) {
 static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, hl_pool *pool,
                           const cascade_functions *functions) {
   const cascade_group *nearest = pass_all(cascade, receiver, pool, functions);
-  const cascade_level *level = &cascade->level[0];
+  cascade_level *level = &cascade->level[0];
   variances variance = variance_between(cascade, receiver - nearest->omega, 0, 1);
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   for (int c = 0; c < cascade->channels; c++) {
-    run_blur(pool, level, functions->blur.rows, nearest->passed[c], level->scratch[0], level->stride, variance.u);
-    run_blur(pool, level, functions->blur.columns, level->scratch[0], buffer->transmittance[c], buffer->stride, variance.v);
+    /* the buffer's tiles that the last slabs touched are no longer ones: the second half of its flags says so */
+    cascade_field to = {buffer->transmittance[c], buffer->tile_touched + tiles};
+    for (size_t tile = 0; tile < tiles; tile++) to.ones[tile] = !buffer->tile_touched[tile];
+    blur(pool, functions, level, &nearest->passed[c], &to, buffer->stride, variance);
   }
-  field_task task = {.tiles_x = buffer->tiles_x, .buffer = buffer, .lit_blocks = functions->blur.lit_blocks};
+  for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] = !buffer->tile_touched[tiles + tile];
+  lit_task task = {buffer, functions->blur.lit_blocks};
   hl_pool_run(pool, (size_t)buffer->tiles_y, find_lit, &task);
 }
 

@@ -17,12 +17,18 @@
 #include "light/cascade_field.h"
 #include "light/shadow_buffer.h"
 
-enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 3, CASCADE_MARGIN = 64 };
+enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 5, CASCADE_MARGIN = 64 };
+
+/* Transmittance over the pixels of a level, ones around them. */
+typedef struct cascade_field {
+  float *pixels;       /* pixel (0,0); in the level's memory */
+  unsigned char *ones; /* [tiles]; 1 where the tile is all ones: work skips it; in the level's flags */
+} cascade_field;
 
 /* The product of some neighbouring slabs. */
 typedef struct cascade_group {
-  float *transmittance[HL_CHANNELS]; /* pixel (0,0) */
-  float *passed[HL_CHANNELS];        /* this times what passed all groups before it, for a receiver not long ago */
+  cascade_field transmittance[HL_CHANNELS];
+  cascade_field passed[HL_CHANNELS]; /* this times what passed all groups before it, for a receiver not long ago */
   double omega;                      /* mean over its slabs, pixels of the buffer */
   double weight;                     /* slabs */
   bool renewed;                      /* passed is to be found anew */
@@ -34,8 +40,9 @@ typedef struct cascade_level {
   size_t stride, plane, origin;
   cascade_group group[CASCADE_GROUPS]; /* oldest first */
   int count;
-  float *scratch[2];                 /* pixel (0,0) */
+  cascade_field scratch[2];
   float *memory;                     /* owned */
+  unsigned char *flags;              /* owned */
 } cascade_level;
 
 typedef struct soft_cascade {
@@ -50,7 +57,7 @@ typedef struct soft_cascade {
   int channels;
   int level_count;      /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
-  float *current[HL_CHANNELS]; /* the chunk's transmittance; pixel (0,0); same layout as level 0 */
+  cascade_field current[HL_CHANNELS]; /* the chunk's transmittance, on level 0; who multiplies a tile clears its ones */
 } soft_cascade;
 
 /* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. */

@@ -134,7 +134,8 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
     job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
   for (int c = 0; c < job.channels && light->cascade.level_count > 0; c++) {
     job.also_stride = light->cascade.level[0].stride;
-    job.also[c] = light->cascade.current[c] + (size_t)tile_y * TILE * job.also_stride + (size_t)tile_x * TILE;
+    job.also[c] = light->cascade.current[c].pixels + (size_t)tile_y * TILE * job.also_stride + (size_t)tile_x * TILE;
+    light->cascade.current[c].ones[tile] = 0;
   }
   uint32_t worked = 0;
   for (int i = 0; i < found; i++) worked |= volumes[i].blocks;
