@@ -90,6 +90,9 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
     a->faint = fmax(a->faint, middle + 6 * (upper - middle)); /* about 3.5 sigma of one-sided Gaussian noise */
   }
   a->faint = fmin(fmax(a->faint, 0.3 * a->solid), 0.8 * a->solid);
+  size_t sure = 0, dense = 0;
+  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, sure++) dense += (double)d->values[n - 1] > a->dense;
+  a->dense_share = sure > 0 ? (double)dense / (double)sure : 1;
   double sum = 0;
   size_t beyond = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->faint; n--, beyond++) sum += (double)d->values[n - 1];

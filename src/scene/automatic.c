@@ -22,7 +22,7 @@ static void write_surfaces(hl_function_writer *w) {
   hl_add_opacity(w, a->solid, 0.5);
   hl_add_opacity(w, a->solid + 0.5 * (dense - a->solid), 0.75);
   hl_add_opacity(w, dense, 0.95);
-  static const double outer[3] = {0.36, 0.15, 0.08}, skin[3] = {0.66, 0.33, 0.19}, inner[3] = {0.88, 0.70, 0.48},
+  static const double outer[3] = {0.40, 0.18, 0.10}, skin[3] = {0.70, 0.40, 0.26}, inner[3] = {0.88, 0.70, 0.48},
                       densest[3] = {0.95, 0.93, 0.88};
   hl_add_color(w, a->faint, outer);
   hl_add_color(w, a->solid, skin);

@@ -23,6 +23,7 @@ typedef struct hl_data_analysis {
   double faint;          /* distance at which things begin */
   double solid;          /* distance at which things surely are */
   double dense;          /* distance that parts the things into two materials */
+  double dense_share;    /* part of the sure things that is beyond dense, 0 to 1 */
   double top;            /* distance that almost nothing exceeds */
   double mean;           /* mean distance of things beyond faint */
   double depth;          /* voxel edges across the things: cube root of their number */

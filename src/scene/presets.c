@@ -3,7 +3,7 @@
  * CT presets are written in Hounsfield units. They hold as they are for volumes in Hounsfield units; for others
  * (8 bit, 0 to 1) a piecewise linear map through four landmarks stands in: air is the background, half way from air
  * to tissue is where things surely are, bone begins where the denser of two materials does, and dense bone is the
- * top. The other presets are written in the landmarks themselves.
+ * top. Where much of the things is dense there is no tissue about the bone, which then begins where things do. The other presets are written in the landmarks themselves.
  */
 #include <math.h>
 #include <string.h>
@@ -37,8 +37,9 @@ static double distance_of(const hl_function_writer *w, bool hounsfield, double v
   const hl_data_analysis *a = w->analysis;
   if (hounsfield) return value - a->background;
   const double landmark[4] = {-1000, -400, 350, 2000};
-  double dense = fmax(a->dense, 1.001 * a->solid);
-  const double distance[4] = {0, a->solid, dense, fmax(a->top, 1.001 * dense)};
+  bool bare = a->dense_share > 0.35;
+  double tissue = bare ? 0.5 * a->solid : a->solid, dense = bare ? 1.2 * a->solid : fmax(a->dense, 1.001 * a->solid);
+  const double distance[4] = {0, tissue, dense, fmax(a->top, 1.001 * dense)};
   int n = value < landmark[1] ? 0 : value < landmark[2] ? 1 : 2;
   double t = (value - landmark[n]) / (landmark[n + 1] - landmark[n]);
   return distance[n] + t * (distance[n + 1] - distance[n]);
@@ -71,7 +72,7 @@ static void write_soft_tissue(hl_function_writer *w, const hl_volume *volume) {
 static void write_brain(hl_function_writer *w, const hl_volume *volume) {
   (void)volume;
   const hl_data_analysis *a = w->analysis;
-  static const double outer[3] = {0.50, 0.22, 0.18}, grey[3] = {0.70, 0.42, 0.36}, white[3] = {0.88, 0.76, 0.68};
+  static const double outer[3] = {0.58, 0.31, 0.26}, grey[3] = {0.76, 0.54, 0.47}, white[3] = {0.90, 0.82, 0.75};
   double ramp = a->solid - a->faint, dense = fmax(a->dense, 1.001 * a->solid);
   hl_add_opacity(w, a->faint, 0);
   hl_add_opacity(w, a->faint + 0.6 * ramp, 0.05);
@@ -103,7 +104,7 @@ static void write_electron_density(hl_function_writer *w, const hl_volume *volum
   hl_add_opacity(w, a->solid, hl_opacity_for(a, 4));
   hl_add_opacity(w, core, hl_opacity_for(a, 40));
   hl_add_opacity(w, top, hl_opacity_for(a, 100));
-  hl_add_colormap(w, "plasma", 0.6 * a->faint, top, 0.1, 0.95);
+  hl_add_colormap(w, "plasma", 0.6 * a->faint, core, 0.25, 0.95);
 }
 
 static const struct {
