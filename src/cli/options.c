@@ -9,7 +9,9 @@
 #include "message.h"
 
 static const char *choice_name(const void *choices, size_t index) {
-  return ((const cli_choice *)choices)[index].name;
+  const cli_choice *choice = (const cli_choice *)choices + index;
+  while (choice->value == CHOICE_RESERVED) choice++;
+  return choice->name;
 }
 
 static const char *option_name(const void *data, size_t index) {
@@ -20,12 +22,13 @@ static const char *option_name(const void *data, size_t index) {
                                           : NULL;
 }
 
-/* "off, hard, soft" */
-static void list_choices(const cli_option *option, char *text, size_t size) {
+/* "off, hard, soft", without the reserved ones. */
+static void list_choices(const cli_option *option, const char *separator, char *text, size_t size) {
   size_t used = 0;
   text[0] = '\0';
   for (const cli_choice *choice = option->choices; choice->name != NULL && used < size; choice++)
-    used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", choice->name);
+    if (choice->value != CHOICE_RESERVED)
+      used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? separator : "", choice->name);
 }
 
 /* What OPTION_NUMBERS accepts, in words. */
@@ -46,17 +49,21 @@ static void describe_numbers(const cli_option *option, char *text, size_t size) 
                             option->separator, isinf(option->low) ? "finite" : range);
   if (option->choices != NULL && used < size) {
     char choices[200];
-    list_choices(option, choices, sizeof choices);
+    list_choices(option, ", ", choices, sizeof choices);
     snprintf(text + used, size - used, ", or %s", choices);
   }
 }
 
 static int refuse_value(const cli_option *option, const char *text) {
+  for (const cli_choice *choice = option->choices; choice != NULL && choice->name != NULL; choice++)
+    if (choice->value == CHOICE_RESERVED && strcmp(choice->name, text) == 0)
+      return fail(EXIT_CODE_UNSUPPORTED, "--%s %s is not yet in this version (%s)", option->name, text,
+                  hl_version());
   char accepted[300];
   const char *meant = NULL;
   switch (option->kind) {
     case OPTION_CHOICE:
-      list_choices(option, accepted, sizeof accepted);
+      list_choices(option, ", ", accepted, sizeof accepted);
       meant = nearest_name(text, choice_name, option->choices);
       return fail(EXIT_CODE_USAGE, "--%s: '%s' is none of %s%s%s%s", option->name, text, accepted,
                   meant != NULL ? " (did you mean " : "", meant != NULL ? meant : "",
@@ -75,7 +82,7 @@ static int refuse_value(const cli_option *option, const char *text) {
 
 static bool parse_choice(const cli_option *option, const char *text, cli_value *value) {
   for (const cli_choice *choice = option->choices; choice != NULL && choice->name != NULL; choice++)
-    if (strcmp(choice->name, text) == 0) {
+    if (choice->value != CHOICE_RESERVED && strcmp(choice->name, text) == 0) {
       value->chosen = true;
       value->choice = choice->value;
       return true;
@@ -194,7 +201,7 @@ static int parse_option(const cli_command *command, int argument_count, char **a
     bool missing = *index + 1 >= argument_count || looks_like_option(arguments[*index + 1]);
     if (missing) {
       char choices[200] = "";
-      if (option->argument == NULL) list_choices(option, choices, sizeof choices);
+      if (option->argument == NULL) list_choices(option, ", ", choices, sizeof choices);
       return fail(EXIT_CODE_USAGE, "--%s needs a value: %s", option->name,
                   option->argument != NULL ? option->argument : choices);
     }
@@ -237,13 +244,9 @@ static void option_heading(const cli_option *option, char *text, size_t size) {
       (size_t)(option->letter != '\0' ? snprintf(text, size, "-%c, --%s", option->letter, option->name)
                                       : snprintf(text, size, "--%s", option->name));
   if (option->kind == OPTION_SWITCH) return;
-  if (option->argument != NULL) {
-    snprintf(text + used, size - used, " %s", option->argument);
-    return;
-  }
-  for (const cli_choice *choice = option->choices; choice->name != NULL && used < size; choice++)
-    used += (size_t)snprintf(text + used, size - used, "%s%s", choice == option->choices ? " " : "|",
-                             choice->name);
+  char choices[200] = "";
+  if (option->argument == NULL) list_choices(option, "|", choices, sizeof choices);
+  snprintf(text + used, size - used, " %s", option->argument != NULL ? option->argument : choices);
 }
 
 static void print_option(const char *heading, const char *help) {

@@ -19,6 +19,9 @@ typedef enum cli_option_kind {
   OPTION_BYTES    /* a whole number with an optional K, M, G or T (powers of 1024) */
 } cli_option_kind;
 
+/* The value of a choice that is known, but not in this version: not listed, refused when given. */
+enum { CHOICE_RESERVED = -1 };
+
 typedef struct cli_choice {
   const char *name; /* null ends the list */
   int value;

@@ -1,0 +1,1 @@
+halflight render --light-samples 3 x.nrrd

@@ -1,0 +1,1 @@
+halflight render --soft-method sublights x.nrrd
