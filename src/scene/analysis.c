@@ -2,8 +2,9 @@
  *
  * In: a volume. Out: its background, thresholds and kind, all of which scale and shift with the data. The
  * background is what the grid's faces mostly have. From there, along the distance to the background, the
- * threshold of least cross entropy finds where things begin and that of greatest variance between classes where
- * they surely are; smoothness and the shape of the histogram tell simulations, media and scanned things apart.
+ * threshold of least cross entropy finds where things begin and that of greatest variance between classes
+ * where they surely are; smoothness and the shape of the histogram tell simulations, media and scanned things
+ * apart.
  */
 #include "scene/automatic.h"
 
@@ -40,8 +41,8 @@ static void shape_of(const distances *d, double low, double high, double counts[
   }
 }
 
-/* Does the histogram fall all the way (of pure density) or have peaks (of materials)? Averages of two bins bridge
- * the gaps of quantised data; the last bins hold saturated values, and very few voxels say nothing. */
+/* Does the histogram fall all the way (of pure density) or have peaks (of materials)? Averages of two bins
+ * bridge the gaps of quantised data; the last bins hold saturated values, and very few voxels say nothing. */
 static bool falls(const distances *d, double low, double high) {
   double counts[BINS], least = INFINITY;
   shape_of(d, low, high, counts);
@@ -67,7 +68,7 @@ static bool is_continuous(const hl_sample *sample) {
   return levels > 256;
 }
 
-/* One value in one tenth of the range: the body of a cloud. */
+/* Much of the things has about one value: the body of a cloud. */
 static bool has_one_body(const distances *d, double low, double high) {
   double counts[BINS], sum = 0, most = 0;
   shape_of(d, low, high, counts);
@@ -79,7 +80,8 @@ static bool has_one_body(const distances *d, double low, double high) {
 }
 
 /* Thresholds of one side of the background, relative. */
-static void find_thresholds(const distances *d, const float *border, size_t border_count, hl_data_analysis *a) {
+static void find_thresholds(const distances *d, const float *border, size_t border_count,
+                            hl_data_analysis *a) {
   a->top = fmax(hl_quantile(d->values, d->count, 0.9999), 1e-9);
   a->solid = hl_threshold_otsu(d->values, d->count, -1);
   a->faint = fmin(hl_threshold_cross_entropy(d->values, d->count, FLOOR * a->top), a->solid);
@@ -87,15 +89,17 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
   /* Most of the border is background: things begin above its noise. */
   if (border_count > 0) {
     double middle = hl_quantile(border, border_count, 0.5), upper = hl_quantile(border, border_count, 0.75);
-    a->faint = fmax(a->faint, middle + 6 * (upper - middle)); /* about 3.5 sigma of one-sided Gaussian noise */
+    a->faint = fmax(a->faint, middle + 6 * (upper - middle)); /* 3.5 sigma of one-sided Gaussian noise */
   }
   a->faint = fmin(fmax(a->faint, 0.3 * a->solid), 0.8 * a->solid);
   size_t sure = 0, dense = 0;
-  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, sure++) dense += (double)d->values[n - 1] > a->dense;
+  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, sure++)
+    dense += (double)d->values[n - 1] > a->dense;
   a->dense_share = sure > 0 ? (double)dense / (double)sure : 1;
   double sum = 0;
   size_t beyond = 0;
-  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->faint; n--, beyond++) sum += (double)d->values[n - 1];
+  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->faint; n--, beyond++)
+    sum += (double)d->values[n - 1];
   a->mean = beyond > 0 ? sum / (double)beyond : a->top;
   a->depth = (double)beyond;
 }
@@ -110,8 +114,10 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *a, hl_error *error) {
-  double low = hl_quantile(sample->values, sample->count, 0.001), high = hl_quantile(sample->values, sample->count, 0.999);
+static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *a,
+                                hl_error *error) {
+  double low = hl_quantile(sample->values, sample->count, 0.001),
+         high = hl_quantile(sample->values, sample->count, 0.999);
   a->background = hl_mode(sample->border, sample->border_count);
   double below = a->background - low, above = high - a->background;
   a->direction = above >= below ? 1 : -1;
@@ -120,7 +126,7 @@ static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample
   float *memory = hl_allocate(volume->context, count, sizeof *memory);
   if (memory == NULL) return hl_fail_memory(error, count * sizeof *memory, "a volume's sample");
   distances d = {memory, sample->count};
-  if (two_sided) { /* two lobes fall from the background to both sides; else the mode is a material: air is lower */
+  if (two_sided) { /* lobes thin out to both sides; where they do not, the mode is a material and air is low */
     measure(sample->values, sample->count, a->background, -1, d.values);
     bool lobe = falls(&d, 0.02, below);
     measure(sample->values, sample->count, a->background, 1, d.values);
@@ -128,7 +134,8 @@ static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample
     else a->background = low, a->direction = 1, two_sided = false;
   }
   if (two_sided) {
-    for (size_t n = 0; n < sample->count; n++) d.values[n] = (float)fabs((double)sample->values[n] - a->background);
+    for (size_t n = 0; n < sample->count; n++)
+      d.values[n] = (float)fabs((double)sample->values[n] - a->background);
     if (!hl_sort(volume->context, d.values, d.count)) {
       hl_release(volume->context, memory);
       return hl_fail_memory(error, d.count * sizeof(float), "a volume's sample");
@@ -153,7 +160,8 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
   if (status != HL_OK) return status;
   status = analyse_sample(volume, &sample, analysis, error);
   analysis->background = sample.low + sample.range * analysis->background;
-  double *distance[] = {&analysis->faint, &analysis->solid, &analysis->dense, &analysis->top, &analysis->mean};
+  double *distance[] = {&analysis->faint, &analysis->solid, &analysis->dense, &analysis->top,
+                        &analysis->mean};
   for (size_t n = 0; n < sizeof distance / sizeof *distance; n++) *distance[n] *= sample.range;
   hl_sample_release(&sample);
   return status;

@@ -1,4 +1,4 @@
-/* scene/automatic.h - what kind of data a volume is, and the thresholds that separate its things from its air. */
+/* scene/automatic.h - what kind of data a volume is, and where its things begin. */
 #ifndef HL_SCENE_AUTOMATIC_H
 #define HL_SCENE_AUTOMATIC_H
 

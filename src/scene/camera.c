@@ -1,8 +1,8 @@
 /* scene/camera.c - the camera's axes, a camera that frames what can be seen, and lights placed as seen by it.
  *
  * Framing: seen along a fixed direction, each side of the picture is a plane through the eye, so the nearest
- * eye that has every visible voxel inside all four planes follows from four maxima over the voxels. Of each row
- * of voxels only the first and the last visible one can be extreme.
+ * eye that has every visible voxel inside all four planes follows from four maxima over the voxels. Of each
+ * row of voxels only the first and the last visible one can be extreme.
  */
 #include <string.h>
 
@@ -29,7 +29,8 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
   return useful;
 }
 
-void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg, double direction[3]) {
+void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
+                        double direction[3]) {
   vec3 right, up, forward;
   hl_camera_basis(camera, &right, &up, &forward);
   double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
@@ -41,10 +42,10 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
   direction[2] = -to_light.z;
 }
 
-/* What framing learns about the visible points: p.right, p.up, p.forward in world units along the camera's axes. */
+/* What framing learns about the visible points; x, y, z are world units along right, up and forward. */
 typedef struct extent {
   vec3 right, up, forward;      /* unit, world */
-  double tangent_x, tangent_y;  /* half the picture's width and height at distance 1; 0: parallel projection */
+  double tangent_x, tangent_y;  /* half the picture's width and height at distance 1; 0: parallel */
   double side[4];               /* greatest x - z tx, -x - z tx, y - z ty, -y - z ty */
   double near, far;             /* along forward */
   bool any;
@@ -71,7 +72,8 @@ typedef struct visibility {
 } visibility;
 
 static double greatest_opacity(const hl_transfer_function *function, double low, double high) {
-  double greatest = fmax(hl_transfer_function_opacity(function, low), hl_transfer_function_opacity(function, high));
+  double greatest =
+      fmax(hl_transfer_function_opacity(function, low), hl_transfer_function_opacity(function, high));
   for (size_t p = 0; p < function->opacity_count; p++)
     if (function->opacity[p].value >= low && function->opacity[p].value <= high)
       greatest = fmax(greatest, function->opacity[p].opacity);
@@ -126,7 +128,8 @@ static void box_range(const hl_scene_volume *volume, int a, ptrdiff_t *first, pt
 static void extent_add_voxels(extent *e, const hl_scene_volume *volume, const visibility *visible) {
   const hl_volume *v = volume->volume;
   affine3 placement = hl_scene_volume_index_to_world(volume);
-  vec3 diagonal = {vec3_length(mat3_column(placement.linear, 0)), vec3_length(mat3_column(placement.linear, 1)),
+  vec3 diagonal = {vec3_length(mat3_column(placement.linear, 0)),
+                   vec3_length(mat3_column(placement.linear, 1)),
                    vec3_length(mat3_column(placement.linear, 2))};
   double radius = 0.5 * vec3_length(diagonal);
   ptrdiff_t first[3], last[3];
@@ -149,7 +152,8 @@ static void extent_add_box(extent *e, const hl_scene_volume *volume) {
   double low[3], high[3];
   hl_scene_volume_box(volume, low, high);
   for (int corner = 0; corner < 8; corner++) {
-    vec3 index = {corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]};
+    vec3 index = {corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1],
+                  corner & 4 ? high[2] : low[2]};
     extent_add(e, affine3_apply(placement, index), 0);
   }
 }
@@ -161,13 +165,15 @@ static void extent_add_scene(extent *e, const hl_scene_description *description)
     if (volume->visible && visibility_make(volume, &visible)) extent_add_voxels(e, volume, &visible);
   }
   bool nothing = !e->any;
-  for (size_t n = 0; nothing && n < description->volume_count; n++) extent_add_box(e, &description->volumes[n]);
+  for (size_t n = 0; nothing && n < description->volume_count; n++)
+    extent_add_box(e, &description->volumes[n]);
 }
 
-/* Derived: the planes x = ex + tx (z - ez) and its three mirrors hold every point, so ex - tx ez >= side[0] and
+/* Derived: the plane x = ex + tx (z - ez) and its three mirrors hold every point, so ex - tx ez >= side[0] and
  * -ex - tx ez >= side[1]; together ez <= -(side[0] + side[1]) / (2 tx), with ex = (side[0] - side[1]) / 2. */
 static void place_camera(const extent *e, double aspect, double zoom, hl_camera *camera) {
-  double x = (e->side[0] - e->side[1]) / 2, y = (e->side[2] - e->side[3]) / 2, middle = (e->near + e->far) / 2;
+  double x = (e->side[0] - e->side[1]) / 2, y = (e->side[2] - e->side[3]) / 2,
+         middle = (e->near + e->far) / 2;
   double half_width = (e->side[0] + e->side[1]) / 2, half_height = (e->side[2] + e->side[3]) / 2, distance;
   if (camera->type == HL_CAMERA_ORTHOGRAPHIC) {
     double half = fmax(half_height, half_width / aspect);
@@ -177,15 +183,16 @@ static void place_camera(const extent *e, double aspect, double zoom, hl_camera 
     double eye = fmin(-half_width / e->tangent_x, -half_height / e->tangent_y);
     distance = fmax(middle - eye, 1e-6 * (e->far - e->near)) / zoom;
   }
-  vec3 target = vec3_add(vec3_add(vec3_scale(e->right, x), vec3_scale(e->up, y)), vec3_scale(e->forward, middle));
+  vec3 target =
+      vec3_add(vec3_add(vec3_scale(e->right, x), vec3_scale(e->up, y)), vec3_scale(e->forward, middle));
   vec3 position = vec3_subtract(target, vec3_scale(e->forward, distance));
   memcpy(camera->target, &target, sizeof camera->target);
   memcpy(camera->position, &position, sizeof camera->position);
   memcpy(camera->up, &e->up, sizeof camera->up);
 }
 
-/* At azimuth 0 and elevation 0 the picture's axes are upright's; positive azimuth turns the eye to the right. At
- * elevation 90 the picture's up is where forward pointed on the horizon, so that up never jumps. */
+/* At azimuth 0 and elevation 0 the picture's axes are upright's; positive azimuth turns the eye to the right.
+ * At elevation 90 the picture's up is where forward pointed on the horizon, so that up never jumps. */
 static void set_axes(extent *e, hl_upright upright, double azimuth_deg, double elevation_deg) {
   double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
   vec3 ahead = vec3_cross(upright.up, upright.right);
@@ -201,10 +208,11 @@ hl_status hl_camera_frame(const hl_scene_description *description, double azimut
   return hl_camera_frame_upright(description, upright, azimuth_deg, elevation_deg, zoom, camera);
 }
 
-hl_status hl_camera_frame_upright(const hl_scene_description *description, hl_upright upright, double azimuth_deg,
-                                  double elevation_deg, double zoom, hl_camera *camera) {
+hl_status hl_camera_frame_upright(const hl_scene_description *description, hl_upright upright,
+                                  double azimuth_deg, double elevation_deg, double zoom, hl_camera *camera) {
   if (description == NULL || camera == NULL || description->volume_count == 0 || description->width < 1 ||
-      description->height < 1 || !isfinite(azimuth_deg) || !isfinite(elevation_deg) || !(zoom >= 1e-6 && zoom <= 1e6))
+      description->height < 1 || !isfinite(azimuth_deg) || !isfinite(elevation_deg) ||
+      !(zoom >= 1e-6 && zoom <= 1e6))
     return HL_ERROR_ARGUMENT;
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE;
   if (perspective && !(camera->fovy_deg > 0 && camera->fovy_deg < 180)) return HL_ERROR_ARGUMENT;

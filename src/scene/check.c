@@ -27,12 +27,15 @@ static hl_status refuse(const checker *check, const char *key, const char *probl
 static hl_status check_range(const checker *check, const char *key, double value, double low, double high,
                              const char *mend) {
   if (value >= low && value <= high) return HL_OK; /* a NaN fails */
-  const char *problem = isnan(value) ? "is not a number" : value < 0 && low == 0 ? "is negative" : "is out of range";
+  const char *problem = isnan(value)            ? "is not a number"
+                        : value < 0 && low == 0 ? "is negative"
+                                                : "is out of range";
   return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: %.9g %s: %s", check->place, key, value, problem, mend);
 }
 
 /* low < value: for lengths and angles that must not vanish. */
-static hl_status check_positive(const checker *check, const char *key, double value, double high, const char *mend) {
+static hl_status check_positive(const checker *check, const char *key, double value, double high,
+                                const char *mend) {
   if (value > 0 && value <= high) return HL_OK;
   const char *problem = isnan(value) ? "is not a number" : value <= 0 ? "is not above 0" : "is out of range";
   return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: %.9g %s: %s", check->place, key, value, problem, mend);
@@ -44,8 +47,8 @@ static hl_status check_choice(const checker *check, const char *key, int value, 
                  check->place, key, value);
 }
 
-static hl_status check_vector(const checker *check, const char *key, const double v[3], double low, double high,
-                              const char *mend) {
+static hl_status check_vector(const checker *check, const char *key, const double v[3], double low,
+                              double high, const char *mend) {
   for (int a = 0; a < 3; a++) {
     char element[48];
     snprintf(element, sizeof element, "%s/%d", key, a);
@@ -56,7 +59,8 @@ static hl_status check_vector(const checker *check, const char *key, const doubl
 }
 
 static hl_status check_point(const checker *check, const char *key, const double v[3]) {
-  return check_vector(check, key, v, -HL_LIMIT_LENGTH, HL_LIMIT_LENGTH, "give a coordinate between -1e15 and 1e15");
+  return check_vector(check, key, v, -HL_LIMIT_LENGTH, HL_LIMIT_LENGTH,
+                      "give a coordinate between -1e15 and 1e15");
 }
 
 static hl_status check_direction(const checker *check, const char *key, const double v[3]) {
@@ -64,8 +68,9 @@ static hl_status check_direction(const checker *check, const char *key, const do
   if (status != HL_OK) return status;
   double length = vec3_length(vec3_of(v));
   if (length >= 1e-100) return HL_OK;
-  return refuse(check, key, length > 0 ? "is too short to have a direction: give a vector of about unit length"
-                                       : "has no length: give the direction as three numbers, not all 0");
+  return refuse(check, key,
+                length > 0 ? "is too short to have a direction: give a vector of about unit length"
+                           : "has no length: give the direction as three numbers, not all 0");
 }
 
 static hl_status check_image(const hl_scene_description *d, hl_error *error) {
@@ -80,7 +85,8 @@ static hl_status check_image(const hl_scene_description *d, hl_error *error) {
 static hl_status check_camera(const hl_camera *camera, hl_error *error) {
   checker check = {error, "/camera"};
   hl_status status;
-  if ((status = check_choice(&check, "type", (int)camera->type, 0, HL_CAMERA_ORTHOGRAPHIC)) != HL_OK) return status;
+  if ((status = check_choice(&check, "type", (int)camera->type, 0, HL_CAMERA_ORTHOGRAPHIC)) != HL_OK)
+    return status;
   if ((status = check_point(&check, "position", camera->position)) != HL_OK) return status;
   if ((status = check_point(&check, "target", camera->target)) != HL_OK) return status;
   if ((status = check_direction(&check, "up", camera->up)) != HL_OK) return status;
@@ -88,7 +94,8 @@ static hl_status check_camera(const hl_camera *camera, hl_error *error) {
   double distance = vec3_length(vec3_subtract(target, position));
   double size = fmax(vec3_length(position), vec3_length(target));
   if (!(distance > 1e-12 * size) || distance < 1e-100)
-    return refuse(&check, "target", "is where the eye is: move the target or the position, so that there is a line of sight");
+    return refuse(&check, "target",
+                  "is where the eye is: move the target or the position, so that there is a line of sight");
   if (camera->type == HL_CAMERA_PERSPECTIVE)
     return check_range(&check, "fovy_deg", camera->fovy_deg, 1e-6, 179.999,
                        "give an angle in degrees, above 0 and below 180");
@@ -101,7 +108,9 @@ static hl_status check_light_place(const checker *check, const hl_light *light) 
   if (light->type == HL_LIGHT_DIRECTIONAL) {
     if ((status = check_direction(check, "direction", light->direction)) != HL_OK) return status;
     if (light->falloff != HL_FALLOFF_NONE)
-      return refuse(check, "falloff", "inverse_square on a directional light, which is infinitely far: use none, or a point light");
+      return refuse(
+          check, "falloff",
+          "inverse_square on a directional light, which is infinitely far: use none, or a point light");
     return check_range(check, "angular_diameter_deg", light->angular_diameter_deg, 0, 120,
                        "give an angle in degrees from 0 (a sharp light) to 120");
   }
@@ -118,10 +127,13 @@ static hl_status check_light(const hl_light *light, size_t index, hl_error *erro
   if ((status = check_choice(&check, "type", (int)light->type, 0, HL_LIGHT_POLYGON)) != HL_OK) return status;
   if (light->type > HL_LIGHT_POINT)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s/type: \"%s\" lights are not supported by this version: use directional or point, both of which can have a size",
+                   "%s/type: \"%s\" lights are not supported by this version: use directional or point, both "
+                   "of which can have a size",
                    check.place, type_names[light->type]);
-  if ((status = check_choice(&check, "falloff", (int)light->falloff, 0, HL_FALLOFF_INVERSE_SQUARE)) != HL_OK) return status;
-  if ((status = check_choice(&check, "shadows", (int)light->shadows, 0, HL_SHADOWS_SOFT)) != HL_OK) return status;
+  if ((status = check_choice(&check, "falloff", (int)light->falloff, 0, HL_FALLOFF_INVERSE_SQUARE)) != HL_OK)
+    return status;
+  if ((status = check_choice(&check, "shadows", (int)light->shadows, 0, HL_SHADOWS_SOFT)) != HL_OK)
+    return status;
   if ((status = check_light_place(&check, light)) != HL_OK) return status;
   if ((status = check_vector(&check, "color", light->color, 0, HL_LIMIT_LENGTH,
                              "give linear RGB, none below 0")) != HL_OK) return status;
@@ -129,24 +141,28 @@ static hl_status check_light(const hl_light *light, size_t index, hl_error *erro
 }
 
 /* Sorted, and at most two points at one value: two make a step. */
-static hl_status check_order(const checker *check, const char *key, size_t index, double before2, double before,
-                             double value) {
+static hl_status check_order(const checker *check, const char *key, size_t index, double before2,
+                             double before, double value) {
   if (value < before)
-    return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s/%zu/0: %.9g comes after %.9g: sort the points by value",
-                   check->place, key, index, value, before);
-  if (index >= 2 && value == before && before == before2)
     return hl_fail(check->error, HL_ERROR_INPUT,
-                   "%s/%s/%zu/0: %.9g is there a third time: two points at one value make a step, remove the others",
-                   check->place, key, index, value);
+                   "%s/%s/%zu/0: %.9g comes after %.9g: sort the points by value", check->place, key, index,
+                   value, before);
+  if (index >= 2 && value == before && before == before2)
+    return hl_fail(
+        check->error, HL_ERROR_INPUT,
+        "%s/%s/%zu/0: %.9g is there a third time: two points at one value make a step, remove the others",
+        check->place, key, index, value);
   return HL_OK;
 }
 
-static hl_status check_count(const checker *check, const char *key, const void *points, size_t count, size_t limit) {
+static hl_status check_count(const checker *check, const char *key, const void *points, size_t count,
+                             size_t limit) {
   if (count > 0 && points == NULL)
-    return hl_fail(check->error, HL_ERROR_ARGUMENT, "%s/%s: is null but its count is %zu", check->place, key, count);
+    return hl_fail(check->error, HL_ERROR_ARGUMENT, "%s/%s: is null but its count is %zu", check->place, key,
+                   count);
   if (count > limit)
-    return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: has %zu entries: at most %zu are allowed", check->place, key,
-                   count, limit);
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: has %zu entries: at most %zu are allowed",
+                   check->place, key, count, limit);
   return HL_OK;
 }
 
@@ -157,13 +173,15 @@ static hl_status check_value(const checker *check, const char *key, size_t index
 }
 
 static hl_status check_opacity_points(const checker *check, const hl_transfer_function *function) {
-  hl_status status = check_count(check, "opacity", function->opacity, function->opacity_count, HL_LIMIT_POINTS);
+  hl_status status =
+      check_count(check, "opacity", function->opacity, function->opacity_count, HL_LIMIT_POINTS);
   for (size_t p = 0; status == HL_OK && p < function->opacity_count; p++) {
     const hl_opacity_point *point = &function->opacity[p];
     char element[48];
     snprintf(element, sizeof element, "opacity/%zu/1", p);
     if ((status = check_value(check, "opacity", p, point->value)) != HL_OK) return status;
-    if (p > 0) status = check_order(check, "opacity", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
+    if (p > 0)
+      status = check_order(check, "opacity", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
     if (status == HL_OK)
       status = check_range(check, element, point->opacity, 0, 1, "give an opacity from 0 to 1");
   }
@@ -175,7 +193,8 @@ static hl_status check_color_points(const checker *check, const hl_transfer_func
   for (size_t p = 0; status == HL_OK && p < function->color_count; p++) {
     const hl_color_point *point = &function->color[p];
     if ((status = check_value(check, "color", p, point->value)) != HL_OK) return status;
-    if (p > 0) status = check_order(check, "color", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
+    if (p > 0)
+      status = check_order(check, "color", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
     for (int channel = 0; status == HL_OK && channel < 3; channel++) {
       char element[48];
       snprintf(element, sizeof element, "color/%zu/%d", p, channel + 1);
@@ -185,7 +204,8 @@ static hl_status check_color_points(const checker *check, const hl_transfer_func
   return status;
 }
 
-hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place, hl_error *error) {
+hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place,
+                                     hl_error *error) {
   checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "%s", place);
   hl_status status = check_positive(&check, "unit_distance", function->unit_distance, HL_LIMIT_LENGTH,
@@ -227,7 +247,8 @@ static hl_status check_clip(const hl_scene_volume *volume, const char *parent, h
   if ((status = check_point(&check, "max", volume->clip_max)) != HL_OK) return status;
   for (int a = 0; a < 3; a++)
     if (volume->clip_min[a] >= volume->clip_max[a])
-      return hl_fail(error, HL_ERROR_INPUT, "%s/max/%d: %.9g is not above min, %.9g: nothing would be left, enlarge the box",
+      return hl_fail(error, HL_ERROR_INPUT,
+                     "%s/max/%d: %.9g is not above min, %.9g: nothing would be left, enlarge the box",
                      check.place, a, volume->clip_max[a], volume->clip_min[a]);
   return HL_OK;
 }
@@ -241,7 +262,8 @@ static hl_status check_placement(const checker *check, const hl_scene_volume *vo
       return refuse(check, "transform", "makes voxels too large to compute with: use a smaller scale");
   }
   if (!(vec3_length(placement.offset) <= 1e3 * HL_LIMIT_LENGTH))
-    return refuse(check, "transform", "moves the volume too far away to compute with: use a shorter translate");
+    return refuse(check, "transform",
+                  "moves the volume too far away to compute with: use a shorter translate");
   if (!affine3_invert(placement, &inverse))
     return refuse(check, "file", "the volume's axes lie in one plane: mend its spacing or direction");
   return HL_OK;
@@ -257,10 +279,12 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
   char place[80];
   snprintf(place, sizeof place, "/volumes/%zu/transfer_function", index);
   if ((status = hl_transfer_function_check(&volume->transfer_function, place, error)) != HL_OK) return status;
-  if ((status = check_choice(&check, "shading", (int)volume->shading, 0, HL_SHADING_NONE)) != HL_OK) return status;
+  if ((status = check_choice(&check, "shading", (int)volume->shading, 0, HL_SHADING_NONE)) != HL_OK)
+    return status;
   if ((status = check_material(&volume->material, check.place, error)) != HL_OK) return status;
-  if ((status = check_vector(&check, "attenuation_color", volume->attenuation_color, 0, 1000,
-                             "give relative extinctions from 0 to 1000, 1 for as much as the opacity says")) != HL_OK)
+  if ((status = check_vector(
+           &check, "attenuation_color", volume->attenuation_color, 0, 1000,
+           "give relative extinctions from 0 to 1000, 1 for as much as the opacity says")) != HL_OK)
     return status;
   if ((status = check_clip(volume, check.place, error)) != HL_OK) return status;
   return check_placement(&check, volume);
@@ -269,19 +293,30 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
 static hl_status check_render(const hl_render_settings *render, hl_error *error) {
   checker check = {error, "/render"};
   hl_status status;
-  if ((status = check_choice(&check, "shadows", (int)render->shadows, HL_SHADOWS_OFF, HL_SHADOWS_SOFT)) != HL_OK) return status;
-  if ((status = check_choice(&check, "soft_method", (int)render->soft_method, 0, HL_SOFT_SUBLIGHTS)) != HL_OK) return status;
+  if ((status = check_choice(&check, "shadows", (int)render->shadows, HL_SHADOWS_OFF, HL_SHADOWS_SOFT)) !=
+      HL_OK)
+    return status;
+  if ((status = check_choice(&check, "soft_method", (int)render->soft_method, 0, HL_SOFT_SUBLIGHTS)) != HL_OK)
+    return status;
   if ((status = check_range(&check, "light_samples", render->light_samples, 1, HL_LIMIT_LIGHT_SAMPLES,
                             "give M from 1 to 64, for M x M parts of the light")) != HL_OK) return status;
   if ((status = check_range(&check, "sheet_spacing", render->sheet_spacing, HL_LIMIT_SHEET_SPACING_LOW,
-                            HL_LIMIT_SHEET_SPACING_HIGH, "give voxels between sheets, from 0.01 to 100")) != HL_OK)
+                            HL_LIMIT_SHEET_SPACING_HIGH, "give voxels between sheets, from 0.01 to 100")) !=
+      HL_OK)
     return status;
-  if ((status = check_choice(&check, "kernel", (int)render->kernel, 0, HL_KERNEL_LINEAR)) != HL_OK) return status;
-  if ((status = check_choice(&check, "reconstruction", (int)render->reconstruction, 0, HL_RECONSTRUCTION_GATHER)) != HL_OK) return status;
-  if ((status = check_choice(&check, "slicing", (int)render->slicing, 0, HL_SLICING_IMAGE_ALIGNED)) != HL_OK) return status;
-  if ((status = check_choice(&check, "shadow_lookup", (int)render->shadow_lookup, 0, HL_LOOKUP_NEAREST)) != HL_OK) return status;
-  if ((status = check_range(&check, "shadow_resolution", render->shadow_resolution, 0, HL_LIMIT_SHADOW_RESOLUTION,
-                            "give pixels from 1 to 16384, or auto")) != HL_OK) return status;
+  if ((status = check_choice(&check, "kernel", (int)render->kernel, 0, HL_KERNEL_LINEAR)) != HL_OK)
+    return status;
+  if ((status = check_choice(&check, "reconstruction", (int)render->reconstruction, 0,
+                             HL_RECONSTRUCTION_GATHER)) != HL_OK)
+    return status;
+  if ((status = check_choice(&check, "slicing", (int)render->slicing, 0, HL_SLICING_IMAGE_ALIGNED)) != HL_OK)
+    return status;
+  if ((status = check_choice(&check, "shadow_lookup", (int)render->shadow_lookup, 0, HL_LOOKUP_NEAREST)) !=
+      HL_OK)
+    return status;
+  if ((status = check_range(&check, "shadow_resolution", render->shadow_resolution, 0,
+                            HL_LIMIT_SHADOW_RESOLUTION, "give pixels from 1 to 16384, or auto")) != HL_OK)
+    return status;
   return check_range(&check, "threads", render->threads, 0, HL_LIMIT_THREADS,
                      "give a number of threads up to 1024, 0 for one per processor");
 }
@@ -291,10 +326,13 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
   hl_status status;
   if ((status = check_image(d, error)) != HL_OK) return status;
   if ((status = check_camera(&d->camera, error)) != HL_OK) return status;
-  if ((status = check_vector(&root, "ambient", d->ambient, 0, HL_LIMIT_LENGTH, "give linear RGB, none below 0")) != HL_OK)
+  if ((status = check_vector(&root, "ambient", d->ambient, 0, HL_LIMIT_LENGTH,
+                             "give linear RGB, none below 0")) != HL_OK)
     return status;
-  if ((status = check_count(&root, "lights", d->lights, d->light_count, HL_LIMIT_LIGHTS)) != HL_OK) return status;
-  if ((status = check_count(&root, "volumes", d->volumes, d->volume_count, HL_LIMIT_VOLUMES)) != HL_OK) return status;
+  if ((status = check_count(&root, "lights", d->lights, d->light_count, HL_LIMIT_LIGHTS)) != HL_OK)
+    return status;
+  if ((status = check_count(&root, "volumes", d->volumes, d->volume_count, HL_LIMIT_VOLUMES)) != HL_OK)
+    return status;
   if (d->volume_count == 0) return refuse(&root, "volumes", "is empty: name at least one volume");
   for (size_t l = 0; l < d->light_count; l++)
     if ((status = check_light(&d->lights[l], l, error)) != HL_OK) return status;

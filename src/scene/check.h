@@ -20,6 +20,7 @@
 hl_status hl_description_check(const hl_scene_description *description, hl_error *error);
 
 /* One transfer function; place is what errors call it ("/volumes/0/transfer_function"). */
-hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place, hl_error *error);
+hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place,
+                                     hl_error *error);
 
 #endif

@@ -41,7 +41,8 @@ static void mix(const double a[3], const double b[3], double t, double mixed[3])
 }
 
 static void rgb_to_hsv(const double rgb[3], double hsv[3]) {
-  double high = fmax(fmax(rgb[0], rgb[1]), rgb[2]), low = fmin(fmin(rgb[0], rgb[1]), rgb[2]), span = high - low;
+  double high = fmax(fmax(rgb[0], rgb[1]), rgb[2]), low = fmin(fmin(rgb[0], rgb[1]), rgb[2]),
+         span = high - low;
   hsv[0] = 0;
   hsv[1] = high > 0 ? span / high : 0;
   hsv[2] = high;
@@ -70,8 +71,8 @@ static void mix_hsv(const double a[3], const double b[3], double t, double mixed
   hsv_to_rgb(between, mixed);
 }
 
-/* Msh: magnitude, saturation angle and hue of a CIELAB colour (Moreland 2009, "Diverging color maps for scientific
- * visualization", whose constants these are). */
+/* Msh: magnitude, saturation angle and hue of a CIELAB colour (Moreland 2009, "Diverging color maps for
+ * scientific visualization", whose constants these are). */
 typedef struct msh { double m, s, h; } msh;
 
 static msh msh_of(const double srgb[3]) {

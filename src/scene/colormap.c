@@ -1,9 +1,9 @@
 /* scene/colormap.c - named colormaps: sRGB tables, turned into linear colour points over a range of values.
  *
- * Sources: viridis, inferno, magma and plasma by N. Smith, S. van der Walt and E. Firing (released to the public
- * domain, CC0); cividis by J. Nunez, C. Anderton and R. Renslow (2018); coolwarm by K. Moreland (2009); each given
- * here at 33 equal steps. turbo is A. Mikhailov's polynomial (2019). bone, hot and copper are the classic
- * piecewise linear maps by their corners.
+ * Sources: viridis, inferno, magma and plasma by N. Smith, S. van der Walt and E. Firing (released to the
+ * public domain, CC0); cividis by J. Nunez, C. Anderton and R. Renslow (2018); coolwarm by K. Moreland
+ * (2009); each given here at 33 equal steps. turbo is A. Mikhailov's polynomial (2019). bone, hot and copper
+ * are the classic piecewise linear maps by their corners.
  */
 #include "scene/colormap.h"
 
@@ -52,13 +52,17 @@ static const struct { const char *name; unsigned int color[EQUAL_STEPS]; } table
 /* A corner of a piecewise linear map, sRGB. */
 typedef struct corner { double at, color[3]; } corner;
 
-static const struct { const char *name; int count; corner corners[4]; } cornered[] = {
-    {"grays", 2, {{0, {0, 0, 0}}, {1, {1, 1, 1}}}},
-    {"hot", 4, {{0, {0.0416, 0, 0}}, {0.365079, {1, 0, 0}}, {0.746032, {1, 1, 0}}, {1, {1, 1, 1}}}},
-    {"bone", 4, {{0, {0, 0, 0}}, {0.365079, {0.319444, 0.319444, 0.444444}}, {0.746032, {0.652778, 0.777778, 0.777778}},
-                 {1, {1, 1, 1}}}},
-    {"copper", 3, {{0, {0, 0, 0}}, {0.809524, {1, 0.632, 0.4025}}, {1, {1, 0.7812, 0.4975}}}},
-    {"bronze", 4, {{0, {0.30, 0.17, 0.11}}, {0.35, {0.66, 0.40, 0.26}}, {0.7, {0.90, 0.72, 0.52}}, {1, {0.98, 0.94, 0.86}}}},
+typedef struct cornered_map { const char *name; corner corners[4]; } cornered_map;
+
+static const cornered_map cornered[] = {
+    {"grays", {{0, {0, 0, 0}}, {1, {1, 1, 1}}}},
+    {"hot", {{0, {0.0416, 0, 0}}, {0.365079, {1, 0, 0}}, {0.746032, {1, 1, 0}}, {1, {1, 1, 1}}}},
+    {"bone",
+     {{0, {0, 0, 0}}, {0.365079, {0.319444, 0.319444, 0.444444}}, {0.746032, {0.652778, 0.777778, 0.777778}},
+      {1, {1, 1, 1}}}},
+    {"copper", {{0, {0, 0, 0}}, {0.809524, {1, 0.632, 0.4025}}, {1, {1, 0.7812, 0.4975}}}},
+    {"bronze",
+     {{0, {0.30, 0.17, 0.11}}, {0.35, {0.66, 0.40, 0.26}}, {0.7, {0.90, 0.72, 0.52}}, {1, {0.98, 0.94, 0.86}}}},
 };
 
 #define TABLE_COUNT (sizeof tables / sizeof *tables)
@@ -136,7 +140,8 @@ hl_status hl_transfer_function_colormap(hl_context *context, const char *name, d
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_colormap: null context, name or function");
   if (!hl_colormap_evaluate(name, 0, ignored)) return fail_unknown(name, error);
   if (!(low < high) || !isfinite(high - low))
-    return hl_fail(error, HL_ERROR_INPUT, "colormap range %.9g to %.9g: give two values, the lower one first", low, high);
+    return hl_fail(error, HL_ERROR_INPUT, "colormap range %.9g to %.9g: give two values, the lower one first",
+                   low, high);
   size_t count = HL_COLORMAP_POINTS;
   hl_color_point *points = hl_allocate(context, count, sizeof *points);
   if (points == NULL) return hl_fail_memory(error, count * sizeof *points, "a colormap");

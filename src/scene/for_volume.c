@@ -19,7 +19,8 @@ void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
 }
 
 /* The camera of a scene whose only volume was analysed, or (analysis null) of any scene. */
-static hl_status frame(const hl_scene_description *description, const hl_data_analysis *analysis, hl_camera *camera) {
+static hl_status frame(const hl_scene_description *description, const hl_data_analysis *analysis,
+                       hl_camera *camera) {
   hl_upright upright = {{0, 0, 1}, {1, 0, 0}, AZIMUTH};
   if (analysis != NULL) upright = hl_scene_upright(&description->volumes[0], analysis);
   return hl_camera_frame_upright(description, upright, upright.azimuth_deg, ELEVATION, 1, camera);
@@ -51,7 +52,8 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   scene_volume.volume = volume;
   scene_volume.file = file;
   choose_material(analysis.kind, &scene_volume);
-  status = hl_transfer_function_from_analysis(context, volume, &analysis, &scene_volume.transfer_function, error);
+  status =
+      hl_transfer_function_from_analysis(context, volume, &analysis, &scene_volume.transfer_function, error);
   if (status != HL_OK) return status;
   hl_light light;
   hl_scene_description description;

@@ -24,7 +24,8 @@ void hl_add_color(hl_function_writer *w, double distance, const double color[3])
   memcpy(point->color, color, sizeof point->color);
 }
 
-void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start, double end) {
+void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start,
+                     double end) {
   for (int step = 0; step <= 32; step++) {
     double t = step / 32.0, color[3];
     hl_colormap_evaluate(name, start + t * (end - start), color);

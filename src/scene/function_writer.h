@@ -19,7 +19,8 @@ void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis);
 void hl_add_opacity(hl_function_writer *w, double distance, double opacity);
 void hl_add_color(hl_function_writer *w, double distance, const double color[3]); /* linear RGB */
 /* The part start..end of a named colormap over the distances from..to. */
-void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start, double end);
+void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start,
+                     double end);
 
 /* The opacity per voxel edge that gives an optical depth across the whole object. */
 double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth);

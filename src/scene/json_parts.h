@@ -16,8 +16,9 @@ typedef struct hl_loaded_volume {
   hl_volume *volume; /* owned */
 } hl_loaded_volume;
 
-/* One volume: texts are the tree's, except file, which is the loaded volume's path; the volume is borrowed from
- * loaded[0 .. *loaded_count), which has room for one more; the transfer function's points are owned by *volume. */
+/* One volume: texts are the tree's, except file, which is the loaded volume's path; the volume is borrowed
+ * from loaded[0 .. *loaded_count), which has room for one more; the transfer function's points are owned by
+ * *volume. */
 hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded,
                               size_t *loaded_count, hl_scene_volume *volume);
 

@@ -21,14 +21,14 @@ const char *const hl_shadow_lookup_names[] = {"bilinear", "nearest", NULL};
 hl_status hl_json_parse(const char *text, size_t length, const char *name, json_t **root, hl_error *error) {
   json_error_t fault;
   if (length > HL_JSON_LIMIT)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: %zu bytes are too many for a scene: at most %zu are read", name, length,
-                   HL_JSON_LIMIT);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: %zu bytes are too many for a scene: at most %zu are read",
+                   name, length, HL_JSON_LIMIT);
   *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
   if (json_error_code(&fault) == json_error_out_of_memory) return hl_fail_memory(error, length, name);
   bool comment = strstr(fault.text, "near '/'") != NULL || strstr(fault.text, "near '//") != NULL;
-  return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line, fault.column,
-                    fault.text, comment ? ": JSON has no comments, remove them" : "");
+  return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line,
+                    fault.column, fault.text, comment ? ": JSON has no comments, remove them" : "");
 }
 
 hl_status hl_json_fail(hl_json_reader *reader, hl_status code, const char *key, const char *format, ...) {
@@ -47,8 +47,8 @@ hl_status hl_json_prefix(hl_json_reader *reader, const char *place) {
   if (error == NULL) return HL_OK;
   char text[sizeof error->message];
   memcpy(text, error->message, sizeof text);
-  int used = snprintf(error->message, sizeof error->message, "%s: %s%s", reader->name, place != NULL ? place : "",
-                      place != NULL ? ": " : "");
+  int used = snprintf(error->message, sizeof error->message, "%s: %s%s", reader->name,
+                      place != NULL ? place : "", place != NULL ? ": " : "");
   if (used > 0 && (size_t)used < sizeof error->message)
     snprintf(error->message + used, sizeof error->message - (size_t)used, "%s", text);
   return error->code;
@@ -128,7 +128,8 @@ hl_status hl_json_integer(hl_json_reader *reader, const json_t *object, const ch
     return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give a whole number", type_name(value));
   json_int_t integer = json_integer_value(value);
   if (integer < -1000000000 || integer > 1000000000)
-    return hl_json_fail(reader, HL_ERROR_INPUT, key, "%lld is out of range: give a smaller number", (long long)integer);
+    return hl_json_fail(reader, HL_ERROR_INPUT, key, "%lld is out of range: give a smaller number",
+                        (long long)integer);
   *number = (int)integer;
   return HL_OK;
 }
@@ -151,8 +152,8 @@ hl_status hl_json_text(hl_json_reader *reader, const json_t *object, const char 
   return HL_OK;
 }
 
-hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const char *key, const char *const *names,
-                         int first, int *choice) {
+hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const char *key,
+                         const char *const *names, int first, int *choice) {
   const char *name = NULL;
   hl_status status = hl_json_text(reader, object, key, &name);
   if (status != HL_OK || name == NULL) return status;
@@ -166,7 +167,8 @@ hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const cha
   return hl_json_fail(reader, HL_ERROR_INPUT, key, "\"%.80s\" is no known choice: %s", name, mend);
 }
 
-hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count, double *numbers) {
+hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count,
+                          double *numbers) {
   const json_t *value = json_object_get(object, key);
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, key);

@@ -27,8 +27,8 @@ typedef struct hl_json_reader {
 hl_status hl_json_parse(const char *text, size_t length, const char *name, json_t **root, hl_error *error);
 
 /* "NAME: PLACE/KEY: ..."; key may be null (the place itself). */
-__attribute__((format(printf, 4, 5))) hl_status hl_json_fail(hl_json_reader *reader, hl_status code, const char *key,
-                                                            const char *format, ...);
+__attribute__((format(printf, 4, 5))) hl_status hl_json_fail(hl_json_reader *reader, hl_status code,
+                                                             const char *key, const char *format, ...);
 /* Puts "NAME: " (and the place, if not null) before a message that is already there; returns its code. */
 hl_status hl_json_prefix(hl_json_reader *reader, const char *place);
 
@@ -47,15 +47,21 @@ hl_status hl_json_integer(hl_json_reader *reader, const json_t *object, const ch
 hl_status hl_json_flag(hl_json_reader *reader, const json_t *object, const char *key, int *flag);
 hl_status hl_json_text(hl_json_reader *reader, const json_t *object, const char *key, const char **text);
 /* One of the null-terminated names; *choice gets its index plus first. */
-hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const char *key, const char *const *names,
-                         int first, int *choice);
+hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const char *key,
+                         const char *const *names, int first, int *choice);
 /* An array of exactly count numbers. */
-hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count, double *numbers);
-
+hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count,
+                          double *numbers);
 
 /* The names that JSON has for enumerators, in their order; null-terminated. */
-extern const char *const hl_camera_type_names[], *const hl_light_type_names[], *const hl_shadows_names[],
-    *const hl_falloff_names[], *const hl_shading_names[], *const hl_soft_method_names[], *const hl_kernel_names[],
-    *const hl_reconstruction_names[], *const hl_slicing_names[], *const hl_shadow_lookup_names[];
+extern const char *const hl_camera_type_names[],
+    *const hl_light_type_names[], *const hl_shadows_names[],
+                                      *const hl_falloff_names[],
+                                          *const hl_shading_names[],
+                                              *const hl_soft_method_names[],
+                                                  *const hl_kernel_names[],
+                                                      *const hl_reconstruction_names[],
+                                                          *const hl_slicing_names[],
+                                                              *const hl_shadow_lookup_names[];
 
 #endif

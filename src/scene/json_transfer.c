@@ -1,4 +1,5 @@
-/* scene/json_transfer.c - a transfer function from JSON: explicit points, a colormap, a preset or another file.
+/* scene/json_transfer.c - a transfer function from JSON: explicit points, a colormap, a preset or another
+ * file.
  *
  * A preset, a file or, without opacity points, the automatic function is the ground; points, colormap and
  * unit_distance given beside it take the place of its own.
@@ -14,15 +15,16 @@
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
 
 /* An array of arrays of `width` numbers, in memory of its own. */
-static hl_status read_rows(hl_json_reader *reader, const json_t *object, const char *key, size_t width, double **rows,
-                           size_t *count) {
+static hl_status read_rows(hl_json_reader *reader, const json_t *object, const char *key, size_t width,
+                           double **rows, size_t *count) {
   const json_t *value = json_object_get(object, key);
   size_t mark = hl_json_enter(reader, key);
   hl_status status = hl_json_array(reader, value, 0, HL_LIMIT_POINTS);
   if (status != HL_OK) return status;
   *count = json_array_size(value);
   *rows = hl_allocate(reader->context, *count * width, sizeof **rows);
-  if (*rows == NULL) return hl_fail_memory(reader->error, *count * width * sizeof **rows, "a transfer function");
+  if (*rows == NULL)
+    return hl_fail_memory(reader->error, *count * width * sizeof **rows, "a transfer function");
   for (size_t r = 0; status == HL_OK && r < *count; r++) {
     const json_t *row = json_array_get(value, r);
     size_t inner = hl_json_enter_index(reader, r);
@@ -31,7 +33,9 @@ static hl_status read_rows(hl_json_reader *reader, const json_t *object, const c
       char index[2] = {(char)('0' + n), 0};
       const json_t *element = json_array_get(row, n);
       if (json_is_number(element)) (*rows)[r * width + n] = json_number_value(element);
-      else status = hl_json_fail(reader, HL_ERROR_INPUT, index, "is no number: give %s", n == 0 ? "a data value" : "a number from 0 to 1");
+      else
+        status = hl_json_fail(reader, HL_ERROR_INPUT, index, "is no number: give %s",
+                              n == 0 ? "a data value" : "a number from 0 to 1");
     }
     if (status == HL_OK) hl_json_leave(reader, inner);
   }
@@ -73,14 +77,17 @@ static hl_status read_colormap(hl_json_reader *reader, const json_t *value, cons
   hl_status status = hl_json_text(reader, value, "colormap", &name);
   if (status != HL_OK) return status;
   if (name == NULL)
-    return has(value, "range") ? hl_json_fail(reader, HL_ERROR_INPUT, "range", "is for a colormap: give one, or remove the range")
+    return has(value, "range") ? hl_json_fail(reader, HL_ERROR_INPUT, "range",
+                                              "is for a colormap: give one, or remove the range")
                                : HL_OK;
   if (has(value, "color"))
     return hl_json_fail(reader, HL_ERROR_INPUT, "colormap", "and color exclude each other: remove one");
-  if (volume != NULL && volume->maximum > volume->minimum) range[0] = volume->minimum, range[1] = volume->maximum;
+  if (volume != NULL && volume->maximum > volume->minimum)
+    range[0] = volume->minimum, range[1] = volume->maximum;
   if ((status = hl_json_numbers(reader, value, "range", 2, range)) != HL_OK) return status;
   if (!(range[0] < range[1]))
-    return hl_json_fail(reader, HL_ERROR_INPUT, "range", "%.9g to %.9g is empty: give two values, the lower one first", range[0], range[1]);
+    return hl_json_fail(reader, HL_ERROR_INPUT, "range",
+                        "%.9g to %.9g is empty: give two values, the lower one first", range[0], range[1]);
   status = hl_transfer_function_colormap(reader->context, name, range[0], range[1], function, reader->error);
   if (status == HL_ERROR_INPUT) {
     hl_json_enter(reader, "colormap");
@@ -90,7 +97,8 @@ static hl_status read_colormap(hl_json_reader *reader, const json_t *value, cons
 }
 
 /* For files that have colours only. */
-static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume *volume, hl_transfer_function *function) {
+static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume *volume,
+                                        hl_transfer_function *function) {
   hl_transfer_function automatic;
   hl_status status = hl_transfer_function_automatic(reader->context, volume, &automatic, reader->error);
   if (status != HL_OK) return status;
@@ -111,11 +119,13 @@ static hl_status read_ground(hl_json_reader *reader, const json_t *value, const 
   if (preset != NULL && file != NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "file", "and preset exclude each other: remove one");
   if (preset != NULL) {
-    if (volume == NULL) return hl_json_fail(reader, HL_ERROR_INPUT, key, "needs a volume to adapt to: use it in a scene");
+    if (volume == NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, key, "needs a volume to adapt to: use it in a scene");
     status = hl_transfer_function_preset(reader->context, preset, volume, function, reader->error);
   } else if (file != NULL) {
     key = "file";
-    if (volume == NULL) return hl_json_fail(reader, HL_ERROR_INPUT, key, "in a file of its own: name that file directly");
+    if (volume == NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, key, "in a file of its own: name that file directly");
     char *path = hl_path_join(reader->context, reader->folder, file);
     if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
     status = hl_transfer_function_load(reader->context, path, function, reader->error);
@@ -124,7 +134,8 @@ static hl_status read_ground(hl_json_reader *reader, const json_t *value, const 
       status = take_automatic_opacity(reader, volume, function);
   } else if (!has(value, "opacity")) {
     key = NULL;
-    if (volume != NULL) status = hl_transfer_function_automatic(reader->context, volume, function, reader->error);
+    if (volume != NULL)
+      status = hl_transfer_function_automatic(reader->context, volume, function, reader->error);
     else if (!has(value, "color") && !has(value, "colormap"))
       return hl_json_fail(reader, HL_ERROR_INPUT, "opacity", "is missing: give [[value, opacity], ...]");
   }
@@ -136,7 +147,8 @@ static hl_status read_ground(hl_json_reader *reader, const json_t *value, const 
 
 static hl_status read_members(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
                               hl_transfer_function *function) {
-  static const char *const keys[] = {"unit_distance", "opacity", "color", "colormap", "range", "preset", "file", NULL};
+  static const char *const keys[] = {"unit_distance", "opacity", "color", "colormap",
+                                     "range",         "preset",  "file",  NULL};
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = read_ground(reader, value, volume, function);
   if (status == HL_OK) status = hl_json_number(reader, value, "unit_distance", &function->unit_distance);
@@ -152,7 +164,8 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
     if (status != HL_OK) hl_json_prefix(reader, reader->place);
     return status;
   }
-  size_t mark = volume != NULL ? hl_json_enter(reader, "transfer_function") : 0; /* a file of its own is the root */
+  size_t mark =
+      volume != NULL ? hl_json_enter(reader, "transfer_function") : 0; /* a file of its own is the root */
   hl_status status = read_members(reader, value, volume, function);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;

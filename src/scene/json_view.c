@@ -16,9 +16,12 @@ static hl_status refuse_key(hl_json_reader *reader, const json_t *object, const 
 static hl_status frame(hl_json_reader *reader, const hl_scene_description *d, hl_camera *camera) {
   if (camera->type == HL_CAMERA_PERSPECTIVE && !(camera->fovy_deg >= 1e-6 && camera->fovy_deg <= 179.999))
     return hl_json_fail(reader, HL_ERROR_INPUT, "fovy_deg",
-                        "%.9g is out of range: give an angle in degrees, above 0 and below 180", camera->fovy_deg);
+                        "%.9g is out of range: give an angle in degrees, above 0 and below 180",
+                        camera->fovy_deg);
   hl_status status = hl_scene_frame(d, camera);
-  return status == HL_OK ? HL_OK : hl_json_fail(reader, status, NULL, "the volumes cannot be framed: give a position and a target");
+  return status == HL_OK ? HL_OK
+                         : hl_json_fail(reader, status, NULL,
+                                        "the volumes cannot be framed: give a position and a target");
 }
 
 static hl_status read_camera_members(hl_json_reader *reader, const json_t *value, hl_scene_description *d) {
@@ -29,12 +32,15 @@ static hl_status read_camera_members(hl_json_reader *reader, const json_t *value
   if (status == HL_OK) status = hl_json_choice(reader, value, "type", hl_camera_type_names, 0, &type);
   camera->type = (hl_camera_type)type;
   if (status == HL_OK && type == HL_CAMERA_PERSPECTIVE)
-    status = refuse_key(reader, value, "height", "is for orthographic cameras: give fovy_deg, or \"type\": \"orthographic\"");
+    status = refuse_key(reader, value, "height",
+                        "is for orthographic cameras: give fovy_deg, or \"type\": \"orthographic\"");
   if (status == HL_OK && type == HL_CAMERA_ORTHOGRAPHIC)
-    status = refuse_key(reader, value, "fovy_deg", "is for perspective cameras: give height, or \"type\": \"perspective\"");
+    status = refuse_key(reader, value, "fovy_deg",
+                        "is for perspective cameras: give height, or \"type\": \"perspective\"");
   if (status == HL_OK && !has(value, "position"))
     for (int k = 2; status == HL_OK && k < 4; k++)
-      status = refuse_key(reader, value, keys[k], "needs a position: give both, or neither to frame the volumes");
+      status =
+          refuse_key(reader, value, keys[k], "needs a position: give both, or neither to frame the volumes");
   if (status == HL_OK) status = hl_json_number(reader, value, "fovy_deg", &camera->fovy_deg);
   if (status == HL_OK) status = frame(reader, d, camera);
   if (status == HL_OK && has(value, "position")) memcpy(camera->up, (double[3]){0, 0, 1}, sizeof camera->up);
@@ -52,12 +58,14 @@ hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_sc
 }
 
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light) {
-  static const char *const all[] = {"type", "direction", "angular_diameter_deg", "position", "radius", "normal", "edge1",
-                                    "edge2", "opening_angle_deg", "falloff_angle_deg", "vertices", "color", "intensity",
-                                    "falloff", "shadows", "texture", NULL};
-  static const char *const directional[] = {"type", "direction", "angular_diameter_deg", "color", "intensity", "falloff",
-                                            "shadows", NULL};
-  static const char *const point[] = {"type", "position", "radius", "color", "intensity", "falloff", "shadows", NULL};
+  static const char *const all[] = {
+      "type", "direction", "angular_diameter_deg", "position", "radius", "normal", "edge1", "edge2",
+      "opening_angle_deg", "falloff_angle_deg", "vertices", "color", "intensity", "falloff", "shadows", "texture",
+      NULL};
+  static const char *const directional[] = {
+      "type", "direction", "angular_diameter_deg", "color", "intensity", "falloff", "shadows", NULL};
+  static const char *const point[] = {"type",      "position", "radius",  "color",
+                                      "intensity", "falloff",  "shadows", NULL};
   hl_light_defaults(light);
   int type = (int)light->type, falloff = (int)light->falloff, shadows = (int)light->shadows;
   hl_status status = hl_json_object(reader, value, all);
@@ -65,20 +73,25 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
   if (status != HL_OK) return status;
   if (type > HL_LIGHT_POINT)
     return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "type",
-                        "\"%s\" lights are not supported by this version: use directional or point, both of which can have a size",
+                        "\"%s\" lights are not supported by this version: use directional or point, both of "
+                        "which can have a size",
                         hl_light_type_names[type]);
   if (has(value, "texture"))
-    return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "texture", "projective textures are not supported by this version: remove the key");
-  if ((status = hl_json_object(reader, value, type == HL_LIGHT_POINT ? point : directional)) != HL_OK) return status;
+    return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "texture",
+                        "projective textures are not supported by this version: remove the key");
+  if ((status = hl_json_object(reader, value, type == HL_LIGHT_POINT ? point : directional)) != HL_OK)
+    return status;
   light->type = (hl_light_type)type;
   status = hl_json_numbers(reader, value, "direction", 3, light->direction);
-  if (status == HL_OK) status = hl_json_number(reader, value, "angular_diameter_deg", &light->angular_diameter_deg);
+  if (status == HL_OK)
+    status = hl_json_number(reader, value, "angular_diameter_deg", &light->angular_diameter_deg);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "position", 3, light->position);
   if (status == HL_OK) status = hl_json_number(reader, value, "radius", &light->radius);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "color", 3, light->color);
   if (status == HL_OK) status = hl_json_number(reader, value, "intensity", &light->intensity);
   if (status == HL_OK) status = hl_json_choice(reader, value, "falloff", hl_falloff_names, 0, &falloff);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
   light->falloff = (hl_falloff)falloff;
   light->shadows = (hl_shadows)shadows;
   return status;
@@ -91,30 +104,37 @@ static hl_status read_shadow_resolution(hl_json_reader *reader, const json_t *va
     return HL_OK;
   }
   if (member == NULL) return HL_OK;
-  if (json_is_integer(member) && json_integer_value(member) >= 1 && json_integer_value(member) <= HL_LIMIT_SHADOW_RESOLUTION) {
+  if (json_is_integer(member) && json_integer_value(member) >= 1 &&
+      json_integer_value(member) <= HL_LIMIT_SHADOW_RESOLUTION) {
     *resolution = (int)json_integer_value(member);
     return HL_OK;
   }
-  return hl_json_fail(reader, HL_ERROR_INPUT, "shadow_resolution", "give \"auto\" or a whole number of pixels from 1 to %d",
-                      HL_LIMIT_SHADOW_RESOLUTION);
+  return hl_json_fail(reader, HL_ERROR_INPUT, "shadow_resolution",
+                      "give \"auto\" or a whole number of pixels from 1 to %d", HL_LIMIT_SHADOW_RESOLUTION);
 }
 
 hl_status hl_json_read_render(hl_json_reader *reader, const json_t *value, hl_render_settings *render) {
-  static const char *const keys[] = {"shadows", "soft_method", "light_samples", "sheet_spacing", "kernel",
-                                     "reconstruction", "slicing", "shadow_lookup", "shadow_resolution", "threads", NULL};
+  static const char *const keys[] = {
+      "shadows", "soft_method",   "light_samples",     "sheet_spacing", "kernel", "reconstruction",
+      "slicing", "shadow_lookup", "shadow_resolution", "threads",       NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "render");
   int shadows = (int)render->shadows, method = (int)render->soft_method, kernel = (int)render->kernel,
-      reconstruction = (int)render->reconstruction, slicing = (int)render->slicing, lookup = (int)render->shadow_lookup;
+      reconstruction = (int)render->reconstruction, slicing = (int)render->slicing,
+      lookup = (int)render->shadow_lookup;
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "soft_method", hl_soft_method_names, 0, &method);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "soft_method", hl_soft_method_names, 0, &method);
   if (status == HL_OK) status = hl_json_integer(reader, value, "light_samples", &render->light_samples);
   if (status == HL_OK) status = hl_json_number(reader, value, "sheet_spacing", &render->sheet_spacing);
   if (status == HL_OK) status = hl_json_choice(reader, value, "kernel", hl_kernel_names, 0, &kernel);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "reconstruction", hl_reconstruction_names, 0, &reconstruction);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "reconstruction", hl_reconstruction_names, 0, &reconstruction);
   if (status == HL_OK) status = hl_json_choice(reader, value, "slicing", hl_slicing_names, 0, &slicing);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "shadow_lookup", hl_shadow_lookup_names, 0, &lookup);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "shadow_lookup", hl_shadow_lookup_names, 0, &lookup);
   if (status == HL_OK) status = read_shadow_resolution(reader, value, &render->shadow_resolution);
   if (status == HL_OK) status = hl_json_integer(reader, value, "threads", &render->threads);
   if (status != HL_OK) return status;

@@ -59,8 +59,8 @@ static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene
 }
 
 /* The volume of a file, loaded now or earlier. */
-static hl_status load(hl_json_reader *reader, const char *file, hl_loaded_volume *loaded, size_t *loaded_count,
-                      hl_scene_volume *volume) {
+static hl_status load(hl_json_reader *reader, const char *file, hl_loaded_volume *loaded,
+                      size_t *loaded_count, hl_scene_volume *volume) {
   char *path = hl_path_join(reader->context, reader->folder, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
   for (size_t v = 0; v < *loaded_count; v++)
@@ -82,13 +82,14 @@ static hl_status load(hl_json_reader *reader, const char *file, hl_loaded_volume
   return HL_OK;
 }
 
-static hl_status read_file(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded, size_t *loaded_count,
-                           hl_scene_volume *volume) {
+static hl_status read_file(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded,
+                           size_t *loaded_count, hl_scene_volume *volume) {
   static const char *const procedural[] = {"shapes", "voxel_size"};
   for (int k = 0; k < 2; k++)
     if (json_object_get(value, procedural[k]) != NULL)
-      return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, procedural[k],
-                          "procedural volumes in scenes are not supported by this version: write a volume file and name it");
+      return hl_json_fail(
+          reader, HL_ERROR_UNSUPPORTED, procedural[k],
+          "procedural volumes in scenes are not supported by this version: write a volume file and name it");
   const char *file = NULL;
   hl_status status = hl_json_text(reader, value, "file", &file);
   if (status != HL_OK) return status;
@@ -113,15 +114,27 @@ static hl_status read_shading(hl_json_reader *reader, const json_t *value, hl_sc
 
 hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded,
                               size_t *loaded_count, hl_scene_volume *volume) {
-  static const char *const keys[] = {"name", "file", "shapes", "voxel_size", "transform", "transfer_function", "shading",
-                                     "material", "attenuation_color", "visible", "casts_shadow", "receives_shadow",
-                                     "clip", NULL};
+  static const char *const keys[] = {"name",
+                                     "file",
+                                     "shapes",
+                                     "voxel_size",
+                                     "transform",
+                                     "transfer_function",
+                                     "shading",
+                                     "material",
+                                     "attenuation_color",
+                                     "visible",
+                                     "casts_shadow",
+                                     "receives_shadow",
+                                     "clip",
+                                     NULL};
   hl_scene_volume_defaults(volume);
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = hl_json_text(reader, value, "name", &volume->name);
   if (status == HL_OK) status = read_transform(reader, json_object_get(value, "transform"), volume);
   if (status == HL_OK) status = read_material(reader, json_object_get(value, "material"), &volume->material);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "attenuation_color", 3, volume->attenuation_color);
+  if (status == HL_OK)
+    status = hl_json_numbers(reader, value, "attenuation_color", 3, volume->attenuation_color);
   if (status == HL_OK) status = hl_json_flag(reader, value, "visible", &volume->visible);
   if (status == HL_OK) status = hl_json_flag(reader, value, "casts_shadow", &volume->casts_shadow);
   if (status == HL_OK) status = hl_json_flag(reader, value, "receives_shadow", &volume->receives_shadow);

@@ -1,6 +1,7 @@
 /* scene/json_write.c - a scene as JSON text that reads back as the same scene.
  *
- * Numbers are written with the fewest digits that give the same double again; rows of numbers stay on one line.
+ * Numbers are written with the fewest digits that give the same double again; rows of numbers stay on one
+ * line.
  */
 #define _GNU_SOURCE
 #include <locale.h>
@@ -155,7 +156,8 @@ static void write_light(writer *w, const hl_light *light) {
   }
   write_row(w, "color", light->color, 3);
   write_number(w, "intensity", light->intensity);
-  if (light->shadows != HL_SHADOWS_DEFAULT) write_name(w, "shadows", hl_shadows_names[light->shadows - HL_SHADOWS_OFF]);
+  if (light->shadows != HL_SHADOWS_DEFAULT)
+    write_name(w, "shadows", hl_shadows_names[light->shadows - HL_SHADOWS_OFF]);
   close_bracket(w, "}");
 }
 
@@ -261,10 +263,12 @@ hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **te
   for (size_t v = 0; v < scene->description.volume_count; v++) {
     const hl_scene_volume *volume = &scene->description.volumes[v];
     if (volume->file == NULL)
-      return hl_fail(error, HL_ERROR_ARGUMENT,
-                     "/volumes/%zu/file: the volume came from memory: write it to a file and name that in the scene", v);
+      return hl_fail(
+          error, HL_ERROR_ARGUMENT,
+          "/volumes/%zu/file: the volume came from memory: write it to a file and name that in the scene", v);
     if (!is_utf8(volume->file) || (volume->name != NULL && !is_utf8(volume->name)))
-      return hl_fail(error, HL_ERROR_ARGUMENT, "/volumes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", v);
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "/volumes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", v);
   }
   writer w = {.context = context, .first = true};
   write_scene(&w, &scene->description);

@@ -9,7 +9,8 @@
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* Optimal string alignment distance (Damerau 1964, each part edited once): three rows of the table suffice. */
+/* Optimal string alignment distance (Damerau 1964, each part edited once): three rows of the table suffice.
+ */
 int hl_edit_distance(const char *a, const char *b) {
   int rows[3][LONGEST + 1];
   int length_a = (int)strnlen(a, LONGEST), length_b = (int)strnlen(b, LONGEST);
@@ -20,7 +21,8 @@ int hl_edit_distance(const char *a, const char *b) {
     for (int j = 1; j <= length_b; j++) {
       int replace = last[j - 1] + (a[i - 1] != b[j - 1]);
       row[j] = least(replace, least(last[j], row[j - 1]) + 1);
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = least(row[j], before[j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = least(row[j], before[j - 2] + 1);
     }
     int *spare = before;
     before = last;

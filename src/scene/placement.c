@@ -1,16 +1,19 @@
-/* scene/placement.c - where a scene's volume is in the world, which part of it is there, and what surrounds it. */
+/* scene/placement.c - where a scene's volume is in the world, which part of it is there, and what surrounds
+ * it. */
 #include "scene/scene.h"
 
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
   mat3 turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   if (volume->rotate_angle_deg != 0)
-    turn = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), volume->rotate_angle_deg * HL_PI / 180);
+    turn =
+        mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), volume->rotate_angle_deg * HL_PI / 180);
   for (int r = 0; r < 3; r++) turn.row[r] = vec3_scale(turn.row[r], volume->scale);
   return affine3_multiply((affine3){turn, vec3_of(volume->translate)}, volume->volume->index_to_world);
 }
 
 /* Bounds in index space of the clip box, whose corners are in the file's own world. */
-static void clip_bounds(const hl_scene_volume *volume, affine3 world_to_index, double low[3], double high[3]) {
+static void clip_bounds(const hl_scene_volume *volume, affine3 world_to_index, double low[3],
+                        double high[3]) {
   for (int a = 0; a < 3; a++) low[a] = INFINITY, high[a] = -INFINITY;
   for (int corner = 0; corner < 8; corner++) {
     vec3 world = {corner & 1 ? volume->clip_max[0] : volume->clip_min[0],
@@ -61,8 +64,11 @@ double hl_scene_volume_empty_value(const hl_scene_volume *volume) {
   uint64_t most = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
     if (found && v->histogram[bin] <= most) continue;
-    double low = v->minimum + bin * width, high = bin == HL_HISTOGRAM_BINS - 1 ? v->maximum : low + width, value;
-    if (!hl_transfer_function_transparent(&volume->transfer_function, low, high, typical_value(v, bin), &value)) continue;
+    double low = v->minimum + bin * width, high = bin == HL_HISTOGRAM_BINS - 1 ? v->maximum : low + width,
+           value;
+    if (!hl_transfer_function_transparent(&volume->transfer_function, low, high, typical_value(v, bin),
+                                          &value))
+      continue;
     found = true;
     most = v->histogram[bin];
     empty = value;

@@ -1,9 +1,10 @@
 /* scene/presets.c - named transfer functions that adapt to the volume.
  *
- * CT presets are written in Hounsfield units. They hold as they are for volumes in Hounsfield units; for others
- * (8 bit, 0 to 1) a piecewise linear map through four landmarks stands in: air is the background, half way from air
- * to tissue is where things surely are, bone begins where the denser of two materials does, and dense bone is the
- * top. Where much of the things is dense there is no tissue about the bone, which then begins where things do. The other presets are written in the landmarks themselves.
+ * CT presets are written in Hounsfield units. They hold as they are for volumes in Hounsfield units; for
+ * others (8 bit, 0 to 1) a piecewise linear map through four landmarks stands in: air is the background, half
+ * way from air to tissue is where things surely are, bone begins where the denser of two materials does, and
+ * dense bone is the top. Where much of the things is dense there is no tissue about the bone, which then
+ * begins where things do. The other presets are written in the landmarks themselves.
  */
 #include <math.h>
 #include <string.h>
@@ -38,14 +39,16 @@ static double distance_of(const hl_function_writer *w, bool hounsfield, double v
   if (hounsfield) return value - a->background;
   const double landmark[4] = {-1000, -400, 350, 2000};
   bool bare = a->dense_share > 0.35;
-  double tissue = bare ? 0.5 * a->solid : a->solid, dense = bare ? 1.2 * a->solid : fmax(a->dense, 1.001 * a->solid);
+  double tissue = bare ? 0.5 * a->solid : a->solid,
+         dense = bare ? 1.2 * a->solid : fmax(a->dense, 1.001 * a->solid);
   const double distance[4] = {0, tissue, dense, fmax(a->top, 1.001 * dense)};
   int n = value < landmark[1] ? 0 : value < landmark[2] ? 1 : 2;
   double t = (value - landmark[n]) / (landmark[n + 1] - landmark[n]);
   return distance[n] + t * (distance[n + 1] - distance[n]);
 }
 
-static void write_rows(hl_function_writer *w, const hl_volume *volume, const hounsfield_row *rows, size_t count) {
+static void write_rows(hl_function_writer *w, const hl_volume *volume, const hounsfield_row *rows,
+                       size_t count) {
   bool hounsfield = is_hounsfield(volume);
   if (hounsfield) w->direction = 1;
   for (size_t r = 0; r < count; r++) {
@@ -72,7 +75,8 @@ static void write_soft_tissue(hl_function_writer *w, const hl_volume *volume) {
 static void write_brain(hl_function_writer *w, const hl_volume *volume) {
   (void)volume;
   const hl_data_analysis *a = w->analysis;
-  static const double outer[3] = {0.58, 0.31, 0.26}, grey[3] = {0.76, 0.54, 0.47}, white[3] = {0.90, 0.82, 0.75};
+  static const double outer[3] = {0.58, 0.31, 0.26}, grey[3] = {0.76, 0.54, 0.47},
+                      white[3] = {0.90, 0.82, 0.75};
   double ramp = a->solid - a->faint, dense = fmax(a->dense, 1.001 * a->solid);
   hl_add_opacity(w, a->faint, 0);
   hl_add_opacity(w, a->faint + 0.6 * ramp, 0.05);
@@ -122,7 +126,8 @@ const char *hl_preset_name(size_t index) { return index < PRESET_COUNT ? presets
 hl_status hl_transfer_function_preset(hl_context *context, const char *name, const hl_volume *volume,
                                       hl_transfer_function *function, hl_error *error) {
   if (context == NULL || name == NULL || volume == NULL || function == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_preset: null context, name, volume or function");
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_transfer_function_preset: null context, name, volume or function");
   const char *names[PRESET_COUNT + 1] = {NULL};
   for (size_t p = 0; p < PRESET_COUNT; p++) names[p] = presets[p].name;
   for (size_t p = 0; p < PRESET_COUNT; p++) {

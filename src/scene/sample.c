@@ -36,8 +36,8 @@ bool hl_sort(hl_context *context, float *values, size_t count) {
 }
 
 /* Collects finite voxels with the given step, starting half a step inside, where the range allows. */
-static size_t collect(const hl_sample *sample, const hl_volume *volume, const size_t low[3], const size_t high[3],
-                      size_t step, float *values) {
+static size_t collect(const hl_sample *sample, const hl_volume *volume, const size_t low[3],
+                      const size_t high[3], size_t step, float *values) {
   size_t count = 0, start[3];
   for (int a = 0; a < 3; a++) start[a] = low[a] + ((high[a] - low[a] > step / 2) ? step / 2 : 0);
   for (size_t k = start[2]; k < high[2]; k += step)
@@ -53,11 +53,13 @@ static size_t steps_in(size_t extent, size_t step) { return extent / step + 1; }
 
 static hl_status make_border(const hl_volume *volume, hl_sample *sample, hl_error *error) {
   const size_t *n = volume->dimension;
-  double area = 2.0 * ((double)n[0] * (double)n[1] + (double)n[1] * (double)n[2] + (double)n[0] * (double)n[2]);
+  double area =
+      2.0 * ((double)n[0] * (double)n[1] + (double)n[1] * (double)n[2] + (double)n[0] * (double)n[2]);
   size_t step = (size_t)fmax(1, ceil(sqrt(area / (SAMPLE_COUNT / 4)))), capacity = 0;
   for (int a = 0; a < 3; a++) capacity += 2 * steps_in(n[(a + 1) % 3], step) * steps_in(n[(a + 2) % 3], step);
   sample->border = hl_allocate(volume->context, capacity, sizeof(float));
-  if (sample->border == NULL) return hl_fail_memory(error, capacity * sizeof(float), "a volume's border sample");
+  if (sample->border == NULL)
+    return hl_fail_memory(error, capacity * sizeof(float), "a volume's border sample");
   for (int a = 0; a < 3; a++)
     for (int side = 0; side < 2; side++) {
       size_t low[3] = {0, 0, 0}, high[3] = {n[0], n[1], n[2]};
@@ -75,7 +77,8 @@ hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *e
   double range = volume->maximum - volume->minimum;
   *sample = (hl_sample){.context = volume->context, .low = volume->minimum, .range = range > 0 ? range : 1};
   sample->step = (size_t)fmax(1, ceil(cbrt((double)hl_volume_voxel_count(volume) / SAMPLE_COUNT)));
-  size_t capacity = steps_in(n[0], sample->step) * steps_in(n[1], sample->step) * steps_in(n[2], sample->step);
+  size_t capacity =
+      steps_in(n[0], sample->step) * steps_in(n[1], sample->step) * steps_in(n[2], sample->step);
   sample->values = hl_allocate(volume->context, capacity, sizeof(float));
   if (sample->values == NULL) return hl_fail_memory(error, capacity * sizeof(float), "a volume's sample");
   sample->count = collect(sample, volume, low, n, sample->step, sample->values);
@@ -83,7 +86,8 @@ hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *e
                          ? make_border(volume, sample, error)
                          : hl_fail_memory(error, sample->count * sizeof(float), "a volume's sample");
   if (status == HL_OK && (sample->count == 0 || sample->border_count == 0))
-    status = hl_fail(error, HL_ERROR_INPUT, "the volume has no finite voxel where it was sampled: there is nothing to show");
+    status = hl_fail(error, HL_ERROR_INPUT,
+                     "the volume has no finite voxel where it was sampled: there is nothing to show");
   if (status != HL_OK) hl_sample_release(sample);
   return status;
 }
@@ -107,7 +111,8 @@ double hl_mode(const float *ascending, size_t count) {
     size_t half = (count + 1) / 2, best = 0;
     float width = INFINITY;
     for (size_t s = 0; s + half <= count; s++)
-      if (ascending[s + half - 1] - ascending[s] < width) width = ascending[s + half - 1] - ascending[s], best = s;
+      if (ascending[s + half - 1] - ascending[s] < width)
+        width = ascending[s + half - 1] - ascending[s], best = s;
     ascending += best;
     count = half;
     if (width == 0) break;
@@ -154,7 +159,8 @@ double hl_threshold_cross_entropy(const float *ascending, size_t count, double f
 
 double hl_roughness(const hl_volume *volume, const hl_sample *sample, double background, double distance) {
   const size_t *n = volume->dimension;
-  double second = 0, first = 0, middle = sample->low + background * sample->range, far = distance * sample->range;
+  double second = 0, first = 0, middle = sample->low + background * sample->range,
+         far = distance * sample->range;
   for (size_t k = 1; k + 1 < n[2]; k += sample->step)
     for (size_t j = 1; j + 1 < n[1]; j += sample->step)
       for (size_t i = 1; i + 1 < n[0]; i += sample->step) {

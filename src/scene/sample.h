@@ -1,7 +1,7 @@
 /* scene/sample.h - a sample of a volume's voxels, sorted: the ground that automatic choices stand on.
  *
- * Values are relative to the volume's range, 0 its least and 1 its greatest, so that it does not matter in which
- * units a volume is.
+ * Values are relative to the volume's range, 0 its least and 1 its greatest, so that it does not matter in
+ * which units a volume is.
  */
 #ifndef HL_SCENE_SAMPLE_H
 #define HL_SCENE_SAMPLE_H
@@ -14,7 +14,7 @@
 typedef struct hl_sample {
   hl_context *context;
   double low, range;  /* data value = low + range * relative value */
-  float *values;      /* owned; [count]; relative values of finite voxels on a regular sub-lattice, ascending */
+  float *values; /* owned; [count]; relative values of finite voxels on a regular sub-lattice, ascending */
   size_t count;
   float *border;      /* owned; [border_count]; the same for the grid's six faces */
   size_t border_count;
@@ -32,7 +32,8 @@ double hl_quantile(const float *ascending, size_t count, double fraction);
  * Bickel and Fruehwirth 2006). */
 double hl_mode(const float *ascending, size_t count);
 
-/* Threshold between two classes of greatest variance between them (Otsu 1979); of values above `above` only. */
+/* Threshold between two classes of greatest variance between them (Otsu 1979); of values above `above` only.
+ */
 double hl_threshold_otsu(const float *ascending, size_t count, double above);
 
 /* Threshold of least cross entropy between an image and its two classes' means (Li and Tam 1998), of values
@@ -40,8 +41,8 @@ double hl_threshold_otsu(const float *ascending, size_t count, double above);
 double hl_threshold_cross_entropy(const float *ascending, size_t count, double floor);
 
 /* How rough the things are: mean |second difference| / |first difference| of voxels whose relative value is
- * further than `distance` from `background`. Smooth simulations have less than about 0.5, turbulence and noise
- * more than about 0.7. */
+ * further than `distance` from `background`. Smooth simulations have less than about 0.5, turbulence and
+ * noise more than about 0.7. */
 double hl_roughness(const hl_volume *volume, const hl_sample *sample, double background, double distance);
 
 /* Ascending order; false without memory. */

@@ -45,7 +45,11 @@ void hl_scene_description_defaults(hl_scene_description *description) {
       .struct_size = sizeof(hl_scene_description),
       .width = 512,
       .height = 512,
-      .camera = {.type = HL_CAMERA_PERSPECTIVE, .position = {0, -1, 0}, .up = {0, 0, 1}, .fovy_deg = 30, .height = 1},
+      .camera = {.type = HL_CAMERA_PERSPECTIVE,
+                 .position = {0, -1, 0},
+                 .up = {0, 0, 1},
+                 .fovy_deg = 30,
+                 .height = 1},
       .ambient = {0.2, 0.2, 0.2},
       .render = {.shadows = HL_SHADOWS_SOFT,
                  .soft_method = HL_SOFT_CASCADE,
@@ -72,8 +76,8 @@ static void destroy(hl_scene *scene) {
 }
 
 /* *copy = items, in memory of its own; null for none. */
-static hl_status copy_array(hl_context *context, const void *items, size_t count, size_t size, const char *what,
-                            void **copy, hl_error *error) {
+static hl_status copy_array(hl_context *context, const void *items, size_t count, size_t size,
+                            const char *what, void **copy, hl_error *error) {
   *copy = NULL;
   if (count == 0) return HL_OK;
   *copy = hl_allocate(context, count, size);
@@ -88,13 +92,14 @@ static hl_status copy_text(hl_context *context, const char *text, const char **c
   return *copy != NULL ? HL_OK : hl_fail_memory(error, strlen(text) + 1, "a volume's name");
 }
 
-hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from, hl_transfer_function *to,
-                                    hl_error *error) {
+hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
+                                    hl_transfer_function *to, hl_error *error) {
   void *opacity = NULL, *color = NULL;
   hl_status status = copy_array(context, from->opacity, from->opacity_count, sizeof *from->opacity,
                                 "a transfer function", &opacity, error);
   if (status != HL_OK) return status;
-  status = copy_array(context, from->color, from->color_count, sizeof *from->color, "a transfer function", &color, error);
+  status = copy_array(context, from->color, from->color_count, sizeof *from->color, "a transfer function",
+                      &color, error);
   if (status != HL_OK) {
     hl_release(context, opacity);
     return status;
@@ -104,7 +109,8 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
 }
 
 /* to: owned parts are null until they are its own, so that release_volume() can follow a failure. */
-static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to, hl_error *error) {
+static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to,
+                             hl_error *error) {
   *to = *from;
   to->name = to->file = NULL;
   to->transfer_function = (hl_transfer_function){0};
@@ -118,7 +124,8 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
 
 static hl_status copy_volumes(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
   hl_scene_volume *volumes = hl_allocate_zeroed(scene->context, from->volume_count, sizeof *volumes);
-  if (volumes == NULL) return hl_fail_memory(error, from->volume_count * sizeof *volumes, "a scene's volumes");
+  if (volumes == NULL)
+    return hl_fail_memory(error, from->volume_count * sizeof *volumes, "a scene's volumes");
   scene->description.volumes = volumes;
   for (size_t v = 0; v < from->volume_count; v++) {
     scene->description.volume_count = v + 1;

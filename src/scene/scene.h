@@ -29,18 +29,20 @@ void hl_transfer_function_color(const hl_transfer_function *function, double val
 int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high);
 
 /* The transparent value in [low, high] that is nearest to target (inside them); false if there is none. */
-bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high, double target,
-                                      double *nearest);
+bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
+                                      double target, double *nearest);
 
 /* *to gets arrays of its own. */
-hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from, hl_transfer_function *to,
-                                    hl_error *error);
+hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
+                                    hl_transfer_function *to, hl_error *error);
 
-/* The camera's unit axes: forward from position to target, up as near to the camera's up as a right angle allows.
- * False if up was useless (along the line of sight): then z, or y where the sight is along z, stands in. */
+/* The camera's unit axes: forward from position to target, up as near to the camera's up as a right angle
+ * allows. False if up was useless (along the line of sight): then z, or y where the sight is along z, stands
+ * in. */
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
 
-/* The camera that a scene without one gets: a three-quarter view that frames the volumes. Its type and fovy_deg stay. */
+/* The camera that a scene without one gets: a three-quarter view that frames the volumes. Its type and
+ * fovy_deg stay. */
 hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera);
 
 /* The light that a scene without lights gets: soft, from the upper left as the camera sees it. */

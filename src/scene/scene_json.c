@@ -1,7 +1,8 @@
 /* scene/scene_json.c - a scene file: the top level, and the loading of what it names.
  *
- * In: JSON text. Out: an hl_scene. Order matters: volumes are loaded before the camera, which frames them where the
- * file does not say, and the camera is known before the lights, which stand as it sees them where the file has none.
+ * In: JSON text. Out: an hl_scene. Order matters: volumes are loaded before the camera, which frames them
+ * where the file does not say, and the camera is known before the lights, which stand as it sees them where
+ * the file has none.
  */
 #include <string.h>
 
@@ -42,10 +43,12 @@ static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene
   if (status == HL_OK) status = hl_json_integer(reader, value, "width", &d->width);
   if (status == HL_OK) status = hl_json_integer(reader, value, "height", &d->height);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "background", 3, d->background);
-  if (status == HL_OK) status = hl_json_flag(reader, value, "background_transparent", &d->background_transparent);
+  if (status == HL_OK)
+    status = hl_json_flag(reader, value, "background_transparent", &d->background_transparent);
   if (status != HL_OK) return status;
   if (d->width < 1 || d->height < 1 || d->width > HL_LIMIT_PIXELS || d->height > HL_LIMIT_PIXELS)
-    return hl_json_fail(reader, HL_ERROR_INPUT, d->width < 1 || d->width > HL_LIMIT_PIXELS ? "width" : "height",
+    return hl_json_fail(reader, HL_ERROR_INPUT,
+                        d->width < 1 || d->width > HL_LIMIT_PIXELS ? "width" : "height",
                         "%d is out of range: give a number of pixels from 1 to %d",
                         d->width < 1 || d->width > HL_LIMIT_PIXELS ? d->width : d->height, HL_LIMIT_PIXELS);
   hl_json_leave(reader, mark);
@@ -55,7 +58,8 @@ static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene
 static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gathered *g) {
   const json_t *value = json_object_get(root, "volumes");
   if (value == NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "volumes", "is missing: name at least one volume, [ { \"file\": ... } ]");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "volumes",
+                        "is missing: name at least one volume, [ { \"file\": ... } ]");
   size_t mark = hl_json_enter(reader, "volumes");
   hl_status status = hl_json_array(reader, value, 1, HL_LIMIT_VOLUMES);
   if (status != HL_OK) return status;
@@ -68,7 +72,8 @@ static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gather
   for (size_t v = 0; v < count; v++) {
     g->description.volume_count = v + 1;
     size_t inner = hl_json_enter_index(reader, v);
-    status = hl_json_read_volume(reader, json_array_get(value, v), g->loaded, &g->loaded_count, &g->volumes[v]);
+    status =
+        hl_json_read_volume(reader, json_array_get(value, v), g->loaded, &g->loaded_count, &g->volumes[v]);
     if (status != HL_OK) return status;
     hl_json_leave(reader, inner);
   }
@@ -105,7 +110,8 @@ static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathere
 static hl_status read_version(hl_json_reader *reader, const json_t *root) {
   int version = 0;
   if (json_object_get(root, "halflight") == NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "halflight", "is missing: begin with \"halflight\": 1, the format's version");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "halflight",
+                        "is missing: begin with \"halflight\": 1, the format's version");
   hl_status status = hl_json_integer(reader, root, "halflight", &version);
   if (status != HL_OK || version == 1) return status;
   return hl_json_fail(reader, version > 1 ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, "halflight",
@@ -159,7 +165,8 @@ hl_status hl_scene_load(hl_context *context, const char *path, hl_scene **scene,
   hl_status status = hl_file_read(context, path, HL_JSON_LIMIT, &bytes, &length, error);
   if (status != HL_OK) return status;
   char *folder = hl_path_folder(context, path);
-  if (folder != NULL) status = hl_scene_from_json(context, (const char *)bytes, length, folder, path, scene, error);
+  if (folder != NULL)
+    status = hl_scene_from_json(context, (const char *)bytes, length, folder, path, scene, error);
   else status = hl_fail_memory(error, strlen(path) + 1, "a path");
   hl_release(context, folder);
   hl_release(context, bytes);

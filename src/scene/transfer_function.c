@@ -8,7 +8,8 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-/* The number of points whose value is <= value; points are spaced by stride bytes and begin with their value. */
+/* The number of points whose value is <= value; points are spaced by stride bytes and begin with their value.
+ */
 static size_t count_not_above(const void *points, size_t count, size_t stride, double value) {
   size_t low = 0, high = count;
   while (low < high) {
@@ -53,19 +54,21 @@ void hl_transfer_function_color(const hl_transfer_function *function, double val
 int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high) {
   const hl_opacity_point *points = function->opacity;
   if (!(low <= high)) return 0;
-  if (hl_transfer_function_opacity(function, low) > 0 || hl_transfer_function_opacity(function, high) > 0) return 1;
-  /* Both ends are transparent: linear pieces between can only rise at a point inside, both points of a step counted. */
+  if (hl_transfer_function_opacity(function, low) > 0 || hl_transfer_function_opacity(function, high) > 0)
+    return 1;
+  /* Both ends are transparent: linear pieces between can only rise at a point inside, both points of a step
+   * counted. */
   for (size_t p = count_not_above(points, function->opacity_count, sizeof *points, low);
        p < function->opacity_count && points[p].value <= high; p++)
     if (points[p].opacity > 0) return 1;
   return 0;
 }
 
-/* The set of transparent values is made of intervals whose ends are points of the function, the end itself left
- * out where a step rises there. So the points, the values just below them, the range's ends and the target are
- * the candidates. */
-bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high, double target,
-                                      double *nearest) {
+/* The set of transparent values is made of intervals whose ends are points of the function, the end itself
+ * left out where a step rises there. So the points, the values just below them, the range's ends and the
+ * target are the candidates. */
+bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
+                                      double target, double *nearest) {
   double candidates[3] = {target, low, high}, best = INFINITY;
   size_t first = count_not_above(function->opacity, function->opacity_count, sizeof *function->opacity, low);
   for (size_t c = 0; c < 3 + 2 * (function->opacity_count - first); c++) {

@@ -1,8 +1,9 @@
-/* scene/transfer_load.c - transfer functions from files: Halflight's own, ParaView's colour maps, Slicer's presets.
+/* scene/transfer_load.c - transfer functions from files: Halflight's own, ParaView's colour maps, Slicer's
+ * presets.
  *
- * The kind is told by content: an array is ParaView's, an object with volumeProperties Slicer's. Foreign colours
- * are sRGB, mixed in the space that the file names; they become linear points, close enough together that straight
- * lines between them stand for the mixing. What cannot be carried over is said in a warning.
+ * The kind is told by content: an array is ParaView's, an object with volumeProperties Slicer's. Foreign
+ * colours are sRGB, mixed in the space that the file names; they become linear points, close enough together
+ * that straight lines between them stand for the mixing. What cannot be carried over is said in a warning.
  */
 #include <math.h>
 #include <string.h>
@@ -35,8 +36,8 @@ static double ease(double t, const node *n) {
 }
 
 /* Writes nodes as opacity points. */
-static hl_status set_opacity(hl_context *context, const node *nodes, size_t count, hl_transfer_function *function,
-                             hl_error *error) {
+static hl_status set_opacity(hl_context *context, const node *nodes, size_t count,
+                             hl_transfer_function *function, hl_error *error) {
   hl_opacity_point *points = hl_allocate(context, count * PIECES, sizeof *points);
   if (points == NULL) return hl_fail_memory(error, count * PIECES * sizeof *points, "a transfer function");
   size_t made = 0;
@@ -44,9 +45,11 @@ static hl_status set_opacity(hl_context *context, const node *nodes, size_t coun
     bool straight = n + 1 == count || (nodes[n].midpoint == 0.5 && nodes[n].sharpness < 0.01);
     for (int piece = 0; piece < (straight ? 1 : PIECES); piece++) {
       double t = piece / (double)PIECES, eased = ease(t, &nodes[n]);
-      double y = nodes[n].y[0], next = straight ? y : nodes[n + 1].y[0], end = straight ? 0 : nodes[n + 1].value;
-      points[made++] = (hl_opacity_point){straight ? nodes[n].value : nodes[n].value + t * (end - nodes[n].value),
-                                          fmin(fmax(y + eased * (next - y), 0), 1)};
+      double y = nodes[n].y[0], next = straight ? y : nodes[n + 1].y[0],
+             end = straight ? 0 : nodes[n + 1].value;
+      points[made++] =
+          (hl_opacity_point){straight ? nodes[n].value : nodes[n].value + t * (end - nodes[n].value),
+                             fmin(fmax(y + eased * (next - y), 0), 1)};
     }
   }
   function->opacity = points;
@@ -65,7 +68,8 @@ static hl_status set_color(hl_context *context, const node *nodes, size_t count,
     bool step = space == HL_SPACE_STEP && !last; /* two points at one value */
     for (int piece = 0; piece < (last ? 1 : step ? 2 : PIECES); piece++) {
       double t = step ? 0 : piece / (double)PIECES, srgb[3], end = last ? nodes[n].value : nodes[n + 1].value;
-      hl_color_mix(space, nodes[n].y, last ? nodes[n].y : nodes[n + 1].y, step ? piece : ease(t, &nodes[n]), srgb);
+      hl_color_mix(space, nodes[n].y, last ? nodes[n].y : nodes[n + 1].y, step ? piece : ease(t, &nodes[n]),
+                   srgb);
       hl_color_point *point = &points[made++];
       point->value = nodes[n].value + t * (end - nodes[n].value);
       for (int c = 0; c < 3; c++) point->color[c] = hl_srgb_to_linear(fmin(fmax(srgb[c], 0), 1));
@@ -80,25 +84,30 @@ static hl_status set_color(hl_context *context, const node *nodes, size_t count,
 static hl_status check_nodes(hl_json_reader *reader, const node *nodes, size_t count) {
   for (size_t n = 0; n < count; n++) {
     if (n > 0 && nodes[n].value < nodes[n - 1].value)
-      return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "point %zu: %.9g comes after %.9g: sort the points by value", n,
-                          nodes[n].value, nodes[n - 1].value);
-    if (nodes[n].midpoint > 0 && nodes[n].midpoint < 1 && nodes[n].sharpness >= 0 && nodes[n].sharpness <= 1) continue;
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
-                        "point %zu: midpoint %.9g and sharpness %.9g: give numbers from 0 to 1, the midpoint inside", n,
-                        nodes[n].midpoint, nodes[n].sharpness);
+      return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
+                          "point %zu: %.9g comes after %.9g: sort the points by value", n, nodes[n].value,
+                          nodes[n - 1].value);
+    if (nodes[n].midpoint > 0 && nodes[n].midpoint < 1 && nodes[n].sharpness >= 0 && nodes[n].sharpness <= 1)
+      continue;
+    return hl_json_fail(
+        reader, HL_ERROR_INPUT, NULL,
+        "point %zu: midpoint %.9g and sharpness %.9g: give numbers from 0 to 1, the midpoint inside", n,
+        nodes[n].midpoint, nodes[n].sharpness);
   }
   return HL_OK;
 }
 
-/* ParaView: rows of four numbers in one flat array: value, then three colours or an opacity and what eases it. */
-static hl_status read_flat(hl_json_reader *reader, const json_t *map, const char *key, size_t ordinates, node **nodes,
-                           size_t *count) {
+/* ParaView: rows of four numbers in one flat array: value, then three colours or an opacity and what eases
+ * it. */
+static hl_status read_flat(hl_json_reader *reader, const json_t *map, const char *key, size_t ordinates,
+                           node **nodes, size_t *count) {
   const json_t *value = json_object_get(map, key);
   size_t mark = hl_json_enter(reader, key);
   hl_status status = hl_json_array(reader, value, 4, 4 * MOST_NODES);
   if (status != HL_OK) return status;
   if (json_array_size(value) % 4 != 0)
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "has %zu numbers: give groups of four", json_array_size(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "has %zu numbers: give groups of four",
+                        json_array_size(value));
   *count = json_array_size(value) / 4;
   *nodes = hl_allocate(reader->context, *count, sizeof **nodes);
   if (*nodes == NULL) return hl_fail_memory(reader->error, *count * sizeof **nodes, "a transfer function");
@@ -112,7 +121,8 @@ static hl_status read_flat(hl_json_reader *reader, const json_t *map, const char
       }
       row[e] = json_number_value(element);
     }
-    (*nodes)[n] = ordinates == 3 ? (node){row[0], {row[1], row[2], row[3]}, 0.5, 0} : (node){row[0], {row[1]}, row[2], row[3]};
+    (*nodes)[n] = ordinates == 3 ? (node){row[0], {row[1], row[2], row[3]}, 0.5, 0}
+                                 : (node){row[0], {row[1]}, row[2], row[3]};
   }
   status = check_nodes(reader, *nodes, *count);
   if (status == HL_OK) hl_json_leave(reader, mark);
@@ -137,9 +147,11 @@ static hl_status read_paraview(hl_json_reader *reader, const json_t *root, hl_tr
   else status = hl_json_choice(reader, map, "ColorSpace", space_names, 0, &space);
   if (status == HL_OK) status = hl_json_number(reader, map, "UseLogScale", &logarithmic);
   if (status == HL_OK && logarithmic != 0)
-    status = hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "UseLogScale", "logarithmic colour maps are not supported: save the map with a linear scale");
+    status = hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "UseLogScale",
+                          "logarithmic colour maps are not supported: save the map with a linear scale");
   if (status == HL_OK) status = read_flat(reader, map, "RGBPoints", 3, &nodes, &count);
-  if (status == HL_OK) status = set_color(reader->context, nodes, count, (hl_color_space)space, function, reader->error);
+  if (status == HL_OK)
+    status = set_color(reader->context, nodes, count, (hl_color_space)space, function, reader->error);
   hl_release(reader->context, nodes);
   nodes = NULL;
   if (status == HL_OK && json_object_get(map, "Points") != NULL) {
@@ -151,11 +163,12 @@ static hl_status read_paraview(hl_json_reader *reader, const json_t *root, hl_tr
 }
 
 /* Slicer: [{"x": value, "y": opacity or "color": [r, g, b], "midpoint": .5, "sharpness": 0}, ...] */
-static hl_status read_points(hl_json_reader *reader, const json_t *component, const char *key, bool colors, node **nodes,
-                             size_t *count) {
+static hl_status read_points(hl_json_reader *reader, const json_t *component, const char *key, bool colors,
+                             node **nodes, size_t *count) {
   const json_t *function = json_object_get(component, key), *points = json_object_get(function, "points");
   size_t mark = hl_json_enter(reader, key);
-  if (points == NULL) return hl_json_fail(reader, HL_ERROR_INPUT, "points", "is missing: give the function's points");
+  if (points == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "points", "is missing: give the function's points");
   hl_json_enter(reader, "points");
   hl_status status = hl_json_array(reader, points, 1, MOST_NODES);
   if (status != HL_OK) return status;
@@ -168,7 +181,8 @@ static hl_status read_points(hl_json_reader *reader, const json_t *component, co
     size_t inner = hl_json_enter_index(reader, n);
     made->midpoint = 0.5;
     if (json_object_get(point, "x") == NULL || json_object_get(point, colors ? "color" : "y") == NULL)
-      return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "has no x or no %s: give both", colors ? "color" : "y");
+      return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "has no x or no %s: give both",
+                          colors ? "color" : "y");
     status = hl_json_number(reader, point, "x", &made->value);
     if (status == HL_OK && colors) status = hl_json_numbers(reader, point, "color", 3, made->y);
     if (status == HL_OK && !colors) status = hl_json_number(reader, point, "y", &made->y[0]);
@@ -188,7 +202,8 @@ static void warn_of_gradient(hl_json_reader *reader, const json_t *component) {
   for (size_t n = 0; n < json_array_size(points); n++) {
     const json_t *y = json_object_get(json_array_get(points, n), "y");
     if (!json_is_number(y) || json_number_value(y) == 1) continue;
-    hl_log(reader->context, HL_LOG_WARNING, "%s: opacity by gradient (gradientOpacity) is left out", reader->name);
+    hl_log(reader->context, HL_LOG_WARNING, "%s: opacity by gradient (gradientOpacity) is left out",
+           reader->name);
     return;
   }
 }
@@ -212,7 +227,8 @@ static hl_status read_slicer(hl_json_reader *reader, const json_t *root, hl_tran
   hl_release(reader->context, nodes);
   nodes = NULL;
   if (status == HL_OK) status = read_points(reader, component, "rgbTransferFunction", true, &nodes, &count);
-  if (status == HL_OK) status = set_color(reader->context, nodes, count, HL_SPACE_RGB, function, reader->error);
+  if (status == HL_OK)
+    status = set_color(reader->context, nodes, count, HL_SPACE_RGB, function, reader->error);
   hl_release(reader->context, nodes);
   if (status == HL_OK) warn_of_gradient(reader, component);
   return status;

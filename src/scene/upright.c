@@ -70,8 +70,8 @@ static bool make_shape(const hl_volume *volume, const hl_data_analysis *analysis
   for (int k = 0; k < s->size[2]; k++)
     for (int j = 0; j < s->size[1]; j++)
       for (int i = 0; i < s->size[0]; i++, solid++) {
-        double value = hl_volume_value(volume, place_of(volume, s, step, 0, i), place_of(volume, s, step, 1, j),
-                                       place_of(volume, s, step, 2, k));
+        double value = hl_volume_value(volume, place_of(volume, s, step, 0, i),
+                                       place_of(volume, s, step, 1, j), place_of(volume, s, step, 2, k));
         if (!(analysis->direction * (value - analysis->background) > analysis->solid)) continue;
         *solid = 1;
         s->area[0][i]++, s->area[1][j]++, s->area[2][k]++, total++;
@@ -111,8 +111,10 @@ static double symmetry(const shape *s, int axis) {
       for (n[0] = s->first[0]; n[0] <= s->last[0]; n[0]++) {
         int m[3] = {n[0], n[1], n[2]};
         m[axis] = s->first[axis] + s->last[axis] - n[axis];
-        int here = s->solid[((size_t)n[2] * (size_t)s->size[1] + (size_t)n[1]) * (size_t)s->size[0] + (size_t)n[0]];
-        int there = s->solid[((size_t)m[2] * (size_t)s->size[1] + (size_t)m[1]) * (size_t)s->size[0] + (size_t)m[0]];
+        int here =
+            s->solid[((size_t)n[2] * (size_t)s->size[1] + (size_t)n[1]) * (size_t)s->size[0] + (size_t)n[0]];
+        int there =
+            s->solid[((size_t)m[2] * (size_t)s->size[1] + (size_t)m[1]) * (size_t)s->size[0] + (size_t)m[0]];
         both += here && there;
         either += here || there;
       }
@@ -146,19 +148,22 @@ static int up_of(const shape *s, const hl_volume *volume) {
   return sideways ? -2 : 3; /* rows of pictures run downwards */
 }
 
-/* Places from one end of an axis to the thing, along the row (u, v) of the other two axes; -1: nothing there. */
+/* Places from one end of an axis to the thing, along the row (u, v) of the other two axes; -1: nothing there.
+ */
 static int depth_at(const shape *s, int axis, int end, int u, int v) {
   int n[3];
   n[(axis + 1) % 3] = u;
   n[(axis + 2) % 3] = v;
   for (int depth = 0; s->first[axis] + depth <= s->last[axis]; depth++) {
     n[axis] = end ? s->last[axis] - depth : s->first[axis] + depth;
-    if (s->solid[((size_t)n[2] * (size_t)s->size[1] + (size_t)n[1]) * (size_t)s->size[0] + (size_t)n[0]]) return depth;
+    if (s->solid[((size_t)n[2] * (size_t)s->size[1] + (size_t)n[1]) * (size_t)s->size[0] + (size_t)n[0]])
+      return depth;
   }
   return -1;
 }
 
-/* Relief of the side at one end of an axis: how depths bend over a few places both ways, cliffs counted as steps. */
+/* Relief of the side at one end of an axis: how depths bend over a few places both ways, cliffs counted as
+ * steps. */
 static double relief(const shape *s, int axis, int end) {
   int u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
   double sum = 0;
@@ -200,7 +205,8 @@ static hl_upright upright_about(int up) {
 
 hl_upright hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis) {
   if (ends_with(volume->file, ".nii") || ends_with(volume->file, ".nii.gz"))
-    return (hl_upright){{0, 0, 1}, {-1, 0, 0}, AZIMUTH}; /* RAS+: y points to the front, x to the patient's right */
+    return (hl_upright){
+        {0, 0, 1}, {-1, 0, 0}, AZIMUTH}; /* RAS+: y points to the front, x to the patient's right */
   if (is_oriented(volume->volume)) return upright_about(3);
   if (analysis->kind == HL_DATA_MEDIUM) return upright_about(2);
   if (analysis->kind != HL_DATA_SURFACES) return upright_about(3);

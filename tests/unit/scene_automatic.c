@@ -106,7 +106,8 @@ static void signed_fields_show_both_lobes(void **state) {
   for (int k = 0, v = 0; k < N; k++)
     for (int j = 0; j < N; j++)
       for (int i = 0; i < N; i++, v++) {
-        double r1 = hypot(hypot(i - 12.31, j - 20.17), k - 19.62), r2 = hypot(hypot(i - 27.73, j - 19.86), k - 20.41);
+        double r1 = hypot(hypot(i - 12.31, j - 20.17), k - 19.62),
+               r2 = hypot(hypot(i - 27.73, j - 19.86), k - 20.41);
         values[v] = (float)(exp(-r1 * r1 / 30) - 0.8 * exp(-r2 * r2 / 30));
       }
   for (int shifted = 0; shifted < 2; shifted++) {
@@ -119,7 +120,8 @@ static void signed_fields_show_both_lobes(void **state) {
     assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
     assert_ascending(&f);
     assert_true(hl_transfer_function_opacity(&f, offset) == 0);
-    assert_true(hl_transfer_function_opacity(&f, offset + 0.7) > 0.2 && hl_transfer_function_opacity(&f, offset - 0.7) > 0.2);
+    assert_true(hl_transfer_function_opacity(&f, offset + 0.7) > 0.2 &&
+                hl_transfer_function_opacity(&f, offset - 0.7) > 0.2);
     double positive[3], negative[3];
     hl_transfer_function_color(&f, offset + 0.7, positive);
     hl_transfer_function_color(&f, offset - 0.7, negative);
@@ -149,7 +151,8 @@ static void tells_fields_from_smoke(void **state) {
     assert_int_equal(a.kind, rough ? HL_DATA_MEDIUM : HL_DATA_FIELD);
     hl_scene *scene = NULL;
     assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
-    assert_int_equal(hl_scene_describe(scene)->volumes[0].shading, rough ? HL_SHADING_NONE : HL_SHADING_PHONG);
+    assert_int_equal(hl_scene_describe(scene)->volumes[0].shading,
+                     rough ? HL_SHADING_NONE : HL_SHADING_PHONG);
     hl_scene_release(scene);
     hl_volume_release(volume);
   }
@@ -160,7 +163,8 @@ static void tells_fields_from_smoke(void **state) {
 static void odd_volumes_get_a_scene(void **state) {
   (void)state;
   hl_context *context = make_context();
-  float constant = 7, two[2] = {0, 1}, holes[8] = {NAN, 1, INFINITY, 2, NAN, 0, 3, -INFINITY}, nothing[1] = {NAN};
+  float constant = 7, two[2] = {0, 1}, holes[8] = {NAN, 1, INFINITY, 2, NAN, 0, 3, -INFINITY},
+        nothing[1] = {NAN};
   const struct { float *values; size_t n[3]; } odd[] = {
       {&constant, {1, 1, 1}}, {two, {2, 1, 1}}, {two, {1, 1, 2}}, {holes, {2, 2, 2}}, {nothing, {1, 1, 1}}};
   for (size_t o = 0; o < sizeof odd / sizeof *odd; o++) {
@@ -173,7 +177,8 @@ static void odd_volumes_get_a_scene(void **state) {
     hl_scene *scene = NULL;
     hl_error error = {0};
     assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-    if (hl_scene_for_volume(context, volume, NULL, &scene, &error) != HL_OK) fail_msg("%zu: %s", o, error.message);
+    if (hl_scene_for_volume(context, volume, NULL, &scene, &error) != HL_OK)
+      fail_msg("%zu: %s", o, error.message);
     for (size_t p = 0; hl_preset_name(p) != NULL; p++) {
       hl_transfer_function f = {0};
       assert_int_equal(hl_transfer_function_preset(context, hl_preset_name(p), volume, &f, NULL), HL_OK);
@@ -224,10 +229,11 @@ static void ct_presets_adapt(void **state) {
 
 static void colormaps_have_their_published_colors(void **state) {
   (void)state;
-  const struct { const char *name; double t; int srgb; } published[] = {
-      {"viridis", 0, 0x440154}, {"viridis", 0.5, 0x21918c}, {"viridis", 1, 0xfde725}, {"inferno", 0.5, 0xbc3754},
-      {"magma", 0.5, 0xb73779}, {"plasma", 0.5, 0xcc4778}, {"cividis", 1, 0xfee838}, {"coolwarm", 0, 0x3b4cc0},
-      {"coolwarm", 1, 0xb40426}, {"turbo", 0, 0x23171b}, {"grays", 1, 0xffffff}, {"hot", 1, 0xffffff}};
+  const struct { const char *name; double t; int srgb;
+  } published[] = {{"viridis", 0, 0x440154},   {"viridis", 0.5, 0x21918c}, {"viridis", 1, 0xfde725},
+                   {"inferno", 0.5, 0xbc3754}, {"magma", 0.5, 0xb73779},   {"plasma", 0.5, 0xcc4778},
+                   {"cividis", 1, 0xfee838},   {"coolwarm", 0, 0x3b4cc0},  {"coolwarm", 1, 0xb40426},
+                   {"turbo", 0, 0x23171b},     {"grays", 1, 0xffffff},     {"hot", 1, 0xffffff}};
   for (size_t n = 0; n < sizeof published / sizeof *published; n++) {
     double linear[3];
     assert_true(hl_colormap_evaluate(published[n].name, published[n].t, linear));
@@ -283,7 +289,8 @@ static void things_stand_upright(void **state) {
   for (int k = 0, v = 0; k < N; k++)
     for (int j = 0; j < N; j++)
       for (int i = 0; i < N; i++, v++) {
-        bool plate = j < 4, stem = j < 30 && hypot(i - 20, k - 20) < 5, knob = hypot(hypot(i - 20, j - 20), k - 13) < 4;
+        bool plate = j < 4, stem = j < 30 && hypot(i - 20, k - 20) < 5,
+             knob = hypot(hypot(i - 20, j - 20), k - 13) < 4;
         values[v] = plate || stem || knob ? 1.0f : 0.0f;
       }
   hl_context *context = make_context();

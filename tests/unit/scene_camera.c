@@ -8,7 +8,8 @@ static void project(const hl_camera *camera, double aspect, vec3 point, double *
   vec3 p = vec3_subtract(point, vec3_of(camera->position));
   double depth = vec3_dot(p, forward), half;
   assert_true(depth > 0);
-  half = camera->type == HL_CAMERA_PERSPECTIVE ? depth * tan(camera->fovy_deg * HL_PI / 360) : camera->height / 2;
+  half = camera->type == HL_CAMERA_PERSPECTIVE ? depth * tan(camera->fovy_deg * HL_PI / 360)
+                                               : camera->height / 2;
   *x = vec3_dot(p, right) / (half * aspect);
   *y = vec3_dot(p, up) / half;
 }
@@ -21,7 +22,8 @@ static void basis_is_right_handed_and_falls_back(void **state) {
   assert_true(r.x == 1 && fabs(u.z - 1) < 1e-12 && f.y == 1);
   const double sights[][3] = {{0, 0, -3}, {0, 0, 3}, {0, 4, 0}, {1, 0, 0}, {1, 1, 1}};
   for (size_t n = 0; n < 5; n++) { /* up along the sight: something perpendicular and unit stands in */
-    hl_camera bad = {.target = {sights[n][0], sights[n][1], sights[n][2]}, .up = {sights[n][0], sights[n][1], sights[n][2]}};
+    hl_camera bad = {.target = {sights[n][0], sights[n][1], sights[n][2]},
+                     .up = {sights[n][0], sights[n][1], sights[n][2]}};
     assert_false(hl_camera_basis(&bad, &r, &u, &f));
     assert_near(vec3_length(r), 1, 1e-12);
     assert_near(vec3_length(u), 1, 1e-12);
@@ -45,8 +47,8 @@ static void scene_mends_up(void **state) {
   parts_release(&p);
 }
 
-/* One visible ball in a large empty grid, seen from everywhere: all of it is in the picture, it touches the margin
- * on at least one side, and it is centred. */
+/* One visible ball in a large empty grid, seen from everywhere: all of it is in the picture, it touches the
+ * margin on at least one side, and it is centred. */
 static void frames_what_is_visible(void **state) {
   (void)state;
   enum { N = 24 };
@@ -65,8 +67,10 @@ static void frames_what_is_visible(void **state) {
   for (int n = 0; n < 24; n++) {
     p.description.width = n % 3 == 0 ? 900 : 300;
     p.description.height = n % 3 == 1 ? 900 : 300;
-    double aspect = (double)p.description.width / p.description.height, most_x = 0, most_y = 0, sum_x = 0, sum_y = 0;
-    hl_camera camera = {.type = n % 2 ? HL_CAMERA_ORTHOGRAPHIC : HL_CAMERA_PERSPECTIVE, .fovy_deg = n % 4 ? 30 : 80};
+    double aspect = (double)p.description.width / p.description.height, most_x = 0, most_y = 0, sum_x = 0,
+           sum_y = 0;
+    hl_camera camera = {.type = n % 2 ? HL_CAMERA_ORTHOGRAPHIC : HL_CAMERA_PERSPECTIVE,
+                        .fovy_deg = n % 4 ? 30 : 80};
     assert_int_equal(hl_camera_frame(&p.description, n * 17, n * 7.5 - 90, 1, &camera), HL_OK);
     int count = 0;
     for (int v = 0; v < N * N * N; v++) {

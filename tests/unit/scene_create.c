@@ -110,7 +110,8 @@ SPOIL(shading_unknown, p->scene_volume.shading = (hl_shading)2)
 SPOIL(diffuse_negative, p->scene_volume.material.diffuse = -0.7)
 SPOIL(shininess_huge, p->scene_volume.material.shininess = 1e9)
 SPOIL(attenuation_negative, p->scene_volume.attenuation_color[0] = -1)
-SPOIL(clip_inverted, p->scene_volume.clipped = 1; p->scene_volume.clip_min[1] = 2; p->scene_volume.clip_max[0] = 1)
+SPOIL(clip_inverted, p->scene_volume.clipped = 1; p->scene_volume.clip_min[1] = 2;
+      p->scene_volume.clip_max[0] = 1)
 SPOIL(shadows_unknown, p->description.render.shadows = HL_SHADOWS_DEFAULT)
 SPOIL(samples_zero, p->description.render.light_samples = 0)
 SPOIL(spacing_zero, p->description.render.sheet_spacing = 0)
@@ -121,69 +122,104 @@ SPOIL(size_wrong, p->description.struct_size = 8)
 
 static const refusal refusals[] = {
     {"/image/width: 0 is out of range: give a number of pixels from 1 to 32768", HL_ERROR_INPUT, width_zero},
-    {"/image/height: 40000 is out of range: give a number of pixels from 1 to 32768", HL_ERROR_INPUT, height_huge},
-    {"/image/background/1: 255 is out of range: give linear RGB, each from 0 to 1", HL_ERROR_INPUT, background_bright},
-    {"/image/background/2: nan is not a number: give linear RGB, each from 0 to 1", HL_ERROR_INPUT, background_nan},
+    {"/image/height: 40000 is out of range: give a number of pixels from 1 to 32768", HL_ERROR_INPUT,
+     height_huge},
+    {"/image/background/1: 255 is out of range: give linear RGB, each from 0 to 1", HL_ERROR_INPUT,
+     background_bright},
+    {"/image/background/2: nan is not a number: give linear RGB, each from 0 to 1", HL_ERROR_INPUT,
+     background_nan},
     {"/camera/target: is where the eye is: move the target or the position, so that there is a line of sight",
      HL_ERROR_INPUT, eye_at_target},
-    {"/camera/position/0: nan is not a number: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT, eye_nan},
-    {"/camera/target/2: inf is out of range: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT, target_infinite},
+    {"/camera/position/0: nan is not a number: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT,
+     eye_nan},
+    {"/camera/target/2: inf is out of range: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT,
+     target_infinite},
     {"/camera/up: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT, up_zero},
-    {"/camera/fovy_deg: 0 is out of range: give an angle in degrees, above 0 and below 180", HL_ERROR_INPUT, fovy_zero},
-    {"/camera/fovy_deg: 180 is out of range: give an angle in degrees, above 0 and below 180", HL_ERROR_INPUT, fovy_wide},
+    {"/camera/fovy_deg: 0 is out of range: give an angle in degrees, above 0 and below 180", HL_ERROR_INPUT,
+     fovy_zero},
+    {"/camera/fovy_deg: 180 is out of range: give an angle in degrees, above 0 and below 180", HL_ERROR_INPUT,
+     fovy_wide},
     {"/camera/type: 7 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, camera_type},
-    {"/camera/height: -2 is not above 0: give the picture's height in world units, above 0", HL_ERROR_INPUT, height_negative},
+    {"/camera/height: -2 is not above 0: give the picture's height in world units, above 0", HL_ERROR_INPUT,
+     height_negative},
     {"/ambient/0: -0.5 is negative: give linear RGB, none below 0", HL_ERROR_INPUT, ambient_negative},
     {"/lights: is null but its count is 1", HL_ERROR_ARGUMENT, lights_null},
     {"/lights: has 1000 entries: at most 256 are allowed", HL_ERROR_INPUT, lights_many},
-    {"/lights/0/direction: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT, light_direction_zero},
+    {"/lights/0/direction: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT,
+     light_direction_zero},
     {"/lights/0/angular_diameter_deg: -1 is negative: give an angle in degrees from 0 (a sharp light) to 120",
      HL_ERROR_INPUT, light_diameter},
-    {"/lights/0/falloff: inverse_square on a directional light, which is infinitely far: use none, or a point light",
+    {"/lights/0/falloff: inverse_square on a directional light, which is infinitely far: use none, or a "
+     "point light",
      HL_ERROR_INPUT, light_falloff},
-    {"/lights/0/radius: -1 is negative: give a length in world units, 0 for a point", HL_ERROR_INPUT, light_radius},
-    {"/lights/0/radius: nan is not a number: give a length in world units, 0 for a point", HL_ERROR_INPUT, light_radius_nan},
-    {"/lights/0/type: \"spot\" lights are not supported by this version: use directional or point, both of which can have a size",
+    {"/lights/0/radius: -1 is negative: give a length in world units, 0 for a point", HL_ERROR_INPUT,
+     light_radius},
+    {"/lights/0/radius: nan is not a number: give a length in world units, 0 for a point", HL_ERROR_INPUT,
+     light_radius_nan},
+    {"/lights/0/type: \"spot\" lights are not supported by this version: use directional or point, both of "
+     "which can have a size",
      HL_ERROR_UNSUPPORTED, light_spot},
-    {"/lights/0/type: \"rect\" lights are not supported by this version: use directional or point, both of which can have a size",
+    {"/lights/0/type: \"rect\" lights are not supported by this version: use directional or point, both of "
+     "which can have a size",
      HL_ERROR_UNSUPPORTED, light_rect},
-    {"/lights/0/type: \"disk\" lights are not supported by this version: use directional or point, both of which can have a size",
+    {"/lights/0/type: \"disk\" lights are not supported by this version: use directional or point, both of "
+     "which can have a size",
      HL_ERROR_UNSUPPORTED, light_disk},
-    {"/lights/0/type: \"polygon\" lights are not supported by this version: use directional or point, both of which can have a size",
+    {"/lights/0/type: \"polygon\" lights are not supported by this version: use directional or point, both "
+     "of which can have a size",
      HL_ERROR_UNSUPPORTED, light_polygon},
     {"/lights/0/color/2: -0.1 is negative: give linear RGB, none below 0", HL_ERROR_INPUT, light_color},
     {"/lights/0/intensity: -3 is negative: give a factor, 0 or more", HL_ERROR_INPUT, light_intensity},
-    {"/lights/0/shadows: 9 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, light_shadows},
+    {"/lights/0/shadows: 9 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,
+     light_shadows},
     {"/volumes: is empty: name at least one volume", HL_ERROR_INPUT, volumes_none},
     {"/volumes/0/volume: is null: give a volume", HL_ERROR_ARGUMENT, volume_null},
     {"/volumes/0/transform/scale: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, scale_zero},
-    {"/volumes/0/transform/rotate/axis: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT, axis_zero},
-    {"/volumes/0/transform/rotate/angle_deg: nan is not a number: give an angle in degrees", HL_ERROR_INPUT, angle_nan},
+    {"/volumes/0/transform/rotate/axis: has no length: give the direction as three numbers, not all 0",
+     HL_ERROR_INPUT, axis_zero},
+    {"/volumes/0/transform/rotate/angle_deg: nan is not a number: give an angle in degrees", HL_ERROR_INPUT,
+     angle_nan},
     {"/volumes/0/transform/translate/1: 1e+20 is out of range: give a coordinate between -1e15 and 1e15",
      HL_ERROR_INPUT, translate_far},
-    {"/volumes/0/transfer_function/unit_distance: 0 is not above 0: give the length in world units that the opacities are for, above 0",
+    {"/volumes/0/transfer_function/unit_distance: 0 is not above 0: give the length in world units that the "
+     "opacities are for, above 0",
      HL_ERROR_INPUT, unit_zero},
-    {"/volumes/0/transfer_function/opacity/2/0: 3 comes after 8: sort the points by value", HL_ERROR_INPUT, opacity_unsorted},
-    {"/volumes/0/transfer_function/opacity/2/0: 0 is there a third time: two points at one value make a step, remove the others",
+    {"/volumes/0/transfer_function/opacity/2/0: 3 comes after 8: sort the points by value", HL_ERROR_INPUT,
+     opacity_unsorted},
+    {"/volumes/0/transfer_function/opacity/2/0: 0 is there a third time: two points at one value make a "
+     "step, remove the others",
      HL_ERROR_INPUT, opacity_thrice},
-    {"/volumes/0/transfer_function/opacity/3/1: 1.5 is out of range: give an opacity from 0 to 1", HL_ERROR_INPUT, opacity_high},
-    {"/volumes/0/transfer_function/opacity/3/0: nan is not a number: give a data value between -1e30 and 1e30",
+    {"/volumes/0/transfer_function/opacity/3/1: 1.5 is out of range: give an opacity from 0 to 1",
+     HL_ERROR_INPUT, opacity_high},
+    {"/volumes/0/transfer_function/opacity/3/0: nan is not a number: give a data value between -1e30 and "
+     "1e30",
      HL_ERROR_INPUT, opacity_nan},
-    {"/volumes/0/transfer_function/color/1/0: -5 comes after 0: sort the points by value", HL_ERROR_INPUT, color_unsorted},
-    {"/volumes/0/transfer_function/color/1/2: 128 is out of range: give linear RGB, each from 0 to 1", HL_ERROR_INPUT, color_high},
-    {"/volumes/0/shading: 2 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, shading_unknown},
-    {"/volumes/0/material/diffuse: -0.7 is negative: give a factor from 0 to 1000", HL_ERROR_INPUT, diffuse_negative},
-    {"/volumes/0/material/shininess: 1e+09 is out of range: give an exponent from 0 to 10000", HL_ERROR_INPUT, shininess_huge},
-    {"/volumes/0/attenuation_color/0: -1 is negative: give relative extinctions from 0 to 1000, 1 for as much as the opacity says",
+    {"/volumes/0/transfer_function/color/1/0: -5 comes after 0: sort the points by value", HL_ERROR_INPUT,
+     color_unsorted},
+    {"/volumes/0/transfer_function/color/1/2: 128 is out of range: give linear RGB, each from 0 to 1",
+     HL_ERROR_INPUT, color_high},
+    {"/volumes/0/shading: 2 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,
+     shading_unknown},
+    {"/volumes/0/material/diffuse: -0.7 is negative: give a factor from 0 to 1000", HL_ERROR_INPUT,
+     diffuse_negative},
+    {"/volumes/0/material/shininess: 1e+09 is out of range: give an exponent from 0 to 10000", HL_ERROR_INPUT,
+     shininess_huge},
+    {"/volumes/0/attenuation_color/0: -1 is negative: give relative extinctions from 0 to 1000, 1 for as "
+     "much as the opacity says",
      HL_ERROR_INPUT, attenuation_negative},
-    {"/volumes/0/clip/max/1: 0 is not above min, 2: nothing would be left, enlarge the box", HL_ERROR_INPUT, clip_inverted},
-    {"/render/shadows: 0 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, shadows_unknown},
-    {"/render/light_samples: 0 is out of range: give M from 1 to 64, for M x M parts of the light", HL_ERROR_INPUT, samples_zero},
-    {"/render/sheet_spacing: 0 is out of range: give voxels between sheets, from 0.01 to 100", HL_ERROR_INPUT, spacing_zero},
+    {"/volumes/0/clip/max/1: 0 is not above min, 2: nothing would be left, enlarge the box", HL_ERROR_INPUT,
+     clip_inverted},
+    {"/render/shadows: 0 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,
+     shadows_unknown},
+    {"/render/light_samples: 0 is out of range: give M from 1 to 64, for M x M parts of the light",
+     HL_ERROR_INPUT, samples_zero},
+    {"/render/sheet_spacing: 0 is out of range: give voxels between sheets, from 0.01 to 100", HL_ERROR_INPUT,
+     spacing_zero},
     {"/render/kernel: 3 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, kernel_unknown},
-    {"/render/shadow_resolution: 100000 is out of range: give pixels from 1 to 16384, or auto", HL_ERROR_INPUT, resolution_huge},
-    {"/render/threads: -2 is negative: give a number of threads up to 1024, 0 for one per processor", HL_ERROR_INPUT,
-     threads_negative},
+    {"/render/shadow_resolution: 100000 is out of range: give pixels from 1 to 16384, or auto",
+     HL_ERROR_INPUT, resolution_huge},
+    {"/render/threads: -2 is negative: give a number of threads up to 1024, 0 for one per processor",
+     HL_ERROR_INPUT, threads_negative},
     {NULL, HL_ERROR_ARGUMENT, size_wrong},
 };
 
@@ -210,8 +246,8 @@ static void transfer_function_closed_forms(void **state) {
   hl_opacity_point points[] = {{0, 0}, {10, 0}, {10, 0.5}, {20, 1}, {30, 0}, {40, 0}, {40, 0.25}};
   hl_color_point colors[] = {{0, {0, 0, 1}}, {4, {1, 0, 0}}, {4, {0, 1, 0}}, {8, {0, 1, 1}}};
   hl_transfer_function f = {1, points, 7, colors, 4};
-  const double expected[][2] = {{-5, 0}, {9.999, 0}, {10, 0.5}, {15, 0.75}, {20, 1}, {25, 0.5}, {35, 0}, {40, 0.25},
-                                {1e9, 0.25}, {NAN, 0}};
+  const double expected[][2] = {{-5, 0},   {9.999, 0}, {10, 0.5},  {15, 0.75},  {20, 1},
+                                {25, 0.5}, {35, 0},    {40, 0.25}, {1e9, 0.25}, {NAN, 0}};
   for (size_t n = 0; n < sizeof expected / sizeof *expected; n++)
     assert_near(hl_transfer_function_opacity(&f, expected[n][0]), expected[n][1], 1e-12);
   double c[3];
@@ -246,18 +282,23 @@ static void visible_agrees_with_sampling(void **state) {
     hl_transfer_function f = {1, points, 8, NULL, 0};
     double low = rand() % 200 * 0.1 - 2, high = low + rand() % 60 * 0.1;
     int found = 0;
-    for (int s = 0; s <= 1000; s++) found |= hl_transfer_function_opacity(&f, low + (high - low) * s / 1000) > 0;
-    for (int p = 0; p < 8; p++) found |= points[p].value >= low && points[p].value <= high && points[p].opacity > 0 &&
-                                         hl_transfer_function_opacity(&f, points[p].value) > 0;
+    for (int s = 0; s <= 1000; s++)
+      found |= hl_transfer_function_opacity(&f, low + (high - low) * s / 1000) > 0;
+    for (int p = 0; p < 8; p++)
+      found |= points[p].value >= low && points[p].value <= high && points[p].opacity > 0 &&
+               hl_transfer_function_opacity(&f, points[p].value) > 0;
     if (found) assert_true(hl_transfer_function_visible(&f, low, high));
     double nearest;
     if (hl_transfer_function_transparent(&f, low, high, (low + high) / 2, &nearest)) {
       assert_true(nearest >= low && nearest <= high && hl_transfer_function_opacity(&f, nearest) == 0);
       for (int s = 0; s <= 1000; s++) {
         double v = low + (high - low) * s / 1000;
-        if (hl_transfer_function_opacity(&f, v) == 0) assert_true(fabs(v - (low + high) / 2) >= fabs(nearest - (low + high) / 2) - 1e-12);
+        if (hl_transfer_function_opacity(&f, v) == 0)
+          assert_true(fabs(v - (low + high) / 2) >= fabs(nearest - (low + high) / 2) - 1e-12);
       }
-    } else for (int s = 0; s <= 1000; s++) assert_true(hl_transfer_function_opacity(&f, low + (high - low) * s / 1000) > 0);
+    } else
+      for (int s = 0; s <= 1000; s++)
+        assert_true(hl_transfer_function_opacity(&f, low + (high - low) * s / 1000) > 0);
   }
 }
 
@@ -265,15 +306,18 @@ static void empty_value_is_the_commonest_transparent_one(void **state) {
   (void)state;
   hl_context *context = make_context();
   float values[64];
-  for (int v = 0; v < 64; v++) values[v] = v < 40 ? 0.0f : v < 60 ? 5.0f : (float)v; /* air 0, a wall 5, a few things */
+  for (int v = 0; v < 64; v++)
+    values[v] = v < 40 ? 0.0f : v < 60 ? 5.0f : (float)v; /* air 0, a wall 5, a few things */
   hl_volume *volume = make_volume(context, 4, values);
   hl_scene_volume sv;
   hl_scene_volume_defaults(&sv);
   sv.volume = volume;
-  hl_opacity_point low[] = {{1, 0}, {2, 1}}, band[] = {{4.5, 1}, {4.9, 0}, {5.1, 0}, {6, 1}}, none[] = {{0, 0.5}};
+  hl_opacity_point low[] = {{1, 0}, {2, 1}}, band[] = {{4.5, 1}, {4.9, 0}, {5.1, 0}, {6, 1}},
+                   none[] = {{0, 0.5}};
   sv.transfer_function = (hl_transfer_function){1, low, 2, NULL, 0};
   assert_true(hl_scene_volume_empty_value(&sv) == 0);
-  sv.transfer_function = (hl_transfer_function){1, band, 4, NULL, 0}; /* zero is opaque: the wall is the surroundings */
+  sv.transfer_function =
+      (hl_transfer_function){1, band, 4, NULL, 0}; /* zero is opaque: the wall is the surroundings */
   assert_near(hl_scene_volume_empty_value(&sv), 5, 0.2);
   assert_true(hl_transfer_function_opacity(&sv.transfer_function, hl_scene_volume_empty_value(&sv)) == 0);
   sv.transfer_function = (hl_transfer_function){1, none, 1, NULL, 0};
@@ -297,7 +341,8 @@ static void transform_is_scale_then_rotate_then_translate(void **state) {
   hl_scene_volume_box(&p.scene_volume, low, high);
   for (int a = 0; a < 3; a++) assert_true(low[a] == -0.5 && high[a] == 2.5);
   p.scene_volume.clipped = 1; /* in the file's world, before the transform */
-  for (int a = 0; a < 3; a++) p.scene_volume.clip_min[a] = 0.25, p.scene_volume.clip_max[a] = a == 2 ? 100 : 1.5;
+  for (int a = 0; a < 3; a++)
+    p.scene_volume.clip_min[a] = 0.25, p.scene_volume.clip_max[a] = a == 2 ? 100 : 1.5;
   hl_scene_volume_box(&p.scene_volume, low, high);
   assert_true(low[0] == 0.25 && high[0] == 1.5 && low[2] == 0.25 && high[2] == 2.5);
   for (int a = 0; a < 3; a++) p.scene_volume.clip_min[a] = 50, p.scene_volume.clip_max[a] = 60;

@@ -1,4 +1,5 @@
-/* tests/unit/scene_json.c - scene files: every case of tests/scenes/cases.json, syntax, round trips, hostile bytes. */
+/* tests/unit/scene_json.c - scene files: every case of tests/scenes/cases.json, syntax, round trips, hostile
+ * bytes. */
 #define _GNU_SOURCE
 #include <jansson.h>
 #include <stdio.h>
@@ -60,17 +61,20 @@ static void assert_round_trip(hl_context *context, const hl_scene *scene) {
   hl_scene *second = NULL;
   assert_int_equal(hl_scene_to_json(context, scene, &text, NULL), HL_OK);
   hl_error error = {0};
-  if (hl_scene_from_json(context, text, strlen(text), NULL, "again", &second, &error) != HL_OK) fail_msg("%s", error.message);
+  if (hl_scene_from_json(context, text, strlen(text), NULL, "again", &second, &error) != HL_OK)
+    fail_msg("%s", error.message);
   assert_int_equal(hl_scene_to_json(context, second, &again, NULL), HL_OK);
   assert_string_equal(text, again);
   const hl_scene_description *a = hl_scene_describe(scene), *b = hl_scene_describe(second);
   assert_memory_equal(&a->camera.position, &b->camera.position, sizeof a->camera.position);
   assert_memory_equal(&a->render, &b->render, sizeof a->render);
-  for (size_t l = 0; l < a->light_count; l++) assert_memory_equal(a->lights[l].color, b->lights[l].color, sizeof a->lights[l].color);
+  for (size_t l = 0; l < a->light_count; l++)
+    assert_memory_equal(a->lights[l].color, b->lights[l].color, sizeof a->lights[l].color);
   for (size_t v = 0; v < a->volume_count; v++) {
     const hl_transfer_function *f = &a->volumes[v].transfer_function, *g = &b->volumes[v].transfer_function;
     assert_int_equal(f->opacity_count, g->opacity_count);
-    if (f->opacity_count > 0) assert_memory_equal(f->opacity, g->opacity, f->opacity_count * sizeof *f->opacity);
+    if (f->opacity_count > 0)
+      assert_memory_equal(f->opacity, g->opacity, f->opacity_count * sizeof *f->opacity);
     if (f->color_count > 0) assert_memory_equal(f->color, g->color, f->color_count * sizeof *f->color);
   }
   hl_scene_release(second);
@@ -92,7 +96,8 @@ static void every_case(void **state) {
     hl_scene *scene = NULL;
     hl_error error = {0};
     hl_status status = read_text(context, text, &scene, &error);
-    if ((status == HL_OK) != accepted) fail_msg("case \"%s\": status %d, %s", name, (int)status, error.message);
+    if ((status == HL_OK) != accepted)
+      fail_msg("case \"%s\": status %d, %s", name, (int)status, error.message);
     if (accepted) {
       assert_round_trip(context, scene);
       hl_scene_release(scene);
@@ -113,7 +118,8 @@ static void every_case(void **state) {
 /* The names that the schema lists are the library's, in its order. */
 static void assert_enumeration(const json_t *schema, const char *key, const char *(*name_at)(size_t index)) {
   const json_t *function = json_object_get(json_object_get(schema, "$defs"), "transfer_function");
-  const json_t *names = json_object_get(json_object_get(json_object_get(function, "properties"), key), "enum");
+  const json_t *names =
+      json_object_get(json_object_get(json_object_get(function, "properties"), key), "enum");
   size_t count = 0;
   for (; name_at(count) != NULL; count++)
     assert_string_equal(json_string_value(json_array_get(names, count)), name_at(count));
@@ -123,7 +129,8 @@ static void assert_enumeration(const json_t *schema, const char *key, const char
 
 static void the_schema_knows_all_names(void **state) {
   (void)state;
-  json_t *schema = json_load_file(HALFLIGHT_SOURCE "/share/halflight.schema.json", JSON_REJECT_DUPLICATES, NULL);
+  json_t *schema =
+      json_load_file(HALFLIGHT_SOURCE "/share/halflight.schema.json", JSON_REJECT_DUPLICATES, NULL);
   assert_non_null(schema);
   assert_enumeration(schema, "colormap", hl_colormap_name);
   assert_enumeration(schema, "preset", hl_preset_name);
@@ -132,8 +139,10 @@ static void the_schema_knows_all_names(void **state) {
 
 static void syntax_errors_have_line_and_column(void **state) {
   (void)state;
-  const struct { const char *text; int line, column; const char *message; } faults[] = {
-      {"{\n  \"halflight\": 1,\n  // a comment\n}", 3, 3, "S:3:3: string or '}' expected near '/': JSON has no comments, remove them"},
+  const struct { const char *text; int line, column; const char *message;
+  } faults[] = {
+      {"{\n  \"halflight\": 1,\n  // a comment\n}", 3, 3,
+       "S:3:3: string or '}' expected near '/': JSON has no comments, remove them"},
       {"{\"halflight\": 1,}", 1, 17, "S:1:17: string or '}' expected near '}'"},
       {"{\"halflight\": 1", 1, 15, "S:1:15: '}' expected near end of file"},
       {"", 1, 0, "S:1:0: '[' or '{' expected near end of file"},
@@ -163,8 +172,9 @@ static void defaults_are_the_documented_ones(void **state) {
   (void)state;
   hl_context *context = make_context();
   hl_scene *scene = NULL;
-  const char *text = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"},"
-                     " {\"file\": \"cube_4x4x4_uint8.raw\", \"transfer_function\": {\"opacity\": [[0, 1]]}}]}";
+  const char *text =
+      "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"},"
+      " {\"file\": \"cube_4x4x4_uint8.raw\", \"transfer_function\": {\"opacity\": [[0, 1]]}}]}";
   assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
   const hl_scene_description *d = hl_scene_describe(scene);
   assert_true(d->width == 512 && d->height == 512 && d->ambient[0] == 0.2 && d->background[0] == 0);
@@ -176,12 +186,15 @@ static void defaults_are_the_documented_ones(void **state) {
   hl_scene_key_light(&d->camera, &key);
   assert_int_equal(d->light_count, 1);
   assert_memory_equal(key.direction, d->lights[0].direction, sizeof key.direction);
-  assert_true(d->lights[0].angular_diameter_deg == key.angular_diameter_deg && d->lights[0].shadows == HL_SHADOWS_DEFAULT);
+  assert_true(d->lights[0].angular_diameter_deg == key.angular_diameter_deg &&
+              d->lights[0].shadows == HL_SHADOWS_DEFAULT);
   assert_true(d->render.shadows == HL_SHADOWS_SOFT && d->render.soft_method == HL_SOFT_CASCADE);
-  assert_true(d->render.sheet_spacing == 0.5 && d->render.shadow_resolution == 0 && d->render.light_samples == 1);
+  assert_true(d->render.sheet_spacing == 0.5 && d->render.shadow_resolution == 0 &&
+              d->render.light_samples == 1);
   assert_ptr_equal(d->volumes[0].volume, d->volumes[1].volume); /* one file, loaded once */
   assert_true(d->volumes[0].transfer_function.opacity_count > 1); /* automatic */
-  assert_true(d->volumes[1].transfer_function.opacity_count == 1 && d->volumes[1].transfer_function.unit_distance == 1);
+  assert_true(d->volumes[1].transfer_function.opacity_count == 1 &&
+              d->volumes[1].transfer_function.unit_distance == 1);
   assert_true(d->volumes[1].material.specular == 0.3 && d->volumes[1].visible == 1);
   hl_scene_release(scene);
   hl_context_destroy(context);
@@ -193,7 +206,8 @@ static void colors_alone_keep_opacity(void **state) {
   hl_context *context = make_context();
   hl_scene *plain = NULL, *colored = NULL;
   const char *a = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}]}";
-  const char *b = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\", \"transfer_function\": {\"file\": "
+  const char *b = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\", "
+                  "\"transfer_function\": {\"file\": "
                   "\"colors.json\"}}]}";
   assert_int_equal(read_text(context, a, &plain, NULL), HL_OK);
   assert_int_equal(read_text(context, b, &colored, NULL), HL_OK);
@@ -236,8 +250,9 @@ static void volumes_from_memory_cannot_be_written(void **state) {
   hl_error error = {0};
   assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
   assert_int_equal(hl_scene_to_json(p.context, scene, &text, &error), HL_ERROR_ARGUMENT);
-  assert_string_equal(error.message,
-                      "/volumes/0/file: the volume came from memory: write it to a file and name that in the scene");
+  assert_string_equal(
+      error.message,
+      "/volumes/0/file: the volume came from memory: write it to a file and name that in the scene");
   assert_null(text);
   hl_scene_release(scene);
   parts_release(&p);
@@ -248,12 +263,14 @@ static void odd_values_survive(void **state) {
   (void)state;
   hl_context *context = make_context();
   hl_scene *scene = NULL;
-  const char *text = "{\"halflight\": 1, \"ambient\": [0.1, 1e-300, 3.0000000000000004], \"camera\": {\"position\": [-0.0, "
-                     "-12345678901234.5, 0.3333333333333333], \"target\": [0, 0, 0]}, \"volumes\": [{\"file\": "
-                     "\"cube_4x4x4_uint8.raw\", \"name\": \"a \\\"quoted\\\" \\\\ \\u0007 \\u00e9 name\"}]}";
+  const char *text =
+      "{\"halflight\": 1, \"ambient\": [0.1, 1e-300, 3.0000000000000004], \"camera\": {\"position\": [-0.0, "
+      "-12345678901234.5, 0.3333333333333333], \"target\": [0, 0, 0]}, \"volumes\": [{\"file\": "
+      "\"cube_4x4x4_uint8.raw\", \"name\": \"a \\\"quoted\\\" \\\\ \\u0007 \\u00e9 name\"}]}";
   assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
   const hl_scene_description *d = hl_scene_describe(scene);
-  assert_true(d->ambient[1] == 1e-300 && d->ambient[2] == 3.0000000000000004 && signbit(d->camera.position[0]));
+  assert_true(d->ambient[1] == 1e-300 && d->ambient[2] == 3.0000000000000004 &&
+              signbit(d->camera.position[0]));
   assert_string_equal(d->volumes[0].name, "a \"quoted\" \\ \a \xc3\xa9 name");
   assert_round_trip(context, scene);
   hl_scene_release(scene);
@@ -264,9 +281,10 @@ static void odd_values_survive(void **state) {
 static void damaged_scenes_are_answered(void **state) {
   (void)state;
   hl_context *context = make_context();
-  const char good[] = "{\"halflight\": 1, \"camera\": {\"fovy_deg\": 40}, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\","
-                      " \"clip\": {\"min\": [0, 0, 0], \"max\": [2, 3, 2]}, \"transfer_function\": {\"opacity\": [[0, 0], "
-                      "[9, 0.5]], \"colormap\": \"hot\"}}], \"lights\": [{\"type\": \"point\", \"radius\": 0.5}]}";
+  const char good[] =
+      "{\"halflight\": 1, \"camera\": {\"fovy_deg\": 40}, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\","
+      " \"clip\": {\"min\": [0, 0, 0], \"max\": [2, 3, 2]}, \"transfer_function\": {\"opacity\": [[0, 0], "
+      "[9, 0.5]], \"colormap\": \"hot\"}}], \"lights\": [{\"type\": \"point\", \"radius\": 0.5}]}";
   srand(3);
   int accepted = 0, refused = 0;
   for (size_t at = 0; at + 1 < sizeof good; at++)
@@ -274,7 +292,8 @@ static void damaged_scenes_are_answered(void **state) {
       char text[sizeof good + 1];
       size_t keep = kind == 1 ? at + 1 : at; /* what follows the damage */
       memcpy(text, good, at);
-      if (kind == 0) text[at] = (char)(rand() % 256), memcpy(text + at + 1, good + at + 1, sizeof good - at - 1);
+      if (kind == 0)
+        text[at] = (char)(rand() % 256), memcpy(text + at + 1, good + at + 1, sizeof good - at - 1);
       else if (kind == 1) memcpy(text + at, good + keep, sizeof good - keep);
       else if (kind == 2) text[at] = good[at], memcpy(text + at + 1, good + at, sizeof good - at);
       else text[at] = 0;

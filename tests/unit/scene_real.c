@@ -15,20 +15,27 @@ static const char *data_folder(void) {
 /* Real volumes: hardly any of the border is visible, something is, and little of it is not in the picture. */
 static void real_volumes(void **state) {
   (void)state;
-  static const struct { const char *file; hl_data_kind kind; double border; } sets[] = {
-      {"bonsai/bonsai.nrrd", HL_DATA_SURFACES, 0.2}, {"boston_teapot/boston_teapot.nrrd", HL_DATA_SURFACES, 0.01},
-      {"bucky/Bucky_32x32x32_uint8.raw", HL_DATA_FIELD, 0.08}, {"cranium_mha/cranium.mha", HL_DATA_SURFACES, 0.15},
-      {"engine/engine.nrrd", HL_DATA_SURFACES, 0.12}, {"fuel/fuel_64x64x64_uint8.raw", HL_DATA_SURFACES, 0.01},
-      {"headmr_mhd/HeadMRVolume.mhd", HL_DATA_SURFACES, 0.05}, {"hydrogen_orbital/hydrogen.vti", HL_DATA_FIELD, 0.01},
-      {"hipip_signed/hipip_signed_64x64x64_int16.nrrd", HL_DATA_SIGNED, 0.12},
-      {"ironprot/ironProt.vtk", HL_DATA_FIELD, 0.01}, {"mrbrain/head256x256x109_uint8.raw.gz", HL_DATA_SURFACES, 0.06},
-      {"neghip/neghip_64x64x64_uint8.raw", HL_DATA_FIELD, 0.05}, {"nucleon/nucleon.nrrd", HL_DATA_FIELD, 0.01},
-      {"silicium/silicium_98x34x34_uint8.raw", HL_DATA_SURFACES, 0.01},
-      {"skull_malformed_nrrd/skull_256x256x68_uint8_fixed.nrrd", HL_DATA_SURFACES, 0.02},
-      {"smoke_plume_pbrt/smoke_plume_100x100x40_float.nrrd", HL_DATA_MEDIUM, 0.06},
-      {"smoke_vdb/smoke_density.nrrd", HL_DATA_MEDIUM, 0.06}, {"stent/stent.nrrd", HL_DATA_SURFACES, 0.12},
-      {"stroke_t1_nii/T1.nii.gz", HL_DATA_SURFACES, 0.01},
-      {"wdas_cloud/wdas_cloud_sixteenth_density.nrrd", HL_DATA_MEDIUM, 0.01}};
+  static const struct { const char *file; hl_data_kind kind; double border;
+  } sets[] = {{"bonsai/bonsai.nrrd", HL_DATA_SURFACES, 0.2},
+              {"boston_teapot/boston_teapot.nrrd", HL_DATA_SURFACES, 0.01},
+              {"bucky/Bucky_32x32x32_uint8.raw", HL_DATA_FIELD, 0.08},
+              {"cranium_mha/cranium.mha", HL_DATA_SURFACES, 0.15},
+              {"engine/engine.nrrd", HL_DATA_SURFACES, 0.12},
+              {"fuel/fuel_64x64x64_uint8.raw", HL_DATA_SURFACES, 0.01},
+              {"headmr_mhd/HeadMRVolume.mhd", HL_DATA_SURFACES, 0.05},
+              {"hydrogen_orbital/hydrogen.vti", HL_DATA_FIELD, 0.01},
+              {"hipip_signed/hipip_signed_64x64x64_int16.nrrd", HL_DATA_SIGNED, 0.12},
+              {"ironprot/ironProt.vtk", HL_DATA_FIELD, 0.01},
+              {"mrbrain/head256x256x109_uint8.raw.gz", HL_DATA_SURFACES, 0.06},
+              {"neghip/neghip_64x64x64_uint8.raw", HL_DATA_FIELD, 0.05},
+              {"nucleon/nucleon.nrrd", HL_DATA_FIELD, 0.01},
+              {"silicium/silicium_98x34x34_uint8.raw", HL_DATA_SURFACES, 0.01},
+              {"skull_malformed_nrrd/skull_256x256x68_uint8_fixed.nrrd", HL_DATA_SURFACES, 0.02},
+              {"smoke_plume_pbrt/smoke_plume_100x100x40_float.nrrd", HL_DATA_MEDIUM, 0.06},
+              {"smoke_vdb/smoke_density.nrrd", HL_DATA_MEDIUM, 0.06},
+              {"stent/stent.nrrd", HL_DATA_SURFACES, 0.12},
+              {"stroke_t1_nii/T1.nii.gz", HL_DATA_SURFACES, 0.01},
+              {"wdas_cloud/wdas_cloud_sixteenth_density.nrrd", HL_DATA_MEDIUM, 0.01}};
   hl_context *context = make_context();
   for (size_t n = 0; n < sizeof sets / sizeof *sets; n++) {
     char path[500];
@@ -53,10 +60,13 @@ static void real_volumes(void **state) {
       else high = true;
     }
     for (size_t s = 0; s < sample.border_count; s++)
-      seen_border += hl_transfer_function_opacity(&f, sample.low + sample.range * (double)sample.border[s]) >= 0.02;
-    double part = (double)seen / (double)sample.count, border = (double)seen_border / (double)sample.border_count;
+      seen_border +=
+          hl_transfer_function_opacity(&f, sample.low + sample.range * (double)sample.border[s]) >= 0.02;
+    double part = (double)seen / (double)sample.count,
+           border = (double)seen_border / (double)sample.border_count;
     if (a.kind != sets[n].kind || border > sets[n].border || part < 0.005 || part > 0.5)
-      fail_msg("%s: kind %d, %.4f of the voxels and %.4f of the border visible", sets[n].file, (int)a.kind, part, border);
+      fail_msg("%s: kind %d, %.4f of the voxels and %.4f of the border visible", sets[n].file, (int)a.kind,
+               part, border);
     assert_true(high && (low == (a.kind == HL_DATA_SIGNED)));
     hl_sample_release(&sample);
     hl_transfer_function_release(context, &f);
