@@ -10,7 +10,7 @@
 static const double BOX_OF_DISK = 0.86602540378443865;
 
 /* Chunks that a sweep is cut into at most, and the least omega of one, pixels. */
-static const double GREATEST_CHUNKS = 160, LEAST_CHUNK = 1;
+static const double GREATEST_CHUNKS = 96, LEAST_CHUNK = 2;
 
 static double omega_at(const soft_cascade *cascade, double height) {
   if (cascade->parallel) return cascade->rate * height;
@@ -18,10 +18,10 @@ static double omega_at(const soft_cascade *cascade, double height) {
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
 }
 
-/* Levels keep at least four pixels of their own to the narrowest penumbra that they give: level j starts about
- * 2^(j+1) chunks behind the receiver. */
+/* Levels keep at least four pixels of their own to the narrowest penumbra that they give: level j starts at least
+ * 5 (2^j - 1) chunks behind the receiver, since every level before it keeps five groups. */
 static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = level == 0 ? 0 : cascade->chunk * pow(2, level + 1);
+  double penumbra = cascade->chunk * 5 * (pow(2, level) - 1);
   int scale = 1;
   while (scale * 8 <= penumbra && scale < 1 << level) scale *= 2;
   return scale;
@@ -48,18 +48,17 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
   size_t channels = (size_t)cascade->channels, used = 0, tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  size_t planes = channels * CASCADE_GROUPS * 2 + 2 + (index == 0 ? channels : 0);
+  size_t planes = channels * (CASCADE_GROUPS + 2) + 2 + (index == 0 ? channels : 0);
   level->memory = hl_allocate(context, planes * level->plane, sizeof(float));
   level->flags = hl_allocate(context, planes, tiles);
   if (level->memory == NULL || level->flags == NULL)
     return hl_fail_memory(error, planes * level->plane * sizeof(float), "a cascade of shadows");
   set_ones(level->memory, planes * level->plane);
   memset(level->flags, 1, planes * tiles);
-  for (int g = 0; g < CASCADE_GROUPS; g++)
-    for (size_t c = 0; c < channels; c++) {
-      level->group[g].transmittance[c] = next_field(level, &used);
-      level->group[g].passed[c] = next_field(level, &used);
-    }
+  for (size_t c = 0; c < channels; c++) {
+    for (int g = 0; g < CASCADE_GROUPS; g++) level->group[g].transmittance[c] = next_field(level, &used);
+    for (int i = 0; i < 2; i++) level->passed[i][c] = next_field(level, &used);
+  }
   for (int i = 0; i < 2; i++) level->scratch[i] = next_field(level, &used);
   for (size_t c = 0; c < channels && index == 0; c++) cascade->current[c] = next_field(level, &used);
   cascade->level_count = index + 1;
@@ -76,8 +75,8 @@ hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, cons
   if (!isfinite(start)) start = end - 1e4; /* the light lies within the sheets: its nearest ones have no end of width */
   cascade->chunk = fmax(LEAST_CHUNK, (end - start) / GREATEST_CHUNKS);
   cascade->chunk_start = start;
-  /* level j is first used after 2^(j+2) - 3 chunks (derived: a level keeps three of its five groups) */
-  int levels = 1 + (int)floor(log2((end - start) / cascade->chunk + 5)) - 1;
+  /* level j is first used after 6 * 2^j - 5 chunks (derived: a level keeps five of its seven groups) */
+  int levels = 1 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 6) / 6));
   hl_status status = HL_OK;
   for (int i = 0; i < levels && i < CASCADE_LEVELS && status == HL_OK; i++)
     status = open_level(context, cascade, i, buffer, error);
@@ -205,11 +204,10 @@ static void merge_up(soft_cascade *cascade, int index, hl_pool *pool, const casc
     multiply(pool, functions, level, &a.transmittance[c], level, &b.transmittance[c], next, &to->transmittance[c]);
   to->weight = a.weight + b.weight;
   to->omega = (a.omega * a.weight + b.omega * b.weight) / to->weight;
-  to->renewed = true;
+  next->renewed = level->renewed = true;
   for (int g = 2; g < CASCADE_GROUPS; g++) level->group[g - 2] = level->group[g];
   level->group[CASCADE_GROUPS - 2] = a;
   level->group[CASCADE_GROUPS - 1] = b;
-  level->group[0].renewed = true;
   level->count -= 2;
 }
 
@@ -229,55 +227,59 @@ static void push_chunk(soft_cascade *cascade, hl_pool *pool, const cascade_funct
   }
   to->weight = cascade->chunk_weight;
   to->omega = cascade->chunk_sum / cascade->chunk_weight;
-  to->renewed = true;
+  level->renewed = true;
   cascade->chunk_weight = cascade->chunk_sum = 0;
   cascade->chunks++;
   for (int i = 0; i + 1 < cascade->level_count && cascade->level[i].count == CASCADE_GROUPS; i++)
     merge_up(cascade, i, pool, functions);
 }
 
-/* What passed the group before (from, on its level), blurred for this group, times this group. */
-static void pass_group(const soft_cascade *cascade, cascade_level *from_level, const cascade_group *from,
-                       const cascade_level *level, cascade_group *group, double receiver, hl_pool *pool,
+/* What had passed the groups before, the last of them at omega before, blurred for this group, times this group. */
+static void pass_group(const soft_cascade *cascade, cascade_level *from_level, double before,
+                       cascade_level *level, const cascade_group *group, double receiver, hl_pool *pool,
                        const cascade_functions *functions) {
-  variances variance = variance_between(cascade, receiver - from->omega, receiver - group->omega, from_level->scale);
+  variances variance = variance_between(cascade, receiver - before, receiver - group->omega, from_level->scale);
+  const cascade_field *from = from_level->passed[from_level->newest];
+  level->newest = !level->newest;
   for (int c = 0; c < cascade->channels; c++) {
-    blur(pool, functions, from_level, &from->passed[c], &from_level->scratch[1], from_level->stride, variance);
+    blur(pool, functions, from_level, &from[c], &from_level->scratch[1], from_level->stride, variance);
     multiply(pool, functions, level, &group->transmittance[c], from_level, &from_level->scratch[1], level,
-             &group->passed[c]);
+             &level->passed[level->newest][c]);
   }
 }
 
 /* Nothing lies before the farthest group: what passes it is its own transmittance. */
-static void pass_first(const soft_cascade *cascade, const cascade_level *level, cascade_group *group) {
+static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group) {
   for (int c = 0; c < cascade->channels; c++) {
-    memcpy(group->passed[c].pixels - level->origin, group->transmittance[c].pixels - level->origin,
-           level->plane * sizeof(float));
-    memcpy(group->passed[c].ones, group->transmittance[c].ones, (size_t)level->tiles_x * (size_t)level->tiles_y);
+    const cascade_field *from = &group->transmittance[c], *to = &level->passed[level->newest][c];
+    memcpy(to->pixels - level->origin, from->pixels - level->origin, level->plane * sizeof(float));
+    memcpy(to->ones, from->ones, (size_t)level->tiles_x * (size_t)level->tiles_y);
   }
 }
 
-/* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. */
-static const cascade_group *pass_all(soft_cascade *cascade, double receiver, hl_pool *pool,
-                                     const cascade_functions *functions) {
-  cascade_group *before = NULL;
+/* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. Returns the nearest
+ * group's omega; what passed it is level 0's newest. */
+static double pass_all(soft_cascade *cascade, double receiver, hl_pool *pool, const cascade_functions *functions) {
   cascade_level *before_level = NULL;
+  double before = 0;
   bool due = false;
   for (int i = cascade->level_count - 1; i >= 0; i--) {
     cascade_level *level = &cascade->level[i];
+    if (level->count == 0) continue;
     uint64_t period = i < 2 ? 1 : (uint64_t)1 << (i - 1);
-    due = due || cascade->chunks % period == 0;
-    for (int g = 0; g < level->count; g++) {
-      cascade_group *group = &level->group[g];
-      due = due || group->renewed;
-      if (due && before == NULL)
+    due = due || level->renewed || cascade->chunks % period == 0;
+    for (int g = 0; g < level->count && due; g++) {
+      const cascade_group *group = &level->group[g];
+      if (before_level == NULL)
         pass_first(cascade, level, group);
-      else if (due)
+      else
         pass_group(cascade, before_level, before, level, group, receiver, pool, functions);
-      group->renewed = false;
-      before = group;
       before_level = level;
+      before = group->omega;
     }
+    level->renewed = false;
+    before_level = level;
+    before = level->group[level->count - 1].omega;
   }
   return before;
 }
@@ -303,15 +305,15 @@ static void find_lit(void *data, size_t index, int worker) {
 /* The buffer that sheets look up, for receivers around omega = receiver. */
 static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, hl_pool *pool,
                           const cascade_functions *functions) {
-  const cascade_group *nearest = pass_all(cascade, receiver, pool, functions);
+  double nearest = pass_all(cascade, receiver, pool, functions);
   cascade_level *level = &cascade->level[0];
-  variances variance = variance_between(cascade, receiver - nearest->omega, 0, 1);
+  variances variance = variance_between(cascade, receiver - nearest, 0, 1);
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   for (int c = 0; c < cascade->channels; c++) {
     /* the buffer's tiles that the last slabs touched are no longer ones: the second half of its flags says so */
     cascade_field to = {buffer->transmittance[c], buffer->tile_touched + tiles};
     for (size_t tile = 0; tile < tiles; tile++) to.ones[tile] = !buffer->tile_touched[tile];
-    blur(pool, functions, level, &nearest->passed[c], &to, buffer->stride, variance);
+    blur(pool, functions, level, &level->passed[level->newest][c], &to, buffer->stride, variance);
   }
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] = !buffer->tile_touched[tiles + tile];
   lit_task task = {buffer, functions->blur.lit_blocks};

@@ -17,7 +17,7 @@
 #include "light/cascade_field.h"
 #include "light/shadow_buffer.h"
 
-enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 5, CASCADE_MARGIN = 64 };
+enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_MARGIN = 48 };
 
 /* Transmittance over the pixels of a level, ones around them. */
 typedef struct cascade_field {
@@ -28,10 +28,8 @@ typedef struct cascade_field {
 /* The product of some neighbouring slabs. */
 typedef struct cascade_group {
   cascade_field transmittance[HL_CHANNELS];
-  cascade_field passed[HL_CHANNELS]; /* this times what passed all groups before it, for a receiver not long ago */
   double omega;                      /* mean over its slabs, pixels of the buffer */
   double weight;                     /* slabs */
-  bool renewed;                      /* passed is to be found anew */
 } cascade_group;
 
 typedef struct cascade_level {
@@ -40,6 +38,9 @@ typedef struct cascade_level {
   size_t stride, plane, origin;
   cascade_group group[CASCADE_GROUPS]; /* oldest first */
   int count;
+  cascade_field passed[2][HL_CHANNELS]; /* what passed all groups up to one of this level, for a recent receiver */
+  int newest;                        /* which of passed is the newest group's */
+  bool renewed;                      /* passed is to be found anew */
   cascade_field scratch[2];
   float *memory;                     /* owned */
   unsigned char *flags;              /* owned */

@@ -135,7 +135,9 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   for (int row = 0; row < 3; row++)
     place[row] = g->position.x * light->map[row][0] + g->position.y * light->map[row][1] +
                  (g->position.z * light->map[row][2] + light->map[row][3]);
-  lanes u = place[1] / place[0], v = place[2] / place[0];
+  lanes_int ahead = place[0] > 0.0f;
+  lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
+  lanes u = lanes_select(ahead, place[1] / safe, outside), v = lanes_select(ahead, place[2] / safe, outside);
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     if (c < light->channels)

@@ -11,10 +11,11 @@ static double extinction_of(const hl_transfer_function *function, double value) 
   return -log1p(-alpha) / function->unit_distance;
 }
 
-/* True where nothing of the function is transparent and empty lies below all values: the stretch from
- * empty to the least value is then transparent. */
-static bool below_all(const hl_scene_volume *volume, double value) {
-  return value < volume->volume->minimum && hl_transfer_function_opacity(&volume->transfer_function, value) > 0;
+/* True where nothing of the function is transparent and empty lies below all values: what is nearer to empty than to
+ * the least value is then transparent. */
+static bool below_all(const hl_scene_volume *volume, double empty, double value) {
+  return empty < volume->volume->minimum && value < (empty + volume->volume->minimum) / 2 &&
+         hl_transfer_function_opacity(&volume->transfer_function, empty) > 0;
 }
 
 /* Exact for the piecewise linear table: over one step the mean extinction e is (e0 + e1) / 2, its moment about the
@@ -31,11 +32,12 @@ static void integrate(classifier *classifier) {
   }
 }
 
-static void fill_tables(const hl_scene_volume *volume, double low, double high, classifier *classifier) {
+static void fill_tables(const hl_scene_volume *volume, double empty, double low, double high,
+                        classifier *classifier) {
   const hl_transfer_function *function = &volume->transfer_function;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
     double value = low + (high - low) * entry / CLASSIFIER_ENTRIES, color[3];
-    double extinction = below_all(volume, value) ? 0 : extinction_of(function, value);
+    double extinction = below_all(volume, empty, value) ? 0 : extinction_of(function, value);
     classifier->extinction[entry] = (float)extinction;
     if (extinction > classifier->greatest_extinction) classifier->greatest_extinction = (float)extinction;
     hl_transfer_function_color(function, value, color);
@@ -88,7 +90,7 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   classifier->scale = (float)(grid->value_scale * CLASSIFIER_ENTRIES / (high - low));
   classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
   classifier->normal_edge = normal_edge(volume, grid);
-  fill_tables(volume, low, high, classifier);
+  fill_tables(volume, empty, low, high, classifier);
   return HL_OK;
 }
 
