@@ -1,9 +1,15 @@
-/* core/pool.c - the thread team. Jobs come in quick succession (two a sheet), so workers spin a
- * while for the next one before they sleep; with more threads than processors they sleep at once. */
+/* core/pool.c - the thread team. Jobs come in quick succession (two a sheet), so workers spin a while for the
+ * next one before they sleep; with more threads than processors they sleep at once.
+ *
+ * A job is one 64-bit ticket: generation, count, next index. Indices are claimed by compare-and-swap, and the
+ * caller waits for claimed indices only, never for a worker that the system has not woken: on a busy machine it
+ * does the work alone. A job's description stays in its slot (by the generation's parity) while an index of it is
+ * claimed, since a later job of the same parity cannot start before that. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 
@@ -19,23 +25,28 @@ typedef struct worker {
   pthread_t thread;
 } worker;
 
+typedef struct job {
+  void (*function)(void *, size_t, int);
+  void *data;
+  size_t base;           /* of the ticket's indices */
+  atomic_size_t done;    /* indices finished */
+} job;
+
+enum { INDEX_BITS = 20 }; /* of a ticket's index and count; longer jobs run in parts */
+static const uint64_t INDEX_MASK = ((uint64_t)1 << INDEX_BITS) - 1;
+
 struct hl_pool {
   hl_context *context;
   int threads;
   int spins;
   worker *workers; /* owned; [threads]; entry 0 (the caller) unused */
   int started;     /* threads running, the caller included */
-  /* the job, written before generation is raised */
-  void (*function)(void *, size_t, int);
-  void *data;
-  size_t count;
-  atomic_size_t next;        /* the next index to hand out */
-  atomic_uint generation;    /* raised for each job */
-  atomic_int working;        /* workers that have not finished the job */
+  job jobs[2];
+  atomic_uint_least64_t ticket; /* generation << 40 | count << 20 | next index */
   atomic_bool stop;
+  atomic_int sleepers;
   pthread_mutex_t mutex;
-  pthread_cond_t wake;       /* generation or stop changed */
-  pthread_cond_t done;       /* working fell to 0 */
+  pthread_cond_t wake;       /* ticket or stop changed */
 };
 
 static inline void relax(void) {
@@ -44,55 +55,66 @@ static inline void relax(void) {
 #endif
 }
 
+static bool has_work(uint64_t ticket) { return (ticket & INDEX_MASK) < (ticket >> INDEX_BITS & INDEX_MASK); }
+
+/* Works on whatever is to be done until nothing is. */
 static void work(hl_pool *pool, int number) {
-  for (;;) {
-    size_t index = atomic_fetch_add(&pool->next, 1);
-    if (index >= pool->count) return;
-    pool->function(pool->data, index, number);
+  uint64_t ticket = atomic_load(&pool->ticket);
+  while (has_work(ticket)) {
+    if (!atomic_compare_exchange_weak(&pool->ticket, &ticket, ticket + 1)) continue;
+    job *job = &pool->jobs[ticket >> (2 * INDEX_BITS) & 1];
+    job->function(job->data, job->base + (size_t)(ticket & INDEX_MASK), number);
+    atomic_fetch_add(&job->done, 1);
+    ticket = atomic_load(&pool->ticket);
   }
 }
 
-/* Waits until generation differs from seen; false when the pool stops. */
-static bool wait_for_job(hl_pool *pool, unsigned seen) {
-  for (int spin = 0; spin < pool->spins; spin++) {
-    if (atomic_load(&pool->generation) != seen) return !atomic_load(&pool->stop);
-    relax();
-  }
+static void sleep_until_work(hl_pool *pool) {
   pthread_mutex_lock(&pool->mutex);
-  while (atomic_load(&pool->generation) == seen) pthread_cond_wait(&pool->wake, &pool->mutex);
+  atomic_fetch_add(&pool->sleepers, 1);
+  while (!has_work(atomic_load(&pool->ticket)) && !atomic_load(&pool->stop)) pthread_cond_wait(&pool->wake, &pool->mutex);
+  atomic_fetch_sub(&pool->sleepers, 1);
   pthread_mutex_unlock(&pool->mutex);
-  return !atomic_load(&pool->stop);
 }
 
 static void *worker_main(void *argument) {
   worker *self = argument;
   hl_pool *pool = self->pool;
-  for (unsigned seen = 0; wait_for_job(pool, seen); seen++) {
+  while (!atomic_load(&pool->stop)) {
     work(pool, self->number);
-    if (atomic_fetch_sub(&pool->working, 1) == 1) {
-      pthread_mutex_lock(&pool->mutex);
-      pthread_cond_signal(&pool->done);
-      pthread_mutex_unlock(&pool->mutex);
-    }
+    int spin = 0;
+    for (; spin < pool->spins && !has_work(atomic_load(&pool->ticket)); spin++) relax();
+    if (spin == pool->spins) sleep_until_work(pool);
   }
   return NULL;
 }
 
-static void announce(hl_pool *pool) {
+static void wake_sleepers(hl_pool *pool) {
+  if (atomic_load(&pool->sleepers) == 0) return;
   pthread_mutex_lock(&pool->mutex);
-  atomic_fetch_add(&pool->generation, 1);
   pthread_cond_broadcast(&pool->wake);
   pthread_mutex_unlock(&pool->mutex);
 }
 
-static void wait_for_workers(hl_pool *pool) {
-  for (int spin = 0; spin < pool->spins; spin++) {
-    if (atomic_load(&pool->working) == 0) return;
-    relax();
+/* Waits for indices that others have claimed: spinning, then letting them run. */
+static void wait_until_done(hl_pool *pool, const job *job, size_t count) {
+  for (int spin = 0; atomic_load(&job->done) < count; spin++) {
+    if (spin < pool->spins) relax();
+    else sched_yield();
   }
-  pthread_mutex_lock(&pool->mutex);
-  while (atomic_load(&pool->working) != 0) pthread_cond_wait(&pool->done, &pool->mutex);
-  pthread_mutex_unlock(&pool->mutex);
+}
+
+static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(void *, size_t, int), void *data) {
+  uint64_t generation = (atomic_load(&pool->ticket) >> (2 * INDEX_BITS)) + 1;
+  job *job = &pool->jobs[generation & 1];
+  job->function = function;
+  job->data = data;
+  job->base = base;
+  atomic_store(&job->done, 0);
+  atomic_store(&pool->ticket, generation << (2 * INDEX_BITS) | (uint64_t)count << INDEX_BITS);
+  wake_sleepers(pool);
+  work(pool, 0);
+  wait_until_done(pool, job, count);
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
@@ -100,14 +122,8 @@ void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, i
     for (size_t index = 0; index < count; index++) function(data, index, 0);
     return;
   }
-  pool->function = function;
-  pool->data = data;
-  pool->count = count;
-  atomic_store(&pool->next, 0);
-  atomic_store(&pool->working, pool->threads - 1);
-  announce(pool);
-  work(pool, 0);
-  wait_for_workers(pool);
+  for (size_t base = 0; base < count; base += INDEX_MASK)
+    run_part(pool, base, count - base < INDEX_MASK ? count - base : INDEX_MASK, function, data);
 }
 
 int hl_pool_threads(const hl_pool *pool) { return pool->threads; }
@@ -129,7 +145,6 @@ hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_er
   made->workers = workers;
   pthread_mutex_init(&made->mutex, NULL);
   pthread_cond_init(&made->wake, NULL);
-  pthread_cond_init(&made->done, NULL);
   for (made->started = 1; made->started < threads; made->started++) {
     worker *self = &workers[made->started];
     self->pool = made;
@@ -147,9 +162,10 @@ void hl_pool_destroy(hl_pool *pool) {
   if (pool == NULL) return;
   hl_context *context = pool->context;
   atomic_store(&pool->stop, true);
-  announce(pool);
+  pthread_mutex_lock(&pool->mutex);
+  pthread_cond_broadcast(&pool->wake);
+  pthread_mutex_unlock(&pool->mutex);
   for (int i = 1; i < pool->started; i++) pthread_join(pool->workers[i].thread, NULL);
-  pthread_cond_destroy(&pool->done);
   pthread_cond_destroy(&pool->wake);
   pthread_mutex_destroy(&pool->mutex);
   hl_release(context, pool->workers);
