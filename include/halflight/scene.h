@@ -171,6 +171,10 @@ HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg,
                                                 double elevation_deg, double zoom, hl_camera *camera);
 
+/* The same for a camera that keeps its own direction and up: it is only moved (and its height set). */
+HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *description, double zoom,
+                                              hl_camera *camera);
+
 /* The direction (unit, the way light travels) of a light that stands, seen by the camera, at azimuth
  * (positive: right) and elevation (positive: up) from the line of sight: 0,0 is a headlight. */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,

@@ -42,6 +42,12 @@ static void camera_angles(const hl_camera *camera, double *azimuth_deg, double *
   subtract(camera->position, camera->target, eye);
   double flat = hypot(eye[0], eye[1]);
   *elevation_deg = atan2(eye[2], flat) / degree;
+  double tilt = eye[0] * camera->up[1] - eye[1] * camera->up[0]; /* of the picture's right against the horizon */
+  if (fabs(tilt) > 1e-6 * distance(camera->position, camera->target)) { /* up is another axis: begin anew */
+    *azimuth_deg = 30;
+    *elevation_deg = 20;
+    return;
+  }
   if (flat > 1e-9 * fabs(eye[2]))
     *azimuth_deg = atan2(eye[0], -eye[1]) / degree;
   else
@@ -76,13 +82,15 @@ static int change_camera(scene_change *change) {
   double azimuth_deg, elevation_deg;
   camera_angles(&description->camera, &azimuth_deg, &elevation_deg);
   change_projection(values, &description->camera);
-  bool turned = values[RENDER_AZIMUTH].given || values[RENDER_ELEVATION].given || values[RENDER_ZOOM].given;
+  bool turned = values[RENDER_AZIMUTH].given || values[RENDER_ELEVATION].given;
   bool reshaped = values[RENDER_SIZE].given || values[RENDER_FOVY].given || values[RENDER_ORTHO].given;
-  if (!turned && !(change->bare && reshaped)) return EXIT_CODE_OK;
+  if (!turned && !values[RENDER_ZOOM].given && !(change->bare && reshaped)) return EXIT_CODE_OK;
   if (values[RENDER_AZIMUTH].given) azimuth_deg = values[RENDER_AZIMUTH].number[0];
   if (values[RENDER_ELEVATION].given) elevation_deg = values[RENDER_ELEVATION].number[0];
   double zoom = values[RENDER_ZOOM].given ? values[RENDER_ZOOM].number[0] : 1;
-  hl_status status = hl_camera_frame(description, azimuth_deg, elevation_deg, zoom, &description->camera);
+  hl_status status =
+      turned ? hl_camera_frame(description, azimuth_deg, elevation_deg, zoom, &description->camera)
+             : hl_camera_fit(description, zoom, &description->camera);
   if (status == HL_OK) return EXIT_CODE_OK;
   return fail(EXIT_CODE_USAGE,
               "--azimuth, --elevation, --zoom: no visible volume to frame: place the camera in the scene");

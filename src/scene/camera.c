@@ -169,8 +169,9 @@ static void extent_add_scene(extent *e, const hl_scene_description *description)
     extent_add_box(e, &description->volumes[n]);
 }
 
-/* Derived: the plane x = ex + tx (z - ez) and its three mirrors hold every point, so ex - tx ez >= side[0] and
- * -ex - tx ez >= side[1]; together ez <= -(side[0] + side[1]) / (2 tx), with ex = (side[0] - side[1]) / 2. */
+/* Derived: the plane x = ex + tx (z - ez) and its three mirrors hold every point, so ex - tx ez >= side[0]
+ * and -ex - tx ez >= side[1]; together ez <= -(side[0] + side[1]) / (2 tx), with ex = (side[0] - side[1])
+ * / 2. */
 static void place_camera(const extent *e, double aspect, double zoom, hl_camera *camera) {
   double x = (e->side[0] - e->side[1]) / 2, y = (e->side[2] - e->side[3]) / 2,
          middle = (e->near + e->far) / 2;
@@ -202,16 +203,9 @@ static void set_axes(extent *e, hl_upright upright, double azimuth_deg, double e
   e->up = vec3_add(vec3_scale(horizon, sin(elevation)), vec3_scale(upright.up, cos(elevation)));
 }
 
-hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg, double elevation_deg,
-                          double zoom, hl_camera *camera) {
-  hl_upright upright = {{0, 0, 1}, {1, 0, 0}, 0};
-  return hl_camera_frame_upright(description, upright, azimuth_deg, elevation_deg, zoom, camera);
-}
-
-hl_status hl_camera_frame_upright(const hl_scene_description *description, hl_upright upright,
-                                  double azimuth_deg, double elevation_deg, double zoom, hl_camera *camera) {
-  if (description == NULL || camera == NULL || description->volume_count == 0 || description->width < 1 ||
-      description->height < 1 || !isfinite(azimuth_deg) || !isfinite(elevation_deg) ||
+/* Fits the camera to what is visible along axes that are already in *e. */
+static hl_status fit(const hl_scene_description *description, double zoom, extent *e, hl_camera *camera) {
+  if (description->volume_count == 0 || description->width < 1 || description->height < 1 ||
       !(zoom >= 1e-6 && zoom <= 1e6))
     return HL_ERROR_ARGUMENT;
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE;
@@ -219,13 +213,37 @@ hl_status hl_camera_frame_upright(const hl_scene_description *description, hl_up
   for (size_t n = 0; n < description->volume_count; n++)
     if (description->volumes[n].volume == NULL) return HL_ERROR_ARGUMENT;
   double aspect = (double)description->width / description->height;
-  extent e = {.side = {-INFINITY, -INFINITY, -INFINITY, -INFINITY}, .near = INFINITY, .far = -INFINITY};
-  set_axes(&e, upright, azimuth_deg, elevation_deg);
-  if (perspective) {
-    e.tangent_y = FILLED * tan(camera->fovy_deg * HL_PI / 360);
-    e.tangent_x = e.tangent_y * aspect;
-  }
-  extent_add_scene(&e, description);
-  place_camera(&e, aspect, zoom, camera);
+  for (int side = 0; side < 4; side++) e->side[side] = -INFINITY;
+  e->near = INFINITY;
+  e->far = -INFINITY;
+  e->tangent_y = perspective ? FILLED * tan(camera->fovy_deg * HL_PI / 360) : 0;
+  e->tangent_x = e->tangent_y * aspect;
+  extent_add_scene(e, description);
+  place_camera(e, aspect, zoom, camera);
   return HL_OK;
+}
+
+hl_status hl_camera_frame_upright(const hl_scene_description *description, hl_upright upright,
+                                  double azimuth_deg, double elevation_deg, double zoom, hl_camera *camera) {
+  extent e = {.any = false};
+  set_axes(&e, upright, azimuth_deg, elevation_deg);
+  return fit(description, zoom, &e, camera);
+}
+
+hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg, double elevation_deg,
+                          double zoom, hl_camera *camera) {
+  if (description == NULL || camera == NULL || !isfinite(azimuth_deg) || !isfinite(elevation_deg))
+    return HL_ERROR_ARGUMENT;
+  hl_upright upright = {{0, 0, 1}, {1, 0, 0}, 0};
+  return hl_camera_frame_upright(description, upright, azimuth_deg, elevation_deg, zoom, camera);
+}
+
+hl_status hl_camera_fit(const hl_scene_description *description, double zoom, hl_camera *camera) {
+  if (description == NULL || camera == NULL) return HL_ERROR_ARGUMENT;
+  double distance = vec3_length(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
+  if (!(distance > 0 && isfinite(distance) && isfinite(vec3_length(vec3_of(camera->up)))))
+    return HL_ERROR_ARGUMENT;
+  extent e = {.any = false};
+  hl_camera_basis(camera, &e.right, &e.up, &e.forward);
+  return fit(description, zoom, &e, camera);
 }

@@ -114,6 +114,31 @@ static void angles_mean_what_they_say(void **state) {
   parts_release(&p);
 }
 
+/* Fitting keeps the direction, whatever it is, and is what framing does along its own. */
+static void fits_along_its_own_direction(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  hl_camera framed = {.fovy_deg = 30}, fitted;
+  assert_int_equal(hl_camera_frame(&p.description, 25, 35, 1.5, &framed), HL_OK);
+  fitted = framed;
+  for (int a = 0; a < 3; a++) fitted.position[a] += 40 * (framed.position[a] - framed.target[a]);
+  assert_int_equal(hl_camera_fit(&p.description, 1.5, &fitted), HL_OK);
+  for (int a = 0; a < 3; a++) assert_near(fitted.position[a], framed.position[a], 1e-9);
+  hl_camera lying = {.fovy_deg = 30, .position = {3, 50, 2}, .up = {1, 0, 0.2}}, before = lying;
+  vec3 r, u, f, r2, u2, f2;
+  assert_int_equal(hl_camera_fit(&p.description, 1, &lying), HL_OK);
+  assert_true(hl_camera_basis(&before, &r, &u, &f) && hl_camera_basis(&lying, &r2, &u2, &f2));
+  assert_near(vec3_dot(f, f2), 1, 1e-12);
+  assert_near(vec3_dot(u, u2), 1, 1e-12);
+  double x, y;
+  project(&lying, 1, (vec3){1, 1, 1}, &x, &y);
+  assert_true(fabs(x) < 0.2 && fabs(y) < 0.2);
+  lying.position[0] = NAN;
+  assert_int_equal(hl_camera_fit(&p.description, 1, &lying), HL_ERROR_ARGUMENT);
+  parts_release(&p);
+}
+
 /* With nothing visible the whole grid is framed, and several volumes are framed together. */
 static void frames_boxes_and_several_volumes(void **state) {
   (void)state;
@@ -155,6 +180,7 @@ int main(void) {
       cmocka_unit_test(scene_mends_up),
       cmocka_unit_test(frames_what_is_visible),
       cmocka_unit_test(angles_mean_what_they_say),
+      cmocka_unit_test(fits_along_its_own_direction),
       cmocka_unit_test(frames_boxes_and_several_volumes),
       cmocka_unit_test(lights_stand_where_the_camera_sees_them),
   };
