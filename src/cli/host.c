@@ -81,6 +81,13 @@ static void listen_to_signals(void) {
   sigaction(SIGTERM, &action, NULL);
 }
 
+/* What a run may hold unless told otherwise: the machine's memory. Asked for more, it fails with a line
+ * instead of being killed. */
+static uint64_t physical_memory(void) {
+  long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
+  return pages > 0 && page_bytes > 0 ? (uint64_t)pages * (uint64_t)page_bytes : 0;
+}
+
 int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
@@ -94,7 +101,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.log = on_log;
   context_options.progress = on_progress;
   context_options.cancelled = on_cancelled;
-  context_options.memory_limit = options->memory_limit;
+  context_options.memory_limit = options->memory_limit > 0 ? options->memory_limit : physical_memory();
   context_options.instruction_set = options->instruction_set;
   hl_error error = {0};
   hl_status status = hl_context_create(&context_options, &host->context, &error);

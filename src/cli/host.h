@@ -20,7 +20,7 @@ typedef struct cli_host_options {
   bool quiet;
   bool progress;
   const char *subject;
-  uint64_t memory_limit; /* bytes; 0: none */
+  uint64_t memory_limit; /* bytes; 0: the machine's memory */
   hl_instruction_set instruction_set;
 } cli_host_options;
 

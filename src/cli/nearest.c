@@ -34,8 +34,8 @@ const char *nearest_name(const char *text, const char *(*candidate)(const void *
   const char *best = NULL, *name;
   size_t best_distance = 2 + length / 4; /* farther names would puzzle more than help */
   for (size_t i = 0; (name = candidate(data, i)) != NULL; i++) {
-    bool begins_so = length >= 3 && strncmp(name, text, length) == 0;
-    size_t distance = begins_so ? 1 : edit_distance(text, name);
+    bool part_of_it = length >= 3 && strstr(name, text) != NULL;
+    size_t distance = part_of_it ? 1 : edit_distance(text, name);
     if (distance < best_distance && 2 * distance < strlen(name)) {
       best = name;
       best_distance = distance;
