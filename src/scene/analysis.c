@@ -148,7 +148,7 @@ static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample
     a->kind = kind_of(volume, sample, &d, a);
   }
   hl_release(volume->context, memory);
-  a->depth = cbrt(a->depth * pow((double)sample->step, 3));
+  a->depth = cbrt(a->depth / (double)sample->count * (double)hl_volume_voxel_count(volume));
   return HL_OK;
 }
 

@@ -51,11 +51,25 @@ static size_t collect(const hl_sample *sample, const hl_volume *volume, const si
 
 static size_t steps_in(size_t extent, size_t step) { return extent / step + 1; }
 
+size_t hl_lattice_step(const size_t dimension[3], double most) {
+  double step = 1, places;
+  do {
+    places = 1;
+    for (int a = 0; a < 3; a++) places *= ceil((double)dimension[a] / floor(step));
+    if (places > most) step = fmax(step + 1, step * 1.1);
+  } while (places > most);
+  return (size_t)step;
+}
+
 static hl_status make_border(const hl_volume *volume, hl_sample *sample, hl_error *error) {
   const size_t *n = volume->dimension;
-  double area =
-      2.0 * ((double)n[0] * (double)n[1] + (double)n[1] * (double)n[2] + (double)n[0] * (double)n[2]);
-  size_t step = (size_t)fmax(1, ceil(sqrt(area / (SAMPLE_COUNT / 4)))), capacity = 0;
+  size_t step = 1, capacity = 0;
+  for (int a = 0; a < 3; a++) {
+    size_t face[3] = {n[0], n[1], n[2]};
+    face[a] = 1;
+    size_t enough = hl_lattice_step(face, SAMPLE_COUNT / 12);
+    if (enough > step) step = enough;
+  }
   for (int a = 0; a < 3; a++) capacity += 2 * steps_in(n[(a + 1) % 3], step) * steps_in(n[(a + 2) % 3], step);
   sample->border = hl_allocate(volume->context, capacity, sizeof(float));
   if (sample->border == NULL)
@@ -76,7 +90,7 @@ hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *e
   const size_t *n = volume->dimension, low[3] = {0, 0, 0};
   double range = volume->maximum - volume->minimum;
   *sample = (hl_sample){.context = volume->context, .low = volume->minimum, .range = range > 0 ? range : 1};
-  sample->step = (size_t)fmax(1, ceil(cbrt((double)hl_volume_voxel_count(volume) / SAMPLE_COUNT)));
+  sample->step = hl_lattice_step(n, SAMPLE_COUNT);
   size_t capacity =
       steps_in(n[0], sample->step) * steps_in(n[1], sample->step) * steps_in(n[2], sample->step);
   sample->values = hl_allocate(volume->context, capacity, sizeof(float));

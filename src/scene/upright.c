@@ -11,6 +11,7 @@
 #include <strings.h>
 
 #include "core/memory.h"
+#include "scene/sample.h"
 #include "scene/scene.h"
 
 #define LATTICE 5e5     /* places looked at, about */
@@ -62,7 +63,7 @@ static size_t place_of(const hl_volume *volume, const shape *s, size_t step, int
 }
 
 static bool make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s) {
-  size_t step = (size_t)fmax(1, ceil(cbrt((double)hl_volume_voxel_count(volume) / LATTICE)));
+  size_t step = hl_lattice_step(volume->dimension, LATTICE);
   memset(s, 0, sizeof *s);
   if (!allocate(volume->context, volume, step, s)) return false;
   double total = 0;

@@ -277,6 +277,9 @@ static void names_and_statistics(void **state) {
   assert_memory_equal(values, sorted, sizeof values);
   assert_near(hl_quantile(sorted, 8, 0.5), 2.75, 1e-9);
   assert_near(hl_mode(sorted, 8), 3.5, 1e-6);
+  assert_int_equal(hl_lattice_step((size_t[3]){10, 10, 10}, 1000), 1);
+  assert_int_equal(hl_lattice_step((size_t[3]){100, 100, 100}, 125000), 2);
+  assert_true(1e9 / (double)hl_lattice_step((size_t[3]){1, 1000000000, 1}, 1000) <= 1000);
   float two[] = {0, 0, 0, 1, 1, 10, 10, 11};
   assert_near(hl_threshold_otsu(two, 8, -1), 5.5, 1e-6);
   hl_context_destroy(context);
