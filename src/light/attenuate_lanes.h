@@ -20,8 +20,8 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
 }
 
 /* The part of the slab before the sheet that lies in the volume's box, block by block. */
-LANES_INLINE lanes covered_block(const float *enter, const float *leave, int block, float height, float spacing) {
-  if (enter == NULL) return lanes_set(1.0f);
+LANES_INLINE covered_part covered_block(const float *enter, const float *leave, int block, float height, float spacing) {
+  if (enter == NULL) return (covered_part){lanes_set(0), lanes_set(1.0f)};
   return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height, spacing);
 }
 
@@ -53,7 +53,7 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
     table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
     if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
     lanes extinction = mean_extinction(volume->classifier, a, b) *
-                       covered_block(volume->enter, volume->leave, block, job->height, job->spacing);
+                       covered_block(volume->enter, volume->leave, block, job->height, job->spacing).length;
     for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
   }
   lanes any = depth[0] + depth[1] + depth[2];

@@ -23,7 +23,7 @@ LANES_INLINE lanes3 normalise3(lanes3 a) {
 
 /* What the volumes of a block share: where its pixels are and how they look. */
 typedef struct block_geometry {
-  lanes3 position;       /* frame space, in the middle of the slab */
+  lanes3 position;       /* frame space, in the slab */
   lanes3 step_u, step_v; /* to the next pixel along the sheet */
   lanes3 step_sheet;     /* to the next sheet along the ray */
   lanes3 towards_eye;    /* unit */
@@ -194,6 +194,7 @@ typedef struct block_density {
   lanes middle; /* density */
   table_place before, after;
   lanes extinction;
+  covered_part part;
 } block_density;
 
 /* Step 13 for one volume. */
@@ -208,9 +209,10 @@ LANES_INLINE block_density classify_block(const shade_job *job, const shade_volu
   d.before = classify_place(volume->classifier, before);
   d.after = classify_place(volume->classifier, after);
   d.extinction = lanes_set(0);
-  if (lanes_bits(may_be_visible(volume->classifier, d.before, d.after)) != 0)
-    d.extinction = mean_extinction(volume->classifier, d.before, d.after) *
-                   covered_block(enter, leave, block, job->height, job->spacing);
+  d.part = (covered_part){lanes_set(0), lanes_set(0)};
+  if (lanes_bits(may_be_visible(volume->classifier, d.before, d.after)) == 0) return d;
+  d.part = covered_block(enter, leave, block, job->height, job->spacing);
+  d.extinction = mean_extinction(volume->classifier, d.before, d.after) * d.part.length;
   return d;
 }
 
@@ -241,10 +243,15 @@ static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile
                        uint64_t *samples) {
   int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK;
   size_t at = (size_t)y * job->stride + (size_t)x;
-  lanes total = lanes_set(0), cast[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  lanes total = lanes_set(0), depth_in_slab = lanes_set(0), cast[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int i = 0; i < job->volume_count; i++) {
     block_density d = classify_block(job, &job->volumes[i], at, tile, block);
-    if (job->volumes[i].visible) total = total + d.extinction;
+    if (job->volumes[i].visible && lanes_bits(d.extinction > 0.0f) != 0) {
+      table_place mean = mean_place(job->volumes[i].classifier, d.before, d.after);
+      total = total + d.extinction;
+      depth_in_slab = depth_in_slab +
+                      d.extinction * (d.part.begin + d.part.length * part_of_way(d.before, d.after, mean));
+    }
     for (int c = 0; c < job->channels; c++) cast[c] = cast[c] + d.extinction * job->volumes[i].cast[c];
   }
   lanes_int seen = total > 0.0f;
@@ -253,6 +260,9 @@ static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile
   if (bits == 0) return 1;
   block_geometry g = geometry_of_block(job, block_u(x), block_v(y));
   arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
+  /* lit where its matter is, not in the slab's middle, which may lie outside of it in the light */
+  lanes from_middle = depth_in_slab / lanes_max(total, lanes_set(1e-30f)) - 0.5f;
+  g.position = add3(g.position, scale3(g.step_sheet, from_middle));
   lanes depth = total * g.path;
   for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, depth, cast);
   color_lanes lit = color_of_block(job, &g, lights, at, tile, block, total);

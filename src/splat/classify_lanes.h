@@ -40,6 +40,13 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_place 
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
+/* How far along the way from a to b a place lies, 0 to 1; the middle where the way is short. */
+LANES_INLINE lanes part_of_way(table_place a, table_place b, table_place place) {
+  lanes way = b.x - a.x;
+  lanes_int far = lanes_abs(way) > NEAR_ENTRIES;
+  return lanes_select(far, (place.x - a.x) / lanes_select(far, way, lanes_set(1.0f)), lanes_set(0.5f));
+}
+
 /* The place between a and b where, weighted by extinction, the density lies: what colour is taken from. */
 LANES_INLINE table_place mean_place(const classifier *classifier, table_place a, table_place b) {
   lanes low = lanes_min(a.x, b.x), high = lanes_max(a.x, b.x), middle = (low + high) * 0.5f;

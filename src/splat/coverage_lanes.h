@@ -28,11 +28,14 @@ static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *e
   }
 }
 
-/* The part of the slab [height - spacing, height] between enter and leave, 0 to 1. */
-LANES_INLINE lanes covered(lanes enter, lanes leave, float height, float spacing) {
+/* Where the covered part of the slab [height - spacing, height] begins and how long it is, in slabs. */
+typedef struct covered_part { lanes begin, length; } covered_part;
+
+LANES_INLINE covered_part covered(lanes enter, lanes leave, float height, float spacing) {
   lanes top = lanes_min(leave, lanes_set(height));
   lanes bottom = lanes_max(enter, lanes_set(height - spacing));
-  return lanes_max((top - bottom) * (1.0f / spacing), lanes_set(0));
+  return (covered_part){(bottom - (height - spacing)) * (1.0f / spacing),
+                        lanes_max((top - bottom) * (1.0f / spacing), lanes_set(0))};
 }
 
 #endif
