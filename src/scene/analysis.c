@@ -118,7 +118,10 @@ static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample
                                 hl_error *error) {
   double low = hl_quantile(sample->values, sample->count, 0.001),
          high = hl_quantile(sample->values, sample->count, 0.999);
-  a->background = hl_mode(sample->border, sample->border_count);
+  bool bordered = sample->border_count > 0; /* else NaNs are the air, and the commonest value has to do */
+  a->background =
+      bordered ? hl_mode(sample->border, sample->border_count) : hl_mode(sample->values, sample->count);
+  if (low == high) low = (double)sample->values[0], high = (double)sample->values[sample->count - 1];
   double below = a->background - low, above = high - a->background;
   a->direction = above >= below ? 1 : -1;
   bool two_sided = fmin(above, below) > 0.25 * fmax(above, below) && fmax(above, below) > 0;
@@ -126,7 +129,7 @@ static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample
   float *memory = hl_allocate(volume->context, count, sizeof *memory);
   if (memory == NULL) return hl_fail_memory(error, count * sizeof *memory, "a volume's sample");
   distances d = {memory, sample->count};
-  if (two_sided) { /* lobes thin out to both sides; where they do not, the mode is a material and air is low */
+  if (two_sided) { /* lobes thin out to both sides; else the mode is a material, and air is low */
     measure(sample->values, sample->count, a->background, -1, d.values);
     bool lobe = falls(&d, 0.02, below);
     measure(sample->values, sample->count, a->background, 1, d.values);
@@ -158,6 +161,11 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
   hl_sample sample;
   hl_status status = hl_sample_make(volume, &sample, error);
   if (status != HL_OK) return status;
+  if (sample.count == 0 || sample.values[0] == sample.values[sample.count - 1]) {
+    /* Nothing differs where the lattice is: shown like a constant. */
+    hl_sample_release(&sample);
+    return HL_OK;
+  }
   status = analyse_sample(volume, &sample, analysis, error);
   analysis->background = sample.low + sample.range * analysis->background;
   double *distance[] = {&analysis->faint, &analysis->solid, &analysis->dense, &analysis->top,

@@ -99,9 +99,6 @@ hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *e
   hl_status status = hl_sort(volume->context, sample->values, sample->count)
                          ? make_border(volume, sample, error)
                          : hl_fail_memory(error, sample->count * sizeof(float), "a volume's sample");
-  if (status == HL_OK && (sample->count == 0 || sample->border_count == 0))
-    status = hl_fail(error, HL_ERROR_INPUT,
-                     "the volume has no finite voxel where it was sampled: there is nothing to show");
   if (status != HL_OK) hl_sample_release(sample);
   return status;
 }

@@ -24,7 +24,7 @@ typedef struct hl_sample {
 /* The step along each axis of a lattice of at most `most` places in a grid, thin grids included; at least 1. */
 size_t hl_lattice_step(const size_t dimension[3], double most);
 
-/* Fails for lack of memory, or (HL_ERROR_INPUT) if the volume has no finite voxel. */
+/* Fails for lack of memory alone; either array may be empty where the volume is full of NaNs. */
 hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *error);
 void hl_sample_release(hl_sample *sample);
 

@@ -192,6 +192,50 @@ static void odd_volumes_get_a_scene(void **state) {
   hl_context_destroy(context);
 }
 
+/* Where NaNs are the air, on the grid's faces too, the rest is shown. */
+static void nan_may_be_the_air(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  make_ball(values, 0.05);
+  for (int v = 0; v < N * N * N; v++)
+    if (values[v] < 0.5f) values[v] = NAN;
+  hl_context *context = make_context();
+  hl_volume *volume = scaled_volume(context, values, 1, 0);
+  hl_transfer_function f;
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  assert_ascending(&f);
+  assert_true(hl_transfer_function_opacity(&f, 2.2) > 0.5);
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  static float lonely[N * N * N * 27]; /* one finite voxel in a grid that is sampled with gaps */
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  for (int v = 0; v < N * N * N * 27; v++) lonely[v] = NAN;
+  for (int a = 0; a < 3; a++) d.dimensions[a] = 3 * N;
+  lonely[3 * N * (3 * N * 3 + 3) + 3] = 1;
+  lonely[3 * N * (3 * N * 3 + 3) + 4] = 2;
+  d.type = HL_VOXEL_F32;
+  d.voxels = lonely;
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  assert_true(hl_transfer_function_opacity(&hl_scene_describe(scene)->volumes[0].transfer_function, 2) > 0);
+  hl_scene_release(scene);
+  hl_volume_release(volume);
+  /* A hundred voxels of a million, above or below the rest. */
+  for (int below = 0; below < 2; below++) {
+    for (int v = 0; v < N * N * N * 27; v++) lonely[v] = v % 17389 == 0 ? (below ? -3.0f : 3.0f) : 0.0f;
+    assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+    assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+    assert_ascending(&f);
+    assert_true(hl_transfer_function_opacity(&f, 0) == 0 && hl_transfer_function_opacity(&f, below ? -3 : 3) > 0.5);
+    hl_transfer_function_release(context, &f);
+    hl_volume_release(volume);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* A CT in Hounsfield units and the same squeezed into 8 bits: bone at the same places. */
 static void ct_presets_adapt(void **state) {
   (void)state;
@@ -323,6 +367,7 @@ int main(void) {
       cmocka_unit_test(signed_fields_show_both_lobes),
       cmocka_unit_test(tells_fields_from_smoke),
       cmocka_unit_test(odd_volumes_get_a_scene),
+      cmocka_unit_test(nan_may_be_the_air),
       cmocka_unit_test(ct_presets_adapt),
       cmocka_unit_test(colormaps_have_their_published_colors),
       cmocka_unit_test(names_and_statistics),
