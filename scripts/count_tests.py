@@ -1,18 +1,16 @@
 #!/usr/bin/env python3
 """Sums the tests of several build folders and prints "N passed, N failed, N skipped".
 
-usage: count_tests.py FAILED_STEPS BUILD_FOLDER ...
-FAILED_STEPS: failures that happened outside of tests (a build that does not compile). A test that speaks TAP counts
-as its parts, and one that failed without a failing part (a crash, a timeout) as one failure. A folder without results
-counts as a failure.
+usage: count_tests.py BUILD_FOLDER ...
+A test that speaks TAP counts as its parts, and one that failed without a failing part (a crash, a timeout) as one
+failure. A folder without results, as after a build that does not compile, counts as a failure.
 """
 import json
 import pathlib
 import re
 import sys
 
-passed = skipped = 0
-failed = int(sys.argv[1])
+passed = failed = skipped = 0
 names = []
 
 
@@ -29,7 +27,7 @@ def count(test):
     return (good, bad, skips) if results else (1, 0, 0)
 
 
-for folder in sys.argv[2:]:
+for folder in sys.argv[1:]:
     log = pathlib.Path(folder) / "meson-logs" / "testlog.json"
     lines = log.read_text().splitlines() if log.exists() else []
     if not lines:
