@@ -93,7 +93,9 @@ int host_open(const cli_host_options *options, cli_host *host) {
   host->quiet = options->quiet;
   host->bar = options->progress && !options->quiet && terminal_can_redraw();
   host->color = color_wanted();
-  host->subject = options->subject;
+  snprintf(host->subject, sizeof host->subject, "%s", options->subject);
+  for (char *c = host->subject; *c != '\0'; c++)
+    if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';
   listen_to_signals();
   hl_context_options context_options;
   hl_context_options_defaults(&context_options);

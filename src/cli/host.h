@@ -13,7 +13,7 @@ typedef struct cli_host {
   bool color;
   bool drawn;          /* a bar is on the line now */
   double drawn_at;     /* seconds; bars are redrawn ten times a second at most */
-  const char *subject; /* what the bar speaks of; not owned */
+  char subject[32];    /* what the bar speaks of: as much of it as keeps the line short */
 } cli_host;
 
 typedef struct cli_host_options {

@@ -29,6 +29,13 @@ void warn(const char *format, ...) {
   va_end(arguments);
 }
 
+void say(const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  print_line("", format, arguments);
+  va_end(arguments);
+}
+
 static int exit_code_of(cli_phase phase, hl_status status) {
   switch (status) {
     case HL_OK: return EXIT_CODE_OK;

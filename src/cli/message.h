@@ -19,6 +19,9 @@ __attribute__((format(printf, 2, 3))) int fail(int exit_code, const char *format
 /* The same, "halflight: warning: ...". */
 __attribute__((format(printf, 1, 2))) void warn(const char *format, ...);
 
+/* The same without a word before it. */
+__attribute__((format(printf, 1, 2))) void say(const char *format, ...);
+
 /* What the failing library call was doing decides whose fault an error is. */
 typedef enum cli_phase {
   PHASE_SETUP,  /* from options alone */

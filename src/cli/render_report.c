@@ -85,15 +85,13 @@ int render_print_json(const render_result *result) {
 
 void render_print_summary(const render_result *result) {
   const hl_scene_description *description = result->description;
-  const hl_render_statistics *statistics = &result->statistics;
+  const render_seconds *seconds = &result->seconds;
+  const char *method = soft_method_name(description->render.soft_method);
   bool soft = description->render.shadows == HL_SHADOWS_SOFT && !result->reference;
-  fprintf(stderr, "%s: %dx%d, %s shadows%s%s%s, ", result->output, description->width, description->height,
-          shadows_name(description->render.shadows), soft ? " (" : "",
-          soft ? soft_method_name(description->render.soft_method) : "", soft ? ")" : "");
-  if (result->reference)
-    fprintf(stderr, "ray-marched");
-  else
-    fprintf(stderr, "%d sheets", statistics->sheets);
-  fprintf(stderr, ", %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)\n", result->seconds.total,
-          result->seconds.load, result->seconds.prepare, result->seconds.render, result->seconds.write);
+  char sheets[40] = "ray-marched";
+  if (!result->reference) snprintf(sheets, sizeof sheets, "%d sheets", result->statistics.sheets);
+  say("%s: %dx%d, %s shadows%s%s%s, %s, %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)",
+      result->output, description->width, description->height, shadows_name(description->render.shadows),
+      soft ? " (" : "", soft ? method : "", soft ? ")" : "", sheets, seconds->total, seconds->load,
+      seconds->prepare, seconds->render, seconds->write);
 }

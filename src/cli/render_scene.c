@@ -42,7 +42,7 @@ static void camera_angles(const hl_camera *camera, double *azimuth_deg, double *
   subtract(camera->position, camera->target, eye);
   double flat = hypot(eye[0], eye[1]);
   *elevation_deg = atan2(eye[2], flat) / degree;
-  double tilt = eye[0] * camera->up[1] - eye[1] * camera->up[0]; /* of right against the horizon */
+  double tilt = eye[0] * camera->up[1] - eye[1] * camera->up[0];        /* of right against the horizon */
   if (fabs(tilt) > 1e-6 * distance(camera->position, camera->target)) { /* up is another axis: begin anew */
     *azimuth_deg = 30;
     *elevation_deg = 20;
