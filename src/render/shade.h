@@ -16,6 +16,7 @@ typedef struct shade_volume {
   int phong, visible, receives_shadow;
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
+  float to_index[3][4], low[3], high[3]; /* where enter is set: frame space to index space, and the box there */
 } shade_volume;
 
 typedef struct shade_light {
@@ -51,8 +52,10 @@ typedef struct shade_job {
 } shade_job;
 
 /* Shades the tile's blocks that are open and have density. pixels: [16 blocks][R G B A][16]. Returns the
- * blocks that are still open: some pixel not yet opaque. samples is raised by the pixels composited. */
-typedef uint32_t shade_tile_function(const shade_job *job, int tile_x, int tile_y, uint32_t blocks, float *pixels,
-                                     uint64_t *samples);
+ * blocks that are still open: some pixel not yet opaque. samples is raised by the pixels composited. scratch:
+ * SHADE_SCRATCH_BYTES a volume, aligned to 64. */
+enum { SHADE_SCRATCH_BYTES = 1024 };
+typedef uint32_t shade_tile_function(const shade_job *job, int tile_x, int tile_y, uint32_t blocks, void *scratch,
+                                     float *pixels, uint64_t *samples);
 
 #endif

@@ -23,7 +23,8 @@ LANES_INLINE lanes3 normalise3(lanes3 a) {
 
 /* What the volumes of a block share: where its pixels are and how they look. */
 typedef struct block_geometry {
-  lanes3 position;       /* frame space, in the slab */
+  lanes3 position;       /* frame space, in the slab: where it is lit */
+  lanes3 start;          /* where the ray enters the slab */
   lanes3 step_u, step_v; /* to the next pixel along the sheet */
   lanes3 step_sheet;     /* to the next sheet along the ray */
   lanes3 towards_eye;    /* unit */
@@ -108,14 +109,68 @@ LANES_INLINE lanes look_up(const shade_light *light, const float *buffer, lanes 
   return lanes_select(inside, top + (bottom - top) * fy, lanes_set(1.0f));
 }
 
+/* One volume's way through the slab: where it starts and ends in the tables, and its mean extinction, the part
+ * outside the box counting as none. */
+typedef struct block_density {
+  lanes middle; /* density */
+  table_place before, after;
+  lanes extinction, undivided; /* averaged over the slab; over its covered part */
+  covered_part part;
+  lanes seen; /* the part of the way from before to after at which its matter is seen and lit */
+} block_density;
+
+_Static_assert(sizeof(block_density) <= SHADE_SCRATCH_BYTES, "a volume's scratch holds its block");
+
 /* Steps 14 and 15's first half: what arrives of one light (eqs. 1 and 2), and from where. */
 typedef struct arriving_light {
   lanes3 towards; /* unit */
   color_lanes full, shadowed; /* without and with attenuation */
 } arriving_light;
 
+/* How far light has come within the box of a volume when it reaches a point: back along its way to the box's face. */
+LANES_INLINE lanes way_in_box(const shade_volume *volume, lanes3 point, lanes3 towards) {
+  lanes way = lanes_set(1e30f);
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis];
+    lanes at = point.x * row[0] + point.y * row[1] + (point.z * row[2] + row[3]);
+    lanes speed = towards.x * row[0] + towards.y * row[1] + towards.z * row[2];
+    speed = lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
+    lanes face = lanes_select(speed > 0.0f, lanes_set(volume->high[axis]), lanes_set(volume->low[axis]));
+    way = lanes_min(way, lanes_max((face - at) / speed, lanes_set(0)));
+  }
+  return way;
+}
+
+/* Optical depths of the slab for one light: before the eye's rays enter the matter, and from there to where they leave
+ * it. At a face of a volume's box the two rays may enter through different faces: each volume's part of the light's
+ * way is what lies both in the slab and in the box. */
+typedef struct light_depths { lanes before[HL_CHANNELS], within[HL_CHANNELS]; } light_depths;
+
+LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geometry *g, const block_density *densities,
+                                          lanes3 towards, lanes path) {
+  light_depths depths;
+  for (int c = 0; c < HL_CHANNELS; c++) depths.before[c] = depths.within[c] = lanes_set(0);
+  for (int i = 0; i < job->volume_count; i++) {
+    const shade_volume *volume = &job->volumes[i];
+    const block_density *d = &densities[i];
+    if (lanes_bits(d->extinction > 0.0f) == 0) continue;
+    lanes first = d->part.begin * path, last = (d->part.begin + d->part.length) * path;
+    if (volume->enter != NULL) {
+      lanes3 start = add3(g->start, scale3(g->step_sheet, d->part.begin));
+      lanes3 end = add3(start, scale3(g->step_sheet, d->part.length));
+      first = lanes_min(first, way_in_box(volume, start, towards));
+      last = lanes_max(lanes_min(last, way_in_box(volume, end, towards)), first);
+    }
+    for (int c = 0; c < job->channels; c++) {
+      depths.before[c] = depths.before[c] + d->undivided * volume->cast[c] * first;
+      depths.within[c] = depths.within[c] + d->undivided * volume->cast[c] * (last - first);
+    }
+  }
+  return depths;
+}
+
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_geometry *g,
-                                     lanes depth, const lanes cast[HL_CHANNELS]) {
+                                     lanes depth, const block_density *densities) {
   arriving_light arriving;
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
   if (light->parallel) {
@@ -138,11 +193,12 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   lanes_int ahead = place[0] > 0.0f;
   lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
   lanes u = lanes_select(ahead, place[1] / safe, outside), v = lanes_select(ahead, place[2] / safe, outside);
+  light_depths depths = depths_of_light(job, g, densities, arriving.towards, path);
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     if (c < light->channels)
-      transmittance = look_up(light, light->transmittance[c], u, v) *
-                      own_transmittance(job->back_to_front, depth, cast[c] * path);
+      transmittance = look_up(light, light->transmittance[c], u, v) * lanes_exp_negative(depths.before[c]) *
+                      own_transmittance(job->back_to_front, depth, depths.within[c]);
     arriving.shadowed.c[c] = arriving.shadowed.c[c] * transmittance;
   }
   return arriving;
@@ -188,15 +244,6 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   return alpha;
 }
 
-/* One volume's way through the slab: where it starts and ends in the tables, and its mean extinction, the part
- * outside the box counting as none. */
-typedef struct block_density {
-  lanes middle; /* density */
-  table_place before, after;
-  lanes extinction;
-  covered_part part;
-} block_density;
-
 /* Step 13 for one volume. */
 LANES_INLINE block_density classify_block(const shade_job *job, const shade_volume *volume, size_t at, size_t tile,
                                           int block) {
@@ -208,25 +255,58 @@ LANES_INLINE block_density classify_block(const shade_job *job, const shade_volu
   d.middle = (before + after) * 0.5f;
   d.before = classify_place(volume->classifier, before);
   d.after = classify_place(volume->classifier, after);
-  d.extinction = lanes_set(0);
+  d.extinction = d.undivided = lanes_set(0);
   d.part = (covered_part){lanes_set(0), lanes_set(0)};
   if (lanes_bits(may_be_visible(volume->classifier, d.before, d.after)) == 0) return d;
   d.part = covered_block(enter, leave, block, job->height, job->spacing);
-  d.extinction = mean_extinction(volume->classifier, d.before, d.after) * d.part.length;
+  d.undivided = mean_extinction(volume->classifier, d.before, d.after);
+  d.extinction = d.undivided * d.part.length;
   return d;
+}
+
+/* base^exponent for base in [0, 1] and exponent >= 0. */
+LANES_INLINE lanes power_of_part(lanes base, lanes exponent) {
+  return lanes_exp2(lanes_max(lanes_log2(lanes_max(base, lanes_set(1e-6f))) * exponent, lanes_set(-100.0f)));
+}
+
+/* Where in its optical depth a slab is seen on average, 0 (first) to 1: int e s exp(-e s) ds / (1 - exp(-e)) =
+ * 1 / e - exp(-e) / (1 - exp(-e)) (derived); 1/2 - e / 12 for small e. */
+LANES_INLINE lanes seen_part(lanes e) {
+  lanes safe = lanes_max(e, lanes_set(0.05f)), left = lanes_exp_negative(safe);
+  return lanes_select(e < 0.05f, 0.5f - e * (1.0f / 12), 1.0f / safe - left / (1.0f - left));
+}
+
+/* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
+ * with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is reached at
+ * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where the slab is lit: the volumes' mean, in slabs. */
+LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densities, lanes total, lanes depth) {
+  lanes u = seen_part(depth), sum = lanes_set(0);
+  if (job->back_to_front) u = 1.0f - u;
+  for (int i = 0; i < job->volume_count; i++) {
+    block_density *d = &densities[i];
+    d->seen = lanes_set(0.5f);
+    if (!job->volumes[i].visible || lanes_bits(d->extinction > 0.0f) == 0) continue;
+    lanes m = part_of_way(d->before, d->after, mean_place(job->volumes[i].classifier, d->before, d->after));
+    lanes_int rising = m >= 0.5f;
+    lanes side = lanes_max(lanes_select(rising, m, 1.0f - m), lanes_set(0.5f));
+    lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), (1.0f - side) / side);
+    d->seen = d->part.begin + d->part.length * lanes_select(rising, t, 1.0f - t);
+    sum = sum + d->extinction * d->seen;
+  }
+  return sum / lanes_max(total, lanes_set(1e-30f));
 }
 
 /* Colours of the volumes, lit and averaged weighted by extinction. */
 static color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
-                                  size_t at, size_t tile, int block, lanes total) {
+                                  const block_density *densities, size_t at, lanes total) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
   for (int i = 0; i < job->volume_count; i++) {
     const shade_volume *volume = &job->volumes[i];
     if (!volume->visible) continue;
-    block_density d = classify_block(job, volume, at, tile, block);
+    block_density d = densities[i];
     if (lanes_bits(d.extinction > 0.0f) == 0) continue;
-    table_place place = mean_place(volume->classifier, d.before, d.after);
+    table_place place = place_of_coordinate(d.before.x + (d.after.x - d.before.x) * d.seen);
     color_lanes color;
     for (int c = 0; c < 3; c++) color.c[c] = table_value(volume->classifier->color[c], place);
     lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -239,20 +319,14 @@ static color_lanes color_of_block(const shade_job *job, const block_geometry *g,
 }
 
 /* Returns true while some pixel of the block is not opaque. */
-static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile, int block, float *pixels,
-                       uint64_t *samples) {
+static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile, int block, block_density *densities,
+                       float *pixels, uint64_t *samples) {
   int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK;
   size_t at = (size_t)y * job->stride + (size_t)x;
-  lanes total = lanes_set(0), depth_in_slab = lanes_set(0), cast[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  lanes total = lanes_set(0);
   for (int i = 0; i < job->volume_count; i++) {
-    block_density d = classify_block(job, &job->volumes[i], at, tile, block);
-    if (job->volumes[i].visible && lanes_bits(d.extinction > 0.0f) != 0) {
-      table_place mean = mean_place(job->volumes[i].classifier, d.before, d.after);
-      total = total + d.extinction;
-      depth_in_slab = depth_in_slab +
-                      d.extinction * (d.part.begin + d.part.length * part_of_way(d.before, d.after, mean));
-    }
-    for (int c = 0; c < job->channels; c++) cast[c] = cast[c] + d.extinction * job->volumes[i].cast[c];
+    densities[i] = classify_block(job, &job->volumes[i], at, tile, block);
+    if (job->volumes[i].visible) total = total + densities[i].extinction;
   }
   lanes_int seen = total > 0.0f;
   if (!job->back_to_front) seen &= lanes_load(pixels + 3 * BLOCK_PIXELS) < OPAQUE;
@@ -260,12 +334,12 @@ static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile
   if (bits == 0) return 1;
   block_geometry g = geometry_of_block(job, block_u(x), block_v(y));
   arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
-  /* lit where its matter is, not in the slab's middle, which may lie outside of it in the light */
-  lanes from_middle = depth_in_slab / lanes_max(total, lanes_set(1e-30f)) - 0.5f;
-  g.position = add3(g.position, scale3(g.step_sheet, from_middle));
   lanes depth = total * g.path;
-  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, depth, cast);
-  color_lanes lit = color_of_block(job, &g, lights, at, tile, block, total);
+  lanes seen_at = place_what_is_seen(job, densities, total, depth);
+  g.start = add3(g.position, scale3(g.step_sheet, lanes_set(-0.5f)));
+  g.position = add3(g.start, scale3(g.step_sheet, seen_at));
+  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, depth, densities);
+  color_lanes lit = color_of_block(job, &g, lights, densities, at, total);
   for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(seen, lit.c[c]);
   lanes opacity = lanes_keep(seen, 1.0f - lanes_exp_negative(depth));
   lanes alpha = composite(job->back_to_front, opacity, lit, pixels);
@@ -273,14 +347,15 @@ static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile
   return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
 }
 
-static uint32_t shade_tile(const shade_job *job, int tile_x, int tile_y, uint32_t blocks, float *pixels,
+static uint32_t shade_tile(const shade_job *job, int tile_x, int tile_y, uint32_t blocks, void *scratch, float *pixels,
                            uint64_t *samples) {
+  block_density *densities = scratch;
   size_t tiles_x = job->stride / TILE - 2; /* the sheets have a tile of margin on either side */
   size_t tile = (size_t)tile_y * tiles_x + (size_t)tile_x;
   uint32_t open = 0;
   for (; blocks != 0; blocks &= blocks - 1) {
     int block = __builtin_ctz(blocks);
-    if (shade_block(job, tile_x, tile_y, tile, block, pixels + block * 4 * BLOCK_PIXELS, samples)) open |= 1u << block;
+    if (shade_block(job, tile_x, tile_y, tile, block, densities, pixels + block * 4 * BLOCK_PIXELS, samples)) open |= 1u << block;
   }
   return open;
 }

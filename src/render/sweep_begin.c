@@ -183,6 +183,12 @@ static hl_status allocate_stages(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
+static void store(float out[3], vec3 v) {
+  out[0] = (float)v.x;
+  out[1] = (float)v.y;
+  out[2] = (float)v.z;
+}
+
 static void set_up_shading(sweep *sweep) {
   for (int g = 0; g < sweep->volume_count; g++) {
     const hl_scene_volume *volume = sweep->volumes[g].scene;
@@ -199,13 +205,15 @@ static void set_up_shading(sweep *sweep) {
                             .shininess = (float)volume->material.shininess};
     for (int c = 0; c < HL_CHANNELS; c++)
       shade->cast[c] = volume->casts_shadow ? (float)volume->attenuation_color[c] : 0;
+    const grid *grid = &sweep->grids[g];
+    const double offset[3] = {grid->frame_to_index.offset.x, grid->frame_to_index.offset.y, grid->frame_to_index.offset.z};
+    for (int axis = 0; axis < 3; axis++) {
+      store(shade->to_index[axis], grid->frame_to_index.linear.row[axis]);
+      shade->to_index[axis][3] = (float)offset[axis];
+      shade->low[axis] = (float)grid->box_low[axis];
+      shade->high[axis] = (float)grid->box_high[axis];
+    }
   }
-}
-
-static void store(float out[3], vec3 v) {
-  out[0] = (float)v.x;
-  out[1] = (float)v.y;
-  out[2] = (float)v.z;
 }
 
 static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *light) {

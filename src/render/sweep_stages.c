@@ -216,6 +216,7 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   if (blocks == 0) return;
   uint32_t open = sweep->hot->shade_tile(&sweep->shade, (int)(tile % (size_t)sweep->tiles_x),
                                          (int)(tile / (size_t)sweep->tiles_x), blocks,
+                                         sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * TILE_PIXELS,
                                          sweep->pixels + tile * 4 * TILE_PIXELS, &sweep->counts[worker].samples);
   sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);
 }

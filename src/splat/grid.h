@@ -4,7 +4,7 @@
  * hold): nothing splatted means empty, and partial sums of dropped voxels stay between empty and what
  * is transparent anyway.
  *
- * Bricks are 4x4x4 cells; the cell of a point p (index space, clamped to the box [-1/2, n-1/2]) is
+ * Bricks are 4x4x4 cells; the cell of a point p (index space, clamped to [-1, n)) is
  * floor(p) + 1, from 0 to n. A point's density depends on the 4x4x4 voxels around its cell. */
 #ifndef HL_SPLAT_GRID_H
 #define HL_SPLAT_GRID_H

@@ -13,7 +13,7 @@ LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
 
 /* The point of a block's pixels in index space, clamped to the grid, and which of them matter. */
 typedef struct block_place {
-  lanes3 point;     /* index space, clamped to [-1/2, n-1/2] */
+  lanes3 point;     /* index space, clamped to [-1, n) */
   lanes_int cell[3]; /* floor(point): -1 .. n-1 */
   lanes_int inside; /* within the grid or a little outside, and in a relevant brick */
 } block_place;
@@ -25,9 +25,10 @@ LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
   lanes axis[3] = {p.x, p.y, p.z};
   place.inside = lanes_set_int(-1);
   for (int a = 0; a < 3; a++) {
-    float high = (float)grid->dimension[a] - 0.5f;
-    place.inside &= (axis[a] > -0.5f - GRID_MARGIN) & (axis[a] < high + GRID_MARGIN);
-    axis[a] = lanes_clamp(axis[a], -0.5f, high);
+    float count = (float)grid->dimension[a];
+    place.inside &= (axis[a] > -0.5f - GRID_MARGIN) & (axis[a] < count - 0.5f + GRID_MARGIN);
+    /* the border's values continue outside the box, smoothly, and are constant from -1 and n on */
+    axis[a] = lanes_clamp(axis[a], -1.0f, count * (1 - 1e-6f));
     place.cell[a] = lanes_floor(axis[a]);
   }
   place.point = (lanes3){axis[0], axis[1], axis[2]};
