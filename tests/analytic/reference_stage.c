@@ -19,10 +19,12 @@ static void copy_vector(double to[3], vec3 from) {
   to[2] = from.z;
 }
 
-void stage_open(stage *set) {
+void stage_open(stage *set) { stage_open_with(set, NULL); }
+
+void stage_open_with(stage *set, const hl_context_options *options) {
   memset(set, 0, sizeof *set);
   hl_error error = {0};
-  require(hl_context_create(NULL, &set->context, &error), &error);
+  require(hl_context_create(options, &set->context, &error), &error);
   hl_scene_description_defaults(&set->scene);
   set->scene.width = set->scene.height = 16;
   set->type = HL_VOXEL_F32;
@@ -169,6 +171,22 @@ void stage_render(stage *set, const hl_reference_options *options, float *pixels
   require(hl_reference_render(set->context, scene, options, pixels, 4 * (size_t)set->scene.width, &error),
           &error);
   hl_scene_release(scene);
+}
+
+void stage_render_with(stage *set, hl_renderer *renderer, float *pixels) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  require(hl_scene_create(set->context, &set->scene, &scene, &error), &error);
+  require(hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set->scene.width, NULL, &error), &error);
+  hl_scene_release(scene);
+}
+
+void stage_render_sheets(stage *set, float *pixels) {
+  hl_error error = {0};
+  hl_renderer *renderer = NULL;
+  require(hl_renderer_create(set->context, &renderer, &error), &error);
+  stage_render_with(set, renderer, pixels);
+  hl_renderer_destroy(renderer);
 }
 
 float stage_noise(double x, double y, double z) {

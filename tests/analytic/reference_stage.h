@@ -1,4 +1,4 @@
-/* analytic/reference_stage.h - small scenes built in code, and their pictures by the reference. */
+/* analytic/reference_stage.h - small scenes built in code, and their pictures by the reference and by the sheets. */
 #ifndef REFERENCE_STAGE_H
 #define REFERENCE_STAGE_H
 
@@ -20,6 +20,7 @@ typedef struct stage {
 
 /* No volumes, no lights, no ambient, hard shadows; 16 x 16 pixels seen orthographically along -z, up +y. */
 void stage_open(stage *set);
+void stage_open_with(stage *set, const hl_context_options *options); /* options of the context; may be null */
 void stage_close(stage *set);
 
 /* A grid with axes along the world's; its box starts at `corner`. voxels: [k][j][i] or null for all 1.
@@ -41,6 +42,9 @@ double stage_chord(vec3 low, vec3 high, vec3 origin, vec3 direction);
 
 /* pixels: [height][width][4]. options may be null. The test fails where rendering does. */
 void stage_render(stage *set, const hl_reference_options *options, float *pixels);
+/* The same by the sheets: with a renderer of the moment, or with the caller's. */
+void stage_render_sheets(stage *set, float *pixels);
+void stage_render_with(stage *set, hl_renderer *renderer, float *pixels);
 
 /* Smooth noise without a library: sums of sines with a fixed pattern, in [0, 1]. */
 float stage_noise(double x, double y, double z);

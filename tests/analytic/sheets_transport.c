@@ -1,0 +1,435 @@
+/* analytic/sheets_transport.c - the sheets against closed forms of absorption, emission and shadow.
+ *
+ * The same questions as reference_transport.c asks of the reference, here of the renderer: pictures of homogeneous
+ * boxes, whose every ray has a known value. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 48, PIXELS = SIDE * SIDE };
+
+/* Of full scale: what a renderer in float with tables of 4096 entries must reach on homogeneous boxes. */
+static const double TIGHT = 1e-3;
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+static double transmittance(double opacity, double unit, double distance) {
+  return pow(1 - opacity, distance / unit);
+}
+
+/* ---- a homogeneous box of several voxels with unequal edges ---- */
+
+static const vec3 BOX_LOW = {-3, -2.5, -6}, BOX_HIGH = {4, 5, 2};
+static const double OPACITY = 0.2, UNIT = 1.7, SIGMA = 0.13126091261247; /* -ln(1 - OPACITY) / UNIT */
+
+static hl_scene_volume *stage_homogeneous(stage *set) {
+  hl_scene_volume *box = stage_add_grid(set, (size_t[3]){7, 5, 4}, (double[3]){1, 1.5, 2}, BOX_LOW, NULL);
+  stage_set_opacity(set, box, OPACITY, UNIT);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 14;
+  return box;
+}
+
+/* The ray of pixel (x, y) in the box's own place, before the volume's transform; the parameter stays world length. */
+static void local_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction) {
+  const hl_scene_volume *volume = &set->volumes[0];
+  stage_eye_ray(set, x, y, origin, direction);
+  mat3 turn_back = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), -volume->rotate_angle_deg * HL_PI / 180);
+  vec3 moved = vec3_subtract(*origin, vec3_of(volume->translate));
+  *origin = vec3_scale(mat3_apply(turn_back, moved), 1 / volume->scale);
+  *direction = vec3_scale(mat3_apply(turn_back, *direction), 1 / volume->scale);
+}
+
+static double chord_of_pixel(const stage *set, int x, int y) {
+  vec3 origin, direction;
+  local_ray(set, x, y, &origin, &direction);
+  return stage_chord(BOX_LOW, BOX_HIGH, origin, direction);
+}
+
+/* Alpha of every pixel, silhouettes included: rays know where they enter and leave the box. */
+static void check_alpha(stage *set) {
+  static float pixels[PIXELS * 4];
+  int hits = 0;
+  stage_render_sheets(set, pixels);
+  for (int y = 0; y < SIDE; y++)
+    for (int x = 0; x < SIDE; x++) {
+      double chord = chord_of_pixel(set, x, y);
+      hits += chord > 0;
+      assert_near(pixels[4 * (y * SIDE + x) + 3], 1 - transmittance(OPACITY, UNIT, chord), TIGHT);
+    }
+  assert_true(hits > 300);
+}
+
+/* No light, and light from behind, before, the side and askew: the eye must see the same opacity through any sheets. */
+static void check_alpha_through_all_sheets(stage *set) {
+  static const vec3 lights[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {0.5, -1, 0.3}};
+  static const double spacings[] = {0.5, 1, 2};
+  hl_light *light = stage_add_directional(set, lights[0]);
+  for (int s = 0; s < 3; s++) {
+    set->scene.render.sheet_spacing = spacings[s];
+    set->scene.render.shadows = HL_SHADOWS_OFF;
+    check_alpha(set);
+    for (size_t l = 0; l < sizeof lights / sizeof *lights; l++) {
+      light->direction[0] = lights[l].x;
+      light->direction[1] = lights[l].y;
+      light->direction[2] = lights[l].z;
+      light->angular_diameter_deg = l % 2 == 1 ? 10 : 0;
+      set->scene.render.shadows = l % 2 == 1 ? HL_SHADOWS_SOFT : HL_SHADOWS_HARD;
+      check_alpha(set);
+    }
+  }
+}
+
+static void test_alpha_along_axis(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  stage_homogeneous(&set);
+  check_alpha_through_all_sheets(&set);
+  stage_close(&set);
+}
+
+static void test_alpha_obliquely(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  stage_homogeneous(&set);
+  stage_look(&set, (vec3){40, -31, 52}, (vec3){0, 1, -2}, (vec3){0.2, 0.3, 1});
+  check_alpha_through_all_sheets(&set);
+  stage_close(&set);
+}
+
+static void test_alpha_in_perspective(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  stage_homogeneous(&set);
+  set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  set.scene.camera.fovy_deg = 55;
+  stage_look(&set, (vec3){9, -7, 8}, (vec3){0.5, 1.2, -2}, (vec3){0, 1, 0.1});
+  check_alpha_through_all_sheets(&set);
+  stage_close(&set);
+}
+
+static void test_alpha_of_oblique_grid(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  hl_scene_volume *box = stage_homogeneous(&set);
+  box->scale = 1.2;
+  box->rotate_axis[0] = 0.3;
+  box->rotate_axis[1] = -0.7;
+  box->rotate_axis[2] = 0.5;
+  box->rotate_angle_deg = 71;
+  box->translate[0] = 50;
+  stage_look(&set, (vec3){90, -31, 52}, (vec3){50, 0, -1}, (vec3){0.2, 0.3, 1});
+  check_alpha_through_all_sheets(&set);
+  for (int kernel = HL_KERNEL_BSPLINE; kernel <= HL_KERNEL_LINEAR; kernel++)
+    for (int way = HL_RECONSTRUCTION_SPLAT; way <= HL_RECONSTRUCTION_GATHER; way++) {
+      set.scene.render.kernel = (hl_kernel)kernel;
+      set.scene.render.reconstruction = (hl_reconstruction)way;
+      set.scene.render.sheet_spacing = 1;
+      check_alpha(&set);
+    }
+  stage_close(&set);
+}
+
+/* ---- emission: integral of sigma exp(-tau_eye) exp(-tau_light) ds along the ray ---- */
+
+/* Simpson's rule over the ray's way through the box, the light's way in at each point by stage_chord(). Far finer
+ * than what it judges. */
+static double lit_brightness(vec3 origin, vec3 direction, vec3 light) {
+  enum { STEPS = 400 };
+  double chord = stage_chord(BOX_LOW, BOX_HIGH, origin, direction), sum = 0;
+  if (chord == 0) return 0;
+  double enter = stage_chord((vec3){-1e3, -1e3, -1e3}, (vec3){1e3, 1e3, 1e3}, origin, direction), low = 0, high = enter;
+  for (int i = 0; i < 80; i++) { /* the last parameter from which the whole chord still lies ahead */
+    double middle = (low + high) / 2;
+    vec3 start = vec3_add(origin, vec3_scale(direction, middle));
+    if (stage_chord(BOX_LOW, BOX_HIGH, start, direction) >= chord * (1 - 1e-12)) low = middle; else high = middle;
+  }
+  for (int i = 0; i <= STEPS; i++) {
+    double depth = chord * i / STEPS;
+    vec3 point = vec3_add(origin, vec3_scale(direction, low + depth));
+    double way_in = stage_chord(BOX_LOW, BOX_HIGH, point, vec3_scale(light, -1));
+    sum += (i == 0 || i == STEPS ? 1 : i % 2 ? 4 : 2) * exp(-SIGMA * (depth + way_in));
+  }
+  return SIGMA * sum * chord / STEPS / 3;
+}
+
+/* Away from silhouettes: all eight neighbours hit the box too. */
+static bool well_inside(const stage *set, int x, int y) {
+  for (int j = y - 1; j <= y + 1; j++)
+    for (int i = x - 1; i <= x + 1; i++)
+      if (chord_of_pixel(set, i, j) == 0) return false;
+  return true;
+}
+
+static void check_lit(stage *set, vec3 light) {
+  static float pixels[PIXELS * 4];
+  int hits = 0;
+  double worst = 0;
+  stage_render_sheets(set, pixels);
+  for (int y = 0; y < SIDE; y++)
+    for (int x = 0; x < SIDE; x++) {
+      if (!well_inside(set, x, y)) continue;
+      vec3 origin, direction;
+      stage_eye_ray(set, x, y, &origin, &direction);
+      double expected = lit_brightness(origin, direction, light);
+      worst = fmax(worst, fabs(pixels[4 * (y * SIDE + x)] - expected));
+      hits++;
+    }
+  assert_true(hits > 300);
+  assert_near(worst, 0, 0.005);
+}
+
+/* The three ways that have a formula of their own, in the middle of the box: d the depth, z from the eye's side.
+ *     light with the view:     int sigma exp(-2 sigma z) dz = (1 - exp(-2 sigma d)) / 2
+ *     light against the view:  int sigma exp(-sigma z) exp(-sigma (d - z)) dz = sigma d exp(-sigma d)
+ *     light across the view:   exp(-sigma x) (1 - exp(-sigma d)), x the depth below the lit face */
+static void test_lit_along_axes(void **state) {
+  (void)state;
+  static const double spacings[] = {0.5, 1, 2}, across[] = {0.005, 0.01, 0.035};
+  static float pixels[PIXELS * 4];
+  stage set;
+  stage_open(&set);
+  stage_homogeneous(&set);
+  hl_light *light = stage_add_directional(&set, (vec3){0, 0, -1});
+  double depth = BOX_HIGH.z - BOX_LOW.z;
+  const float *row = &pixels[4 * (SIDE / 2) * SIDE];
+  set.scene.render.shadow_resolution = 256;
+  for (int s = 0; s < 3; s++) {
+    set.scene.render.sheet_spacing = spacings[s];
+    light->direction[0] = 0;
+    light->direction[2] = -1;
+    stage_render_sheets(&set, pixels);
+    assert_near(row[4 * (SIDE / 2)], (1 - exp(-2 * SIGMA * depth)) / 2, TIGHT);
+    light->direction[2] = 1;
+    stage_render_sheets(&set, pixels);
+    assert_near(row[4 * (SIDE / 2)], SIGMA * depth * exp(-SIGMA * depth), TIGHT);
+    light->direction[0] = 1;
+    light->direction[2] = 0;
+    stage_render_sheets(&set, pixels);
+    for (int x = 0; x < SIDE; x++) {
+      double below = (x + 0.5) * 14 / SIDE - 7 - BOX_LOW.x;
+      if (below < spacings[s] * sqrt(2) || below > BOX_HIGH.x - BOX_LOW.x) continue; /* the slabs that light enters in */
+      assert_near(row[4 * x], exp(-SIGMA * below) * (1 - exp(-SIGMA * depth)), across[s]);
+    }
+  }
+  stage_close(&set);
+}
+
+/* Within half a per cent of full scale. The boxes' faces cut slabs and shadow pixels: both are fine here. */
+static void check_lit_from_everywhere(stage *set, int resolution) {
+  static const vec3 lights[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {0, -1, 0}, {0.6, 0, -0.8}, {0.48, -0.64, 0.6}, {-0.6, 0.8, 0}};
+  hl_light *light = stage_add_directional(set, lights[0]);
+  set->scene.render.sheet_spacing = 0.5;
+  set->scene.render.shadow_resolution = resolution;
+  for (size_t l = 0; l < sizeof lights / sizeof *lights; l++) {
+    light->direction[0] = lights[l].x;
+    light->direction[1] = lights[l].y;
+    light->direction[2] = lights[l].z;
+    check_lit(set, lights[l]);
+  }
+}
+
+static void test_lit_every_pixel(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  stage_homogeneous(&set);
+  check_lit_from_everywhere(&set, 256);
+  stage_close(&set);
+}
+
+static void test_lit_in_perspective(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  stage_homogeneous(&set);
+  set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  set.scene.camera.fovy_deg = 40;
+  stage_look(&set, (vec3){9, -9, 12}, (vec3){0.5, 1.2, -2}, (vec3){0, 1, 0.1});
+  check_lit_from_everywhere(&set, 512);
+  stage_close(&set);
+}
+
+/* ---- what is not there, and what only some see ---- */
+
+static void test_empty_function_gives_zero(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  stage set;
+  stage_open(&set);
+  stage_set_opacity(&set, stage_homogeneous(&set), 0, 1);
+  stage_add_directional(&set, (vec3){0, -1, -1});
+  for (int c = 0; c < 3; c++) set.scene.ambient[c] = 1;
+  for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_SOFT; shadows++) {
+    set.scene.render.shadows = (hl_shadows)shadows;
+    set.lights[0].angular_diameter_deg = 5;
+    memset(pixels, 0xff, sizeof pixels);
+    stage_render_sheets(&set, pixels);
+    for (int i = 0; i < PIXELS * 4; i++) assert_true(pixels[i] == 0);
+  }
+  stage_close(&set);
+}
+
+/* A half-transparent block between the light and an opaque wall, both seen from +z; light along +x, the wall's face
+ * at x = 2. The block rises above the wall, whose surface so lies well within its shadow. */
+static void stage_block_and_wall(stage *set, hl_scene_volume **block, hl_scene_volume **wall) {
+  *wall = stage_add_grid(set, (size_t[3]){4, 8, 8}, (double[3]){1, 1, 1}, (vec3){2, -4, -4}, NULL);
+  *block = stage_add_grid(set, (size_t[3]){2, 8, 9}, (double[3]){1, 1, 1}, (vec3){-3, -4, -4}, NULL);
+  stage_set_opacity(set, *wall, 0.9, 0.25);
+  stage_set_opacity(set, *block, 0.15, 1);
+  (*wall)->casts_shadow = 0;
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 12;
+  set->scene.render.sheet_spacing = 0.25;
+  set->scene.render.shadow_resolution = 256;
+  stage_add_directional(set, (vec3){1, 0, 0});
+}
+
+/* Brightness of the wall, which is opaque and so shows its own light alone, and of the block. */
+static void look_at_both(stage *set, float block[4], float wall[4]) {
+  static float pixels[PIXELS * 4];
+  stage_render_sheets(set, pixels);
+  memcpy(block, &pixels[4 * (SIDE / 2 * SIDE + 16)], 4 * sizeof(float)); /* x = -1.875 */
+  memcpy(wall, &pixels[4 * (SIDE / 2 * SIDE + 36)], 4 * sizeof(float));  /* x = 3.125 */
+}
+
+static void test_flags(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  hl_scene_volume *block, *wall;
+  stage_block_and_wall(&set, &block, &wall);
+  float on_block[4], on_wall[4];
+  double passed = transmittance(0.15, 1, 2), alpha = 1 - transmittance(0.15, 1, 9);
+  double within = transmittance(0.15, 1, 1.125);
+  look_at_both(&set, on_block, on_wall);
+  assert_near(on_wall[0], passed, 0.005);
+  assert_near(on_block[0], within * alpha, 0.005);
+  block->receives_shadow = 0;
+  look_at_both(&set, on_block, on_wall);
+  assert_near(on_wall[0], passed, 0.005);
+  assert_near(on_block[0], alpha, 0.002);
+  block->receives_shadow = 1;
+  block->visible = 0;
+  look_at_both(&set, on_block, on_wall);
+  assert_true(on_block[0] == 0 && on_block[3] == 0);
+  assert_near(on_wall[0], passed, 0.005);
+  block->visible = 1;
+  block->casts_shadow = 0;
+  look_at_both(&set, on_block, on_wall);
+  assert_near(on_wall[0], 1, 0.005);
+  assert_near(on_block[0], alpha, 0.002);
+  block->casts_shadow = 1;
+  wall->receives_shadow = 0;
+  look_at_both(&set, on_block, on_wall);
+  assert_near(on_wall[0], 1, 0.002);
+  stage_close(&set);
+}
+
+/* A block that attenuates green and blue alone, blue twice as much: three transmittances. */
+static void test_attenuation_color(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  hl_scene_volume *block, *wall;
+  stage_block_and_wall(&set, &block, &wall);
+  for (int c = 0; c < 3; c++) block->attenuation_color[c] = c;
+  for (int shadows = HL_SHADOWS_HARD; shadows <= HL_SHADOWS_SOFT; shadows++) {
+    float on_block[4], on_wall[4];
+    set.scene.render.shadows = (hl_shadows)shadows;
+    set.lights[0].angular_diameter_deg = shadows == HL_SHADOWS_SOFT ? 1 : 0;
+    look_at_both(&set, on_block, on_wall);
+    double alpha = 1 - transmittance(0.15, 1, 9);
+    assert_near(on_block[3], alpha, TIGHT);
+    for (int c = 0; c < 3; c++) {
+      assert_near(on_wall[c], transmittance(0.15, 1, 2 * c), 0.005);
+      assert_near(on_block[c], alpha * transmittance(0.15, 1, 1.125 * c), 0.005);
+    }
+  }
+  stage_close(&set);
+}
+
+static double greatest_difference(const float *a, const float *b) {
+  double worst = 0;
+  for (int i = 0; i < PIXELS * 4; i++) worst = fmax(worst, fabs((double)a[i] - b[i]));
+  return worst;
+}
+
+/* Lights add: two of half the strength are one, and ambient counts once, however many sweeps there are. */
+static void test_half_lights_add(void **state) {
+  (void)state;
+  static float one[PIXELS * 4], two[PIXELS * 4], left[PIXELS * 4], right[PIXELS * 4];
+  stage set;
+  stage_open(&set);
+  stage_homogeneous(&set)->material.ambient = 1;
+  stage_add_directional(&set, (vec3){1, -1, -1});
+  stage_render_sheets(&set, one);
+  set.lights[0].intensity = 0.5;
+  stage_add_directional(&set, (vec3){1, -1, -1})->intensity = 0.5;
+  stage_render_sheets(&set, two);
+  assert_near(greatest_difference(one, two), 0, 1e-5);
+  /* opposite lights need a sweep each */
+  set.lights[1].direction[0] = -1;
+  set.lights[1].direction[1] = 1;
+  set.lights[1].direction[2] = 1;
+  for (int c = 0; c < 3; c++) set.scene.ambient[c] = 0.2;
+  stage_render_sheets(&set, two);
+  set.scene.light_count = 1;
+  stage_render_sheets(&set, left);
+  for (int c = 0; c < 3; c++) set.scene.ambient[c] = 0;
+  set.lights[0] = set.lights[1];
+  stage_render_sheets(&set, right);
+  for (int i = 0; i < PIXELS * 4; i++) left[i] = i % 4 == 3 ? left[i] : left[i] + right[i];
+  assert_near(greatest_difference(left, two), 0, TIGHT);
+  stage_close(&set);
+}
+
+/* Extinctions add: twice the opacity o over a unit is once 1 - (1 - o)^2. */
+static void test_overlapping_twins(void **state) {
+  (void)state;
+  static float one[PIXELS * 4], two[PIXELS * 4];
+  for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_SOFT; shadows++) {
+    stage set;
+    stage_open(&set);
+    hl_scene_volume *box = stage_homogeneous(&set);
+    set.scene.render.shadows = (hl_shadows)shadows;
+    stage_add_directional(&set, (vec3){1, -1, -1})->angular_diameter_deg = 5;
+    stage_homogeneous(&set);
+    stage_render_sheets(&set, two);
+    hl_volume_release(set.volumes[1].volume);
+    set.scene.volume_count = 1;
+    stage_set_opacity(&set, box, 1 - (1 - OPACITY) * (1 - OPACITY), UNIT);
+    stage_render_sheets(&set, one);
+    assert_near(greatest_difference(one, two), 0, 1e-4);
+    stage_close(&set);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_alpha_along_axis),
+      cmocka_unit_test(test_alpha_obliquely),
+      cmocka_unit_test(test_alpha_in_perspective),
+      cmocka_unit_test(test_alpha_of_oblique_grid),
+      cmocka_unit_test(test_lit_along_axes),
+      cmocka_unit_test(test_lit_every_pixel),
+      cmocka_unit_test(test_lit_in_perspective),
+      cmocka_unit_test(test_empty_function_gives_zero),
+      cmocka_unit_test(test_flags),
+      cmocka_unit_test(test_attenuation_color),
+      cmocka_unit_test(test_half_lights_add),
+      cmocka_unit_test(test_overlapping_twins),
+  };
+  return cmocka_run_group_tests_name("sheets_transport", tests, NULL, NULL);
+}
