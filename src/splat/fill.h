@@ -15,7 +15,8 @@ enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 
 typedef struct voxel_lists {
   int tiles_x, tiles_y;
   int bucket_count; /* sheets + span - 1 */
-  int span;         /* sheets that a kernel can touch; sheet k reads buckets k .. k + span - 1 */
+  int span;         /* sheets that a kernel can touch; sheet k reads buckets k .. k + span - 1. At the border, where
+                       values continue, voxels touch more and are listed again every span sheets */
   uint32_t *start;  /* owned; [tiles * bucket_count + 1] */
   uint32_t *voxel;  /* owned; [start[last]]; index in the grid padded by 2 voxels on every side */
 } voxel_lists;

@@ -13,7 +13,7 @@ typedef struct sort_job {
   const grid *grid;
   const sheet_stack *sheets;
   footprint_map map;
-  double half[3];       /* support and the margin outside the box, voxels */
+  double support;       /* voxels */
   voxel_lists *lists;
   uint32_t *cursor;     /* [tiles * buckets + 1]: counts, then places */
   int placing;          /* 0: counting */
@@ -48,22 +48,36 @@ static int clamp_tile(double pixel, int tiles) {
   return pixel < 0 ? 0 : pixel >= (double)tiles * TILE ? tiles - 1 : (int)(pixel / TILE);
 }
 
+/* Points outside the box take the density of the border: the voxels around it reach as far as the margin. */
+static void footprint_half(const sort_job *job, const int32_t v[3], double half[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    bool border = v[axis] < job->support || v[axis] >= job->grid->dimension[axis] - job->support;
+    half[axis] = job->support + (border ? GRID_MARGIN : 0);
+  }
+}
+
+/* A sheet reads span buckets: a footprint that touches more sheets than that is listed once every span of them. */
 static void visit_voxel(const sort_job *job, const int32_t v[3], uint32_t voxel) {
   voxel_lists *lists = job->lists;
   const double centre[3] = {v[0], v[1], v[2]};
+  double half[3];
   footprint_bounds bounds;
-  if (!hl_footprint_bounds(&job->map, centre, job->half, &bounds)) return;
+  footprint_half(job, v, half);
+  if (!hl_footprint_bounds(&job->map, centre, half, &bounds)) return;
   double width = (double)lists->tiles_x * TILE, height = (double)lists->tiles_y * TILE;
   if (bounds.high[0] < 0 || bounds.high[1] < 0 || bounds.low[0] > width || bounds.low[1] > height) return;
   double first_sheet = ceil((bounds.low_height - job->sheets->first) / job->sheets->spacing);
-  double bucket = first_sheet + lists->span - 1;
-  if (bucket < 0 || bucket >= lists->bucket_count) return;
+  double last_sheet = floor((bounds.high_height - job->sheets->first) / job->sheets->spacing);
   int x0 = clamp_tile(bounds.low[0], lists->tiles_x), x1 = clamp_tile(bounds.high[0], lists->tiles_x);
   int y0 = clamp_tile(bounds.low[1], lists->tiles_y), y1 = clamp_tile(bounds.high[1], lists->tiles_y);
-  for (int y = y0; y <= y1; y++)
-    for (int x = x0; x <= x1; x++)
-      visit_cell(job, ((size_t)y * (size_t)lists->tiles_x + (size_t)x) * (size_t)lists->bucket_count + (size_t)bucket,
-                 voxel);
+  for (double sheet = first_sheet; sheet <= last_sheet; sheet += lists->span) {
+    double bucket = sheet + lists->span - 1;
+    if (bucket < 0 || bucket >= lists->bucket_count) continue;
+    for (int y = y0; y <= y1; y++)
+      for (int x = x0; x <= x1; x++)
+        visit_cell(job, ((size_t)y * (size_t)lists->tiles_x + (size_t)x) * (size_t)lists->bucket_count + (size_t)bucket,
+                   voxel);
+  }
 }
 
 static void visit_slice(void *data, size_t index, int worker) {
@@ -101,10 +115,8 @@ static hl_status prepare(const grid *grid, const kernel *kernel, const view *vie
                    "/render/reconstruction: splat sorts at most 4294967295 voxels, this volume has more: use gather");
   hl_footprint_map(view, sheets->normal, grid->index_to_frame, &job->map);
   double reach = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    job->half[axis] = kernel->support + 1; /* a voxel more: the border's values continue outside the box */
-    reach += fabs(job->map.height[axis]) * job->half[axis];
-  }
+  job->support = kernel->support;
+  for (int axis = 0; axis < 3; axis++) reach += fabs(job->map.height[axis]) * job->support;
   lists->tiles_x = (view->width + TILE - 1) / TILE;
   lists->tiles_y = (view->height + TILE - 1) / TILE;
   lists->span = (int)floor(2 * reach / sheets->spacing) + 1;
@@ -126,7 +138,7 @@ static uint64_t accumulate(const uint32_t *count, size_t cells, uint32_t *start)
 hl_status hl_voxel_lists_build(hl_context *context, hl_pool *pool, const grid *grid, const kernel *kernel,
                                const view *view, const sheet_stack *sheets, voxel_lists *lists, hl_error *error) {
   *lists = (voxel_lists){0};
-  sort_job job = {grid, sheets, {{{0}}, {0}}, {0}, lists, NULL, 0};
+  sort_job job = {grid, sheets, {{{0}}, {0}}, 0, lists, NULL, 0};
   hl_status status = prepare(grid, kernel, view, sheets, lists, &job, error);
   if (status != HL_OK) return status;
   size_t tiles = (size_t)lists->tiles_x * (size_t)lists->tiles_y, cells = tiles * (size_t)lists->bucket_count;
