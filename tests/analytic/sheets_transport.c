@@ -135,8 +135,10 @@ static void test_alpha_of_oblique_grid(void **state) {
     for (int way = HL_RECONSTRUCTION_SPLAT; way <= HL_RECONSTRUCTION_GATHER; way++) {
       set.scene.render.kernel = (hl_kernel)kernel;
       set.scene.render.reconstruction = (hl_reconstruction)way;
-      set.scene.render.sheet_spacing = 1;
-      check_alpha(&set);
+      for (double spacing = 0.5; spacing <= 2; spacing *= 2) {
+        set.scene.render.sheet_spacing = spacing;
+        check_alpha(&set);
+      }
     }
   stage_close(&set);
 }

@@ -1,0 +1,104 @@
+/* unit/sheet_bench.c - see sheet_bench.h. */
+#include "sheet_bench.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { BENCH_SIDE = 48, BENCH_SHEETS = 5 };
+
+double bench_random(uint32_t *state) {
+  *state ^= *state << 13;
+  *state ^= *state >> 17;
+  *state ^= *state << 5;
+  return *state / 4294967296.0;
+}
+
+vec3 bench_random_direction(uint32_t *state) {
+  for (;;) {
+    vec3 v = {2 * bench_random(state) - 1, 2 * bench_random(state) - 1, 2 * bench_random(state) - 1};
+    if (vec3_length(v) > 0.1 && vec3_length(v) < 1) return vec3_normalise(v);
+  }
+}
+
+static void require(hl_status status, const hl_error *error) {
+  if (status != HL_OK) fail_msg("%s", error->message);
+}
+
+void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, const void *voxels, mat3 axes) {
+  static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
+  hl_error error = {0};
+  memset(bench, 0, sizeof *bench);
+  require(hl_context_create(NULL, &bench->context, &error), &error);
+  require(hl_pool_create(bench->context, 1, &bench->pool, &error), &error);
+  hl_volume_description description;
+  hl_volume_description_defaults(&description);
+  vec3 middle = {0, 0, 0};
+  for (int a = 0; a < 3; a++) {
+    vec3 step = mat3_column(axes, a);
+    description.dimensions[a] = dimensions[a];
+    description.axis[a][0] = step.x;
+    description.axis[a][1] = step.y;
+    description.axis[a][2] = step.z;
+    middle = vec3_add(middle, vec3_scale(step, ((double)dimensions[a] - 1) / 2));
+  }
+  description.type = types[storage];
+  description.voxels = voxels;
+  hl_scene_volume_defaults(&bench->scene);
+  require(hl_volume_create(bench->context, &description, &bench->scene.volume, &error), &error);
+  bench->opacity = (hl_opacity_point){0, 0.5};
+  bench->color = (hl_color_point){0, {1, 1, 1}};
+  bench->scene.transfer_function = (hl_transfer_function){1, &bench->opacity, 1, &bench->color, 1};
+  affine3 placement = {axes, vec3_scale(middle, -1)};
+  require(hl_grid_create(bench->context, bench->pool, hl_hot_scalar.bound_rows[storage], &bench->scene, placement,
+                         hl_scene_volume_empty_value(&bench->scene), &bench->grid, &error), &error);
+  require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error), &error);
+  hl_grid_mark_relevant(&bench->grid, &bench->classifier, bench->pool);
+}
+
+void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double distance, hl_kernel which) {
+  hl_error error = {0};
+  view *view = &bench->view;
+  vec3 u = vec3_perpendicular(direction), v = vec3_cross(direction, u);
+  view->perspective = distance > 0;
+  view->width = view->height = BENCH_SIDE;
+  view->direction = direction;
+  view->origin = vec3_scale(direction, -distance);
+  double edge = view->perspective ? pixel / distance : pixel;
+  view->du = vec3_scale(u, edge);
+  view->dv = vec3_scale(v, edge);
+  view->corner = vec3_scale(vec3_add(view->du, view->dv), -BENCH_SIDE / 2.0);
+  view->corner = vec3_add(view->corner, view->perspective ? direction : vec3_scale(direction, -50));
+  assert_true(hl_view_finish(view));
+  bench->sheets = (sheet_stack){normal, -0.7, 1.0 / 3, BENCH_SHEETS};
+  hl_voxel_lists_release(bench->context, &bench->lists);
+  require(hl_voxel_lists_build(bench->context, bench->pool, &bench->grid, hl_kernel_get(which), view, &bench->sheets,
+                               &bench->lists, &error), &error);
+}
+
+fill_source bench_source(const bench *bench, hl_kernel which, int sheet) {
+  fill_source source = {.grid = &bench->grid, .kernel = hl_kernel_get(which), .lists = &bench->lists, .sheet = sheet};
+  hl_view_sheet_rays(&bench->view, bench->sheets.normal, bench->sheets.first + sheet * bench->sheets.spacing,
+                     bench->grid.frame_to_index, &source.rays);
+  return source;
+}
+
+vec3 bench_position(const bench *bench, int sheet, int x, int y) {
+  vec3 start, direction, normal = bench->sheets.normal;
+  hl_view_ray(&bench->view, x + 0.5, y + 0.5, &start, &direction);
+  double height = bench->sheets.first + sheet * bench->sheets.spacing;
+  double s = (height - vec3_dot(normal, start)) / vec3_dot(normal, direction);
+  return affine3_apply(bench->grid.frame_to_index, vec3_add(start, vec3_scale(direction, s)));
+}
+
+void bench_close(bench *bench) {
+  hl_voxel_lists_release(bench->context, &bench->lists);
+  hl_classifier_release(bench->context, &bench->classifier);
+  hl_grid_release(bench->context, &bench->grid);
+  hl_volume_release(bench->scene.volume);
+  hl_pool_destroy(bench->pool);
+  assert_true(hl_context_memory_held(bench->context) == 0);
+  hl_context_destroy(bench->context);
+}

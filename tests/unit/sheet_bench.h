@@ -1,0 +1,37 @@
+/* unit/sheet_bench.h - a grid, a view and a stack of sheets to try the filling of tiles on. */
+#ifndef SHEET_BENCH_H
+#define SHEET_BENCH_H
+
+#include "simd/hot.h"
+#include "splat/voxel_sort.h"
+
+typedef struct bench {
+  hl_context *context;
+  hl_pool *pool;
+  hl_scene_volume scene;
+  hl_opacity_point opacity;
+  hl_color_point color;
+  grid grid;
+  classifier classifier;
+  view view;
+  sheet_stack sheets;
+  voxel_lists lists;
+} bench;
+
+/* A repeatable random number in [0, 1); state: any non-zero start. */
+double bench_random(uint32_t *state);
+vec3 bench_random_direction(uint32_t *state);
+
+/* A grid of stored values, opaque everywhere, its middle at the origin; voxel (i, j, k) steps by the columns of
+ * `axes`. voxels: [k][j][i] of the storage's type. */
+void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, const void *voxels, mat3 axes);
+/* 48 x 48 pixels of edge `pixel` that look along `direction` at the origin, from `distance` (0: in parallel), and
+ * five sheets a third of a world unit apart around it, perpendicular to normal. Sorts the voxels for them. */
+void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double distance, hl_kernel which);
+fill_source bench_source(const bench *bench, hl_kernel which, int sheet);
+void bench_close(bench *bench);
+
+/* Index-space position of a pixel's centre on the source's sheet, in double precision. */
+vec3 bench_position(const bench *bench, int sheet, int x, int y);
+
+#endif

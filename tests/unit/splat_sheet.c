@@ -1,0 +1,216 @@
+/* unit/splat_sheet.c - reconstruction on sheets: constants, ramps, two ways that agree, kernels, views. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "sheet_bench.h"
+
+enum { SIDE = 48, SIDE_TILES = SIDE / TILE, ORIENTATIONS = 50 };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* Anisotropic and askew, but not degenerate. */
+static mat3 oblique_axes(void) {
+  return mat3_from_columns((vec3){1, 0.1, 0}, (vec3){-0.2, 1.3, 0.1}, (vec3){0.1, 0.15, 0.8});
+}
+
+/* A view and a slicing normal at most about 50 degrees from it; every third one in perspective. */
+static void look_at_random(bench *bench, uint32_t *seed, int round, double pixel, hl_kernel which) {
+  vec3 direction = bench_random_direction(seed);
+  vec3 normal = vec3_normalise(vec3_add(direction, vec3_scale(bench_random_direction(seed), 0.8)));
+  bench_look(bench, direction, normal, pixel, round % 3 == 2 ? 15 : 0, which);
+}
+
+typedef uint32_t fill_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density);
+
+/* [y][x] of a whole sheet, by way of tiles and blocks. */
+static void fill_sheet(const fill_source *source, fill_function *fill, float sheet[SIDE][SIDE]) {
+  float density[TILE_PIXELS];
+  for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
+    for (int i = 0; i < TILE_PIXELS; i++) density[i] = NAN;
+    fill(source, tile % SIDE_TILES, tile / SIDE_TILES, ALL_BLOCKS, density);
+    for (int i = 0; i < TILE_PIXELS; i++) {
+      int block = i / BLOCK_PIXELS, lane = i % BLOCK_PIXELS;
+      sheet[tile / SIDE_TILES * TILE + block / 4 * BLOCK + lane / 4][tile % SIDE_TILES * TILE + block % 4 * BLOCK + lane % 4] =
+          density[i];
+    }
+  }
+}
+
+static bool inside(const bench *bench, vec3 p, double margin) {
+  const double at[3] = {p.x, p.y, p.z};
+  for (int a = 0; a < 3; a++)
+    if (at[a] < margin - 0.5 || at[a] > bench->grid.dimension[a] - 0.5 - margin) return false;
+  return true;
+}
+
+/* ---- the sheet of a known volume ---- */
+
+typedef double expected_function(vec3 index);
+
+static double constant_value(vec3 p) {
+  (void)p;
+  return 1;
+}
+static double ramp_value(vec3 p) { return 0.1 + 0.03 * p.x + 0.02 * p.y + 0.01 * p.z; }
+
+/* Checks every pixel that lies margin voxels inside, on all sheets, in many orientations; both ways. */
+static void check_known(expected_function *expected, double margin, double tolerance, hl_kernel which) {
+  enum { N = 12 };
+  static float voxels[N * N * N], sheet[SIDE][SIDE];
+  for (int i = 0; i < N * N * N; i++) voxels[i] = (float)expected((vec3){i % N, i / N % N, i / N / N});
+  bench bench;
+  bench_open(&bench, (size_t[3]){N, N, N}, HL_STORAGE_F32, voxels, oblique_axes());
+  uint32_t seed = 7 + (uint32_t)which;
+  long checked = 0;
+  for (int round = 0; round < ORIENTATIONS; round++) {
+    look_at_random(&bench, &seed, round, 0.25, which);
+    for (int way = 0; way < 2; way++) {
+      int k = round % bench.sheets.count;
+      fill_source source = bench_source(&bench, which, k);
+      fill_sheet(&source, way == 0 ? hl_hot_scalar.splat_tile : hl_hot_scalar.gather_tile, sheet);
+      for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+          vec3 p = bench_position(&bench, k, x, y);
+          if (!inside(&bench, p, margin)) continue;
+          assert_near((double)sheet[y][x] + bench.grid.empty, expected(p), tolerance);
+          checked++;
+        }
+    }
+  }
+  assert_true(checked > 10000);
+  bench_close(&bench);
+}
+
+static void test_constant_stays_constant(void **state) {
+  (void)state;
+  for (int which = HL_KERNEL_BSPLINE; which <= HL_KERNEL_LINEAR; which++)
+    check_known(constant_value, 0.001, 1e-3, (hl_kernel)which);
+}
+
+static void test_ramp_is_exact(void **state) {
+  (void)state;
+  check_known(ramp_value, 2.5, 1e-5, HL_KERNEL_BSPLINE);
+  check_known(ramp_value, 2.5, 1e-5, HL_KERNEL_LINEAR);
+}
+
+/* ---- splat and gather ---- */
+
+static void check_agreement(const size_t n[3], hl_storage storage, uint32_t seed) {
+  static float f32[4096], splatted[SIDE][SIDE], gathered[SIDE][SIDE];
+  static uint16_t u16[4096];
+  static uint8_t u8[4096];
+  size_t count = n[0] * n[1] * n[2];
+  assert_true(count <= 4096);
+  for (size_t i = 0; i < count; i++) {
+    f32[i] = (float)bench_random(&seed);
+    u16[i] = (uint16_t)(65536 * f32[i]);
+    u8[i] = (uint8_t)(256 * f32[i]);
+  }
+  const void *voxels = storage == HL_STORAGE_U8 ? (void *)u8 : storage == HL_STORAGE_U16 ? (void *)u16 : (void *)f32;
+  double scale = storage == HL_STORAGE_U8 ? 255 : storage == HL_STORAGE_U16 ? 65535 : 1;
+  bench bench;
+  bench_open(&bench, n, storage, voxels, oblique_axes());
+  for (int round = 0; round < 9; round++) {
+    hl_kernel which = (hl_kernel)(round % 3);
+    look_at_random(&bench, &seed, round / 3, 0.35, which);
+    for (int k = 0; k < bench.sheets.count; k += 2) {
+      fill_source source = bench_source(&bench, which, k);
+      fill_sheet(&source, hl_hot_scalar.splat_tile, splatted);
+      fill_sheet(&source, hl_hot_scalar.gather_tile, gathered);
+      for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) assert_near(splatted[y][x], gathered[y][x], 1e-5 * scale);
+    }
+  }
+  bench_close(&bench);
+}
+
+static void test_splat_equals_gather(void **state) {
+  (void)state;
+  static const size_t sizes[][3] = {{11, 9, 13}, {4, 4, 4}, {5, 3, 7}, {1, 9, 8}, {12, 1, 2}, {1, 1, 1}, {2, 2, 2}, {1, 1, 20}};
+  for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
+    for (int storage = HL_STORAGE_U8; storage <= HL_STORAGE_F32; storage++)
+      check_agreement(sizes[s], (hl_storage)storage, (uint32_t)(31 * s + 5));
+}
+
+/* Blocks that are not needed are left alone, in either way. */
+static void test_other_blocks_are_left_alone(void **state) {
+  (void)state;
+  static uint8_t voxels[8 * 8 * 8];
+  for (int i = 0; i < 512; i++) voxels[i] = (uint8_t)(i * 37 + 1);
+  bench bench;
+  bench_open(&bench, (size_t[3]){8, 8, 8}, HL_STORAGE_U8, voxels, oblique_axes());
+  bench_look(&bench, (vec3){0, 0, 1}, (vec3){0, 0, 1}, 0.2, 0, HL_KERNEL_BSPLINE);
+  fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, 2);
+  for (int way = 0; way < 2; way++) {
+    float density[TILE_PIXELS];
+    for (int i = 0; i < TILE_PIXELS; i++) density[i] = -7;
+    fill_function *fill = way == 0 ? hl_hot_scalar.splat_tile : hl_hot_scalar.gather_tile;
+    assert_int_equal(fill(&source, 1, 1, 0x8421, density), 0x8421);
+    for (int i = 0; i < TILE_PIXELS; i++) assert_true((density[i] == -7) == !(0x8421 >> (i / BLOCK_PIXELS) & 1));
+  }
+  bench_close(&bench);
+}
+
+/* ---- kernels and views ---- */
+
+static void test_kernels_sum_to_one(void **state) {
+  (void)state;
+  for (int which = HL_KERNEL_BSPLINE; which <= HL_KERNEL_LINEAR; which++) {
+    const kernel *kernel = hl_kernel_get((hl_kernel)which);
+    for (int step = 0; step <= 1000; step++) {
+      double phase = step / 1000.0, sum = 0, variance = 0;
+      for (int n = -3; n <= 3; n++) {
+        double value = hl_kernel_value(kernel, phase + n);
+        assert_true(value >= -1e-6); /* bricks are dropped by the convex hull of their voxels */
+        assert_near(value, hl_kernel_value(kernel, -phase - n), 0);
+        sum += value;
+        variance += value * (phase + n) * (phase + n);
+      }
+      assert_near(sum, 1, 1e-6);
+      /* over the lattice the second moment is the kernel's variance, for the B-spline at any phase */
+      if (which == HL_KERNEL_BSPLINE) assert_near(variance, kernel->variance, 1e-6);
+    }
+  }
+}
+
+static void test_projection_inverts_rays(void **state) {
+  (void)state;
+  uint32_t seed = 99;
+  for (int round = 0; round < 200; round++) {
+    vec3 direction = bench_random_direction(&seed), tilt = vec3_scale(bench_random_direction(&seed), 0.5);
+    view view = {.perspective = round % 2, .width = 40, .height = 30, .direction = direction};
+    view.origin = vec3_scale(bench_random_direction(&seed), 9);
+    vec3 u = vec3_perpendicular(direction);
+    view.du = vec3_scale(vec3_add(u, tilt), 0.02);
+    view.dv = vec3_scale(vec3_cross(direction, u), 0.03);
+    view.corner = vec3_add(view.perspective ? direction : view.origin, vec3_scale(view.du, -20));
+    if (!hl_view_finish(&view)) continue;
+    for (int i = 0; i < 20; i++) {
+      double at_u = 60 * bench_random(&seed) - 10, at_v = 50 * bench_random(&seed) - 10, uv[2];
+      vec3 start, way;
+      hl_view_ray(&view, at_u, at_v, &start, &way);
+      assert_true(hl_view_project(&view, vec3_add(start, vec3_scale(way, 0.1 + 30 * bench_random(&seed))), uv));
+      assert_near(uv[0], at_u, 1e-9);
+      assert_near(uv[1], at_v, 1e-9);
+      if (view.perspective) assert_false(hl_view_project(&view, vec3_add(start, vec3_scale(way, -1)), uv));
+    }
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_constant_stays_constant),
+      cmocka_unit_test(test_ramp_is_exact),
+      cmocka_unit_test(test_splat_equals_gather),
+      cmocka_unit_test(test_other_blocks_are_left_alone),
+      cmocka_unit_test(test_kernels_sum_to_one),
+      cmocka_unit_test(test_projection_inverts_rays),
+  };
+  return cmocka_run_group_tests_name("splat_sheet", tests, NULL, NULL);
+}
