@@ -1,0 +1,418 @@
+/* unit/simd_equal.c - every hot function on every instruction set that the machine has: the scalar table's bits.
+ *
+ *     simd_equal [--time]
+ *
+ * Inputs are random, salted with zeros, ones, huge, tiny and non-finite numbers. --time prints nanoseconds a call. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "core/cpu.h"
+#include "sheet_bench.h"
+
+enum { ROUNDS = 40, SETS = 2, TIMED = 200, FIELD = 256 /* floats a row and rows, margins included */ };
+
+typedef struct contender {
+  const hot_functions *hot;
+  const char *name;
+} contender;
+
+/* The instruction sets to hold against the scalar one. */
+static int contenders(contender list[SETS]) {
+  int count = 0;
+  for (int set = HL_INSTRUCTION_SET_AVX2; set <= (int)hl_cpu_best_instruction_set(); set++)
+    list[count++] = (contender){hl_hot_functions((hl_instruction_set)set), hl_instruction_set_name((hl_instruction_set)set)};
+  return count;
+}
+
+static bool timing;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
+}
+
+/* ---- inputs ---- */
+
+static float random_between(uint32_t *seed, double low, double high) {
+  return (float)(low + (high - low) * bench_random(seed));
+}
+
+/* One number in eight is an edge case. */
+static float salted(uint32_t *seed, double low, double high) {
+  static const float edges[] = {0, -0.0f, 1, -1, 1e-30f, 3e38f, 1e-42f, 0.5f};
+  if (bench_random(seed) < 0.125) return edges[(int)(8 * bench_random(seed))];
+  return random_between(seed, low, high);
+}
+
+static void fill_salted(float *values, size_t count, uint32_t *seed, double low, double high) {
+  for (size_t i = 0; i < count; i++) values[i] = salted(seed, low, high);
+}
+
+/* ---- running one function by its name ---- */
+
+/* A call with all that it reads and writes: outputs are compared byte by byte. */
+typedef struct trial {
+  void (*call)(const hot_functions *hot, void *state);
+  void *state;
+  void *output;
+  size_t size;
+} trial;
+
+static void compare(const char *function, const trial *trial) {
+  contender list[SETS];
+  int count = contenders(list);
+  unsigned char *before = malloc(trial->size), *expected = malloc(trial->size);
+  assert_true(before != NULL && expected != NULL);
+  memcpy(before, trial->output, trial->size);
+  trial->call(&hl_hot_scalar, trial->state);
+  memcpy(expected, trial->output, trial->size);
+  for (int i = 0; i < count; i++) {
+    memcpy(trial->output, before, trial->size);
+    trial->call(list[i].hot, trial->state);
+    if (memcmp(expected, trial->output, trial->size) != 0) fail_msg("%s: %s differs from scalar", function, list[i].name);
+  }
+  free(before);
+  free(expected);
+}
+
+static void time_one(const char *function, const trial *trial, const hot_functions *hot, const char *name) {
+  double start = now();
+  for (int i = 0; i < TIMED; i++) trial->call(hot, trial->state);
+  print_message("# %-24s %-8s %9.0f ns\n", function, name, (now() - start) / TIMED);
+}
+
+static void try_it(const char *function, const trial *trial, int round) {
+  compare(function, trial);
+  if (!timing || round != 0) return;
+  contender list[SETS];
+  int count = contenders(list);
+  time_one(function, trial, &hl_hot_scalar, "scalar");
+  for (int i = 0; i < count; i++) time_one(function, trial, list[i].hot, list[i].name);
+}
+
+/* ---- bounds of rows ---- */
+
+typedef struct bound_state {
+  int storage;
+  const void *rows[9];
+  int row_count;
+  size_t count;
+  float out[2][600];
+} bound_state;
+
+static void call_bound_rows(const hot_functions *hot, void *state) {
+  bound_state *s = state;
+  hot->bound_rows[s->storage](s->rows, s->row_count, s->count, s->out[0], s->out[1]);
+}
+
+static void test_bound_rows(void **unused) {
+  (void)unused;
+  static float data[9][600];
+  uint32_t seed = 3;
+  static const char *const names[] = {"bound_rows_u8", "bound_rows_u16", "bound_rows_f32"};
+  for (int storage = 0; storage < 3; storage++)
+    for (int round = 0; round < ROUNDS; round++) {
+      static bound_state state;
+      state = (bound_state){.storage = storage, .row_count = 1 + round % 9, .count = round == 0 ? 600 : 1 + (size_t)(599 * bench_random(&seed))};
+      fill_salted(&data[0][0], 9 * 600, &seed, -5, 5); /* read as bytes and halves too */
+      for (int r = 0; r < 9; r++) state.rows[r] = data[r];
+      trial trial = {call_bound_rows, &state, state.out, sizeof state.out};
+      try_it(names[storage], &trial, round);
+    }
+}
+
+/* ---- filling ---- */
+
+typedef struct fill_state {
+  fill_source source;
+  int gather, tile_x, tile_y;
+  uint32_t need;
+  struct { float density[TILE_PIXELS]; uint32_t filled; } out;
+} fill_state;
+
+static void call_fill(const hot_functions *hot, void *state) {
+  fill_state *s = state;
+  fill_tile_function *fill = s->gather ? hot->gather_tile : hot->splat_tile;
+  s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->out.density);
+}
+
+/* Rays that run along the sheets, or nowhere: positions become huge or NaN. */
+static void spoil_rays(sheet_rays *rays, int round) {
+  if (round % 8 == 5) rays->h0 = rays->hu = rays->hv = 0;
+  if (round % 8 == 6) rays->w0[round % 3] = NAN;
+  if (round % 8 == 7) rays->wu[round % 3] = 3e37f;
+}
+
+static void check_fill(const size_t n[3], hl_storage storage, uint32_t seed) {
+  static const char *const names[2][3] = {{"splat_tile u8", "splat_tile u16", "splat_tile f32"},
+                                          {"gather_tile u8", "gather_tile u16", "gather_tile f32"}};
+  static float voxels[2048];
+  size_t count = n[0] * n[1] * n[2];
+  fill_salted(voxels, count, &seed, -3, 3);
+  for (size_t i = 0; i < count; i++) voxels[i] = fabsf(voxels[i]) > 1e30f ? 1 : voxels[i];
+  bench bench;
+  mat3 axes = mat3_from_columns((vec3){1, 0.1, 0}, (vec3){-0.2, 1.3, 0.1}, (vec3){0.1, 0.15, 0.8});
+  bench_open(&bench, n, storage, voxels, axes);
+  for (int round = 0; round < ROUNDS; round++) {
+    vec3 direction = bench_random_direction(&seed);
+    vec3 normal = vec3_normalise(vec3_add(direction, vec3_scale(bench_random_direction(&seed), 0.8)));
+    hl_kernel which = (hl_kernel)(round % 3);
+    bench_look(&bench, direction, normal, 0.3, round % 2 ? 12 : 0, which);
+    for (int gather = 0; gather < 2; gather++) {
+      static fill_state state;
+      state = (fill_state){.source = bench_source(&bench, which, round % 5), .gather = gather, .tile_x = round == 0 ? 1 : round % 3,
+                           .tile_y = round == 0 ? 1 : round / 3 % 3, .need = round % 4 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(&seed))};
+      if (round == 0) state.need = ALL_BLOCKS;
+      spoil_rays(&state.source.rays, round);
+      trial trial = {call_fill, &state, &state.out, sizeof state.out};
+      try_it(names[gather][storage], &trial, round);
+    }
+  }
+  bench_close(&bench);
+}
+
+static void test_fill(void **unused) {
+  (void)unused;
+  for (int storage = 0; storage < 3; storage++) {
+    check_fill((size_t[3]){13, 11, 12}, (hl_storage)storage, 17);
+    check_fill((size_t[3]){1, 7, 3}, (hl_storage)storage, 18);
+  }
+}
+
+/* ---- coverage ---- */
+
+typedef struct coverage_state {
+  box_rays rays;
+  float out[2][TILE_PIXELS];
+} coverage_state;
+
+static void call_coverage(const hot_functions *hot, void *state) {
+  coverage_state *s = state;
+  hot->coverage_tile(&s->rays, 1, 2, s->out[0], s->out[1]);
+}
+
+static void test_coverage(void **unused) {
+  (void)unused;
+  uint32_t seed = 5;
+  for (int round = 0; round < 4 * ROUNDS; round++) {
+    static coverage_state state;
+    state.rays.perspective = round % 2;
+    for (float *at = state.rays.start; at < state.rays.low; at++) *at = salted(&seed, -2, 2);
+    for (int a = 0; a < 3; a++) {
+      state.rays.low[a] = random_between(&seed, -9, 0);
+      state.rays.high[a] = random_between(&seed, 0, 9);
+    }
+    if (round % 16 == 15) state.rays.start[round % 3] = NAN;
+    trial trial = {call_coverage, &state, state.out, sizeof state.out};
+    try_it("coverage_tile", &trial, round);
+  }
+}
+
+/* ---- light ---- */
+
+/* A classifier of one ramp, from a bench. */
+static bench classifier_bench;
+
+static int open_classifier(void **unused) {
+  (void)unused;
+  static const hl_opacity_point ramp[] = {{0, 0}, {0.3, 0}, {0.5, 0.8}, {1, 0.99}};
+  static const float voxels[] = {0, 1, 0.2f, 0.7f, 0.4f, 0.9f, 0.1f, 0.6f};
+  bench_open(&classifier_bench, (size_t[3]){2, 2, 2}, HL_STORAGE_F32, voxels,
+             mat3_from_columns((vec3){1, 0, 0}, (vec3){0, 1, 0}, (vec3){0, 0, 1}));
+  bench *b = &classifier_bench;
+  hl_classifier_release(b->context, &b->classifier);
+  b->scene.transfer_function.opacity = ramp;
+  b->scene.transfer_function.opacity_count = 4;
+  return hl_classifier_create(b->context, &b->scene, &b->grid, &b->classifier, NULL) != HL_OK;
+}
+
+static int close_classifier(void **unused) {
+  (void)unused;
+  bench_close(&classifier_bench);
+  return 0;
+}
+
+static sheet_rays random_rays(uint32_t *seed, int round) {
+  sheet_rays rays = {.perspective = round % 2};
+  for (float *at = rays.origin; at <= &rays.step; at++) *at = random_between(seed, -2, 2);
+  spoil_rays(&rays, round);
+  return rays;
+}
+
+typedef struct attenuate_state {
+  attenuate_job job;
+  attenuate_volume volumes[2];
+  float density[2][4][TILE_PIXELS];
+  struct { float field[2 * HL_CHANNELS][TILE][TILE]; uint32_t lit; } out;
+} attenuate_state;
+
+static void call_attenuate(const hot_functions *hot, void *state) {
+  attenuate_state *s = state;
+  s->out.lit = hot->attenuate_tile(&s->job, 1, 1);
+}
+
+static void call_lit_blocks(const hot_functions *hot, void *state) {
+  attenuate_state *s = state;
+  s->out.lit = hot->lit_blocks_tile((const float *const *)s->job.transmittance, s->job.channels, TILE);
+}
+
+static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
+  memset(s, 0, sizeof *s);
+  s->job = (attenuate_job){.rays = random_rays(seed, round), .path = 1, .height = 1, .spacing = 0.5f, .volumes = s->volumes,
+                           .volume_count = 1 + round % 2, .channels = round % 3 ? 3 : 1, .stride = TILE, .also_stride = TILE};
+  for (int c = 0; c < HL_CHANNELS; c++) {
+    s->job.transmittance[c] = &s->out.field[c][0][0];
+    s->job.also[c] = round % 4 == 1 ? &s->out.field[HL_CHANNELS + c][0][0] : NULL;
+  }
+  for (int v = 0; v < 2; v++) {
+    fill_salted(s->density[v][0], 2 * TILE_PIXELS, seed, -0.1, 1.1);
+    fill_salted(s->density[v][2], 2 * TILE_PIXELS, seed, 0, 2);
+    if (round % 8 == 3) s->density[v][0][v] = NAN;
+    s->volumes[v] = (attenuate_volume){&classifier_bench.classifier, s->density[v][0], s->density[v][1],
+                                       v == round % 3 ? s->density[v][2] : NULL, v == round % 3 ? s->density[v][3] : NULL,
+                                       round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), {0, 0.5f, 1}};
+  }
+  for (int c = 0; c < 2 * HL_CHANNELS; c++) {
+    fill_salted(&s->out.field[c][0][0], TILE_PIXELS, seed, 0, 1);
+    for (int i = 0; i < TILE_PIXELS && round % 2; i++) (&s->out.field[c][0][0])[i] *= 1e-3f; /* around dark */
+  }
+}
+
+static void test_light(void **unused) {
+  (void)unused;
+  static attenuate_state state;
+  uint32_t seed = 11;
+  for (int round = 0; round < 2 * ROUNDS; round++) {
+    set_up_attenuate(&state, &seed, round);
+    trial attenuate = {call_attenuate, &state, &state.out, sizeof state.out};
+    trial lit = {call_lit_blocks, &state, &state.out, sizeof state.out};
+    try_it("attenuate_tile", &attenuate, round);
+    try_it("lit_blocks_tile", &lit, round);
+  }
+}
+
+/* ---- fields: blurs and the cascade's products ---- */
+
+typedef struct field_state {
+  int which;
+  blur_job blur;
+  field_job field;
+  float a[FIELD][FIELD], b[FIELD][FIELD], out[FIELD][FIELD];
+} field_state;
+
+static void call_field(const hot_functions *hot, void *state) {
+  field_state *s = state;
+  if (s->which == 0) hot->blur_rows_tile(&s->blur, 1, 1);
+  if (s->which == 1) hot->blur_columns_tile(&s->blur, 1, 1);
+  if (s->which == 2) hot->multiply_tile(&s->field, 1, 1);
+  if (s->which == 3) hot->multiply_half_tile(&s->field, 1, 1);
+  if (s->which == 4) hot->multiply_double_tile(&s->field, 1, 1);
+}
+
+static void test_fields(void **unused) {
+  (void)unused;
+  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "multiply_tile", "multiply_half_tile", "multiply_double_tile"};
+  static field_state s;
+  uint32_t seed = 23;
+  enum { MARGIN = 100 };
+  for (int round = 0; round < ROUNDS; round++) {
+    fill_salted(&s.a[0][0], FIELD * FIELD, &seed, 0, 1);
+    fill_salted(&s.b[0][0], FIELD * FIELD, &seed, 0, 1);
+    s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD,
+                        hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
+    s.field = (field_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD};
+    for (s.which = 0; s.which < 5; s.which++) {
+      trial trial = {call_field, &s, s.out, sizeof s.out};
+      try_it(names[s.which], &trial, round);
+    }
+  }
+}
+
+/* ---- shading ---- */
+
+typedef struct shade_state {
+  shade_job job;
+  shade_volume volumes[2];
+  shade_light lights[3];
+  uint32_t blocks;
+  float sheet[4][3 * TILE][3 * TILE];     /* one tile with a tile of margin */
+  float cut[2][TILE_PIXELS];
+  float buffer[HL_CHANNELS][64][64];
+  struct { float pixels[4 * TILE_PIXELS]; uint64_t samples; uint32_t open; } out;
+} shade_state;
+
+static void call_shade(const hot_functions *hot, void *state) {
+  shade_state *s = state;
+  s->out.samples = 0;
+  s->out.open = hot->shade_tile(&s->job, 0, 0, s->blocks, s->out.pixels, &s->out.samples);
+}
+
+static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
+  fill_salted(&s->buffer[0][0][0], sizeof s->buffer / 4, seed, 0, 1);
+  for (int i = 0; i < 3; i++) {
+    shade_light *light = &s->lights[i];
+    vec3 towards = bench_random_direction(seed);
+    *light = (shade_light){.parallel = (round + i) % 2, .towards = {(float)towards.x, (float)towards.y, (float)towards.z},
+                           .position = {3, -2, (float)i}, .color = {1, 0.5f, salted(seed, 0, 1)}, .inverse_square = i == 1,
+                           .shadowed = i < 2, .path = 0.7f, .stride = 64, .width = 60, .height = 50,
+                           .channels = s->job.channels, .nearest = round % 5 == 4};
+    for (int c = 0; c < HL_CHANNELS; c++) light->transmittance[c] = &s->buffer[c][2][2];
+    for (int row = 0; row < 3; row++)
+      for (int column = 0; column < 4; column++) light->map[row][column] = random_between(seed, -9, 9);
+    light->map[0][3] = 10;
+    light->map[1][3] = light->map[2][3] = 250;
+  }
+}
+
+static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
+  memset(s, 0, sizeof *s);
+  s->job = (shade_job){.rays = random_rays(seed, round), .through = {0.1f, 0.2f, 0.5f}, .towards_eye = {0, 0.6f, -0.8f},
+                       .normal = {0, 0, 1}, .path = 0.6f, .height = 1, .spacing = 0.5f, .back_to_front = round % 4 == 2,
+                       .volumes = s->volumes, .volume_count = 1 + round % 2, .lights = s->lights, .light_count = round % 4,
+                       .ambient = {0.1f, 0.2f, 0}, .stride = 3 * TILE, .channels = round % 3 ? 3 : 1};
+  if (round == 0) s->job.light_count = 2;
+  set_up_lights(s, seed, round);
+  for (int v = 0; v < 2; v++) {
+    fill_salted(&s->sheet[2 * v][0][0], 2 * 9 * TILE_PIXELS, seed, -0.1, 1.1);
+    if (round % 8 == 3) s->sheet[2 * v][20][20] = NAN;
+    s->volumes[v] = (shade_volume){&classifier_bench.classifier, &s->sheet[2 * v][TILE][TILE], &s->sheet[2 * v + 1][TILE][TILE],
+                                   v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL,
+                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, 0.5f, 0.8f, 0.3f, 25, {1, 0.5f, 0}};
+  }
+  fill_salted(s->cut[0], TILE_PIXELS, seed, 0, 1);
+  fill_salted(s->cut[1], TILE_PIXELS, seed, 0.5, 2);
+  for (int i = 0; i < 4 * TILE_PIXELS; i++) s->out.pixels[i] = random_between(seed, 0, round % 5 ? 1 : 1.0005);
+  s->blocks = round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed));
+}
+
+static void test_shade(void **unused) {
+  (void)unused;
+  static shade_state state;
+  uint32_t seed = 41;
+  for (int round = 0; round < 4 * ROUNDS; round++) {
+    set_up_shade(&state, &seed, round);
+    trial trial = {call_shade, &state, &state.out, sizeof state.out};
+    try_it("shade_tile", &trial, round);
+  }
+}
+
+int main(int argc, char **argv) {
+  timing = argc > 1 && strcmp(argv[1], "--time") == 0;
+  if (hl_cpu_best_instruction_set() == HL_INSTRUCTION_SET_SCALAR) {
+    puts("1..0 # SKIP this processor has the scalar instruction set alone");
+    return 0;
+  }
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_light),      cmocka_unit_test(test_fields), cmocka_unit_test(test_shade),
+  };
+  return cmocka_run_group_tests_name("simd_equal", tests, open_classifier, close_classifier);
+}
