@@ -1,0 +1,336 @@
+/* analytic/sheets_invariance.c - what must not change a picture: threads, instruction sets, history, interruptions. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "core/cpu.h"
+#include "reference_stage.h"
+
+enum { MOST_SIDE = 96, MOST_FLOATS = MOST_SIDE * MOST_SIDE * 4 };
+
+/* ---- a context that counts and can be told to stop ---- */
+
+typedef struct watch {
+  atomic_int allocations;
+  int reports;                /* of the stage "render", in this picture */
+  int allocations_at_report;
+  int allocations_in_loop;    /* between two reports of the sheet loop */
+  double last_fraction;
+  int questions, cancel_after; /* 0: never */
+} watch;
+
+static void *watched_allocate(void *data, size_t size, size_t alignment) {
+  atomic_fetch_add(&((watch *)data)->allocations, 1);
+  return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+
+static void watched_release(void *data, void *memory) {
+  (void)data;
+  free(memory);
+}
+
+static void watched_progress(void *data, const char *name, double fraction) {
+  watch *w = data;
+  if (strcmp(name, "render") != 0) return;
+  int allocations = atomic_load(&w->allocations);
+  /* rising fractions below 1 are reports of one sheet loop: nothing may be allocated between them */
+  if (w->reports > 0 && fraction > w->last_fraction && fraction < 1)
+    w->allocations_in_loop += allocations - w->allocations_at_report;
+  w->allocations_at_report = allocations;
+  w->last_fraction = fraction;
+  w->reports++;
+}
+
+static int watched_cancelled(void *data) {
+  watch *w = data;
+  return w->cancel_after > 0 && ++w->questions > w->cancel_after;
+}
+
+static void open_watched(stage *set, watch *w, hl_instruction_set instructions) {
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  memset(w, 0, sizeof *w);
+  options.user_data = w;
+  options.allocate = watched_allocate;
+  options.release = watched_release;
+  options.progress = watched_progress;
+  options.cancelled = watched_cancelled;
+  options.instruction_set = instructions;
+  stage_open_with(set, &options);
+}
+
+/* ---- scenes ---- */
+
+static const hl_opacity_point SOFT_EDGE[] = {{0, 0}, {0.35, 0}, {0.6, 0.7}, {1, 0.9}};
+static const hl_color_point WARM[] = {{0, {0.2, 0.3, 0.9}}, {0.5, {0.9, 0.4, 0.2}}, {1, {1, 0.9, 0.6}}};
+
+static hl_scene_volume *add_noise(stage *set, size_t n, vec3 corner, hl_voxel_type type) {
+  float *voxels = malloc(n * n * n * sizeof *voxels);
+  assert_non_null(voxels);
+  for (size_t i = 0; i < n * n * n; i++) {
+    double x = (double)(i % n), y = (double)(i / n % n), z = (double)(i / n / n), r = (double)(n - 1) / 2;
+    double d = ((x - r) * (x - r) + (y - r) * (y - r) + (z - r) * (z - r)) / (r * r);
+    voxels[i] = (float)fmax(0, 1 - d) * (0.5f + stage_noise(x / 3, y / 3, z / 3));
+    if (voxels[i] > 1) voxels[i] = 1;
+  }
+  set->type = type;
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){n, n, n}, (double[3]){1, 1, 1}, corner, voxels);
+  free(voxels);
+  volume->transfer_function.opacity = SOFT_EDGE;
+  volume->transfer_function.opacity_count = sizeof SOFT_EDGE / sizeof *SOFT_EDGE;
+  volume->transfer_function.color = WARM;
+  volume->transfer_function.color_count = sizeof WARM / sizeof *WARM;
+  volume->shading = HL_SHADING_PHONG;
+  return volume;
+}
+
+static void build_scene(stage *set, hl_shadows shadows, hl_soft_method method, hl_reconstruction way) {
+  set->scene.render.shadows = shadows;
+  set->scene.render.soft_method = method;
+  set->scene.render.reconstruction = way;
+  set->scene.width = 44;
+  set->scene.height = 30;
+  set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  set->scene.camera.fovy_deg = 40;
+  stage_look(set, (vec3){30, -25, 20}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  add_noise(set, 15, (vec3){-9, -8, -8}, HL_VOXEL_U8);
+  add_noise(set, 8, (vec3){-1, -2, -1}, HL_VOXEL_F32)->attenuation_color[0] = 0.3;
+  stage_add_directional(set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 12;
+  stage_add_directional(set, (vec3){1, 1, 0.2})->angular_diameter_deg = 5; /* a sweep of its own */
+  stage_add_point(set, (vec3){25, 5, 30})->radius = 3;
+  set->scene.ambient[1] = 0.2;
+}
+
+typedef struct setting {
+  const char *name;
+  hl_shadows shadows;
+  hl_soft_method method;
+  hl_reconstruction way;
+} setting;
+
+static const setting SETTINGS[] = {
+    {"off", HL_SHADOWS_OFF, HL_SOFT_CASCADE, HL_RECONSTRUCTION_GATHER},
+    {"hard, gather", HL_SHADOWS_HARD, HL_SOFT_CASCADE, HL_RECONSTRUCTION_GATHER},
+    {"hard, splat", HL_SHADOWS_HARD, HL_SOFT_CASCADE, HL_RECONSTRUCTION_SPLAT},
+    {"paper, gather", HL_SHADOWS_SOFT, HL_SOFT_PAPER, HL_RECONSTRUCTION_GATHER},
+    {"cascade, gather", HL_SHADOWS_SOFT, HL_SOFT_CASCADE, HL_RECONSTRUCTION_GATHER},
+    {"cascade, splat", HL_SHADOWS_SOFT, HL_SOFT_CASCADE, HL_RECONSTRUCTION_SPLAT},
+};
+enum { SETTING_COUNT = sizeof SETTINGS / sizeof *SETTINGS };
+
+static void build_setting(stage *set, int index) {
+  build_scene(set, SETTINGS[index].shadows, SETTINGS[index].method, SETTINGS[index].way);
+}
+
+static hl_renderer *create_renderer(stage *set) {
+  hl_renderer *renderer = NULL;
+  assert_int_equal(hl_renderer_create(set->context, &renderer, NULL), HL_OK);
+  return renderer;
+}
+
+static size_t picture_floats(const stage *set) { return (size_t)set->scene.width * (size_t)set->scene.height * 4; }
+
+static void assert_same(const float *a, const float *b, size_t floats, const char *what, int setting_index) {
+  size_t differing = 0;
+  for (size_t i = 0; i < floats; i++) differing += memcmp(&a[i], &b[i], sizeof(float)) != 0;
+  if (differing > 0) fail_msg("%s: %zu of %zu values differ (%s)", what, differing, floats, SETTINGS[setting_index].name);
+}
+
+static void assert_shows_something(const float *pixels, size_t floats) {
+  double sum = 0;
+  for (size_t i = 0; i < floats; i += 4) sum += pixels[i + 3];
+  assert_true(sum > 0.05 * (double)floats / 4);
+}
+
+/* ---- the same bytes ---- */
+
+static void test_threads(void **state) {
+  (void)state;
+  static float one[MOST_FLOATS], more[MOST_FLOATS];
+  for (int index = 0; index < SETTING_COUNT; index++) {
+    stage set;
+    stage_open(&set);
+    build_setting(&set, index);
+    set.scene.render.threads = 1;
+    stage_render_sheets(&set, one);
+    assert_shows_something(one, picture_floats(&set));
+    for (int threads = 2; threads <= 7; threads += 5) {
+      set.scene.render.threads = threads;
+      stage_render_sheets(&set, more);
+      assert_same(one, more, picture_floats(&set), "threads", index);
+    }
+    stage_close(&set);
+  }
+}
+
+static void test_instruction_sets(void **state) {
+  (void)state;
+  static float scalar[MOST_FLOATS], other[MOST_FLOATS];
+  if (hl_cpu_best_instruction_set() == HL_INSTRUCTION_SET_SCALAR) skip();
+  for (int index = 0; index < SETTING_COUNT; index++)
+    for (int set_index = HL_INSTRUCTION_SET_SCALAR; set_index <= (int)hl_cpu_best_instruction_set(); set_index++) {
+      stage set;
+      watch w;
+      open_watched(&set, &w, (hl_instruction_set)set_index);
+      assert_int_equal(hl_context_instruction_set(set.context), set_index);
+      build_setting(&set, index);
+      set.scene.render.threads = 1;
+      stage_render_sheets(&set, set_index == HL_INSTRUCTION_SET_SCALAR ? scalar : other);
+      if (set_index != HL_INSTRUCTION_SET_SCALAR)
+        assert_same(scalar, other, picture_floats(&set), hl_instruction_set_name((hl_instruction_set)set_index), index);
+      stage_close(&set);
+    }
+}
+
+/* Again with the same renderer, with a fresh one, and after another scene of another size has used its buffers. */
+static void test_history(void **state) {
+  (void)state;
+  static float first[MOST_FLOATS], again[MOST_FLOATS];
+  for (int index = 0; index < SETTING_COUNT; index++) {
+    stage set, other;
+    stage_open(&set);
+    build_setting(&set, index);
+    set.scene.render.threads = 2;
+    hl_renderer *renderer = create_renderer(&set);
+    stage_render_with(&set, renderer, first);
+    stage_render_with(&set, renderer, again);
+    assert_same(first, again, picture_floats(&set), "rerun", index);
+
+    stage_open(&other);
+    hl_context *own = other.context;
+    other.context = set.context; /* the other scene's volumes live in the renderer's context */
+    build_setting(&other, (index + 2) % SETTING_COUNT);
+    other.scene.width = 33;
+    other.scene.height = 91;
+    other.volumes[0].transfer_function.unit_distance = 3;
+    stage_look(&other, (vec3){-30, -15, 30}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+    stage_render_with(&other, renderer, again);
+    stage_render_with(&set, renderer, again);
+    assert_same(first, again, picture_floats(&set), "after another scene", index);
+    hl_volume_release(other.volumes[0].volume);
+    other.scene.volume_count = other.scene.light_count = 1; /* fewer volumes and lights */
+    other.volumes[0] = other.volumes[1];
+    stage_render_with(&other, renderer, again);
+    stage_render_with(&set, renderer, again);
+    assert_same(first, again, picture_floats(&set), "after a smaller scene", index);
+    hl_volume_release(other.volumes[0].volume);
+    hl_renderer_destroy(renderer);
+    stage_render_sheets(&set, again);
+    assert_same(first, again, picture_floats(&set), "a fresh renderer", index);
+    hl_context_destroy(own);
+    stage_close(&set);
+  }
+}
+
+/* One renderer, many sizes: each picture is the one that a fresh renderer gives. */
+static void test_sizes(void **state) {
+  (void)state;
+  static const int sizes[][2] = {{1, 1}, {96, 7}, {16, 16}, {17, 65}, {8, 8}, {64, 48}};
+  static float fresh[MOST_FLOATS], reused[MOST_FLOATS];
+  for (int index = 1; index < SETTING_COUNT; index += 3) {
+    stage set;
+    stage_open(&set);
+    build_setting(&set, index);
+    hl_renderer *renderer = create_renderer(&set);
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+      set.scene.width = sizes[s][0];
+      set.scene.height = sizes[s][1];
+      stage_render_with(&set, renderer, reused);
+      stage_render_sheets(&set, fresh);
+      assert_same(fresh, reused, picture_floats(&set), "size", index);
+    }
+    hl_renderer_destroy(renderer);
+    stage_close(&set);
+  }
+}
+
+/* ---- memory and interruptions ---- */
+
+static void test_no_allocation_in_the_loop(void **state) {
+  (void)state;
+  static float pixels[MOST_FLOATS];
+  for (int index = 0; index < SETTING_COUNT; index++) {
+    stage set;
+    watch w;
+    open_watched(&set, &w, HL_INSTRUCTION_SET_AUTO);
+    build_setting(&set, index);
+    stage_render_sheets(&set, pixels);
+    assert_true(w.reports >= 4);
+    assert_true(atomic_load(&w.allocations) > 10);
+    assert_int_equal(w.allocations_in_loop, 0);
+    assert_true(w.last_fraction == 1);
+    stage_close(&set); /* asserts that all memory is back */
+  }
+}
+
+static void test_cancel(void **state) {
+  (void)state;
+  static float expected[MOST_FLOATS], pixels[MOST_FLOATS];
+  for (int index = 0; index < SETTING_COUNT; index++) {
+    stage set;
+    watch w;
+    open_watched(&set, &w, HL_INSTRUCTION_SET_AUTO);
+    build_setting(&set, index);
+    stage_render_sheets(&set, expected);
+    hl_renderer *renderer = create_renderer(&set);
+    hl_scene *scene = NULL;
+    hl_error error = {0};
+    assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, &error), HL_OK);
+    for (int after = 1; after <= 3; after++) {
+      w.questions = 0;
+      w.cancel_after = after;
+      assert_int_equal(hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set.scene.width, NULL, &error),
+                       HL_ERROR_CANCELLED);
+      assert_int_equal(error.code, HL_ERROR_CANCELLED);
+      w.cancel_after = 0;
+      stage_render_with(&set, renderer, pixels);
+      assert_same(expected, pixels, picture_floats(&set), "after a cancelled one", index);
+    }
+    hl_scene_release(scene);
+    hl_renderer_destroy(renderer);
+    stage_close(&set);
+  }
+}
+
+/* Only the picture's part of each row is written. */
+static void test_row_stride(void **state) {
+  (void)state;
+  static float packed[MOST_FLOATS], wide[2 * MOST_FLOATS];
+  stage set;
+  stage_open(&set);
+  build_setting(&set, 1);
+  stage_render_sheets(&set, packed);
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = create_renderer(&set);
+  size_t row = 4 * (size_t)set.scene.width, stride = row + 5;
+  memset(wide, 0x5a, sizeof wide);
+  assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, NULL), HL_OK);
+  assert_int_equal(hl_renderer_render(renderer, scene, wide, stride, NULL, NULL), HL_OK);
+  for (size_t y = 0; y < (size_t)set.scene.height; y++) {
+    assert_memory_equal(&wide[y * stride], &packed[y * row], row * sizeof(float));
+    for (size_t byte = 0; byte < 5 * sizeof(float); byte++)
+      assert_int_equal(((unsigned char *)&wide[y * stride + row])[byte], 0x5a);
+  }
+  assert_int_equal(hl_renderer_render(renderer, scene, wide, row - 1, NULL, NULL), HL_ERROR_ARGUMENT);
+  hl_scene_release(scene);
+  hl_renderer_destroy(renderer);
+  stage_close(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_threads),
+      cmocka_unit_test(test_instruction_sets),
+      cmocka_unit_test(test_history),
+      cmocka_unit_test(test_sizes),
+      cmocka_unit_test(test_no_allocation_in_the_loop),
+      cmocka_unit_test(test_cancel),
+      cmocka_unit_test(test_row_stride),
+  };
+  return cmocka_run_group_tests_name("sheets_invariance", tests, NULL, NULL);
+}
