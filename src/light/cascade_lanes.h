@@ -2,8 +2,22 @@
 #ifndef HL_LIGHT_CASCADE_LANES_H
 #define HL_LIGHT_CASCADE_LANES_H
 
+#include "light/blur_lanes.h"
 #include "light/cascade_field.h"
-#include "simd/lanes.h"
+
+static void blur_multiply_tile(const blur_multiply_job *job, int tile_x, int tile_y) {
+  _Alignas(64) float rows[(TILE + 2 * BLUR_GREATEST_REACH) * TILE];
+  int apron = job->v.reach + 1;
+  const float *from = job->from + (ptrdiff_t)(tile_y * TILE - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
+  for (int row = 0; row < TILE + 2 * apron; row++, from += job->stride)
+    lanes_store(rows + row * TILE, blur_sixteen(from, 1, &job->u));
+  size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  float *to = job->to + (size_t)tile_y * TILE * job->stride_to + (size_t)tile_x * TILE;
+  for (int row = 0; row < TILE; row++, at += job->stride, to += job->stride_to) {
+    lanes blurred = blur_sixteen(rows + (row + apron) * TILE, TILE, &job->v);
+    lanes_store(to, job->a == NULL ? blurred : blurred * lanes_load(job->a + at));
+  }
+}
 
 static void multiply_tile(const field_job *job, int tile_x, int tile_y) {
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;

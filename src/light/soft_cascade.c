@@ -48,7 +48,7 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
   size_t channels = (size_t)cascade->channels, used = 0, tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  size_t planes = channels * (CASCADE_GROUPS + 2) + 2 + (index == 0 ? channels : 0);
+  size_t planes = channels * (CASCADE_GROUPS + 2) + 1 + (index == 0 ? channels : 0);
   level->memory = hl_allocate(context, planes * level->plane, sizeof(float));
   level->flags = hl_allocate(context, planes, tiles);
   if (level->memory == NULL || level->flags == NULL)
@@ -59,7 +59,7 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
     for (int g = 0; g < CASCADE_GROUPS; g++) level->group[g].transmittance[c] = next_field(level, &used);
     for (int i = 0; i < 2; i++) level->passed[i][c] = next_field(level, &used);
   }
-  for (int i = 0; i < 2; i++) level->scratch[i] = next_field(level, &used);
+  level->scratch = next_field(level, &used);
   for (size_t c = 0; c < channels && index == 0; c++) cascade->current[c] = next_field(level, &used);
   cascade->level_count = index + 1;
   return HL_OK;
@@ -151,9 +151,9 @@ static void multiply(hl_pool *pool, const cascade_functions *functions, const ca
 
 typedef struct blur_task {
   const cascade_level *level;
-  const cascade_field *from, *to;
-  blur_job job;
-  blur_tile_function *function;
+  const cascade_field *from, *a, *to; /* a may be null */
+  blur_multiply_job job;
+  blur_multiply_tile_function *function;
   int reach_x, reach_y; /* tiles */
 } blur_task;
 
@@ -162,38 +162,38 @@ static void blur_row(void *data, size_t index, int worker) {
   const blur_task *task = data;
   int y = (int)index;
   for (int x = 0; x < task->level->tiles_x; x++) {
-    unsigned char *ones = &task->to->ones[index * (size_t)task->level->tiles_x + (size_t)x];
-    bool skip = all_ones(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
+    size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
+    bool skip = (task->a == NULL || task->a->ones[tile]) &&
+                all_ones(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
     if (!skip) task->function(&task->job, x, y);
-    else if (!*ones) store_ones(task->to->pixels, task->job.stride_to, (size_t)x, index);
-    *ones = skip;
+    else if (!task->to->ones[tile]) store_ones(task->to->pixels, task->job.stride_to, (size_t)x, index);
+    task->to->ones[tile] = skip;
   }
 }
 
-static void blur_once(hl_pool *pool, const cascade_level *level, const cascade_field *from, const cascade_field *to,
-                      size_t stride_to, double variance, bool along_rows, blur_tile_function *function) {
-  /* a discrete box of odd width w has the variance (w^2 - 1) / 12 */
-  blur_box box = hl_blur_box((float)fmin(sqrt(12 * variance + 1), 2 * CASCADE_MARGIN - 5));
-  int reach = (box.reach + TILE) / TILE;
-  blur_task task = {level, from, to, {from->pixels, to->pixels, level->stride, stride_to, box}, function,
-                    along_rows ? reach : 0, along_rows ? 0 : reach};
+/* Variances along u and v, in pixels of the level. */
+typedef struct variances { double u, v; } variances;
+
+/* a discrete box of odd width w has the variance (w^2 - 1) / 12 */
+static blur_box box_of_variance(double variance) {
+  return hl_blur_box((float)fmin(sqrt(12 * variance + 1), 2 * BLUR_GREATEST_REACH - 3));
+}
+
+/* to = a * blurred from, all on one level but for to's stride. */
+static void blur_multiply(hl_pool *pool, const cascade_functions *functions, const cascade_level *level,
+                          const cascade_field *from, const cascade_field *a, const cascade_field *to, size_t stride_to,
+                          variances variance) {
+  blur_box u = box_of_variance(variance.u), v = box_of_variance(variance.v);
+  blur_task task = {level, from, a, to, {from->pixels, a == NULL ? NULL : a->pixels, to->pixels, level->stride, stride_to, u, v},
+                    functions->blur_multiply, (u.reach + TILE) / TILE, (v.reach + TILE) / TILE};
   hl_pool_run(pool, (size_t)level->tiles_y, blur_row, &task);
 }
 
 /* ---- the cascade ---- */
 
-/* Variances along u and v between two widths, in pixels of the level. */
-typedef struct variances { double u, v; } variances;
-
 static variances variance_between(const soft_cascade *cascade, double wide, double narrow, int scale) {
   double v = fmax(wide * wide - narrow * narrow, 0) / 12 / ((double)scale * scale);
   return (variances){v * cascade->stretch * cascade->stretch, v};
-}
-
-static void blur(hl_pool *pool, const cascade_functions *functions, cascade_level *level, const cascade_field *from,
-                 const cascade_field *to, size_t stride_to, variances variance) {
-  blur_once(pool, level, from, &level->scratch[0], level->stride, variance.u, true, functions->blur.rows);
-  blur_once(pool, level, &level->scratch[0], to, stride_to, variance.v, false, functions->blur.columns);
 }
 
 /* The two oldest groups of a level become one of the next. */
@@ -242,9 +242,13 @@ static void pass_group(const soft_cascade *cascade, cascade_level *from_level, d
   const cascade_field *from = from_level->passed[from_level->newest];
   level->newest = !level->newest;
   for (int c = 0; c < cascade->channels; c++) {
-    blur(pool, functions, from_level, &from[c], &from_level->scratch[1], from_level->stride, variance);
-    multiply(pool, functions, level, &group->transmittance[c], from_level, &from_level->scratch[1], level,
-             &level->passed[level->newest][c]);
+    const cascade_field *to = &level->passed[level->newest][c], *own = &group->transmittance[c];
+    if (level->scale == from_level->scale) {
+      blur_multiply(pool, functions, from_level, &from[c], own, to, level->stride, variance);
+      continue;
+    }
+    blur_multiply(pool, functions, from_level, &from[c], NULL, &from_level->scratch, from_level->stride, variance);
+    multiply(pool, functions, level, own, from_level, &from_level->scratch, level, to);
   }
 }
 
@@ -266,7 +270,7 @@ static double pass_all(soft_cascade *cascade, double receiver, hl_pool *pool, co
   for (int i = cascade->level_count - 1; i >= 0; i--) {
     cascade_level *level = &cascade->level[i];
     if (level->count == 0) continue;
-    uint64_t period = i < 2 ? 1 : (uint64_t)1 << (i - 1);
+    uint64_t period = (uint64_t)1 << i;
     due = due || level->renewed || cascade->chunks % period == 0;
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
@@ -313,10 +317,10 @@ static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double r
     /* the buffer's tiles that the last slabs touched are no longer ones: the second half of its flags says so */
     cascade_field to = {buffer->transmittance[c], buffer->tile_touched + tiles};
     for (size_t tile = 0; tile < tiles; tile++) to.ones[tile] = !buffer->tile_touched[tile];
-    blur(pool, functions, level, &level->passed[level->newest][c], &to, buffer->stride, variance);
+    blur_multiply(pool, functions, level, &level->passed[level->newest][c], NULL, &to, buffer->stride, variance);
   }
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] = !buffer->tile_touched[tiles + tile];
-  lit_task task = {buffer, functions->blur.lit_blocks};
+  lit_task task = {buffer, functions->lit_blocks};
   hl_pool_run(pool, (size_t)buffer->tiles_y, find_lit, &task);
 }
 

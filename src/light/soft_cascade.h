@@ -41,7 +41,7 @@ typedef struct cascade_level {
   cascade_field passed[2][HL_CHANNELS]; /* what passed all groups up to one of this level, for a recent receiver */
   int newest;                        /* which of passed is the newest group's */
   bool renewed;                      /* passed is to be found anew */
-  cascade_field scratch[2];
+  cascade_field scratch;
   float *memory;                     /* owned */
   unsigned char *flags;              /* owned */
 } cascade_level;

@@ -252,7 +252,7 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
     const blur_functions blur = {sweep->hot->blur_rows_tile, sweep->hot->blur_columns_tile, sweep->hot->lit_blocks_tile};
-    const cascade_functions cascade = {blur, sweep->hot->multiply_tile, sweep->hot->multiply_half_tile,
+    const cascade_functions cascade = {sweep->hot->lit_blocks_tile, sweep->hot->blur_multiply_tile, sweep->hot->multiply_tile, sweep->hot->multiply_half_tile,
                                        sweep->hot->multiply_double_tile};
     if (light->source->soft_method == HL_SOFT_PAPER)
       hl_soft_paper_convolve(&light->paper, light->buffer, sheet_height(sweep, sheet + 1), sweep->pool, &blur);

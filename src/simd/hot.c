@@ -17,6 +17,7 @@ const hot_functions HL_HOT_TABLE = {
     .shade_tile = shade_tile,
     .blur_rows_tile = blur_rows_tile,
     .blur_columns_tile = blur_columns_tile,
+    .blur_multiply_tile = blur_multiply_tile,
     .multiply_tile = multiply_tile,
     .multiply_half_tile = multiply_half_tile,
     .multiply_double_tile = multiply_double_tile,

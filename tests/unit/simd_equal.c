@@ -352,7 +352,8 @@ typedef struct shade_state {
 static void call_shade(const hot_functions *hot, void *state) {
   shade_state *s = state;
   s->out.samples = 0;
-  s->out.open = hot->shade_tile(&s->job, 0, 0, s->blocks, s->out.pixels, &s->out.samples);
+  _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
+  s->out.open = hot->shade_tile(&s->job, 0, 0, s->blocks, scratch, s->out.pixels, &s->out.samples);
 }
 
 static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
@@ -385,7 +386,9 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
     if (round % 8 == 3) s->sheet[2 * v][20][20] = NAN;
     s->volumes[v] = (shade_volume){&classifier_bench.classifier, &s->sheet[2 * v][TILE][TILE], &s->sheet[2 * v + 1][TILE][TILE],
                                    v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL,
-                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, 0.5f, 0.8f, 0.3f, 25, {1, 0.5f, 0}};
+                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, 0.5f, 0.8f, 0.3f, 25, {1, 0.5f, 0},
+                                   {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}}, {-0.5f, -0.5f, -0.5f},
+                                   {8.5f, 9.5f, 10.5f}};
   }
   fill_salted(s->cut[0], TILE_PIXELS, seed, 0, 1);
   fill_salted(s->cut[1], TILE_PIXELS, seed, 0.5, 2);
