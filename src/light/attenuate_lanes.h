@@ -44,6 +44,13 @@ static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], i
   return lit_blocks(transmittance, channels, stride, ALL_BLOCKS);
 }
 
+/* Density runs linearly through the slab: the ends of its covered part in the tables. */
+LANES_INLINE void cut_way(covered_part part, table_place *a, table_place *b) {
+  lanes from = a->x, way = b->x - a->x;
+  *a = place_of_coordinate(from + way * part.begin);
+  *b = place_of_coordinate(from + way * lanes_min(part.begin + part.length, lanes_set(1.0f)));
+}
+
 static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, int block) {
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int i = 0; i < job->volume_count; i++) {
@@ -52,8 +59,9 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
     table_place a = classify_place(volume->classifier, lanes_load(volume->before + block * BLOCK_PIXELS));
     table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
     if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
-    lanes extinction = mean_extinction(volume->classifier, a, b) *
-                       covered_block(volume->enter, volume->leave, block, job->height, job->spacing).length;
+    covered_part part = covered_block(volume->enter, volume->leave, block, job->height, job->spacing);
+    if (volume->enter != NULL) cut_way(part, &a, &b);
+    lanes extinction = mean_extinction(volume->classifier, a, b) * part.length;
     for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
   }
   lanes any = depth[0] + depth[1] + depth[2];

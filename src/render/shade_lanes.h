@@ -109,14 +109,14 @@ LANES_INLINE lanes look_up(const shade_light *light, const float *buffer, lanes 
   return lanes_select(inside, top + (bottom - top) * fy, lanes_set(1.0f));
 }
 
-/* One volume's way through the slab: where it starts and ends in the tables, and its mean extinction, the part
- * outside the box counting as none. */
+/* One volume's way through the slab: where its covered part starts and ends in the tables, and its mean extinction, the
+ * part outside the box counting as none. */
 typedef struct block_density {
   lanes middle; /* density */
   table_place before, after;
   lanes extinction, undivided; /* averaged over the slab; over its covered part */
   covered_part part;
-  lanes seen; /* the part of the way from before to after at which its matter is seen and lit */
+  lanes seen; /* the part of the way from before to after at which its matter is seen */
 } block_density;
 
 _Static_assert(sizeof(block_density) <= SHADE_SCRATCH_BYTES, "a volume's scratch holds its block");
@@ -259,6 +259,7 @@ LANES_INLINE block_density classify_block(const shade_job *job, const shade_volu
   d.part = (covered_part){lanes_set(0), lanes_set(0)};
   if (lanes_bits(may_be_visible(volume->classifier, d.before, d.after)) == 0) return d;
   d.part = covered_block(enter, leave, block, job->height, job->spacing);
+  if (enter != NULL) cut_way(d.part, &d.before, &d.after);
   d.undivided = mean_extinction(volume->classifier, d.before, d.after);
   d.extinction = d.undivided * d.part.length;
   return d;
@@ -290,8 +291,8 @@ LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densi
     lanes_int rising = m >= 0.5f;
     lanes side = lanes_max(lanes_select(rising, m, 1.0f - m), lanes_set(0.5f));
     lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), (1.0f - side) / side);
-    d->seen = d->part.begin + d->part.length * lanes_select(rising, t, 1.0f - t);
-    sum = sum + d->extinction * d->seen;
+    d->seen = lanes_select(rising, t, 1.0f - t);
+    sum = sum + d->extinction * (d->part.begin + d->part.length * d->seen);
   }
   return sum / lanes_max(total, lanes_set(1e-30f));
 }

@@ -34,7 +34,7 @@ typedef struct covered_part { lanes begin, length; } covered_part;
 LANES_INLINE covered_part covered(lanes enter, lanes leave, float height, float spacing) {
   lanes top = lanes_min(leave, lanes_set(height));
   lanes bottom = lanes_max(enter, lanes_set(height - spacing));
-  return (covered_part){(bottom - (height - spacing)) * (1.0f / spacing),
+  return (covered_part){lanes_min((bottom - (height - spacing)) * (1.0f / spacing), lanes_set(1.0f)),
                         lanes_max((top - bottom) * (1.0f / spacing), lanes_set(0))};
 }
 
