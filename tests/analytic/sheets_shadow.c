@@ -1,0 +1,217 @@
+/* analytic/sheets_shadow.c - where shadows fall and how wide their edges are, against plane geometry. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { WIDE = 160, ROWS = 6, MOST = 96 * 96 };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* An opaque floor with its surface at z = 0, which casts nothing, and a hidden opaque plate half a unit thick; the
+ * eye looks straight down. */
+static void stage_plate(stage *set, vec3 low, double nx, double ny) {
+  hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1}, (vec3){-20, -20, -2}, NULL);
+  hl_scene_volume *plate =
+      stage_add_grid(set, (size_t[3]){(size_t)nx, (size_t)ny, 1}, (double[3]){1, 1, 0.5}, low, NULL);
+  stage_set_opacity(set, floor, 0.999, 0.01);
+  stage_set_opacity(set, plate, 0.9999, 0.001);
+  floor->casts_shadow = 0;
+  plate->visible = 0;
+}
+
+/* Where brightness along a row first passes a level between two places; world x. */
+static double crossing(const float *row, int count, double left, double pitch, double level, double from, double to) {
+  for (int x = 0; x + 1 < count; x++) {
+    double at = left + (x + 0.5) * pitch, a = row[4 * x], b = row[4 * (x + 1)];
+    if (at < from || at > to || (a - level) * (b - level) > 0 || a == b) continue;
+    return at + pitch * (level - a) / (b - a);
+  }
+  fail_msg("brightness does not pass %g between %g and %g", level, from, to);
+  return 0;
+}
+
+/* ---- hard shadows ---- */
+
+/* Similar triangles: seen from a light at height H an edge at height h falls H / (H - h) as far out. The outline is
+ * that of the plate's upper face here, which is the nearer to the light. Half of the smallest voxel edge. */
+static void test_size_under_point_light(void **state) {
+  (void)state;
+  static float pixels[MOST * 4];
+  stage set;
+  stage_open(&set);
+  stage_plate(&set, (vec3){-2, -3, 4}, 4, 6);
+  stage_add_point(&set, (vec3){0.5, -0.5, 10});
+  set.scene.width = set.scene.height = 96;
+  set.scene.camera.height = 24;
+  for (double spacing = 0.5; spacing <= 2; spacing *= 2) {
+    set.scene.render.sheet_spacing = spacing;
+    stage_render_sheets(&set, pixels);
+    const float *row = &pixels[4 * 96 * 50];
+    double grown = 10 / (10 - 4.5);
+    assert_near(crossing(row, 96, -12, 0.25, 0.5, -11, 0), 0.5 - 2.5 * grown, 0.25);
+    assert_near(crossing(row, 96, -12, 0.25, 0.5, 0, 11), 0.5 + 1.5 * grown, 0.25);
+    assert_near(row[4 * 48], 0, 2e-3);
+    assert_near(row[4 * 92], 1, 2e-3);
+  }
+  stage_close(&set);
+}
+
+/* A slanted light moves the shadow by h tan(angle), whichever side the sheets are on. */
+static void test_offset_of_directional_light(void **state) {
+  (void)state;
+  static float pixels[MOST * 4];
+  static const double slopes[] = {-1.2, -0.5, 0, 0.7, 1.5};
+  stage set;
+  stage_open(&set);
+  stage_plate(&set, (vec3){-2, -3, 4}, 4, 6);
+  hl_light *light = stage_add_directional(&set, (vec3){0, 0, -1});
+  set.scene.width = set.scene.height = 96;
+  set.scene.camera.height = 24;
+  for (size_t i = 0; i < sizeof slopes / sizeof *slopes; i++) {
+    light->direction[0] = slopes[i];
+    stage_render_sheets(&set, pixels);
+    const float *row = &pixels[4 * 96 * 48];
+    double near = 4 * slopes[i], far = 4.5 * slopes[i];
+    assert_near(crossing(row, 96, -12, 0.25, 0.5, -11, (near + far) / 2), -2 + fmin(near, far), 0.25);
+    assert_near(crossing(row, 96, -12, 0.25, 0.5, (near + far) / 2, 11), 2 + fmax(near, far), 0.25);
+  }
+  stage_close(&set);
+}
+
+/* ---- soft shadows ---- */
+
+/* Part of a disk of radius 1 on the side u < s. */
+static double disk_below(double s) {
+  if (s <= -1) return 0;
+  if (s >= 1) return 1;
+  return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
+}
+
+/* From the tenth to nine tenths of the light: 2 s with disk_below(s) = 0.9, by bisection. */
+static double disk_width(void) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; i++) {
+    double middle = (low + high) / 2;
+    if (disk_below(middle) < 0.9) low = middle; else high = middle;
+  }
+  return 2 * low;
+}
+
+/* The edge of a plate over x < 0 whose middle is at the height, lit from straight above; its 10 to 90 % width. */
+static double penumbra(double angle_deg, double height, hl_soft_method method) {
+  static float pixels[WIDE * ROWS * 4];
+  stage set;
+  stage_open(&set);
+  stage_plate(&set, (vec3){-20, -20, height - 0.25}, 20, 40);
+  set.scene.render.shadows = HL_SHADOWS_SOFT;
+  set.scene.render.soft_method = method;
+  stage_add_directional(&set, (vec3){0, 0, -1})->angular_diameter_deg = angle_deg;
+  set.scene.width = WIDE;
+  set.scene.height = ROWS;
+  set.scene.camera.height = 16.0 * ROWS / WIDE;
+  stage_look(&set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  stage_render_sheets(&set, pixels);
+  const float *row = &pixels[4 * WIDE * (ROWS / 2)];
+  double low = crossing(row, WIDE, -8, 16.0 / WIDE, 0.1, -8, 8), high = crossing(row, WIDE, -8, 16.0 / WIDE, 0.9, -8, 8);
+  double radius = height * tan(angle_deg * HL_PI / 360);
+  for (int x = 0; x < WIDE; x++) {
+    double at = -8 + (x + 0.5) * 16.0 / WIDE;
+    if (at < -1.6 * radius - 0.3) assert_near(row[4 * x], 0, 5e-3); /* umbra */
+    if (at > 1.6 * radius + 0.3) assert_near(row[4 * x], 1, 5e-3);
+  }
+  stage_close(&set);
+  return high - low;
+}
+
+static void test_penumbra_of_cascade(void **state) {
+  (void)state;
+  static const double angles[] = {5, 15, 30}, heights[] = {3, 6, 12};
+  for (int a = 0; a < 3; a++)
+    for (int h = 0; h < 3; h++) {
+      double expected = disk_width() * heights[h] * tan(angles[a] * HL_PI / 360);
+      double width = penumbra(angles[a], heights[h], HL_SOFT_CASCADE);
+      print_message("# cascade: %2g degrees, height %2g: penumbra %.3f, disk's %.3f\n", angles[a], heights[h], width, expected);
+      if (expected < 0.3) continue; /* three pixels */
+      assert_near(width / expected, 1, 0.15);
+    }
+}
+
+/* The paper's convolutions add variances: four times the distance, about twice the width, and narrower than the truth. */
+static void test_penumbra_of_paper(void **state) {
+  (void)state;
+  static const double angles[] = {15, 30};
+  for (int a = 0; a < 2; a++) {
+    double near = penumbra(angles[a], 3, HL_SOFT_PAPER), far = penumbra(angles[a], 12, HL_SOFT_PAPER);
+    double expected = disk_width() * 12 * tan(angles[a] * HL_PI / 360);
+    print_message("# paper: %2g degrees: penumbra %.3f at 3, %.3f at 12, disk's %.3f there\n", angles[a], near, far, expected);
+    assert_in_range((int)(100 * far / near), 150, 290);
+    assert_true(far < 0.8 * expected);
+  }
+}
+
+/* ---- the two slicing directions ---- */
+
+static hl_scene_volume *add_blob(stage *set) {
+  enum { N = 24 };
+  float *voxels = malloc(N * N * N * sizeof *voxels);
+  assert_non_null(voxels);
+  for (int i = 0; i < N * N * N; i++) {
+    double x = i % N - 11.5, y = i / N % N - 11.5, z = i / N / N - 11.5, r = sqrt(x * x + y * y + z * z) / 11;
+    voxels[i] = (float)fmax(0, 1 - r * r);
+  }
+  static const hl_opacity_point ramp[] = {{0, 0}, {0.1, 0}, {1, 0.3}};
+  hl_scene_volume *blob = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-12, -12, -12}, voxels);
+  free(voxels);
+  blob->transfer_function.opacity = ramp;
+  blob->transfer_function.opacity_count = 3;
+  return blob;
+}
+
+/* At e.l = 0 the slicing direction turns by 90 degrees; the picture must not. */
+static void test_no_jump_where_the_axis_turns(void **state) {
+  (void)state;
+  static float before[MOST * 4], after[MOST * 4];
+  for (int shadows = HL_SHADOWS_HARD; shadows <= HL_SHADOWS_SOFT; shadows++) {
+    stage set;
+    stage_open(&set);
+    add_blob(&set);
+    set.scene.render.shadows = (hl_shadows)shadows;
+    set.scene.width = set.scene.height = 64;
+    set.scene.camera.height = 26;
+    hl_light *light = stage_add_directional(&set, (vec3){1, 0.3, -1e-3});
+    light->angular_diameter_deg = 10;
+    stage_render_sheets(&set, before);
+    light->direction[2] = 1e-3;
+    stage_render_sheets(&set, after);
+    double sum_before = 0, sum_after = 0, change = 0;
+    for (int i = 0; i < 64 * 64 * 4; i++) {
+      if (i % 4 == 3) continue;
+      sum_before += before[i];
+      sum_after += after[i];
+      change += fabs((double)after[i] - before[i]);
+    }
+    print_message("# turn, shadows %d: sum changes by %.3f %%, pixels by %.3f %%\n", shadows,
+                  100 * (sum_after / sum_before - 1), 100 * change / sum_before);
+    assert_near(sum_after / sum_before, 1, 0.01);
+    assert_near(change / sum_before, 0, 0.01);
+    stage_close(&set);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_size_under_point_light),
+      cmocka_unit_test(test_offset_of_directional_light),
+      cmocka_unit_test(test_penumbra_of_cascade),
+      cmocka_unit_test(test_penumbra_of_paper),
+      cmocka_unit_test(test_no_jump_where_the_axis_turns),
+  };
+  return cmocka_run_group_tests_name("sheets_shadow", tests, NULL, NULL);
+}
