@@ -22,7 +22,8 @@ typedef struct frame {
   vec3 centre;             /* world position of frame space's origin */
   view eye;
   vec3 eye_direction;      /* e: unit, from the eye to the content */
-  double pixel;            /* edge of an image pixel at the content, frame units */
+  double pixel;            /* edge of an image pixel where the content is nearest, frame units */
+  double middle_pixel;     /* the same at the content's middle */
   double spacing;          /* ds, world units */
   vec3 *points;            /* corners of the content of all grids; owned by the caller; [8 * grids] */
   int point_count;

@@ -151,7 +151,9 @@ static void look(frame *frame, vec3 middle) {
     vec3 towards = vec3_normalise(way);
     if (vec3_dot(towards, forward) > 0.5) frame->eye_direction = vec3_normalise(vec3_add(towards, forward));
   }
-  frame->pixel = pixel_at_content(frame, frame->eye.perspective ? vec3_dot(forward, way) : 1);
+  double middle_depth = frame->eye.perspective ? vec3_dot(forward, way) : 1;
+  frame->pixel = pixel_at_content(frame, middle_depth);
+  frame->middle_pixel = fmax(frame->pixel, fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
 }
 
 /* Rays then start at the eye, within the box. */

@@ -134,7 +134,9 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   bool soft = source->shadows == HL_SHADOWS_SOFT;
   vec3 plane_normal = soft ? sweep->geometry->sheets.normal : source->direction;
   size_t greatest = (size_t)sweep->scene->width * (size_t)sweep->scene->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
-  shadow_extent extent = {points, hl_frame_visible_points(sweep->frame, points), sweep->frame->pixel,
+  /* hard edges must hold at the nearest matter; soft ones are wider than a pixel where it matters */
+  double pixel = soft ? sweep->frame->middle_pixel : sweep->frame->pixel;
+  shadow_extent extent = {points, hl_frame_visible_points(sweep->frame, points), pixel,
                           sweep->scene->render.shadow_resolution,
                           greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
                           penumbra_margin(sweep, source)};
