@@ -25,8 +25,9 @@ typedef struct hl_render_statistics {
   uint64_t samples_shaded;    /* image samples classified, lit and composited */
   uint64_t tiles_filled_image, tiles_filled_light;   /* sheet tiles reconstructed */
   uint64_t tiles_skipped_image, tiles_skipped_light; /* skipped because they were already opaque or dark */
-  /* seconds of the calling thread per stage, summing to seconds_render */
-  double seconds_sort, seconds_fill_image, seconds_fill_light, seconds_shade, seconds_light, seconds_soften;
+  /* wall-clock seconds per stage; the light's fill includes its composite into the shadow buffer. Image and light are
+   * filled in one stage, whose time is split as the threads spent it. */
+  double seconds_sort, seconds_fill_image, seconds_fill_light, seconds_shade, seconds_soften;
 } hl_render_statistics;
 
 HL_API HL_WARN_UNUSED hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_error *error);

@@ -34,7 +34,6 @@ static void print_seconds(json_writer *json, const render_result *result) {
   json_number(json, "fill_image", statistics->seconds_fill_image);
   json_number(json, "fill_light", statistics->seconds_fill_light);
   json_number(json, "shade", statistics->seconds_shade);
-  json_number(json, "light", statistics->seconds_light);
   json_number(json, "soften", statistics->seconds_soften);
   json_close(json);
 }

@@ -54,6 +54,7 @@ typedef struct sweep_light {
 
 typedef struct sweep_counts {
   uint64_t samples, filled_image, filled_light, skipped_image, skipped_light;
+  double seconds_image, seconds_light; /* spent filling */
 } sweep_counts;
 
 typedef struct sweep {

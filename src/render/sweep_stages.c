@@ -148,8 +148,9 @@ enum { TILES_A_TASK = 4 };
 static void fill_task(void *data, size_t index, int worker) {
   sweep *sweep = data;
   int last = sweep->task_start[sweep->geometry->light_count + 1];
-  int end = (int)(index + 1) * TILES_A_TASK < last ? (int)(index + 1) * TILES_A_TASK : last;
-  for (int task = (int)index * TILES_A_TASK; task < end; task++) {
+  int first = (int)index * TILES_A_TASK, end = first + TILES_A_TASK < last ? first + TILES_A_TASK : last;
+  double start = hl_clock_seconds();
+  for (int task = first; task < end; task++) {
     size_t tile = sweep->tasks[task];
     if (task < sweep->task_start[1]) {
       for (int g = 0; g < sweep->volume_count; g++) fill_image_tile(sweep, tile, g, worker);
@@ -159,6 +160,9 @@ static void fill_task(void *data, size_t index, int worker) {
     while (task >= sweep->task_start[light + 2]) light++;
     fill_light_tile(sweep, light, tile, worker);
   }
+  double spent = hl_clock_seconds() - start;
+  if (first < sweep->task_start[1]) sweep->counts[worker].seconds_image += spent;
+  else sweep->counts[worker].seconds_light += spent;
 }
 
 static void set_source(const sweep *sweep, const view *view, int g, const voxel_lists *lists, int sheet,
