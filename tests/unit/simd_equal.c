@@ -305,6 +305,7 @@ typedef struct field_state {
   int which;
   blur_job blur;
   field_job field;
+  blur_multiply_job blur_multiply;
   float a[FIELD][FIELD], b[FIELD][FIELD], out[FIELD][FIELD];
 } field_state;
 
@@ -315,11 +316,12 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 2) hot->multiply_tile(&s->field, 1, 1);
   if (s->which == 3) hot->multiply_half_tile(&s->field, 1, 1);
   if (s->which == 4) hot->multiply_double_tile(&s->field, 1, 1);
+  if (s->which == 5) hot->blur_multiply_tile(&s->blur_multiply, 1, 1);
 }
 
 static void test_fields(void **unused) {
   (void)unused;
-  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "multiply_tile", "multiply_half_tile", "multiply_double_tile"};
+  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "multiply_tile", "multiply_half_tile", "multiply_double_tile", "blur_multiply_tile"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -329,7 +331,10 @@ static void test_fields(void **unused) {
     s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD,
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
     s.field = (field_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD};
-    for (s.which = 0; s.which < 5; s.which++) {
+    s.blur_multiply = (blur_multiply_job){&s.b[MARGIN][MARGIN], round % 3 ? &s.a[MARGIN][MARGIN] : NULL, &s.out[MARGIN][MARGIN],
+                                          FIELD, FIELD, hl_blur_box(random_between(&seed, 1, 90)),
+                                          hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
+    for (s.which = 0; s.which < 6; s.which++) {
       trial trial = {call_field, &s, s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
