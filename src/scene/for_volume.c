@@ -16,7 +16,7 @@ void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
   hl_light_defaults(light);
   hl_light_direction(camera, LIGHT_AZIMUTH, LIGHT_ELEVATION, light->direction);
   light->angular_diameter_deg = 7;
-  light->intensity = 1.25;
+  light->intensity = 1.7;
 }
 
 /* The camera of a scene whose only volume was analysed, or (analysis null) of any scene. */
@@ -78,10 +78,11 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
     hl_fail(error, status, "the volume cannot be framed: mend its spacing");
   } else {
     hl_scene_key_light(&description.camera, &light);
+    if (scene_volume.shading == HL_SHADING_NONE) light.intensity = 1.25; /* a medium loses nothing to its slope */
     description.lights = &light;
     description.light_count = 1;
     memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
-    for (int channel = 0; channel < 3; channel++) description.ambient[channel] = 0.25;
+    for (int channel = 0; channel < 3; channel++) description.ambient[channel] = 0.2;
     description.render.sheet_spacing = enough_sheets(volume);
     status = hl_scene_create(context, &description, scene, error);
   }
