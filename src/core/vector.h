@@ -16,6 +16,11 @@ typedef struct mat3 { vec3 row[3]; } mat3;
 typedef struct affine3 { mat3 linear; vec3 offset; } affine3;
 
 static inline vec3 vec3_of(const double v[3]) { return (vec3){v[0], v[1], v[2]}; }
+static inline void vec3_store(float out[3], vec3 v) {
+  out[0] = (float)v.x;
+  out[1] = (float)v.y;
+  out[2] = (float)v.z;
+}
 static inline vec3 vec3_add(vec3 a, vec3 b) { return (vec3){a.x + b.x, a.y + b.y, a.z + b.z}; }
 static inline vec3 vec3_subtract(vec3 a, vec3 b) { return (vec3){a.x - b.x, a.y - b.y, a.z - b.z}; }
 static inline vec3 vec3_scale(vec3 a, double s) { return (vec3){a.x * s, a.y * s, a.z * s}; }

@@ -7,23 +7,22 @@ static vec3 camera_up(const hl_camera *camera, vec3 forward) {
   return fabs(forward.z) < 0.9 ? (vec3){0, 0, 1} : (vec3){0, 1, 0};
 }
 
-hl_status hl_frame_eye(const hl_scene_description *scene, vec3 centre, view *eye, hl_error *error) {
-  const hl_camera *camera = &scene->camera;
+hl_status hl_frame_eye(const hl_camera *camera, int width, int height, vec3 centre, view *eye, hl_error *error) {
   vec3 position = vec3_subtract(vec3_of(camera->position), centre);
   vec3 forward = vec3_normalise(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
   vec3 right = vec3_normalise(vec3_cross(forward, camera_up(camera, forward)));
   vec3 up = vec3_cross(right, forward);
   eye->perspective = camera->type == HL_CAMERA_PERSPECTIVE;
   double half_height = eye->perspective ? tan(camera->fovy_deg * HL_PI / 360) : camera->height / 2;
-  double half_width = half_height * scene->width / scene->height;
-  eye->width = scene->width + 2 * FRAME_MARGIN;
-  eye->height = scene->height + 2 * FRAME_MARGIN;
+  double half_width = half_height * width / height;
+  eye->width = width + 2 * FRAME_MARGIN;
+  eye->height = height + 2 * FRAME_MARGIN;
   eye->origin = position;
   eye->direction = forward;
   eye->corner = vec3_add(vec3_scale(up, half_height), vec3_scale(right, -half_width));
   eye->corner = vec3_add(eye->corner, eye->perspective ? forward : position);
-  eye->du = vec3_scale(right, 2 * half_width / scene->width);
-  eye->dv = vec3_scale(up, -2 * half_height / scene->height);
+  eye->du = vec3_scale(right, 2 * half_width / width);
+  eye->dv = vec3_scale(up, -2 * half_height / height);
   eye->corner = vec3_subtract(eye->corner, vec3_scale(vec3_add(eye->du, eye->dv), FRAME_MARGIN));
   if (!hl_view_finish(eye))
     return hl_fail(error, HL_ERROR_INPUT, "/camera: position, target and up do not span a view: move one of them");

@@ -20,6 +20,8 @@ typedef struct frame_sweep {
 
 typedef struct frame {
   vec3 centre;             /* world position of frame space's origin */
+  int width, height;       /* pixels: the picture's, times oversampling */
+  int oversampling;        /* pixels a side of which the mean is one of the picture's */
   view eye;
   vec3 eye_direction;      /* e: unit, from the eye to the content */
   double pixel;            /* edge of an image pixel where the content is nearest, frame units */
@@ -34,8 +36,8 @@ typedef struct frame {
 /* Pixels filled around the picture, whose densities the outermost central differences read: one block. */
 enum { FRAME_MARGIN = BLOCK };
 
-/* The eye's view of a scene, FRAME_MARGIN pixels larger on every side than the picture. */
-hl_status hl_frame_eye(const hl_scene_description *scene, vec3 centre, view *eye, hl_error *error);
+/* The eye's view of a scene in width x height pixels, and FRAME_MARGIN more on every side. */
+hl_status hl_frame_eye(const hl_camera *camera, int width, int height, vec3 centre, view *eye, hl_error *error);
 
 /* Corners of the box around a grid's relevant bricks. */
 void hl_frame_content(const grid *grid, vec3 corners[8]);

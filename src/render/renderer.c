@@ -165,6 +165,33 @@ static bool inside_box(const grid *grid, vec3 eye) {
   return true;
 }
 
+/* Where voxels are smaller than pixels, their footprints must not fall between pixels: the frame is made of as many more
+ * pixels as it takes for voxels to be no smaller, and averaged. */
+enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
+
+static int oversampling(const frame *frame, const hl_scene_description *scene, double voxel) {
+  int longer = scene->width > scene->height ? scene->width : scene->height, most = GREATEST_OVERSAMPLED_SIDE / longer;
+  if (most > GREATEST_OVERSAMPLING) most = GREATEST_OVERSAMPLING;
+  double wanted = floor(frame->middle_pixel / voxel + 0.5);
+  return wanted > most ? (most < 1 ? 1 : most) : wanted < 1 ? 1 : (int)wanted;
+}
+
+/* The eye at the resolution that the content needs. */
+static hl_status set_up_eye(const hl_renderer *renderer, const hl_scene_description *scene, frame *frame, vec3 *middle,
+                            hl_error *error) {
+  for (frame->oversampling = 1;;) {
+    frame->width = scene->width * frame->oversampling;
+    frame->height = scene->height * frame->oversampling;
+    hl_status status = hl_frame_eye(&scene->camera, frame->width, frame->height, frame->centre, &frame->eye, error);
+    if (status != HL_OK) return status;
+    *middle = content_middle(frame);
+    look(frame, *middle);
+    int wanted = frame->oversampling > 1 || frame->point_count == 0 ? 1 : oversampling(frame, scene, smallest_edge(renderer));
+    if (wanted == 1) return HL_OK;
+    frame->oversampling = wanted;
+  }
+}
+
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
                               hl_error *error) {
   hl_context *context = renderer->context;
@@ -175,17 +202,17 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   work->sweeps = hl_allocate_zeroed(context, scene->light_count + 1, sizeof(frame_sweep));
   if (frame->points == NULL || frame->lights == NULL || work->grids == NULL || work->sweeps == NULL)
     return hl_fail_memory(error, scene->light_count * sizeof(frame_sweep), "the frame");
-  hl_status status = hl_frame_eye(scene, frame->centre, &frame->eye, error);
-  if (status != HL_OK) return status;
   for (size_t i = 0; i < scene->volume_count; i++) {
     work->grids[i] = renderer->prepared[i].grid;
     if (work->grids[i].relevant_count == 0) continue;
-    work->grids[i].cut = work->grids[i].cut || (frame->eye.perspective && inside_box(&work->grids[i], frame->eye.origin));
     hl_frame_content(&work->grids[i], frame->points + frame->point_count);
     frame->point_count += 8;
   }
-  vec3 middle = content_middle(frame);
-  look(frame, middle);
+  vec3 middle;
+  hl_status status = set_up_eye(renderer, scene, frame, &middle, error);
+  if (status != HL_OK) return status;
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (frame->eye.perspective && inside_box(&work->grids[i], frame->eye.origin)) work->grids[i].cut = true;
   frame->spacing = scene->render.sheet_spacing * smallest_edge(renderer);
   frame->light_count = (int)scene->light_count;
   for (size_t i = 0; i < scene->light_count; i++) {
@@ -249,19 +276,26 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
   return status;
 }
 
-/* Blocks back to rows; contributions of lights add, opacity is the same in every sweep. */
+/* One pixel of the frame, all sweeps: contributions of lights add, opacity is the same in every sweep. */
+static void add_pixel(const frame_work *work, int column, int row, float sum[4]) {
+  int x = column + FRAME_MARGIN, y = row + FRAME_MARGIN;
+  size_t tile = (size_t)(y / TILE) * work->tiles_x + (size_t)(x / TILE);
+  size_t block = (size_t)(y % TILE / BLOCK * 4 + x % TILE / BLOCK), lane = (size_t)(y % BLOCK * 4 + x % BLOCK);
+  const float *from = work->pixels + (tile * TILE_BLOCKS + block) * 4 * BLOCK_PIXELS + lane;
+  for (int c = 0; c < 4; c++) sum[c] += from[c * BLOCK_PIXELS];
+  for (int s = 1; s < work->sweep_count; s++)
+    for (int c = 0; c < 3; c++) sum[c] += from[(size_t)s * work->tiles * TILE_PIXELS * 4 + (size_t)(c * BLOCK_PIXELS)];
+}
+
+/* Blocks back to rows, several pixels averaged where the frame is oversampled. */
 static void write_pixels(const frame_work *work, const hl_scene_description *scene, float *pixels, size_t row_stride) {
+  int side = work->frame.oversampling;
   for (int row = 0; row < scene->height; row++)
     for (int column = 0; column < scene->width; column++) {
-      int x = column + FRAME_MARGIN, y = row + FRAME_MARGIN;
-      size_t tile = (size_t)(y / TILE) * work->tiles_x + (size_t)(x / TILE);
-      size_t block = (size_t)(y % TILE / BLOCK * 4 + x % TILE / BLOCK), lane = (size_t)(y % BLOCK * 4 + x % BLOCK);
-      const float *from = work->pixels + (tile * TILE_BLOCKS + block) * 4 * BLOCK_PIXELS + lane;
-      float *to = pixels + (size_t)row * row_stride + 4 * (size_t)column;
-      for (int c = 0; c < 4; c++) to[c] = from[c * BLOCK_PIXELS];
-      for (int s = 1; s < work->sweep_count; s++)
-        for (int c = 0; c < 3; c++)
-          to[c] += from[(size_t)s * work->tiles * TILE_PIXELS * 4 + (size_t)(c * BLOCK_PIXELS)];
+      float sum[4] = {0, 0, 0, 0}, *to = pixels + (size_t)row * row_stride + 4 * (size_t)column;
+      for (int y = 0; y < side; y++)
+        for (int x = 0; x < side; x++) add_pixel(work, column * side + x, row * side + y, sum);
+      for (int c = 0; c < 4; c++) to[c] = sum[c] / (float)(side * side);
     }
 }
 

@@ -39,7 +39,7 @@ static void open_blocks(sweep *sweep) {
     int x0 = (int)(tile % (size_t)sweep->tiles_x) * TILE, y0 = (int)(tile / (size_t)sweep->tiles_x) * TILE;
     for (int block = 0; block < TILE_BLOCKS; block++) {
       int x = x0 + block % 4 * BLOCK - FRAME_MARGIN, y = y0 + block / 4 * BLOCK - FRAME_MARGIN;
-      if (x >= 0 && y >= 0 && x < sweep->scene->width && y < sweep->scene->height) open |= 1u << block;
+      if (x >= 0 && y >= 0 && x < sweep->frame->width && y < sweep->frame->height) open |= 1u << block;
     }
     sweep->open[tile] = (uint16_t)open;
   }
@@ -133,7 +133,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   light->buffer = buffer;
   bool soft = source->shadows == HL_SHADOWS_SOFT;
   vec3 plane_normal = soft ? sweep->geometry->sheets.normal : source->direction;
-  size_t greatest = (size_t)sweep->scene->width * (size_t)sweep->scene->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
+  size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
   /* hard edges must hold at the nearest matter; soft ones are wider than a pixel where it matters */
   double pixel = soft ? sweep->frame->middle_pixel : sweep->frame->pixel;
   shadow_extent extent = {points, hl_frame_visible_points(sweep->frame, points), pixel,
@@ -185,12 +185,6 @@ static hl_status allocate_stages(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
-static void store(float out[3], vec3 v) {
-  out[0] = (float)v.x;
-  out[1] = (float)v.y;
-  out[2] = (float)v.z;
-}
-
 static void set_up_shading(sweep *sweep) {
   for (int g = 0; g < sweep->volume_count; g++) {
     const hl_scene_volume *volume = sweep->volumes[g].scene;
@@ -210,7 +204,7 @@ static void set_up_shading(sweep *sweep) {
     const grid *grid = &sweep->grids[g];
     const double offset[3] = {grid->frame_to_index.offset.x, grid->frame_to_index.offset.y, grid->frame_to_index.offset.z};
     for (int axis = 0; axis < 3; axis++) {
-      store(shade->to_index[axis], grid->frame_to_index.linear.row[axis]);
+      vec3_store(shade->to_index[axis], grid->frame_to_index.linear.row[axis]);
       shade->to_index[axis][3] = (float)offset[axis];
       shade->low[axis] = (float)grid->box_low[axis];
       shade->high[axis] = (float)grid->box_high[axis];
@@ -225,8 +219,8 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   *light = (shade_light){.parallel = from->source->parallel, .shadowed = from->buffer != NULL,
                          .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
                          .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST};
-  store(light->towards, vec3_scale(from->source->direction, -1));
-  store(light->position, from->source->position);
+  vec3_store(light->towards, vec3_scale(from->source->direction, -1));
+  vec3_store(light->position, from->source->position);
   for (int c = 0; c < 3; c++) light->color[c] = (float)(scene->color[c] * scene->intensity);
   light->path = (float)spacing;
   if (from->source->parallel) light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
@@ -252,12 +246,12 @@ static void set_up_jobs(sweep *sweep) {
                        .volumes = sweep->shade_volumes, .volume_count = sweep->volume_count,
                        .lights = sweep->shade_lights, .light_count = sweep->geometry->light_count,
                        .stride = sweep->sheet_stride, .channels = sweep->channels};
-  store(shade->normal, normal);
+  vec3_store(shade->normal, normal);
   if (!eye->perspective) {
     double climb = vec3_dot(eye->direction, normal);
     shade->path = (float)(spacing / fabs(climb));
-    store(shade->through, vec3_scale(eye->direction, spacing / climb));
-    store(shade->towards_eye, vec3_scale(eye->direction, -1));
+    vec3_store(shade->through, vec3_scale(eye->direction, spacing / climb));
+    vec3_store(shade->towards_eye, vec3_scale(eye->direction, -1));
   }
   for (int c = 0; c < 3 && sweep->first; c++) shade->ambient[c] = (float)sweep->scene->ambient[c];
   for (int i = 0; i < sweep->geometry->light_count; i++) {

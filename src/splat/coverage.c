@@ -1,12 +1,6 @@
 /* splat/coverage.c - sets up the rays of a view against a volume's box. */
 #include "splat/coverage.h"
 
-static void store(float out[3], vec3 v) {
-  out[0] = (float)v.x;
-  out[1] = (float)v.y;
-  out[2] = (float)v.z;
-}
-
 void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 frame_to_index, const double low[3],
                  const double high[3], box_rays *rays) {
   vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5));
@@ -14,12 +8,12 @@ void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 fra
   vec3 start_u = view->perspective ? zero : view->du, start_v = view->perspective ? zero : view->dv;
   vec3 direction = view->perspective ? first : view->direction;
   vec3 direction_u = view->perspective ? view->du : zero, direction_v = view->perspective ? view->dv : zero;
-  store(rays->start, affine3_apply(frame_to_index, start));
-  store(rays->start_u, mat3_apply(frame_to_index.linear, start_u));
-  store(rays->start_v, mat3_apply(frame_to_index.linear, start_v));
-  store(rays->direction, mat3_apply(frame_to_index.linear, direction));
-  store(rays->direction_u, mat3_apply(frame_to_index.linear, direction_u));
-  store(rays->direction_v, mat3_apply(frame_to_index.linear, direction_v));
+  vec3_store(rays->start, affine3_apply(frame_to_index, start));
+  vec3_store(rays->start_u, mat3_apply(frame_to_index.linear, start_u));
+  vec3_store(rays->start_v, mat3_apply(frame_to_index.linear, start_v));
+  vec3_store(rays->direction, mat3_apply(frame_to_index.linear, direction));
+  vec3_store(rays->direction_u, mat3_apply(frame_to_index.linear, direction_u));
+  vec3_store(rays->direction_v, mat3_apply(frame_to_index.linear, direction_v));
   rays->start_height = (float)(vec3_dot(normal, start) - first_height);
   rays->start_height_u = (float)vec3_dot(normal, start_u);
   rays->start_height_v = (float)vec3_dot(normal, start_v);

@@ -39,12 +39,6 @@ void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]) 
   }
 }
 
-static void store(float out[3], vec3 v) {
-  out[0] = (float)v.x;
-  out[1] = (float)v.y;
-  out[2] = (float)v.z;
-}
-
 /* The ray's point on the sheet is start + ((height - h.start) / (h.direction)) direction: linear in the pixel. */
 static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
   return vec3_add(start,
@@ -55,10 +49,10 @@ void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 fr
   vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5));
   rays->perspective = view->perspective;
   if (view->perspective) {
-    store(rays->origin, affine3_apply(from_frame, view->origin));
-    store(rays->w0, mat3_apply(from_frame.linear, first));
-    store(rays->wu, mat3_apply(from_frame.linear, view->du));
-    store(rays->wv, mat3_apply(from_frame.linear, view->dv));
+    vec3_store(rays->origin, affine3_apply(from_frame, view->origin));
+    vec3_store(rays->w0, mat3_apply(from_frame.linear, first));
+    vec3_store(rays->wu, mat3_apply(from_frame.linear, view->du));
+    vec3_store(rays->wv, mat3_apply(from_frame.linear, view->dv));
     rays->h0 = (float)vec3_dot(normal, first);
     rays->hu = (float)vec3_dot(normal, view->du);
     rays->hv = (float)vec3_dot(normal, view->dv);
@@ -68,10 +62,10 @@ void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 fr
   vec3 base = on_sheet(first, view->direction, normal, height);
   vec3 along_u = vec3_subtract(on_sheet(vec3_add(first, view->du), view->direction, normal, height), base);
   vec3 along_v = vec3_subtract(on_sheet(vec3_add(first, view->dv), view->direction, normal, height), base);
-  store(rays->origin, (vec3){0, 0, 0});
-  store(rays->w0, affine3_apply(from_frame, base));
-  store(rays->wu, mat3_apply(from_frame.linear, along_u));
-  store(rays->wv, mat3_apply(from_frame.linear, along_v));
+  vec3_store(rays->origin, (vec3){0, 0, 0});
+  vec3_store(rays->w0, affine3_apply(from_frame, base));
+  vec3_store(rays->wu, mat3_apply(from_frame.linear, along_u));
+  vec3_store(rays->wv, mat3_apply(from_frame.linear, along_v));
   rays->h0 = 1;
   rays->hu = rays->hv = 0;
   rays->step = 1;

@@ -249,6 +249,36 @@ static void test_sizes(void **state) {
   }
 }
 
+/* A small picture of fine voxels is the mean of a large one: no voxel falls between pixels. 12 pixels over a grid of 36
+ * voxels call for three pixels to one. */
+static void test_small_pictures_are_averaged(void **state) {
+  (void)state;
+  enum { WIDTH = 12, HEIGHT = 10, SIDE = 3 };
+  static float small[WIDTH * HEIGHT * 4], large[WIDTH * HEIGHT * SIDE * SIDE * 4];
+  stage set;
+  stage_open(&set);
+  add_noise(&set, 33, (vec3){-16.5, -16.5, -16.5}, HL_VOXEL_U8);
+  stage_add_directional(&set, (vec3){-1, 0.5, -1});
+  stage_look(&set, (vec3){30, -25, 20}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  set.scene.camera.height = HEIGHT * SIDE;
+  set.scene.width = WIDTH;
+  set.scene.height = HEIGHT;
+  stage_render_sheets(&set, small);
+  assert_shows_something(small, picture_floats(&set));
+  set.scene.width *= SIDE;
+  set.scene.height *= SIDE;
+  stage_render_sheets(&set, large);
+  for (int y = 0; y < HEIGHT; y++)
+    for (int x = 0; x < WIDTH * 4; x++) {
+      double sum = 0;
+      for (int i = 0; i < SIDE * SIDE; i++)
+        sum += large[((y * SIDE + i / SIDE) * WIDTH * SIDE + x / 4 * SIDE + i % SIDE) * 4 + x % 4];
+      double mean = sum / (SIDE * SIDE), value = small[y * WIDTH * 4 + x];
+      if (fabs(value - mean) > 1e-6) fail_msg("%.9g at %d,%d is not the mean %.9g", value, x / 4, y, mean);
+    }
+  stage_close(&set);
+}
+
 /* ---- memory and interruptions ---- */
 
 static void test_no_allocation_in_the_loop(void **state) {
@@ -328,6 +358,7 @@ int main(void) {
       cmocka_unit_test(test_instruction_sets),
       cmocka_unit_test(test_history),
       cmocka_unit_test(test_sizes),
+      cmocka_unit_test(test_small_pictures_are_averaged),
       cmocka_unit_test(test_no_allocation_in_the_loop),
       cmocka_unit_test(test_cancel),
       cmocka_unit_test(test_row_stride),
