@@ -115,6 +115,7 @@ typedef struct block_density {
   lanes middle; /* density */
   table_place before, after;
   lanes extinction, undivided; /* averaged over the slab; over its covered part */
+  lanes whole; /* the integral of extinction over the table's entries between the two */
   covered_part part;
   lanes seen; /* the part of the way from before to after at which its matter is seen */
 } block_density;
@@ -255,12 +256,12 @@ LANES_INLINE block_density classify_block(const shade_job *job, const shade_volu
   d.middle = (before + after) * 0.5f;
   d.before = classify_place(volume->classifier, before);
   d.after = classify_place(volume->classifier, after);
-  d.extinction = d.undivided = lanes_set(0);
+  d.extinction = d.undivided = d.whole = lanes_set(0);
   d.part = (covered_part){lanes_set(0), lanes_set(0)};
   if (lanes_bits(may_be_visible(volume->classifier, d.before, d.after)) == 0) return d;
   d.part = covered_block(enter, leave, block, job->height, job->spacing);
   if (enter != NULL) cut_way(d.part, &d.before, &d.after);
-  d.undivided = mean_extinction(volume->classifier, d.before, d.after);
+  d.undivided = mean_extinction(volume->classifier, d.before, d.after, &d.whole);
   d.extinction = d.undivided * d.part.length;
   return d;
 }
@@ -287,7 +288,7 @@ LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densi
     block_density *d = &densities[i];
     d->seen = lanes_set(0.5f);
     if (!job->volumes[i].visible || lanes_bits(d->extinction > 0.0f) == 0) continue;
-    lanes m = part_of_way(d->before, d->after, mean_place(job->volumes[i].classifier, d->before, d->after));
+    lanes m = part_of_way(d->before, d->after, mean_place(job->volumes[i].classifier, d->before, d->after, d->whole));
     lanes_int rising = m >= 0.5f;
     lanes side = lanes_max(lanes_select(rising, m, 1.0f - m), lanes_set(0.5f));
     lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), (1.0f - side) / side);

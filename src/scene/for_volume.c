@@ -10,7 +10,7 @@
 #define ELEVATION 20
 #define LIGHT_AZIMUTH -40 /* key light from the upper left, degrees from the line of sight */
 #define LIGHT_ELEVATION 45
-#define SHEETS 600        /* across the grid's diagonal */
+#define SHEETS 540        /* across the grid's diagonal */
 
 void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
   hl_light_defaults(light);

@@ -25,14 +25,15 @@ LANES_INLINE lanes table_value(const float *table, table_place place) {
 /* Closer than this many entries the integral's difference loses digits; the ends' mean is as good there. */
 static const float NEAR_ENTRIES = 4;
 
-/* Mean extinction between two places: (I(b) - I(a)) / (b - a). */
-LANES_INLINE lanes mean_extinction(const classifier *classifier, table_place a, table_place b) {
+/* Mean extinction between two places: (I(b) - I(a)) / (b - a). *whole: I(b) - I(a), 0 where they are near. */
+LANES_INLINE lanes mean_extinction(const classifier *classifier, table_place a, table_place b, lanes *whole) {
   lanes ends = (table_value(classifier->extinction, a) + table_value(classifier->extinction, b)) * 0.5f;
   lanes distance = b.x - a.x;
   lanes_int far = lanes_abs(distance) > NEAR_ENTRIES;
+  *whole = lanes_set(0);
   if (lanes_bits(far) == 0) return ends;
-  lanes difference = table_value(classifier->integral, b) - table_value(classifier->integral, a);
-  return lanes_select(far, lanes_max(difference / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0)), ends);
+  *whole = lanes_keep(far, table_value(classifier->integral, b) - table_value(classifier->integral, a));
+  return lanes_select(far, lanes_max(*whole / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0)), ends);
 }
 
 /* Lanes in which anything between the two places can have extinction. */
@@ -47,13 +48,13 @@ LANES_INLINE lanes part_of_way(table_place a, table_place b, table_place place) 
   return lanes_select(far, (place.x - a.x) / lanes_select(far, way, lanes_set(1.0f)), lanes_set(0.5f));
 }
 
-/* The place between a and b where, weighted by extinction, the density lies: what colour is taken from. */
-LANES_INLINE table_place mean_place(const classifier *classifier, table_place a, table_place b) {
+/* The place between a and b where, weighted by extinction, the density lies; whole as mean_extinction gives it. */
+LANES_INLINE table_place mean_place(const classifier *classifier, table_place a, table_place b, lanes whole) {
   lanes low = lanes_min(a.x, b.x), high = lanes_max(a.x, b.x), middle = (low + high) * 0.5f;
-  lanes weight = table_value(classifier->integral, b) - table_value(classifier->integral, a);
+  lanes_int usable = lanes_abs(whole) > 0.0f;
+  if (lanes_bits(usable) == 0) return place_of_coordinate(middle);
   lanes moment = table_value(classifier->moment, b) - table_value(classifier->moment, a);
-  lanes_int usable = (high - low > NEAR_ENTRIES) & (lanes_abs(weight) > 0.0f);
-  lanes mean = moment / lanes_select(usable, weight, lanes_set(1.0f));
+  lanes mean = moment / lanes_select(usable, whole, lanes_set(1.0f));
   return place_of_coordinate(lanes_min(lanes_max(lanes_select(usable, mean, middle), low), high));
 }
 

@@ -16,30 +16,30 @@ LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes w
   weight[3] = kernel_piece(kernel->outer, degree, s);
 }
 
-/* Four neighbouring voxels along x for every lane; offset in bytes. */
-LANES_INLINE lanes row_u8(const unsigned char *row, lanes_int offset, const lanes weight[4]) {
-  lanes_int word = lanes_gather_bytes(row, offset);
+/* Four neighbouring voxels along x for every lane; offsets in bytes. */
+LANES_INLINE lanes row_u8(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
+  lanes_int word = lanes_load_words(row, offsets);
   lanes a = lanes_from_int(word & 255) * weight[0] + lanes_from_int((word >> 8) & 255) * weight[1];
   lanes b = lanes_from_int((word >> 16) & 255) * weight[2] + lanes_from_int((word >> 24) & 255) * weight[3];
   return a + b;
 }
-LANES_INLINE lanes row_u16(const unsigned char *row, lanes_int offset, const lanes weight[4]) {
-  lanes_int low = lanes_gather_bytes(row, offset), high = lanes_gather_bytes(row + 4, offset);
+LANES_INLINE lanes row_u16(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
+  lanes_int low = lanes_load_words(row, offsets), high = lanes_load_words(row + 4, offsets);
   lanes a = lanes_from_int(low & 65535) * weight[0] + lanes_from_int((low >> 16) & 65535) * weight[1];
   lanes b = lanes_from_int(high & 65535) * weight[2] + lanes_from_int((high >> 16) & 65535) * weight[3];
   return a + b;
 }
-LANES_INLINE lanes row_f32(const unsigned char *row, lanes_int offset, const lanes weight[4]) {
-  lanes a = (lanes)lanes_gather_bytes(row, offset) * weight[0] + (lanes)lanes_gather_bytes(row + 4, offset) * weight[1];
+LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
+  lanes a = (lanes)lanes_load_words(row, offsets) * weight[0] + (lanes)lanes_load_words(row + 4, offsets) * weight[1];
   lanes b =
-      (lanes)lanes_gather_bytes(row + 8, offset) * weight[2] + (lanes)lanes_gather_bytes(row + 12, offset) * weight[3];
+      (lanes)lanes_load_words(row + 8, offsets) * weight[2] + (lanes)lanes_load_words(row + 12, offsets) * weight[3];
   return a + b;
 }
 
-/* All 64 taps lie inside the grid: offset is the byte offset of tap (0,0,0) from voxels. The loops stay loops:
+/* All 64 taps lie inside the grid: offsets are the byte offsets of tap (0,0,0) from voxels. The loops stay loops:
  * unrolled, they outgrow the instruction cache and take a compiler minutes. */
-LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const unsigned char *voxels, lanes_int offset,
-                            const lanes weight[3][4]) {
+LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const unsigned char *voxels,
+                            const lanes_offsets *offsets, const lanes weight[3][4]) {
   size_t bytes = hl_storage_bytes(storage), row_bytes = (size_t)grid->dimension[0] * bytes;
   size_t slice_bytes = row_bytes * (size_t)grid->dimension[1];
   lanes sum = lanes_set(0);
@@ -49,9 +49,9 @@ LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const unsigned
 #pragma GCC unroll 1
     for (int y = 0; y < 4; y++) {
       const unsigned char *row = voxels + (size_t)z * slice_bytes + (size_t)y * row_bytes;
-      lanes along = storage == HL_STORAGE_U8    ? row_u8(row, offset, weight[0])
-                    : storage == HL_STORAGE_U16 ? row_u16(row, offset, weight[0])
-                                                : row_f32(row, offset, weight[0]);
+      lanes along = storage == HL_STORAGE_U8    ? row_u8(row, offsets, weight[0])
+                    : storage == HL_STORAGE_U16 ? row_u16(row, offsets, weight[0])
+                                                : row_f32(row, offsets, weight[0]);
       plane = plane + along * weight[1][y];
     }
     sum = sum + plane * weight[2][z];
@@ -59,17 +59,17 @@ LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const unsigned
   return sum;
 }
 
-static __attribute__((noinline)) lanes sum_u8(const grid *grid, const unsigned char *voxels, lanes_int offset,
-                                              const lanes weight[3][4]) {
-  return sum_taps(grid, HL_STORAGE_U8, voxels, offset, weight);
+static __attribute__((noinline)) lanes sum_u8(const grid *grid, const unsigned char *voxels,
+                                              const lanes_offsets *offsets, const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_U8, voxels, offsets, weight);
 }
-static __attribute__((noinline)) lanes sum_u16(const grid *grid, const unsigned char *voxels, lanes_int offset,
-                                               const lanes weight[3][4]) {
-  return sum_taps(grid, HL_STORAGE_U16, voxels, offset, weight);
+static __attribute__((noinline)) lanes sum_u16(const grid *grid, const unsigned char *voxels,
+                                              const lanes_offsets *offsets, const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_U16, voxels, offsets, weight);
 }
-static __attribute__((noinline)) lanes sum_f32(const grid *grid, const unsigned char *voxels, lanes_int offset,
-                                               const lanes weight[3][4]) {
-  return sum_taps(grid, HL_STORAGE_F32, voxels, offset, weight);
+static __attribute__((noinline)) lanes sum_f32(const grid *grid, const unsigned char *voxels,
+                                              const lanes_offsets *offsets, const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_F32, voxels, offsets, weight);
 }
 
 static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
@@ -148,9 +148,11 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
                      (cell[1] - reference[1]) * grid->dimension[0] + (cell[0] - reference[0]);
   offset = (offset * (int32_t)bytes) & lanes_from_bits(active);
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
-  if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, voxels, offset, weights);
-  if (grid->storage == HL_STORAGE_U16) return sum_u16(grid, voxels, offset, weights);
-  return sum_f32(grid, voxels, offset, weights);
+  lanes_offsets offsets;
+  lanes_store_offsets(&offsets, offset);
+  if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, voxels, &offsets, weights);
+  if (grid->storage == HL_STORAGE_U16) return sum_u16(grid, voxels, &offsets, weights);
+  return sum_f32(grid, voxels, &offsets, weights);
 }
 
 static uint32_t gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {
