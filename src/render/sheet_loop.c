@@ -25,10 +25,8 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     hl_sweep_fill(sweep, sheet, sheet - 1);
     hl_sweep_soften(sweep, sheet - 1);
     hl_sweep_shade(sweep, sheet);
-    if ((sheet & 7) == 0) {
-      hl_progress(sweep->context, "render", (double)sheet / sheets);
-      if (hl_cancelled(sweep->context)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled");
-    }
+    if ((sheet & 7) == 0) hl_progress(sweep->context, "render", (double)sheet / sheets);
+    if (hl_cancelled(sweep->context)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled");
   }
   return HL_OK;
 }
