@@ -72,6 +72,13 @@ static inline mat3 mat3_rotation(vec3 axis, double angle_rad) {
                  {t * axis.x * axis.z - s * axis.y, t * axis.y * axis.z + s * axis.x, t * axis.z * axis.z + c}}};
 }
 
+static inline double mat3_shortest_column(mat3 m) {
+  return fmin(vec3_length(mat3_column(m, 0)), fmin(vec3_length(mat3_column(m, 1)), vec3_length(mat3_column(m, 2))));
+}
+
+static inline affine3 affine3_identity(void) {
+  return (affine3){{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
+}
 static inline vec3 affine3_apply(affine3 a, vec3 p) { return vec3_add(mat3_apply(a.linear, p), a.offset); }
 /* (a after b)(p) = a(b(p)) */
 static inline affine3 affine3_multiply(affine3 a, affine3 b) {

@@ -96,17 +96,17 @@ static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floa
   return HL_OK;
 }
 
-hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, const view *view, int channels, bool soft,
+hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, const view *view, int channels, bool scratch,
                                  int reach, hl_error *error) {
   size_t margin = ((size_t)reach + 1 + TILE) / TILE * TILE;
   buffer->view = *view;
   buffer->channels = channels;
-  buffer->tiles_x = (view->width + TILE - 1) / TILE;
-  buffer->tiles_y = (view->height + TILE - 1) / TILE;
+  buffer->tiles_x = hl_tiles(view->width);
+  buffer->tiles_y = hl_tiles(view->height);
   buffer->stride = (size_t)buffer->tiles_x * TILE + 2 * margin;
   buffer->plane = ((size_t)buffer->tiles_y * TILE + 2 * margin) * buffer->stride;
   buffer->origin = margin * buffer->stride + margin;
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, planes = (size_t)channels * (soft ? 2 : 1);
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, planes = (size_t)channels * (scratch ? 2 : 1);
   hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < planes * buffer->plane; i++) buffer->memory[i] = 1;
@@ -115,9 +115,35 @@ hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, con
   for (int c = 0; c < HL_CHANNELS; c++) {
     bool used = c < channels;
     buffer->transmittance[c] = used ? buffer->memory + (size_t)c * buffer->plane + buffer->origin : NULL;
-    buffer->scratch[c] = used && soft ? buffer->transmittance[c] + (size_t)channels * buffer->plane : NULL;
+    buffer->scratch[c] = used && scratch ? buffer->transmittance[c] + (size_t)channels * buffer->plane : NULL;
   }
   return HL_OK;
+}
+
+typedef struct lit_task {
+  shadow_buffer *buffer;
+  const unsigned char *wanted;
+  lit_blocks_function *lit_blocks;
+} lit_task;
+
+static void find_lit_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const lit_task *task = data;
+  shadow_buffer *buffer = task->buffer;
+  for (int x = 0; x < buffer->tiles_x; x++) {
+    size_t tile = index * (size_t)buffer->tiles_x + (size_t)x;
+    if (task->wanted != NULL && !task->wanted[tile]) continue;
+    const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
+    for (int c = 0; c < buffer->channels; c++)
+      transmittance[c] = buffer->transmittance[c] + index * TILE * buffer->stride + (size_t)x * TILE;
+    buffer->tile_lit[tile] = (uint16_t)task->lit_blocks(transmittance, buffer->channels, buffer->stride);
+  }
+}
+
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, const unsigned char *wanted, hl_pool *pool,
+                               lit_blocks_function *lit_blocks) {
+  lit_task task = {buffer, wanted, lit_blocks};
+  hl_pool_run(pool, (size_t)buffer->tiles_y, find_lit_row, &task);
 }
 
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer) {

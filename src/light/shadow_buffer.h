@@ -6,7 +6,7 @@
 #ifndef HL_LIGHT_SHADOW_BUFFER_H
 #define HL_LIGHT_SHADOW_BUFFER_H
 
-#include "core/error.h"
+#include "core/pool.h"
 #include "light/attenuate.h"
 #include "light/light_source.h"
 #include "splat/occupancy.h"
@@ -19,7 +19,7 @@ typedef struct shadow_buffer {
   size_t plane;                 /* floats of one channel, margins included */
   size_t origin;                /* offset of pixel (0,0) in a plane */
   float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory */
-  float *scratch[HL_CHANNELS];  /* pixel (0,0); soft shadows only; in memory */
+  float *scratch[HL_CHANNELS];  /* pixel (0,0); the paper's soft shadows only; in memory */
   float *memory;                /* owned; all planes */
   size_t capacity;              /* floats in memory */
   uint16_t *tile_lit;           /* owned; [tiles]; blocks that light still reaches */
@@ -40,9 +40,13 @@ typedef struct shadow_extent {
 /* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
 void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view);
 
-/* (Re)allocates for the view and sets all transmittances to 1. reach: pixels that blurs read beyond a tile. */
-hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, const view *view, int channels, bool soft,
+/* (Re)allocates for the view and sets all transmittances to 1. scratch: whether a second set of planes is
+ * needed. reach: pixels that blurs read beyond a tile. */
+hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, const view *view, int channels, bool scratch,
                                  int reach, hl_error *error);
+/* Finds tile_lit anew after a blur, for the wanted tiles ([tiles]; null: all). */
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, const unsigned char *wanted, hl_pool *pool,
+                               lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
 
 #endif

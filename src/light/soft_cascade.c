@@ -106,8 +106,7 @@ static bool all_ones(const cascade_level *level, const cascade_field *field, int
 }
 
 typedef struct multiply_task {
-  const cascade_level *level, *level_b; /* of a (unless halving) and to; of b */
-  const cascade_level *level_a;
+  const cascade_level *level, *level_a, *level_b; /* of to, a and b */
   const cascade_field *a, *b, *to;
   field_job job;
   field_tile_function *function;
@@ -144,7 +143,7 @@ static void multiply(hl_pool *pool, const cascade_functions *functions, const ca
   field_tile_function *function = level_a->scale < level->scale   ? functions->multiply_half
                                   : level_b->scale > level->scale ? functions->multiply_double
                                                                   : functions->multiply;
-  multiply_task task = {level, level_b, level_a, a, b, to, {a->pixels, b->pixels, to->pixels, level_b->stride, level->stride},
+  multiply_task task = {level, level_a, level_b, a, b, to, {a->pixels, b->pixels, to->pixels, level_b->stride, level->stride},
                         function};
   hl_pool_run(pool, (size_t)level->tiles_y, multiply_row, &task);
 }
@@ -288,24 +287,6 @@ static double pass_all(soft_cascade *cascade, double receiver, hl_pool *pool, co
   return before;
 }
 
-typedef struct lit_task {
-  shadow_buffer *buffer;
-  lit_blocks_function *lit_blocks;
-} lit_task;
-
-static void find_lit(void *data, size_t index, int worker) {
-  (void)worker;
-  const lit_task *task = data;
-  shadow_buffer *buffer = task->buffer;
-  for (int x = 0; x < buffer->tiles_x; x++) {
-    size_t tile = index * (size_t)buffer->tiles_x + (size_t)x;
-    const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
-    for (int c = 0; c < buffer->channels; c++)
-      transmittance[c] = buffer->transmittance[c] + index * TILE * buffer->stride + (size_t)x * TILE;
-    buffer->tile_lit[tile] = (uint16_t)task->lit_blocks(transmittance, buffer->channels, buffer->stride);
-  }
-}
-
 /* The buffer that sheets look up, for receivers around omega = receiver. */
 static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, hl_pool *pool,
                           const cascade_functions *functions) {
@@ -320,8 +301,7 @@ static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double r
     blur_multiply(pool, functions, level, &level->passed[level->newest][c], NULL, &to, buffer->stride, variance);
   }
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] = !buffer->tile_touched[tiles + tile];
-  lit_task task = {buffer, functions->lit_blocks};
-  hl_pool_run(pool, (size_t)buffer->tiles_y, find_lit, &task);
+  hl_shadow_buffer_find_lit(buffer, NULL, pool, functions->lit_blocks);
 }
 
 void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, double from, double to, hl_pool *pool,

@@ -37,7 +37,6 @@ typedef struct convolve_job {
   shadow_buffer *buffer;
   blur_job blur;
   blur_tile_function *blur_tile;
-  lit_blocks_function *lit_blocks;
   const unsigned char *wanted; /* [tiles] */
 } convolve_job;
 
@@ -61,23 +60,12 @@ static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const u
     }
 }
 
-static void refresh_tile(void *data, size_t index, int worker) {
-  (void)worker;
-  const convolve_job *job = data;
-  shadow_buffer *buffer = job->buffer;
-  if (!job->wanted[index]) return;
-  size_t at = index / (size_t)buffer->tiles_x * TILE * buffer->stride + index % (size_t)buffer->tiles_x * TILE;
-  const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
-  for (int c = 0; c < buffer->channels; c++) transmittance[c] = buffer->transmittance[c] + at;
-  buffer->tile_lit[index] = (uint16_t)job->lit_blocks(transmittance, buffer->channels, buffer->stride);
-}
-
 /* Rows go from the buffer to the scratch, columns back: both for the tiles that can change. Tiles outside hold 1 in
  * either. */
 static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, const blur_functions *blur) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
-  convolve_job job = {buffer, {NULL, NULL, buffer->stride, buffer->stride, hl_blur_box((float)width)}, blur->rows, blur->lit_blocks, spread};
+  convolve_job job = {buffer, {NULL, NULL, buffer->stride, buffer->stride, hl_blur_box((float)width)}, blur->rows, spread};
   spread_touched(buffer, (job.blur.box.reach + TILE) / TILE, touched, spread);
   for (int c = 0; c < buffer->channels; c++) {
     job.blur.from = buffer->transmittance[c];
@@ -90,7 +78,7 @@ static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, const blur
     hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_tile, &job);
   }
   memcpy(touched, spread, tiles);
-  hl_pool_run(pool, tiles, refresh_tile, &job);
+  hl_shadow_buffer_find_lit(buffer, spread, pool, blur->lit_blocks);
 }
 
 /* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest. */

@@ -94,8 +94,7 @@ static vec3 scene_centre(const hl_scene_description *scene) {
 static double smallest_edge(const hl_renderer *renderer) {
   double edge = INFINITY;
   for (size_t i = 0; i < renderer->prepared_count; i++)
-    for (int axis = 0; axis < 3; axis++)
-      edge = fmin(edge, vec3_length(mat3_column(renderer->prepared[i].grid.index_to_frame.linear, axis)));
+    edge = fmin(edge, mat3_shortest_column(renderer->prepared[i].grid.index_to_frame.linear));
   return edge;
 }
 
@@ -223,8 +222,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
   status = hl_frame_check_sweeps(frame, work->sweeps, work->sweep_count, error);
   if (status != HL_OK) return status;
-  work->tiles_x = (size_t)(frame->eye.width + TILE - 1) / TILE;
-  work->tiles = work->tiles_x * ((size_t)(frame->eye.height + TILE - 1) / TILE);
+  work->tiles_x = (size_t)hl_tiles(frame->eye.width);
+  work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
   work->pixels = hl_allocate_zeroed(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
   if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
   return HL_OK;

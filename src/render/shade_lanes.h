@@ -17,9 +17,6 @@ LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
 LANES_INLINE lanes3 scale3(lanes3 a, lanes s) { return (lanes3){a.x * s, a.y * s, a.z * s}; }
 LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
 LANES_INLINE lanes3 set3(const float v[3]) { return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])}; }
-LANES_INLINE lanes3 normalise3(lanes3 a) {
-  return scale3(a, 1.0f / lanes_sqrt(lanes_max(dot3(a, a), lanes_set(1e-30f))));
-}
 
 /* What the volumes of a block share: where its pixels are and how they look. */
 typedef struct block_geometry {

@@ -27,8 +27,7 @@ enum { RING = 2 }; /* sheets k-1 and k */
 /* The image's sheets of one volume. */
 typedef struct image_sheets {
   float *density[RING];           /* pixel (0,0) of each; rows stride apart; in memory */
-  uint16_t *filled[RING];         /* [tiles]; blocks that hold density */
-  unsigned char *dirty[RING];     /* [tiles]; 1 where the tile is not all zero */
+  uint16_t *filled[RING];         /* [tiles]; blocks that hold density; 0: the tile is all zero */
   float *enter, *leave;           /* [tiles][256]; null where the box cuts nothing visible */
 } image_sheets;
 
@@ -49,7 +48,6 @@ typedef struct sweep_light {
   kept_tile *kept;                /* owned; [grids][tiles][RING]; what is in density */
   soft_paper paper;               /* by the source's soft method */
   soft_cascade cascade;
-  double pixel;
 } sweep_light;
 
 typedef struct sweep_counts {
@@ -82,7 +80,7 @@ typedef struct sweep {
   float *pixels;                  /* [tiles][16][4][16] */
   sweep_light lights[FRAME_LIGHTS];
   /* the stage now running */
-  int sheet, fill_sheet, light_sheet;
+  int fill_sheet, light_sheet;
   uint32_t *tasks;                /* tiles of the stage: the image's, then each light's */
   size_t task_capacity;
   int task_start[FRAME_LIGHTS + 2]; /* where each kind starts */

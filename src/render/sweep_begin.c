@@ -25,9 +25,7 @@ static hl_status allocate_image(sweep *sweep, hl_error *error) {
       image_sheets *sheets = &sweep->sheets[g];
       sheets->density[slot] = sweep->sheet_memory + (g * RING + (size_t)slot) * plane + sweep->sheet_stride + TILE;
       sheets->filled[slot] = hl_allocate_zeroed(context, sweep->tiles, sizeof(uint16_t));
-      sheets->dirty[slot] = hl_allocate_zeroed(context, sweep->tiles, 1);
-      if (sheets->filled[slot] == NULL || sheets->dirty[slot] == NULL)
-        return hl_fail_memory(error, sweep->tiles * 3, "the image's tiles");
+      if (sheets->filled[slot] == NULL) return hl_fail_memory(error, sweep->tiles * 2, "the image's tiles");
     }
   return HL_OK;
 }
@@ -62,9 +60,9 @@ static void cover_tile(void *data, size_t index, int worker) {
 static void cover(sweep *sweep, const view *view, const grid *grid, float *enter, float *leave) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   coverage_work work = {sweep->hot->coverage_tile, {{0}, {0}, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, 0, {0}, {0}, 0},
-                        (view->width + TILE - 1) / TILE, enter, leave};
+                        hl_tiles(view->width), enter, leave};
   hl_box_rays(view, sheets->normal, sheets->first, grid->frame_to_index, grid->box_low, grid->box_high, &work.rays);
-  hl_pool_run(sweep->pool, (size_t)work.tiles_x * (size_t)((view->height + TILE - 1) / TILE), cover_tile, &work);
+  hl_pool_run(sweep->pool, (size_t)work.tiles_x * (size_t)hl_tiles(view->height), cover_tile, &work);
 }
 
 static hl_status cover_image(sweep *sweep, hl_error *error) {
@@ -146,17 +144,18 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   }
   view view;
   hl_shadow_view(source, plane_normal, &extent, &view);
-  light->pixel = vec3_length(view.du);
+  double edge = vec3_length(view.du);
+  bool paper = soft && source->soft_method == HL_SOFT_PAPER;
   int reach = 0;
   const sheet_stack *sheets = &sweep->geometry->sheets;
-  if (soft && source->soft_method == HL_SOFT_PAPER) {
-    hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, light->pixel);
+  if (paper) {
+    hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, edge);
     reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
   }
-  hl_status status = hl_shadow_buffer_reset(sweep->context, buffer, &view, sweep->channels, soft, reach, error);
+  hl_status status = hl_shadow_buffer_reset(sweep->context, buffer, &view, sweep->channels, paper, reach, error);
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_CASCADE)
     status = hl_soft_cascade_begin(sweep->context, &light->cascade, source, sheets->normal, sheets->first,
-                                   sheets->first + (sheets->count - 1) * sheets->spacing, light->pixel, buffer, error);
+                                   sheets->first + (sheets->count - 1) * sheets->spacing, edge, buffer, error);
   if (status == HL_OK)
     status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, &view, sheets,
                                 &light->occupancy, error);
@@ -226,8 +225,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   if (from->source->parallel) light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
   if (from->buffer == NULL) return;
   double rows[3][4];
-  const affine3 identity = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
-  hl_view_homogeneous(&from->buffer->view, identity, rows);
+  hl_view_homogeneous(&from->buffer->view, affine3_identity(), rows);
   for (int row = 0; row < 3; row++)
     for (int column = 0; column < 4; column++) light->map[row][column] = (float)rows[row][column];
   for (int c = 0; c < from->buffer->channels; c++) light->transmittance[c] = from->buffer->transmittance[c];
@@ -293,10 +291,7 @@ void hl_sweep_end(sweep *sweep) {
   hl_context *context = sweep->context;
   for (int g = 0; sweep->sheets != NULL && g < sweep->volume_count; g++) {
     image_sheets *sheets = &sweep->sheets[g];
-    for (int slot = 0; slot < RING; slot++) {
-      hl_release(context, sheets->filled[slot]);
-      hl_release(context, sheets->dirty[slot]);
-    }
+    for (int slot = 0; slot < RING; slot++) hl_release(context, sheets->filled[slot]);
     hl_release(context, sheets->enter);
     hl_release(context, sheets->leave);
   }

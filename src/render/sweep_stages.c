@@ -63,13 +63,12 @@ static void fill_image_tile(sweep *sweep, size_t tile, int g, int worker) {
   } else if (occupied) {
     sweep->counts[worker].skipped_image++;
   }
-  if (filled == 0 && sheets->dirty[slot][tile])
+  if (filled == 0 && sheets->filled[slot][tile] != 0)
     for (int row = 0; row < TILE; row++) memset(to + (size_t)row * sweep->sheet_stride, 0, TILE * sizeof(float));
   for (int block = 0; filled != 0 && block < TILE_BLOCKS; block++)
     if (need >> block & 1)
       copy_block(to + (size_t)(block / 4 * BLOCK) * sweep->sheet_stride + block % 4 * BLOCK, sweep->sheet_stride,
                  density + block * BLOCK_PIXELS);
-  sheets->dirty[slot][tile] = filled != 0;
   sheets->filled[slot][tile] = (uint16_t)filled;
 }
 
@@ -174,14 +173,13 @@ static void set_source(const sweep *sweep, const view *view, int g, const voxel_
 }
 
 static void prepare_light(sweep *sweep, int light_index, int sheet) {
-  const affine3 identity = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
   sweep_light *light = &sweep->lights[light_index];
   attenuate_job *job = &sweep->attenuate[light_index];
   for (int back = 0; back < RING; back++)
     for (int g = 0; g < sweep->volume_count; g++)
       set_source(sweep, &light->buffer->view, g, light->lists, sheet - back,
                  &sweep->light_sources[(light_index * RING + back) * sweep->volume_count + g]);
-  hl_view_sheet_rays(&light->buffer->view, sweep->geometry->sheets.normal, sheet_height(sweep, sheet), identity,
+  hl_view_sheet_rays(&light->buffer->view, sweep->geometry->sheets.normal, sheet_height(sweep, sheet), affine3_identity(),
                      &job->rays);
   job->height = (float)(sheet * sweep->geometry->sheets.spacing);
 }
@@ -233,10 +231,8 @@ static void shade_task(void *data, size_t index, int worker) {
 
 void hl_sweep_shade(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
-  const affine3 identity = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
-  sweep->sheet = sheet;
   hl_view_sheet_rays(&sweep->frame->eye, sweep->geometry->sheets.normal,
-                     sheet_height(sweep, sheet) - 0.5 * sweep->geometry->sheets.spacing, identity,
+                     sheet_height(sweep, sheet) - 0.5 * sweep->geometry->sheets.spacing, affine3_identity(),
                      &sweep->shade.rays);
   sweep->shade.height = (float)(sheet * sweep->geometry->sheets.spacing);
   for (int g = 0; g < sweep->volume_count; g++) {
@@ -252,12 +248,13 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
 
 void hl_sweep_soften(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
+  const hot_functions *hot = sweep->hot;
+  const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile};
+  const cascade_functions cascade = {hot->lit_blocks_tile, hot->blur_multiply_tile, hot->multiply_tile,
+                                     hot->multiply_half_tile, hot->multiply_double_tile};
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
-    const blur_functions blur = {sweep->hot->blur_rows_tile, sweep->hot->blur_columns_tile, sweep->hot->lit_blocks_tile};
-    const cascade_functions cascade = {sweep->hot->lit_blocks_tile, sweep->hot->blur_multiply_tile, sweep->hot->multiply_tile, sweep->hot->multiply_half_tile,
-                                       sweep->hot->multiply_double_tile};
     if (light->source->soft_method == HL_SOFT_PAPER)
       hl_soft_paper_convolve(&light->paper, light->buffer, sheet_height(sweep, sheet + 1), sweep->pool, &blur);
     else if (sheet > 0)

@@ -55,8 +55,7 @@ static void put_in_order(hl_function_writer *w) {
 hl_status hl_finish_function(hl_function_writer *w, hl_context *context, const hl_volume *volume,
                              hl_transfer_function *function, hl_error *error) {
   put_in_order(w);
-  double edge = INFINITY;
-  for (int a = 0; a < 3; a++) edge = fmin(edge, vec3_length(mat3_column(volume->index_to_world.linear, a)));
+  double edge = mat3_shortest_column(volume->index_to_world.linear);
   hl_transfer_function made = {edge, w->opacity, w->opacity_count, w->color, w->color_count};
   return hl_transfer_function_copy(context, &made, function, error);
 }

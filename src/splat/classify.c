@@ -39,7 +39,6 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
     double value = low + (high - low) * entry / CLASSIFIER_ENTRIES, color[3];
     double extinction = below_all(volume, empty, value) ? 0 : extinction_of(function, value);
     classifier->extinction[entry] = (float)extinction;
-    if (extinction > classifier->greatest_extinction) classifier->greatest_extinction = (float)extinction;
     hl_transfer_function_color(function, value, color);
     for (int c = 0; c < 3; c++) classifier->color[c][entry] = (float)color[c];
   }
@@ -65,9 +64,7 @@ static float normal_edge(const hl_scene_volume *volume, const grid *grid) {
                     ? 0
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
-  double edge = INFINITY;
-  for (int axis = 0; axis < 3; axis++)
-    edge = fmin(edge, vec3_length(mat3_column(volume->volume->index_to_world.linear, axis)) * volume->scale);
+  double edge = mat3_shortest_column(volume->volume->index_to_world.linear) * volume->scale;
   return (float)(1e-3 * span / (edge * fabs(grid->value_scale)));
 }
 

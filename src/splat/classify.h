@@ -18,7 +18,6 @@ typedef struct classifier {
   float *moment;         /* owned with extinction; [same]; of extinction * entry */
   float *color[3];       /* owned with extinction; [same] each; linear RGB */
   int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: first entry at or above with extinction > 0 */
-  float greatest_extinction;
   float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
   float normal_edge;     /* the least gradient (density per world unit) that counts as a surface */
 } classifier;

@@ -11,6 +11,9 @@
 
 enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
 
+/* Tiles that cover so many pixels. */
+static inline int hl_tiles(int pixels) { return (pixels + TILE - 1) / TILE; }
+
 /* Voxels sorted for splatting: by tile of the view, then by the first sheet that their kernels touch. */
 typedef struct voxel_lists {
   int tiles_x, tiles_y;

@@ -136,8 +136,8 @@ static hl_status reserve(hl_context *context, uint64_t **words, size_t *capacity
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
                              const sheet_stack *sheets, occupancy *occupancy, hl_error *error) {
   occupancy->grid_count = grid_count;
-  occupancy->tiles_x = (view->width + TILE - 1) / TILE;
-  occupancy->tiles_y = (view->height + TILE - 1) / TILE;
+  occupancy->tiles_x = hl_tiles(view->width);
+  occupancy->tiles_y = hl_tiles(view->height);
   occupancy->sheets = sheets->count;
   occupancy->words = (sheets->count + 63) / 64;
   size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;

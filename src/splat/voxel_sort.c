@@ -117,8 +117,8 @@ static hl_status prepare(const grid *grid, const kernel *kernel, const view *vie
   double reach = 0;
   job->support = kernel->support;
   for (int axis = 0; axis < 3; axis++) reach += fabs(job->map.height[axis]) * job->support;
-  lists->tiles_x = (view->width + TILE - 1) / TILE;
-  lists->tiles_y = (view->height + TILE - 1) / TILE;
+  lists->tiles_x = hl_tiles(view->width);
+  lists->tiles_y = hl_tiles(view->height);
   lists->span = (int)floor(2 * reach / sheets->spacing) + 1;
   lists->bucket_count = sheets->count + lists->span;
   return HL_OK;
