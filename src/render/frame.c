@@ -30,17 +30,8 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, vec3 cent
 }
 
 void hl_frame_content(const grid *grid, vec3 corners[8]) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (uint32_t i = 0; i < grid->relevant_count; i++) {
-    int32_t b[3];
-    double centre[3], half[3];
-    hl_grid_brick_place(grid, grid->relevant_list[i], b);
-    hl_brick_bounds(grid, b, 0.5, centre, half);
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = fmin(low[axis], centre[axis] - half[axis]);
-      high[axis] = fmax(high[axis], centre[axis] + half[axis]);
-    }
-  }
+  double low[3], high[3];
+  (void)hl_relevant_bounds(grid, 0.5, low, high);
   for (int corner = 0; corner < 8; corner++)
     corners[corner] = affine3_apply(grid->index_to_frame, (vec3){corner & 1 ? high[0] : low[0],
                                                                  corner & 2 ? high[1] : low[1],

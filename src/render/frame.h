@@ -39,7 +39,7 @@ enum { FRAME_MARGIN = BLOCK };
 /* The eye's view of a scene in width x height pixels, and FRAME_MARGIN more on every side. */
 hl_status hl_frame_eye(const hl_camera *camera, int width, int height, vec3 centre, view *eye, hl_error *error);
 
-/* Corners of the box around a grid's relevant bricks. */
+/* Corners of the box around a grid's relevant bricks, of which there is one at least. */
 void hl_frame_content(const grid *grid, vec3 corners[8]);
 
 /* Groups lights into sweeps and slices each (section 3.1 and fig. 3); sweeps: room for light_count + 1. Returns

@@ -11,13 +11,20 @@ enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 typedef struct shade_volume {
   const classifier *classifier;
-  const float *before, *current;         /* sheets k-1 and k of the image; pixel (0,0); rows stride apart */
-  const float *enter, *leave;            /* [tiles][256]; null: the box does not cut anything visible */
+  const float *before, *current;         /* sheets k-1 and k of the image; rows stride apart */
+  size_t stride;
   int phong, visible, receives_shadow;
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
-  float to_index[3][4], low[3], high[3]; /* where enter is set: frame space to index space, and the box there */
+  float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
 } shade_volume;
+
+/* One volume's part in a tile. */
+typedef struct shade_patch {
+  const shade_volume *volume;
+  size_t start;                          /* of the tile in the volume's sheets, floats */
+  const float *enter, *leave;            /* [256]; null: the box does not cut anything visible */
+} shade_patch;
 
 typedef struct shade_light {
   int parallel;
@@ -42,20 +49,17 @@ typedef struct shade_job {
   float path;                     /* parallel: sheet spacing / |w.h|; perspective: sheet spacing */
   float height, spacing;          /* of sheet k above the first, and to sheet k-1; frame units */
   int back_to_front;
-  const shade_volume *volumes;
-  int volume_count;
   const shade_light *lights;
   int light_count;
   float ambient[3];               /* Ia; zero in all sweeps but the first */
-  size_t stride;                  /* of the sheets */
   int channels;                   /* of light attenuation: 1 or 3 */
 } shade_job;
 
-/* Shades the tile's blocks that are open and have density. pixels: [16 blocks][R G B A][16]. Returns the
- * blocks that are still open: some pixel not yet opaque. samples is raised by the pixels composited. scratch:
- * SHADE_SCRATCH_BYTES a volume, aligned to 64. */
+/* Shades the tile's blocks that are open and have density. patches: of the volumes with density in the tile. pixels:
+ * [16 blocks][R G B A][16]. Returns the blocks that are still open: some pixel not yet opaque. samples is raised by
+ * the pixels composited. scratch: SHADE_SCRATCH_BYTES a patch, aligned to 64. */
 enum { SHADE_SCRATCH_BYTES = 1024 };
-typedef uint32_t shade_tile_function(const shade_job *job, int tile_x, int tile_y, uint32_t blocks, void *scratch,
-                                     float *pixels, uint64_t *samples);
+typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
+                                     int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples);
 
 #endif

@@ -54,17 +54,17 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
 }
 
 /* Sum of a block on both sheets. */
-LANES_INLINE lanes on_both(const shade_volume *volume, ptrdiff_t at, size_t stride) {
-  return lanes_load_block(volume->before + at, stride) + lanes_load_block(volume->current + at, stride);
+LANES_INLINE lanes on_both(const shade_volume *volume, ptrdiff_t at) {
+  return lanes_load_block(volume->before + at, volume->stride) + lanes_load_block(volume->current + at, volume->stride);
 }
 
 /* Step 12. World gradient = B^-T differences, B the columns step_u, step_v, step_sheet; the rows of the inverse are
  * cross products over the determinant. Differences along the sheets are the mean of both sheets'. */
-LANES_INLINE lanes3 gradient(const block_geometry *g, const shade_volume *volume, size_t start, size_t stride) {
-  ptrdiff_t at = (ptrdiff_t)start, row = (ptrdiff_t)stride;
-  lanes du = (on_both(volume, at + 1, stride) - on_both(volume, at - 1, stride)) * 0.25f;
-  lanes dv = (on_both(volume, at + row, stride) - on_both(volume, at - row, stride)) * 0.25f;
-  lanes dz = lanes_load_block(volume->current + at, stride) - lanes_load_block(volume->before + at, stride);
+LANES_INLINE lanes3 gradient(const block_geometry *g, const shade_volume *volume, size_t start) {
+  ptrdiff_t at = (ptrdiff_t)start, row = (ptrdiff_t)volume->stride;
+  lanes du = (on_both(volume, at + 1) - on_both(volume, at - 1)) * 0.25f;
+  lanes dv = (on_both(volume, at + row) - on_both(volume, at - row)) * 0.25f;
+  lanes dz = lanes_load_block(volume->current + at, volume->stride) - lanes_load_block(volume->before + at, volume->stride);
   lanes3 a = cross3(g->step_v, g->step_sheet), b = cross3(g->step_sheet, g->step_u), c = cross3(g->step_u, g->step_v);
   lanes determinant = dot3(g->step_u, a);
   lanes inverse = 1.0f / lanes_select(lanes_abs(determinant) > 0.0f, determinant, lanes_set(1.0f));
@@ -109,6 +109,7 @@ LANES_INLINE lanes look_up(const shade_light *light, const float *buffer, lanes 
 /* One volume's way through the slab: where its covered part starts and ends in the tables, and its mean extinction, the
  * part outside the box counting as none. */
 typedef struct block_density {
+  const shade_patch *patch;
   lanes middle; /* density */
   table_place before, after;
   lanes extinction, undivided; /* averaged over the slab; over its covered part */
@@ -145,15 +146,14 @@ LANES_INLINE lanes way_in_box(const shade_volume *volume, lanes3 point, lanes3 t
 typedef struct light_depths { lanes before[HL_CHANNELS], within[HL_CHANNELS]; } light_depths;
 
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geometry *g, const block_density *densities,
-                                          lanes3 towards, lanes path) {
+                                          int count, lanes3 towards, lanes path) {
   light_depths depths;
   for (int c = 0; c < HL_CHANNELS; c++) depths.before[c] = depths.within[c] = lanes_set(0);
-  for (int i = 0; i < job->volume_count; i++) {
-    const shade_volume *volume = &job->volumes[i];
+  for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
-    if (lanes_bits(d->extinction > 0.0f) == 0) continue;
+    const shade_volume *volume = d->patch->volume;
     lanes first = d->part.begin * path, last = (d->part.begin + d->part.length) * path;
-    if (volume->enter != NULL) {
+    if (d->patch->enter != NULL) {
       lanes3 start = add3(g->start, scale3(g->step_sheet, d->part.begin));
       lanes3 end = add3(start, scale3(g->step_sheet, d->part.length));
       first = lanes_min(first, way_in_box(volume, start, towards));
@@ -168,7 +168,7 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geom
 }
 
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_geometry *g,
-                                     lanes depth, const block_density *densities) {
+                                     lanes depth, const block_density *densities, int count) {
   arriving_light arriving;
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
   if (light->parallel) {
@@ -191,7 +191,7 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   lanes_int ahead = place[0] > 0.0f;
   lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
   lanes u = lanes_select(ahead, place[1] / safe, outside), v = lanes_select(ahead, place[2] / safe, outside);
-  light_depths depths = depths_of_light(job, g, densities, arriving.towards, path);
+  light_depths depths = depths_of_light(job, g, densities, count, arriving.towards, path);
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     if (c < light->channels)
@@ -242,25 +242,27 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   return alpha;
 }
 
-/* Step 13 for one volume. */
-LANES_INLINE block_density classify_block(const shade_job *job, const shade_volume *volume, size_t at, size_t tile,
-                                          int block) {
-  block_density d;
-  lanes before = lanes_load_block(volume->before + at, job->stride);
-  lanes after = lanes_load_block(volume->current + at, job->stride);
-  const float *enter = volume->enter == NULL ? NULL : volume->enter + tile * TILE_PIXELS;
-  const float *leave = volume->leave == NULL ? NULL : volume->leave + tile * TILE_PIXELS;
-  d.middle = (before + after) * 0.5f;
-  d.before = classify_place(volume->classifier, before);
-  d.after = classify_place(volume->classifier, after);
-  d.extinction = d.undivided = d.whole = lanes_set(0);
-  d.part = (covered_part){lanes_set(0), lanes_set(0)};
-  if (lanes_bits(may_be_visible(volume->classifier, d.before, d.after)) == 0) return d;
-  d.part = covered_block(enter, leave, block, job->height, job->spacing);
-  if (enter != NULL) cut_way(d.part, &d.before, &d.after);
-  d.undivided = mean_extinction(volume->classifier, d.before, d.after, &d.whole);
-  d.extinction = d.undivided * d.part.length;
-  return d;
+/* Where a block starts in a volume's sheets. */
+LANES_INLINE size_t place_of_block(const shade_patch *patch, int block) {
+  return patch->start + (size_t)(block / 4 * BLOCK) * patch->volume->stride + (size_t)(block % 4 * BLOCK);
+}
+
+/* Step 13 for one volume; false where none of it is there. */
+LANES_INLINE int classify_block(const shade_job *job, const shade_patch *patch, int block, block_density *d) {
+  const shade_volume *volume = patch->volume;
+  size_t at = place_of_block(patch, block);
+  lanes before = lanes_load_block(volume->before + at, volume->stride);
+  lanes after = lanes_load_block(volume->current + at, volume->stride);
+  d->patch = patch;
+  d->middle = (before + after) * 0.5f;
+  d->before = classify_place(volume->classifier, before);
+  d->after = classify_place(volume->classifier, after);
+  if (lanes_bits(may_be_visible(volume->classifier, d->before, d->after)) == 0) return 0;
+  d->part = covered_block(patch->enter, patch->leave, block, job->height, job->spacing);
+  if (patch->enter != NULL) cut_way(d->part, &d->before, &d->after);
+  d->undivided = mean_extinction(volume->classifier, d->before, d->after, &d->whole);
+  d->extinction = d->undivided * d->part.length;
+  return lanes_bits(d->extinction > 0.0f) != 0;
 }
 
 /* base^exponent for base in [0, 1] and exponent >= 0. */
@@ -278,14 +280,16 @@ LANES_INLINE lanes seen_part(lanes e) {
 /* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
  * with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is reached at
  * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where the slab is lit: the volumes' mean, in slabs. */
-LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densities, lanes total, lanes depth) {
+LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densities, int count, lanes total,
+                                      lanes depth) {
   lanes u = seen_part(depth), sum = lanes_set(0);
   if (job->back_to_front) u = 1.0f - u;
-  for (int i = 0; i < job->volume_count; i++) {
+  for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
+    const shade_volume *volume = d->patch->volume;
     d->seen = lanes_set(0.5f);
-    if (!job->volumes[i].visible || lanes_bits(d->extinction > 0.0f) == 0) continue;
-    lanes m = part_of_way(d->before, d->after, mean_place(job->volumes[i].classifier, d->before, d->after, d->whole));
+    if (!volume->visible) continue;
+    lanes m = part_of_way(d->before, d->after, mean_place(volume->classifier, d->before, d->after, d->whole));
     lanes_int rising = m >= 0.5f;
     lanes side = lanes_max(lanes_select(rising, m, 1.0f - m), lanes_set(0.5f));
     lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), (1.0f - side) / side);
@@ -297,35 +301,34 @@ LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densi
 
 /* Colours of the volumes, lit and averaged weighted by extinction. */
 static color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
-                                  const block_density *densities, size_t at, lanes total) {
+                                  const block_density *densities, int count, int block, lanes total) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
-  for (int i = 0; i < job->volume_count; i++) {
-    const shade_volume *volume = &job->volumes[i];
-    if (!volume->visible) continue;
+  for (int i = 0; i < count; i++) {
     block_density d = densities[i];
-    if (lanes_bits(d.extinction > 0.0f) == 0) continue;
+    const shade_volume *volume = d.patch->volume;
+    if (!volume->visible) continue;
     table_place place = place_of_coordinate(d.before.x + (d.after.x - d.before.x) * d.seen);
     color_lanes color;
     for (int c = 0; c < 3; c++) color.c[c] = table_value(volume->classifier->color[c], place);
     lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
-    if (volume->phong) slope = gradient(g, volume, at, job->stride);
+    if (volume->phong) slope = gradient(g, volume, place_of_block(d.patch, block));
     color_lanes lit = illuminate(job, volume, g, lights, color, slope, d.middle);
-    lanes weight = job->volume_count == 1 ? lanes_set(1.0f) : d.extinction * inverse;
+    lanes weight = count == 1 ? lanes_set(1.0f) : d.extinction * inverse;
     for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
   }
   return sum;
 }
 
 /* Returns true while some pixel of the block is not opaque. */
-static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile, int block, block_density *densities,
-                       float *pixels, uint64_t *samples) {
-  int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK;
-  size_t at = (size_t)y * job->stride + (size_t)x;
+static int shade_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y, int block,
+                       block_density *densities, float *pixels, uint64_t *samples) {
+  int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK, count = 0;
   lanes total = lanes_set(0);
-  for (int i = 0; i < job->volume_count; i++) {
-    densities[i] = classify_block(job, &job->volumes[i], at, tile, block);
-    if (job->volumes[i].visible) total = total + densities[i].extinction;
+  for (int i = 0; i < patch_count; i++) {
+    if (!classify_block(job, &patches[i], block, &densities[count])) continue;
+    if (patches[i].volume->visible) total = total + densities[count].extinction;
+    count++;
   }
   lanes_int seen = total > 0.0f;
   if (!job->back_to_front) seen &= lanes_load(pixels + 3 * BLOCK_PIXELS) < OPAQUE;
@@ -334,11 +337,11 @@ static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile
   block_geometry g = geometry_of_block(job, block_u(x), block_v(y));
   arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
   lanes depth = total * g.path;
-  lanes seen_at = place_what_is_seen(job, densities, total, depth);
+  lanes seen_at = place_what_is_seen(job, densities, count, total, depth);
   g.start = add3(g.position, scale3(g.step_sheet, lanes_set(-0.5f)));
   g.position = add3(g.start, scale3(g.step_sheet, seen_at));
-  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, depth, densities);
-  color_lanes lit = color_of_block(job, &g, lights, densities, at, total);
+  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, depth, densities, count);
+  color_lanes lit = color_of_block(job, &g, lights, densities, count, block, total);
   for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(seen, lit.c[c]);
   lanes opacity = lanes_keep(seen, 1.0f - lanes_exp_negative(depth));
   lanes alpha = composite(job->back_to_front, opacity, lit, pixels);
@@ -346,15 +349,14 @@ static int shade_block(const shade_job *job, int tile_x, int tile_y, size_t tile
   return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
 }
 
-static uint32_t shade_tile(const shade_job *job, int tile_x, int tile_y, uint32_t blocks, void *scratch, float *pixels,
-                           uint64_t *samples) {
+static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
+                           uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
   block_density *densities = scratch;
-  size_t tiles_x = job->stride / TILE - 2; /* the sheets have a tile of margin on either side */
-  size_t tile = (size_t)tile_y * tiles_x + (size_t)tile_x;
   uint32_t open = 0;
   for (; blocks != 0; blocks &= blocks - 1) {
     int block = __builtin_ctz(blocks);
-    if (shade_block(job, tile_x, tile_y, tile, block, densities, pixels + block * 4 * BLOCK_PIXELS, samples)) open |= 1u << block;
+    if (shade_block(job, patches, patch_count, tile_x, tile_y, block, densities, pixels + block * 4 * BLOCK_PIXELS, samples))
+      open |= 1u << block;
   }
   return open;
 }

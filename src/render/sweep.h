@@ -24,11 +24,10 @@ typedef struct prepared_volume {
 
 enum { RING = 2 }; /* sheets k-1 and k */
 
-/* The image's sheets of one volume. */
+/* The image's sheets of one volume, as far as its rectangle of tiles goes. */
 typedef struct image_sheets {
-  float *density[RING];           /* pixel (0,0) of each; rows stride apart; in memory */
-  uint16_t *filled[RING];         /* [tiles]; blocks that hold density; 0: the tile is all zero */
-  float *enter, *leave;           /* [tiles][256]; null where the box cuts nothing visible */
+  float *density[RING];           /* the rectangle's first pixel of each; rows stride apart; in memory */
+  size_t stride;                  /* floats; a tile of margin on either side, a row above and below */
 } image_sheets;
 
 /* A light's tile of one sheet, kept for the next slab. */
@@ -43,9 +42,9 @@ typedef struct sweep_light {
   shadow_buffer *buffer;          /* null: no shadows */
   occupancy occupancy;
   voxel_lists *lists;             /* owned; [grids]; splat only */
-  float *enter, *leave;           /* owned; [grids][tiles][256]; null where no box cuts */
-  float *density;                 /* owned; [grids][tiles][RING][256]; the last sheets, block-major */
-  kept_tile *kept;                /* owned; [grids][tiles][RING]; what is in density */
+  float *enter, *leave;           /* owned; [patches][256]; null where no box cuts */
+  float *density;                 /* owned; [patches][RING][256]; the last sheets, block-major */
+  kept_tile *kept;                /* owned; [patches][RING]; what is in density */
   soft_paper paper;               /* by the source's soft method */
   soft_cascade cascade;
 } sweep_light;
@@ -74,7 +73,9 @@ typedef struct sweep {
   voxel_lists *lists;             /* [grids]; splat only */
   image_sheets *sheets;           /* [grids] */
   float *sheet_memory;
-  size_t sheet_stride, tiles;
+  uint16_t *filled[RING];         /* [patches]; blocks that hold density; 0: the patch is all zero */
+  float *enter, *leave;           /* [patches][256]; null where no box cuts anything visible */
+  size_t tiles;
   int tiles_x, tiles_y;
   uint16_t *open;                 /* [tiles]; blocks not yet opaque */
   float *pixels;                  /* [tiles][16][4][16] */
@@ -87,6 +88,7 @@ typedef struct sweep {
   fill_source *image_sources;     /* [grids]; of fill_sheet */
   fill_source *light_sources;     /* [lights][RING][grids]; of light_sheet and the one before */
   shade_volume *shade_volumes;    /* [grids] */
+  shade_patch *shade_patches;     /* [threads][grids] */
   shade_light shade_lights[FRAME_LIGHTS];
   shade_job shade;
   attenuate_job attenuate[FRAME_LIGHTS];

@@ -7,26 +7,33 @@
 
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
+/* Central differences read a pixel around the tiles. */
+static size_t sheet_stride(const tile_rectangle *r) { return ((size_t)r->width + 2) * TILE; }
+static size_t sheet_floats(const tile_rectangle *r) { return ((size_t)r->height * TILE + 2) * sheet_stride(r); }
+
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
   hl_context *context = sweep->context;
   size_t grids = (size_t)sweep->volume_count;
   sweep->tiles_x = sweep->occupancy.tiles_x;
   sweep->tiles_y = sweep->occupancy.tiles_y;
   sweep->tiles = (size_t)sweep->tiles_x * (size_t)sweep->tiles_y;
-  sweep->sheet_stride = ((size_t)sweep->tiles_x + 2) * TILE;
-  size_t plane = ((size_t)sweep->tiles_y * TILE + 2) * sweep->sheet_stride;
-  sweep->sheet_memory = hl_allocate_zeroed(context, grids * RING * plane, sizeof(float));
   sweep->sheets = hl_allocate_zeroed(context, grids, sizeof *sweep->sheets);
   sweep->open = hl_allocate(context, sweep->tiles, sizeof *sweep->open);
-  if (sweep->sheet_memory == NULL || sweep->sheets == NULL || sweep->open == NULL)
-    return hl_fail_memory(error, grids * RING * plane * sizeof(float), "the image's sheets");
-  for (size_t g = 0; g < grids; g++)
-    for (int slot = 0; slot < RING; slot++) {
-      image_sheets *sheets = &sweep->sheets[g];
-      sheets->density[slot] = sweep->sheet_memory + (g * RING + (size_t)slot) * plane + sweep->sheet_stride + TILE;
-      sheets->filled[slot] = hl_allocate_zeroed(context, sweep->tiles, sizeof(uint16_t));
-      if (sheets->filled[slot] == NULL) return hl_fail_memory(error, sweep->tiles * 2, "the image's tiles");
-    }
+  for (int slot = 0; slot < RING; slot++)
+    sweep->filled[slot] = hl_allocate_zeroed(context, sweep->occupancy.patch_count, sizeof(uint16_t));
+  if (sweep->sheets == NULL || sweep->open == NULL || sweep->filled[0] == NULL || sweep->filled[1] == NULL)
+    return hl_fail_memory(error, sweep->occupancy.patch_count * 4, "the image's tiles");
+  size_t floats = 0;
+  for (size_t g = 0; g < grids; g++) floats += RING * sheet_floats(&sweep->occupancy.rectangle[g]);
+  sweep->sheet_memory = hl_allocate_zeroed(context, floats, sizeof(float));
+  if (sweep->sheet_memory == NULL) return hl_fail_memory(error, floats * sizeof(float), "the image's sheets");
+  float *memory = sweep->sheet_memory;
+  for (size_t g = 0; g < grids; g++) {
+    image_sheets *sheets = &sweep->sheets[g];
+    sheets->stride = sheet_stride(&sweep->occupancy.rectangle[g]);
+    for (int slot = 0; slot < RING; slot++, memory += sheet_floats(&sweep->occupancy.rectangle[g]))
+      sheets->density[slot] = memory + sheets->stride + TILE;
+  }
   return HL_OK;
 }
 
@@ -46,56 +53,46 @@ static void open_blocks(sweep *sweep) {
 typedef struct coverage_work {
   coverage_tile_function *coverage_tile;
   box_rays rays;
-  int tiles_x;
+  const occupancy *occupancy;
+  const tile_rectangle *rectangle;
   float *enter, *leave;
 } coverage_work;
 
 static void cover_tile(void *data, size_t index, int worker) {
   (void)worker;
   const coverage_work *work = data;
-  work->coverage_tile(&work->rays, (int)(index % (size_t)work->tiles_x), (int)(index / (size_t)work->tiles_x),
-                      work->enter + index * TILE_PIXELS, work->leave + index * TILE_PIXELS);
+  const tile_rectangle *r = work->rectangle;
+  size_t at = (size_t)work->occupancy->patch_of[r->first + index] * TILE_PIXELS;
+  work->coverage_tile(&work->rays, r->x + (int)(index % (size_t)r->width), r->y + (int)(index / (size_t)r->width),
+                      work->enter + at, work->leave + at);
 }
 
-static void cover(sweep *sweep, const view *view, const grid *grid, float *enter, float *leave) {
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  coverage_work work = {sweep->hot->coverage_tile, {{0}, {0}, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, 0, {0}, {0}, 0},
-                        hl_tiles(view->width), enter, leave};
-  hl_box_rays(view, sheets->normal, sheets->first, grid->frame_to_index, grid->box_low, grid->box_high, &work.rays);
-  hl_pool_run(sweep->pool, (size_t)work.tiles_x * (size_t)hl_tiles(view->height), cover_tile, &work);
-}
-
-static hl_status cover_image(sweep *sweep, hl_error *error) {
-  for (int g = 0; g < sweep->volume_count; g++) {
-    if (!sweep->grids[g].cut) continue;
-    image_sheets *sheets = &sweep->sheets[g];
-    sheets->enter = hl_allocate(sweep->context, sweep->tiles * TILE_PIXELS, sizeof(float));
-    sheets->leave = hl_allocate(sweep->context, sweep->tiles * TILE_PIXELS, sizeof(float));
-    if (sheets->enter == NULL || sheets->leave == NULL)
-      return hl_fail_memory(error, sweep->tiles * TILE_PIXELS * 8, "the rays' entries");
-    cover(sweep, &sweep->frame->eye, &sweep->grids[g], sheets->enter, sheets->leave);
-  }
-  return HL_OK;
-}
-
-static hl_status cover_light(sweep *sweep, sweep_light *light, hl_error *error) {
+/* Where a view's rays enter and leave the boxes that cut something visible. */
+static hl_status cover(sweep *sweep, const view *view, const occupancy *occupancy, float **enter, float **leave,
+                       hl_error *error) {
   bool any = false;
   for (int g = 0; g < sweep->volume_count; g++) any = any || sweep->grids[g].cut;
   if (!any) return HL_OK;
-  size_t pixels = (size_t)light->occupancy.tiles_x * (size_t)light->occupancy.tiles_y * TILE_PIXELS;
-  light->enter = hl_allocate(sweep->context, (size_t)sweep->volume_count * pixels, sizeof(float));
-  light->leave = hl_allocate(sweep->context, (size_t)sweep->volume_count * pixels, sizeof(float));
-  if (light->enter == NULL || light->leave == NULL) return hl_fail_memory(error, pixels * 8, "the light's entries");
-  for (int g = 0; g < sweep->volume_count; g++)
-    if (sweep->grids[g].cut)
-      cover(sweep, &light->buffer->view, &sweep->grids[g], light->enter + (size_t)g * pixels,
-            light->leave + (size_t)g * pixels);
+  *enter = hl_allocate(sweep->context, occupancy->patch_count * TILE_PIXELS, sizeof(float));
+  *leave = hl_allocate(sweep->context, occupancy->patch_count * TILE_PIXELS, sizeof(float));
+  if (*enter == NULL || *leave == NULL)
+    return hl_fail_memory(error, occupancy->patch_count * TILE_PIXELS * 8, "the rays' entries");
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  for (int g = 0; g < sweep->volume_count; g++) {
+    const grid *grid = &sweep->grids[g];
+    const tile_rectangle *r = &occupancy->rectangle[g];
+    if (!grid->cut) continue;
+    coverage_work work = {.coverage_tile = sweep->hot->coverage_tile, .occupancy = occupancy, .rectangle = r,
+                          .enter = *enter, .leave = *leave};
+    hl_box_rays(view, sheets->normal, sheets->first, grid->frame_to_index, grid->box_low, grid->box_high, &work.rays);
+    hl_pool_run(sweep->pool, (size_t)r->width * (size_t)r->height, cover_tile, &work);
+  }
   return HL_OK;
 }
 
 /* The light's last two sheets: a slab needs both. */
 static hl_status keep_light_sheets(sweep *sweep, sweep_light *light, hl_error *error) {
-  size_t count = (size_t)sweep->volume_count * (size_t)light->occupancy.tiles_x * (size_t)light->occupancy.tiles_y * RING;
+  size_t count = light->occupancy.patch_count * RING;
   light->density = hl_allocate(sweep->context, count * TILE_PIXELS, sizeof(float));
   light->kept = hl_allocate_zeroed(sweep->context, count, sizeof *light->kept);
   if (light->density == NULL || light->kept == NULL)
@@ -160,7 +157,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
     status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, &view, sheets,
                                 &light->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sweep, &view, &light->lists, error);
-  if (status == HL_OK) status = cover_light(sweep, light, error);
+  if (status == HL_OK) status = cover(sweep, &view, &light->occupancy, &light->enter, &light->leave, error);
   if (status == HL_OK) status = keep_light_sheets(sweep, light, error);
   return status;
 }
@@ -175,11 +172,12 @@ static hl_status allocate_stages(sweep *sweep, hl_error *error) {
   sweep->image_sources = hl_allocate_zeroed(context, grids, sizeof *sweep->image_sources);
   sweep->light_sources = hl_allocate_zeroed(context, grids * FRAME_LIGHTS * RING, sizeof *sweep->light_sources);
   sweep->shade_volumes = hl_allocate_zeroed(context, grids, sizeof *sweep->shade_volumes);
+  sweep->shade_patches = hl_allocate(context, threads * grids, sizeof *sweep->shade_patches);
   sweep->scratch = hl_allocate(context, threads * grids * TILE_PIXELS, sizeof(float));
   sweep->scratch_volumes = hl_allocate(context, threads * grids, sizeof *sweep->scratch_volumes);
   sweep->counts = hl_allocate_zeroed(context, threads, sizeof *sweep->counts);
   if (sweep->tasks == NULL || sweep->image_sources == NULL || sweep->light_sources == NULL ||
-      sweep->shade_volumes == NULL || sweep->scratch == NULL || sweep->scratch_volumes == NULL || sweep->counts == NULL)
+      sweep->shade_volumes == NULL || sweep->shade_patches == NULL || sweep->scratch == NULL || sweep->scratch_volumes == NULL || sweep->counts == NULL)
     return hl_fail_memory(error, sweep->task_capacity * sizeof *sweep->tasks, "the sheet loop");
   return HL_OK;
 }
@@ -189,8 +187,7 @@ static void set_up_shading(sweep *sweep) {
     const hl_scene_volume *volume = sweep->volumes[g].scene;
     shade_volume *shade = &sweep->shade_volumes[g];
     *shade = (shade_volume){.classifier = &sweep->volumes[g].classifier,
-                            .enter = sweep->sheets[g].enter,
-                            .leave = sweep->sheets[g].leave,
+                            .stride = sweep->sheets[g].stride,
                             .phong = volume->shading == HL_SHADING_PHONG,
                             .visible = volume->visible,
                             .receives_shadow = volume->receives_shadow,
@@ -241,9 +238,8 @@ static void set_up_jobs(sweep *sweep) {
   double spacing = sweep->geometry->sheets.spacing;
   shade_job *shade = &sweep->shade;
   *shade = (shade_job){.path = (float)spacing, .spacing = (float)spacing, .back_to_front = sweep->geometry->back_to_front,
-                       .volumes = sweep->shade_volumes, .volume_count = sweep->volume_count,
                        .lights = sweep->shade_lights, .light_count = sweep->geometry->light_count,
-                       .stride = sweep->sheet_stride, .channels = sweep->channels};
+                       .channels = sweep->channels};
   vec3_store(shade->normal, normal);
   if (!eye->perspective) {
     double climb = vec3_dot(eye->direction, normal);
@@ -266,7 +262,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, hl_error *error) 
                                         &sweep->frame->eye, sheets, &sweep->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sweep, &sweep->frame->eye, &sweep->lists, error);
   if (status == HL_OK) status = allocate_image(sweep, error);
-  if (status == HL_OK) status = cover_image(sweep, error);
+  if (status == HL_OK) status = cover(sweep, &sweep->frame->eye, &sweep->occupancy, &sweep->enter, &sweep->leave, error);
   if (status != HL_OK) return status;
   open_blocks(sweep);
   vec3 *points = hl_allocate(sweep->context, (size_t)sweep->volume_count * CONTENT_POINTS + 1, sizeof *points);
@@ -289,12 +285,6 @@ static void release_lists(sweep *sweep, voxel_lists *lists) {
 
 void hl_sweep_end(sweep *sweep) {
   hl_context *context = sweep->context;
-  for (int g = 0; sweep->sheets != NULL && g < sweep->volume_count; g++) {
-    image_sheets *sheets = &sweep->sheets[g];
-    for (int slot = 0; slot < RING; slot++) hl_release(context, sheets->filled[slot]);
-    hl_release(context, sheets->enter);
-    hl_release(context, sheets->leave);
-  }
   for (int i = 0; i < FRAME_LIGHTS; i++) {
     sweep_light *light = &sweep->lights[i];
     hl_occupancy_release(context, &light->occupancy);
@@ -307,7 +297,8 @@ void hl_sweep_end(sweep *sweep) {
   }
   hl_occupancy_release(context, &sweep->occupancy);
   release_lists(sweep, sweep->lists);
-  void *owned[] = {sweep->sheet_memory, sweep->sheets, sweep->open, sweep->tasks, sweep->image_sources,
+  void *owned[] = {sweep->filled[0], sweep->filled[1], sweep->enter, sweep->leave, sweep->shade_patches,
+                   sweep->sheet_memory, sweep->sheets, sweep->open, sweep->tasks, sweep->image_sources,
                    sweep->light_sources, sweep->shade_volumes, sweep->scratch, sweep->scratch_volumes, sweep->counts};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(context, owned[i]);
 }

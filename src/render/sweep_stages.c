@@ -46,40 +46,47 @@ static void copy_block(float *to, size_t stride, const float *block) {
   for (int row = 0; row < BLOCK; row++) memcpy(to + (size_t)row * stride, block + row * BLOCK, BLOCK * sizeof(float));
 }
 
-/* Steps 6 and 8 to 11 for one tile of the image sheet of one volume. */
-static void fill_image_tile(sweep *sweep, size_t tile, int g, int worker) {
-  int slot = sweep->fill_sheet % RING;
-  image_sheets *sheets = &sweep->sheets[g];
+/* Where a tile starts in a volume's sheets. */
+static size_t place_in_sheets(const sweep *sweep, int g, int tile_x, int tile_y) {
+  const tile_rectangle *r = &sweep->occupancy.rectangle[g];
+  return (size_t)(tile_y - r->y) * TILE * sweep->sheets[g].stride + (size_t)(tile_x - r->x) * TILE;
+}
+
+/* Steps 6 and 8 to 11 for one volume's patch of a tile of the image sheet. */
+static void fill_image_patch(sweep *sweep, size_t tile, size_t patch, int worker) {
+  int slot = sweep->fill_sheet % RING, g = (int)sweep->occupancy.patch_grid[patch];
+  const image_sheets *sheets = &sweep->sheets[g];
   int tile_x = (int)(tile % (size_t)sweep->tiles_x), tile_y = (int)(tile / (size_t)sweep->tiles_x);
-  float *to = sheets->density[slot] + (size_t)tile_y * TILE * sweep->sheet_stride + (size_t)tile_x * TILE;
+  float *to = sheets->density[slot] + place_in_sheets(sweep, g, tile_x, tile_y);
   bool occupied = sweep->fill_sheet < sweep->occupancy.sheets &&
-                  hl_occupancy_has(&sweep->occupancy, g, tile, sweep->fill_sheet);
+                  hl_occupancy_has(&sweep->occupancy, patch, sweep->fill_sheet);
   uint32_t need = occupied ? needed_blocks(sweep, tile) : 0;
   uint32_t filled = 0;
   float *density = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * TILE_PIXELS;
+  if (!occupied && sweep->filled[slot][patch] == 0) return;
   if (need != 0) {
     filled = fill_tile(sweep, &sweep->image_sources[g], tile_x, tile_y, need, density);
     sweep->counts[worker].filled_image++;
   } else if (occupied) {
     sweep->counts[worker].skipped_image++;
   }
-  if (filled == 0 && sheets->filled[slot][tile] != 0)
-    for (int row = 0; row < TILE; row++) memset(to + (size_t)row * sweep->sheet_stride, 0, TILE * sizeof(float));
+  if (filled == 0 && sweep->filled[slot][patch] != 0)
+    for (int row = 0; row < TILE; row++) memset(to + (size_t)row * sheets->stride, 0, TILE * sizeof(float));
   for (int block = 0; filled != 0 && block < TILE_BLOCKS; block++)
     if (need >> block & 1)
-      copy_block(to + (size_t)(block / 4 * BLOCK) * sweep->sheet_stride + block % 4 * BLOCK, sweep->sheet_stride,
+      copy_block(to + (size_t)(block / 4 * BLOCK) * sheets->stride + block % 4 * BLOCK, sheets->stride,
                  density + block * BLOCK_PIXELS);
-  sheets->filled[slot][tile] = (uint16_t)filled;
+  sweep->filled[slot][patch] = (uint16_t)filled;
 }
 
 /* One volume's densities on a sheet of a light's tile, in the needed blocks at least: kept from the slab before, or
  * filled now. Null: empty. */
-static const float *light_density(sweep *sweep, int light_index, size_t tile, int g, int sheet, uint32_t need,
+static const float *light_density(sweep *sweep, int light_index, size_t tile, size_t patch, int sheet, uint32_t need,
                                   uint32_t *blocks) {
   sweep_light *light = &sweep->lights[light_index];
-  if (sheet < 0 || !hl_occupancy_has(&light->occupancy, g, tile, sheet)) return NULL;
-  size_t tiles = (size_t)light->occupancy.tiles_x * (size_t)light->occupancy.tiles_y;
-  size_t at = ((size_t)g * tiles + tile) * RING + (size_t)(sheet % RING);
+  if (sheet < 0 || !hl_occupancy_has(&light->occupancy, patch, sheet)) return NULL;
+  int g = (int)light->occupancy.patch_grid[patch];
+  size_t at = patch * RING + (size_t)(sheet % RING);
   kept_tile *kept = &light->kept[at];
   if (kept->sheet != sheet || (need & ~(uint32_t)kept->need) != 0) {
     int source = (light_index * RING + (sweep->light_sheet - sheet)) * sweep->volume_count + g;
@@ -105,15 +112,15 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
   }
   int found = 0;
   attenuate_volume *volumes = sweep->scratch_volumes + (size_t)worker * (size_t)sweep->volume_count;
-  size_t pixels = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y * TILE_PIXELS;
-  for (int g = 0; g < sweep->volume_count; g++) {
+  const uint32_t *patches = light->occupancy.first_patch + tile;
+  for (size_t patch = patches[0]; patch < patches[1]; patch++) {
+    uint32_t g = light->occupancy.patch_grid[patch], blocks = 0;
     const hl_scene_volume *scene = sweep->volumes[g].scene;
     if (!scene->casts_shadow) continue;
-    uint32_t blocks = 0;
-    const float *before = light_density(sweep, light_index, tile, g, sweep->light_sheet - 1, need, &blocks);
-    const float *density = light_density(sweep, light_index, tile, g, sweep->light_sheet, need, &blocks);
+    const float *before = light_density(sweep, light_index, tile, patch, sweep->light_sheet - 1, need, &blocks);
+    const float *density = light_density(sweep, light_index, tile, patch, sweep->light_sheet, need, &blocks);
     if (blocks == 0) continue;
-    size_t at = (size_t)g * pixels + tile * TILE_PIXELS;
+    size_t at = patch * TILE_PIXELS;
     bool cut = sweep->grids[g].cut;
     volumes[found] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = blocks,
                                         .before = before == NULL ? nothing : before,
@@ -152,7 +159,8 @@ static void fill_task(void *data, size_t index, int worker) {
   for (int task = first; task < end; task++) {
     size_t tile = sweep->tasks[task];
     if (task < sweep->task_start[1]) {
-      for (int g = 0; g < sweep->volume_count; g++) fill_image_tile(sweep, tile, g, worker);
+      const uint32_t *patches = sweep->occupancy.first_patch + tile;
+      for (size_t patch = patches[0]; patch < patches[1]; patch++) fill_image_patch(sweep, tile, patch, worker);
       continue;
     }
     int light = 0;
@@ -209,15 +217,23 @@ void hl_sweep_fill(sweep *sweep, int image_sheet, int light_sheet) {
   sweep->seconds_fill += hl_clock_seconds() - start;
 }
 
-/* Steps 12 to 16 for one tile. */
+/* Steps 12 to 16 for one tile: its patches with density, shaded together. */
 static void shade_one(sweep *sweep, size_t tile, int worker) {
+  int tile_x = (int)(tile % (size_t)sweep->tiles_x), tile_y = (int)(tile / (size_t)sweep->tiles_x), count = 0;
+  shade_patch *patches = sweep->shade_patches + (size_t)worker * (size_t)sweep->volume_count;
   uint32_t blocks = 0;
-  for (int g = 0; g < sweep->volume_count; g++)
-    blocks |= (uint32_t)sweep->sheets[g].filled[0][tile] | sweep->sheets[g].filled[1][tile];
+  for (size_t p = sweep->occupancy.first_patch[tile]; p < sweep->occupancy.first_patch[tile + 1]; p++) {
+    uint32_t filled = (uint32_t)sweep->filled[0][p] | sweep->filled[1][p], g = sweep->occupancy.patch_grid[p];
+    if (filled == 0) continue;
+    blocks |= filled;
+    bool cut = sweep->grids[g].cut;
+    patches[count++] = (shade_patch){&sweep->shade_volumes[g], place_in_sheets(sweep, (int)g, tile_x, tile_y),
+                                     cut ? sweep->enter + p * TILE_PIXELS : NULL,
+                                     cut ? sweep->leave + p * TILE_PIXELS : NULL};
+  }
   blocks &= sweep->open[tile];
   if (blocks == 0) return;
-  uint32_t open = sweep->hot->shade_tile(&sweep->shade, (int)(tile % (size_t)sweep->tiles_x),
-                                         (int)(tile / (size_t)sweep->tiles_x), blocks,
+  uint32_t open = sweep->hot->shade_tile(&sweep->shade, patches, count, tile_x, tile_y, blocks,
                                          sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * TILE_PIXELS,
                                          sweep->pixels + tile * 4 * TILE_PIXELS, &sweep->counts[worker].samples);
   sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);

@@ -188,6 +188,11 @@ void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *po
     if (!grid->relevant[at]) continue;
     int32_t b[3];
     hl_grid_brick_place(grid, (uint32_t)at, b);
+    for (int axis = 0; axis < 3; axis++) {
+      bool first = grid->relevant_count == 0;
+      if (first || b[axis] < grid->relevant_low[axis]) grid->relevant_low[axis] = b[axis];
+      if (first || b[axis] > grid->relevant_high[axis]) grid->relevant_high[axis] = b[axis];
+    }
     grid->relevant_list[grid->relevant_count++] = (uint32_t)at;
     grid->cut = grid->cut || brick_reaches_faces(grid, b);
     grid->kept_voxels += (uint64_t)voxels_along(b[0], grid->dimension[0]) *

@@ -33,6 +33,7 @@ typedef struct grid {
   unsigned char *relevant;     /* owned; [bricks z][y][x]; 1 where the volume can matter */
   uint32_t *relevant_list;     /* owned; [relevant_count]; indices of the relevant bricks, rising */
   uint32_t relevant_count;
+  int32_t relevant_low[3], relevant_high[3]; /* the least and greatest place of a relevant brick along each axis */
   bool cut;                    /* some relevant brick reaches the box's faces: rays need their entry and exit */
   void *finite_voxels;         /* owned; a copy with non-finite voxels replaced, or null */
   uint64_t kept_voxels;        /* 64 a relevant brick, cut at the borders */

@@ -1,8 +1,6 @@
 /* splat/occupancy.c - projects relevant bricks into tiles and sheets. */
 #include "splat/occupancy.h"
 
-#include <string.h>
-
 #include "core/memory.h"
 
 void hl_footprint_map(const view *view, vec3 normal, affine3 index_to_frame, footprint_map *map) {
@@ -53,10 +51,20 @@ void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double
   }
 }
 
+bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]) {
+  if (grid->relevant_count == 0) return false;
+  double centre[3], half[3];
+  hl_brick_bounds(grid, grid->relevant_low, margin, centre, half);
+  for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - half[axis];
+  hl_brick_bounds(grid, grid->relevant_high, margin, centre, half);
+  for (int axis = 0; axis < 3; axis++) high[axis] = centre[axis] + half[axis];
+  return true;
+}
+
 typedef struct occupancy_job {
   occupancy *occupancy;
   const grid *grid;
-  int grid_index;
+  const tile_rectangle *rectangle;
   footprint_map map;
   const sheet_stack *sheets;
 } occupancy_job;
@@ -66,6 +74,48 @@ enum { BRICKS_A_TASK = 1024 };
 static int first_tile(double low) { return low <= 0 ? 0 : low >= 1e9 ? INT32_MAX : (int)(low / TILE); }
 static int last_tile(double high, int tiles) {
   return high < 0 ? -1 : high >= (double)tiles * TILE ? tiles - 1 : (int)(high / TILE);
+}
+
+/* The tiles of some bounds, a pixel to spare; empty where the view does not see them. */
+static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *o) {
+  tile_rectangle r = {.x = first_tile(bounds->low[0] - 1), .y = first_tile(bounds->low[1] - 1)};
+  int x1 = last_tile(bounds->high[0] + 1, o->tiles_x), y1 = last_tile(bounds->high[1] + 1, o->tiles_y);
+  r.width = x1 < r.x ? 0 : x1 - r.x + 1;
+  r.height = y1 < r.y ? 0 : y1 - r.y + 1;
+  return r;
+}
+
+/* The tiles of a grid's relevant bricks: bounds of the box around them contain the bounds of each. */
+static tile_rectangle find_rectangle(const grid *grid, const footprint_map *map, const occupancy *o) {
+  double low[3], high[3], centre[3], half[3];
+  footprint_bounds bounds;
+  if (!hl_relevant_bounds(grid, GRID_MARGIN, low, high)) return (tile_rectangle){0};
+  for (int axis = 0; axis < 3; axis++) {
+    centre[axis] = (low[axis] + high[axis]) / 2;
+    half[axis] = (high[axis] - low[axis]) / 2;
+  }
+  if (!hl_footprint_bounds(map, centre, half, &bounds)) return (tile_rectangle){0};
+  return tiles_of(&bounds, o);
+}
+
+static bool in_rectangle(const tile_rectangle *r, int x, int y) {
+  return x >= r->x && y >= r->y && x < r->x + r->width && y < r->y + r->height;
+}
+
+/* Numbers the patches, tile after tile. */
+static void number_patches(occupancy *o, int grid_count) {
+  uint32_t patch = 0;
+  for (int y = 0; y < o->tiles_y; y++)
+    for (int x = 0; x < o->tiles_x; x++) {
+      o->first_patch[(size_t)y * (size_t)o->tiles_x + (size_t)x] = patch;
+      for (int g = 0; g < grid_count; g++) {
+        const tile_rectangle *r = &o->rectangle[g];
+        if (!in_rectangle(r, x, y)) continue;
+        o->patch_of[r->first + (size_t)(y - r->y) * (size_t)r->width + (size_t)(x - r->x)] = patch;
+        o->patch_grid[patch++] = (uint32_t)g;
+      }
+    }
+  o->first_patch[(size_t)o->tiles_x * (size_t)o->tiles_y] = patch;
 }
 
 static void mark_bits(uint64_t *words, int first, int last) {
@@ -89,11 +139,13 @@ static void mark_brick(const occupancy_job *job, uint32_t brick) {
   int first = low < 0 ? 0 : low >= o->sheets ? o->sheets : (int)low;
   int last = high < 0 ? -1 : high >= o->sheets ? o->sheets - 1 : (int)high;
   if (first > last) return;
-  int x1 = last_tile(bounds.high[0] + 1, o->tiles_x), y1 = last_tile(bounds.high[1] + 1, o->tiles_y);
-  for (int y = first_tile(bounds.low[1] - 1); y <= y1; y++)
-    for (int x = first_tile(bounds.low[0] - 1); x <= x1; x++) {
-      size_t tile = ((size_t)job->grid_index * (size_t)o->tiles_y + (size_t)y) * (size_t)o->tiles_x + (size_t)x;
-      mark_bits(o->by_tile + tile * (size_t)o->words, first, last);
+  tile_rectangle tiles = tiles_of(&bounds, o);
+  for (int y = tiles.y; y < tiles.y + tiles.height; y++)
+    for (int x = tiles.x; x < tiles.x + tiles.width; x++) {
+      const tile_rectangle *r = job->rectangle;
+      if (!in_rectangle(r, x, y)) continue; /* by rounding only */
+      size_t patch = o->patch_of[r->first + (size_t)(y - r->y) * (size_t)r->width + (size_t)(x - r->x)];
+      mark_bits(o->by_patch + patch * (size_t)o->words, first, last);
     }
 }
 
@@ -113,8 +165,8 @@ static void transpose_tiles(void *data, size_t index, int worker) {
   for (int word = 0; word < o->words; word++)
     for (size_t t = 0; t < 64 && index * 64 + t < tiles; t++) {
       uint64_t bits = 0;
-      for (int g = 0; g < o->grid_count; g++)
-        bits |= o->by_tile[((size_t)g * tiles + index * 64 + t) * (size_t)o->words + (size_t)word];
+      for (size_t patch = o->first_patch[index * 64 + t]; patch < o->first_patch[index * 64 + t + 1]; patch++)
+        bits |= o->by_patch[patch * (size_t)o->words + (size_t)word];
       for (; bits != 0; bits &= bits - 1) {
         size_t sheet = (size_t)word * 64 + (size_t)__builtin_ctzll(bits);
         o->by_sheet[sheet * (size_t)o->tile_words + index] |= (uint64_t)1 << t;
@@ -122,34 +174,40 @@ static void transpose_tiles(void *data, size_t index, int worker) {
     }
 }
 
-static hl_status reserve(hl_context *context, uint64_t **words, size_t *capacity, size_t needed, hl_error *error) {
-  if (*capacity < needed) {
-    hl_release(context, *words);
-    *words = hl_allocate(context, needed, sizeof(uint64_t));
-    *capacity = *words == NULL ? 0 : needed;
-    if (*words == NULL) return hl_fail_memory(error, needed * sizeof(uint64_t), "the occupancy of tiles");
-  }
-  memset(*words, 0, needed * sizeof(uint64_t));
+static hl_status allocate(hl_context *context, occupancy *o, size_t tiles, hl_error *error) {
+  o->patch_of = hl_allocate(context, o->patch_count + 1, sizeof(uint32_t));
+  o->patch_grid = hl_allocate(context, o->patch_count + 1, sizeof(uint32_t));
+  o->first_patch = hl_allocate(context, tiles + 1, sizeof(uint32_t));
+  o->by_patch = hl_allocate_zeroed(context, o->patch_count * (size_t)o->words + 1, sizeof(uint64_t));
+  o->by_sheet = hl_allocate_zeroed(context, (size_t)o->words * 64 * (size_t)o->tile_words, sizeof(uint64_t));
+  if (o->patch_of == NULL || o->patch_grid == NULL || o->first_patch == NULL || o->by_patch == NULL || o->by_sheet == NULL)
+    return hl_fail_memory(error, o->patch_count * (size_t)o->words * sizeof(uint64_t), "the occupancy of tiles");
   return HL_OK;
 }
 
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
                              const sheet_stack *sheets, occupancy *occupancy, hl_error *error) {
-  occupancy->grid_count = grid_count;
   occupancy->tiles_x = hl_tiles(view->width);
   occupancy->tiles_y = hl_tiles(view->height);
   occupancy->sheets = sheets->count;
   occupancy->words = (sheets->count + 63) / 64;
   size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
   occupancy->tile_words = (int)((tiles + 63) / 64);
-  hl_status status = reserve(context, &occupancy->by_tile, &occupancy->by_tile_capacity,
-                             (size_t)grid_count * tiles * (size_t)occupancy->words, error);
-  if (status == HL_OK)
-    status = reserve(context, &occupancy->by_sheet, &occupancy->by_sheet_capacity,
-                     (size_t)occupancy->words * 64 * (size_t)occupancy->tile_words, error);
-  if (status != HL_OK) return status;
+  occupancy->rectangle = hl_allocate(context, (size_t)grid_count, sizeof(tile_rectangle));
+  if (occupancy->rectangle == NULL) return hl_fail_memory(error, sizeof(tile_rectangle), "the occupancy of tiles");
   for (int g = 0; g < grid_count; g++) {
-    occupancy_job job = {occupancy, &grids[g], g, {{{0}}, {0}}, sheets};
+    footprint_map map;
+    hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &map);
+    tile_rectangle *r = &occupancy->rectangle[g];
+    *r = find_rectangle(&grids[g], &map, occupancy);
+    r->first = occupancy->patch_count;
+    occupancy->patch_count += (size_t)r->width * (size_t)r->height;
+  }
+  hl_status status = allocate(context, occupancy, tiles, error);
+  if (status != HL_OK) return status;
+  number_patches(occupancy, grid_count);
+  for (int g = 0; g < grid_count; g++) {
+    occupancy_job job = {occupancy, &grids[g], &occupancy->rectangle[g], {{{0}}, {0}}, sheets};
     hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &job.map);
     hl_pool_run(pool, (grids[g].relevant_count + BRICKS_A_TASK - 1) / BRICKS_A_TASK, mark_bricks, &job);
   }
@@ -158,7 +216,11 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *gri
 }
 
 void hl_occupancy_release(hl_context *context, occupancy *occupancy) {
-  hl_release(context, occupancy->by_tile);
+  hl_release(context, occupancy->rectangle);
+  hl_release(context, occupancy->patch_of);
+  hl_release(context, occupancy->first_patch);
+  hl_release(context, occupancy->patch_grid);
+  hl_release(context, occupancy->by_patch);
   hl_release(context, occupancy->by_sheet);
   *occupancy = (struct occupancy){0};
 }

@@ -14,23 +14,33 @@ typedef struct sheet_stack {
   int count;
 } sheet_stack;
 
+/* The tiles of a view that one grid can touch: nothing is kept or done for it elsewhere. */
+typedef struct tile_rectangle {
+  int x, y, width, height; /* tiles */
+  size_t first;            /* its first tile in patch_of; row after row */
+} tile_rectangle;
+
+/* A patch is one grid's part in one tile. A tile's patches follow each other, in the order of the grids. */
 typedef struct occupancy {
-  int grid_count, tiles_x, tiles_y, sheets;
-  int words;            /* 64-bit words of one tile: sheets rounded up */
-  int tile_words;       /* 64-bit words of one sheet: tiles rounded up */
-  uint64_t *by_tile;    /* owned; [grids][tiles][words]; bit = sheet */
-  uint64_t *by_sheet;   /* owned; [words * 64][tile_words]; bit = tile, all grids together */
-  size_t by_tile_capacity, by_sheet_capacity; /* words allocated */
+  int tiles_x, tiles_y, sheets;
+  int words;                 /* 64-bit words of one patch: sheets rounded up */
+  int tile_words;            /* 64-bit words of one sheet: tiles rounded up */
+  tile_rectangle *rectangle; /* owned; [grids] */
+  size_t patch_count;
+  uint32_t *patch_of;        /* owned; [patches]; the patch of each tile of each grid's rectangle */
+  uint32_t *first_patch;     /* owned; [tiles + 1]; a tile's patches */
+  uint32_t *patch_grid;      /* owned; [patches]; whose it is */
+  uint64_t *by_patch;        /* owned; [patches][words]; bit = sheet */
+  uint64_t *by_sheet;        /* owned; [words * 64][tile_words]; bit = tile, all grids together */
 } occupancy;
 
-/* Rebuilds for a view of width x height pixels; keeps its memory between frames. */
+/* Builds an empty occupancy for a view of width x height pixels. What fails half-way is released as usual. */
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
                              const sheet_stack *sheets, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
-static inline int hl_occupancy_has(const occupancy *occupancy, int grid, size_t tile, int sheet) {
-  size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
-  const uint64_t *bits = occupancy->by_tile + ((size_t)grid * tiles + tile) * (size_t)occupancy->words;
+static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
+  const uint64_t *bits = occupancy->by_patch + patch * (size_t)occupancy->words;
   return (int)(bits[sheet / 64] >> (sheet % 64) & 1);
 }
 
@@ -53,5 +63,7 @@ bool hl_footprint_bounds(const footprint_map *map, const double centre[3], const
 
 /* Index-space bounds of the points that a brick's cells stand for, borders stretched by margin voxels. */
 void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double centre[3], double half[3]);
+/* The box around all relevant bricks; false if there is none. */
+bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
 #endif

@@ -346,6 +346,8 @@ static void test_fields(void **unused) {
 typedef struct shade_state {
   shade_job job;
   shade_volume volumes[2];
+  shade_patch patches[2];
+  int patch_count;
   shade_light lights[3];
   uint32_t blocks;
   float sheet[4][3 * TILE][3 * TILE];     /* one tile with a tile of margin */
@@ -358,7 +360,7 @@ static void call_shade(const hot_functions *hot, void *state) {
   shade_state *s = state;
   s->out.samples = 0;
   _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
-  s->out.open = hot->shade_tile(&s->job, 0, 0, s->blocks, scratch, s->out.pixels, &s->out.samples);
+  s->out.open = hot->shade_tile(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels, &s->out.samples);
 }
 
 static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
@@ -382,18 +384,19 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   memset(s, 0, sizeof *s);
   s->job = (shade_job){.rays = random_rays(seed, round), .through = {0.1f, 0.2f, 0.5f}, .towards_eye = {0, 0.6f, -0.8f},
                        .normal = {0, 0, 1}, .path = 0.6f, .height = 1, .spacing = 0.5f, .back_to_front = round % 4 == 2,
-                       .volumes = s->volumes, .volume_count = 1 + round % 2, .lights = s->lights, .light_count = round % 4,
-                       .ambient = {0.1f, 0.2f, 0}, .stride = 3 * TILE, .channels = round % 3 ? 3 : 1};
+                       .lights = s->lights, .light_count = round % 4,
+                       .ambient = {0.1f, 0.2f, 0}, .channels = round % 3 ? 3 : 1};
+  s->patch_count = 1 + round % 2;
   if (round == 0) s->job.light_count = 2;
   set_up_lights(s, seed, round);
   for (int v = 0; v < 2; v++) {
     fill_salted(&s->sheet[2 * v][0][0], 2 * 9 * TILE_PIXELS, seed, -0.1, 1.1);
     if (round % 8 == 3) s->sheet[2 * v][20][20] = NAN;
     s->volumes[v] = (shade_volume){&classifier_bench.classifier, &s->sheet[2 * v][TILE][TILE], &s->sheet[2 * v + 1][TILE][TILE],
-                                   v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL,
-                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, 0.5f, 0.8f, 0.3f, 25, {1, 0.5f, 0},
+                                   3 * TILE, (round + v) % 2, (round + v) % 7 != 6, v == 0, 0.5f, 0.8f, 0.3f, 25, {1, 0.5f, 0},
                                    {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}}, {-0.5f, -0.5f, -0.5f},
                                    {8.5f, 9.5f, 10.5f}};
+    s->patches[v] = (shade_patch){&s->volumes[v], 0, v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL};
   }
   fill_salted(s->cut[0], TILE_PIXELS, seed, 0, 1);
   fill_salted(s->cut[1], TILE_PIXELS, seed, 0.5, 2);
