@@ -5,11 +5,11 @@
 #include "commands.h"
 #include "message.h"
 
-static const cli_command *const commands[] = {&render_command, &info_command, &diff_command};
+static const cli_command *const commands[] = {&render_command, &info_command, &diff_command, &bench_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 /* Names that are promised, and refused until they are kept. */
-static const char *const reserved_commands[] = {"make", "bench", "view"};
+static const char *const reserved_commands[] = {"make", "view"};
 enum { RESERVED_COUNT = sizeof reserved_commands / sizeof reserved_commands[0] };
 
 static const char *command_name(const void *data, size_t index) {
@@ -64,7 +64,7 @@ static int print_topic(const char *topic) {
 
 static int run_command(const cli_command *command, int argument_count, char **arguments) {
   cli_value values[MAXIMUM_OPTIONS] = {0};
-  char *operands[MAXIMUM_OPERANDS] = {0};
+  char *operands[MAXIMUM_OPERANDS + 1] = {0};
   bool help;
   int exit_code = options_parse(command, argument_count, arguments, values, operands, &help);
   if (exit_code != EXIT_CODE_OK) return exit_code;

@@ -55,16 +55,17 @@ typedef struct cli_value {
 typedef struct cli_command {
   const char *name;
   const char *operands;  /* as help shows them: "INPUT" */
-  int operand_count;     /* exactly so many */
+  int operand_count;     /* so many at least */
+  int operand_most;      /* so many at most; 0: exactly operand_count */
   const char *summary;   /* one line, for the list of commands */
   const char *description;
   const cli_option *options;
   size_t option_count;
-  /* values: [option_count]; operands: [operand_count]. Returns the exit code. */
+  /* values: [option_count]; operands: those given, null after the last. Returns the exit code. */
   int (*run)(const cli_value *values, char **operands);
 } cli_command;
 
-enum { MAXIMUM_OPTIONS = 48, MAXIMUM_OPERANDS = 2 };
+enum { MAXIMUM_OPTIONS = 48, MAXIMUM_OPERANDS = 16 };
 
 /* Parses what follows the subcommand's name. Returns EXIT_CODE_OK, or another exit code after having
  * printed one line. *help is set, and parsing stops, at --help or -h. */

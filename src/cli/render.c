@@ -2,13 +2,13 @@
 #define _GNU_SOURCE
 #include "render.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "commands.h"
+#include "input.h"
 #include "output.h"
 
 /* One run, from INPUT to OUT. */
@@ -24,15 +24,9 @@ typedef struct render_job {
   render_result result;
 } render_job;
 
-/* The part of a path after its last slash. */
-static const char *base_name(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash != NULL ? slash + 1 : path;
-}
-
 /* "head.png" for "scans/head.nii.gz", in the current folder; owned by the caller. */
 static char *default_output(const char *input) {
-  const char *base = base_name(input);
+  const char *base = input_base_name(input);
   size_t length = strlen(base);
   if (has_extension(base, ".gz")) length -= 3;
   size_t stem = length;
@@ -45,22 +39,6 @@ static char *default_output(const char *input) {
   return name;
 }
 
-/* Scenes are told by name; where the name says nothing, by a first character '{'. */
-static bool is_scene(const char *path) {
-  static const char *const volume_extensions[] = {".raw", ".gz",  ".nrrd", ".nhdr", ".mha",
-                                                  ".mhd", ".nii", ".vti",  ".vtk"};
-  if (has_extension(path, ".json")) return true;
-  for (size_t i = 0; i < sizeof volume_extensions / sizeof volume_extensions[0]; i++)
-    if (has_extension(path, volume_extensions[i])) return false;
-  FILE *file = fopen(path, "rb");
-  if (file == NULL) return false;
-  int c;
-  do c = getc(file);
-  while (c != EOF && isspace(c));
-  fclose(file);
-  return c == '{';
-}
-
 static int job_open(render_job *job) {
   const cli_value *values = job->values;
   int exit_code = render_check_options(values);
@@ -71,26 +49,16 @@ static int job_open(render_job *job) {
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,
-                              .subject = base_name(job->input),
+                              .subject = input_base_name(job->input),
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
                               .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
   return host_open(&options, &job->host);
 }
 
-static hl_status load_volume_scene(render_job *job, hl_error *error) {
-  hl_volume *volume = NULL;
-  hl_status status = hl_volume_load(job->host.context, job->input, &volume, error);
-  if (status == HL_OK)
-    status = hl_scene_for_volume(job->host.context, volume, job->input, &job->scene, error);
-  hl_volume_release(volume);
-  return status;
-}
-
 static int job_load(render_job *job) {
   hl_error error = {0};
-  job->bare = !is_scene(job->input);
-  hl_status status = job->bare ? load_volume_scene(job, &error)
-                               : hl_scene_load(job->host.context, job->input, &job->scene, &error);
+  job->bare = !input_is_scene(job->input);
+  hl_status status = input_load(job->host.context, job->input, job->bare, &job->scene, &error);
   if (status != HL_OK) return host_fail(&job->host, PHASE_READ, status, &error);
   int exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
   job->result.seconds.load = clock_seconds() - job->started;

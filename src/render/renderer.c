@@ -230,21 +230,27 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
 }
 
 static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
-  double image = 0, light = 0;
+  double image = 0, light = 0, composite = 0;
   for (int i = 0; i < hl_pool_threads(sweep->pool); i++) {
     statistics->samples_shaded += sweep->counts[i].samples;
     statistics->tiles_filled_image += sweep->counts[i].filled_image;
     statistics->tiles_filled_light += sweep->counts[i].filled_light;
     statistics->tiles_skipped_image += sweep->counts[i].skipped_image;
     statistics->tiles_skipped_light += sweep->counts[i].skipped_light;
+    statistics->pixels_filled_image += sweep->counts[i].pixels_image;
+    statistics->pixels_filled_light += sweep->counts[i].pixels_light;
+    statistics->pixels_skipped_image += sweep->counts[i].pixels_skipped_image;
+    statistics->pixels_skipped_light += sweep->counts[i].pixels_skipped_light;
     image += sweep->counts[i].seconds_image;
     light += sweep->counts[i].seconds_light;
+    composite += sweep->counts[i].seconds_composite;
   }
   statistics->sheets += sweep->geometry->sheets.count;
   statistics->seconds_sort += sweep->seconds_sort;
   double share = image + light > 0 ? image / (image + light) : 1;
   statistics->seconds_fill_image += sweep->seconds_fill * share;
   statistics->seconds_fill_light += sweep->seconds_fill * (1 - share);
+  if (light > 0) statistics->seconds_composite_light += sweep->seconds_fill * (1 - share) * composite / light;
   statistics->seconds_shade += sweep->seconds_shade;
   statistics->seconds_soften += sweep->seconds_soften;
 }

@@ -50,8 +50,9 @@ typedef struct sweep_light {
 } sweep_light;
 
 typedef struct sweep_counts {
-  uint64_t samples, filled_image, filled_light, skipped_image, skipped_light;
-  double seconds_image, seconds_light; /* spent filling */
+  uint64_t samples, filled_image, filled_light, skipped_image, skipped_light; /* pixels shaded; tiles */
+  uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
+  double seconds_image, seconds_light, seconds_composite; /* spent filling; the composite is part of the light's */
 } sweep_counts;
 
 typedef struct sweep {

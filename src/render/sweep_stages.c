@@ -36,6 +36,8 @@ static uint32_t needed_blocks(const sweep *sweep, size_t tile) {
   return need & ALL_BLOCKS;
 }
 
+static uint64_t pixels_in(uint32_t blocks) { return (uint64_t)__builtin_popcount(blocks) * BLOCK_PIXELS; }
+
 static uint32_t fill_tile(const sweep *sweep, const fill_source *source, int tile_x, int tile_y, uint32_t need,
                           float *density) {
   return sweep->splat ? sweep->hot->splat_tile(source, tile_x, tile_y, need, density)
@@ -67,8 +69,11 @@ static void fill_image_patch(sweep *sweep, size_t tile, size_t patch, int worker
   if (need != 0) {
     filled = fill_tile(sweep, &sweep->image_sources[g], tile_x, tile_y, need, density);
     sweep->counts[worker].filled_image++;
+    sweep->counts[worker].pixels_image += pixels_in(filled);
+    sweep->counts[worker].pixels_skipped_image += pixels_in(ALL_BLOCKS & ~need);
   } else if (occupied) {
     sweep->counts[worker].skipped_image++;
+    sweep->counts[worker].pixels_skipped_image += TILE_PIXELS;
   }
   if (filled == 0 && sweep->filled[slot][patch] != 0)
     for (int row = 0; row < TILE; row++) memset(to + (size_t)row * sheets->stride, 0, TILE * sizeof(float));
@@ -82,7 +87,7 @@ static void fill_image_patch(sweep *sweep, size_t tile, size_t patch, int worker
 /* One volume's densities on a sheet of a light's tile, in the needed blocks at least: kept from the slab before, or
  * filled now. Null: empty. */
 static const float *light_density(sweep *sweep, int light_index, size_t tile, size_t patch, int sheet, uint32_t need,
-                                  uint32_t *blocks) {
+                                  int worker, uint32_t *blocks) {
   sweep_light *light = &sweep->lights[light_index];
   if (sheet < 0 || !hl_occupancy_has(&light->occupancy, patch, sheet)) return NULL;
   int g = (int)light->occupancy.patch_grid[patch];
@@ -95,6 +100,7 @@ static const float *light_density(sweep *sweep, int light_index, size_t tile, si
                                        light->density + at * TILE_PIXELS);
     kept->sheet = sheet;
     kept->need = (uint16_t)need;
+    sweep->counts[worker].pixels_light += pixels_in(kept->blocks);
   }
   *blocks |= kept->blocks & need;
   return light->density + at * TILE_PIXELS;
@@ -108,6 +114,7 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
   uint32_t need = buffer->tile_lit[tile];
   if (need == 0) {
     sweep->counts[worker].skipped_light++;
+    sweep->counts[worker].pixels_skipped_light += TILE_PIXELS;
     return;
   }
   int found = 0;
@@ -117,8 +124,8 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
     uint32_t g = light->occupancy.patch_grid[patch], blocks = 0;
     const hl_scene_volume *scene = sweep->volumes[g].scene;
     if (!scene->casts_shadow) continue;
-    const float *before = light_density(sweep, light_index, tile, patch, sweep->light_sheet - 1, need, &blocks);
-    const float *density = light_density(sweep, light_index, tile, patch, sweep->light_sheet, need, &blocks);
+    const float *before = light_density(sweep, light_index, tile, patch, sweep->light_sheet - 1, need, worker, &blocks);
+    const float *density = light_density(sweep, light_index, tile, patch, sweep->light_sheet, need, worker, &blocks);
     if (blocks == 0) continue;
     size_t at = patch * TILE_PIXELS;
     bool cut = sweep->grids[g].cut;
@@ -131,6 +138,7 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
     found++;
   }
   sweep->counts[worker].filled_light++;
+  sweep->counts[worker].pixels_skipped_light += pixels_in(ALL_BLOCKS & ~need);
   if (found == 0) return;
   attenuate_job job = sweep->attenuate[light_index];
   int tile_x = (int)(tile % (size_t)buffer->tiles_x), tile_y = (int)(tile / (size_t)buffer->tiles_x);
@@ -145,8 +153,10 @@ static void fill_light_tile(sweep *sweep, int light_index, size_t tile, int work
   }
   uint32_t worked = 0;
   for (int i = 0; i < found; i++) worked |= volumes[i].blocks;
+  double start = hl_clock_seconds();
   buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | sweep->hot->attenuate_tile(&job, tile_x, tile_y));
   buffer->tile_touched[tile] = 1;
+  sweep->counts[worker].seconds_composite += hl_clock_seconds() - start;
 }
 
 enum { TILES_A_TASK = 4 };

@@ -44,7 +44,7 @@ def check(condition, problem):
         problems.append(problem)
 
 
-commands = re.findall(r"^  (\w+) [A-Z]", output(program, "--help"), re.M)
+commands = re.findall(r"^  (\w+) \[?[A-Z]", output(program, "--help"), re.M)
 commands.remove("help")
 check(len(commands) >= 3, "the help text lists fewer than three commands")
 manual = manual_sections()

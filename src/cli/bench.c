@@ -1,0 +1,231 @@
+/* cli/bench.c - `halflight bench [INPUT ...]`: times frames of moving scenes, kinds of shadows in turn. */
+#include "bench.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "input.h"
+#include "render.h"
+
+static const cli_choice moves[] = {{"camera", MOVE_CAMERA}, {"light", MOVE_LIGHT}, {"tf", MOVE_TF}, {NULL, 0}};
+static const cli_choice kernels[] = {
+    {"bspline", HL_KERNEL_BSPLINE}, {"gaussian", HL_KERNEL_GAUSSIAN}, {"linear", HL_KERNEL_LINEAR}, {NULL, 0}};
+static const cli_choice reconstructions[] = {{"auto", HL_RECONSTRUCTION_AUTO},
+                                             {"splat", HL_RECONSTRUCTION_SPLAT},
+                                             {"gather", HL_RECONSTRUCTION_GATHER},
+                                             {NULL, 0}};
+static const cli_choice instruction_sets[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
+                                              {"scalar", HL_INSTRUCTION_SET_SCALAR},
+                                              {"avx2", HL_INSTRUCTION_SET_AVX2},
+                                              {"avx512", HL_INSTRUCTION_SET_AVX512},
+                                              {NULL, 0}};
+
+static const cli_option bench_options[BENCH_OPTION_COUNT] = {
+    [BENCH_FRAMES] = {.name = "frames",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "N",
+                      .group = "Options",
+                      .help = "measured frames of each kind (default 9)",
+                      .count = 1,
+                      .whole = true,
+                      .low = 1,
+                      .high = 10000},
+    [BENCH_MOVE] = {.name = "move",
+                    .kind = OPTION_CHOICE,
+                    .choices = moves,
+                    .help = "what changes from frame to frame: the camera turns\n(default), the light turns, or opacities change"},
+    [BENCH_SIZE] = {.name = "size",
+                    .kind = OPTION_NUMBERS,
+                    .argument = "WxH",
+                    .help = "pixels (default: the scene's)",
+                    .count = 2,
+                    .separator = 'x',
+                    .whole = true,
+                    .low = 1,
+                    .high = 32768},
+    [BENCH_TF] = {.name = "tf",
+                  .kind = OPTION_TEXT,
+                  .argument = "FILE|PRESET",
+                  .help = "transfer function of every volume, as for render"},
+    [BENCH_SHEET_SPACING] = {.name = "sheet-spacing",
+                             .kind = OPTION_NUMBERS,
+                             .argument = "VOXELS",
+                             .help = "distance of sheets in smallest voxel edges",
+                             .count = 1,
+                             .low = 0.01,
+                             .high = 100},
+    [BENCH_KERNEL] = {.name = "kernel", .kind = OPTION_CHOICE, .choices = kernels, .help = "of each voxel"},
+    [BENCH_RECONSTRUCTION] = {.name = "reconstruction",
+                              .kind = OPTION_CHOICE,
+                              .choices = reconstructions,
+                              .help = "push footprints, or pull samples"},
+    [BENCH_THREADS] = {.name = "threads",
+                       .kind = OPTION_NUMBERS,
+                       .argument = "N",
+                       .help = "0: one per processor (default)",
+                       .count = 1,
+                       .whole = true,
+                       .low = 0,
+                       .high = 1024},
+    [BENCH_INSTRUCTION_SET] = {.name = "instruction-set",
+                               .kind = OPTION_CHOICE,
+                               .choices = instruction_sets,
+                               .help = "the best there is, unless given"},
+    [BENCH_MAX_MEMORY] = {.name = "max-memory",
+                          .kind = OPTION_BYTES,
+                          .argument = "BYTES",
+                          .help = "fail rather than hold more; suffix K, M, G or T"},
+    [BENCH_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "medians as JSON"},
+};
+
+/* One input being measured. */
+typedef struct bench_job {
+  cli_host *host;
+  const cli_value *values;
+  hl_scene *scene;                       /* owned */
+  bool bare;
+  hl_renderer *renderer[SETTING_COUNT];  /* owned */
+  float *pixels;                         /* owned; [height][width][4] */
+  bench_result *result;
+} bench_job;
+
+/* Options that bench shares with render, as render's own. */
+static int change_scene(bench_job *job) {
+  static const struct { enum bench_option from; enum render_option to; } shared[] = {
+      {BENCH_SIZE, RENDER_SIZE},     {BENCH_TF, RENDER_TF},           {BENCH_SHEET_SPACING, RENDER_SHEET_SPACING},
+      {BENCH_KERNEL, RENDER_KERNEL}, {BENCH_THREADS, RENDER_THREADS}, {BENCH_RECONSTRUCTION, RENDER_RECONSTRUCTION}};
+  cli_value values[RENDER_OPTION_COUNT] = {0};
+  for (size_t i = 0; i < sizeof shared / sizeof shared[0]; i++) values[shared[i].to] = job->values[shared[i].from];
+  return render_change_scene(job->host, values, job->bare, &job->scene);
+}
+
+static int load(bench_job *job, const char *path) {
+  hl_error error = {0};
+  job->bare = path == NULL || !input_is_scene(path);
+  hl_status status = path == NULL ? bench_scene_built_in(job->host->context, &job->scene, &error)
+                                  : input_load(job->host->context, path, job->bare, &job->scene, &error);
+  if (status != HL_OK) return host_fail(job->host, PHASE_READ, status, &error);
+  return change_scene(job);
+}
+
+static int open_renderers(bench_job *job) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  bench_result *result = job->result;
+  result->width = description->width;
+  result->height = description->height;
+  result->frames = job->values[BENCH_FRAMES].given ? (int)job->values[BENCH_FRAMES].number[0] : 9;
+  result->move = job->values[BENCH_MOVE].given ? job->values[BENCH_MOVE].choice : MOVE_CAMERA;
+  job->pixels = malloc(4 * sizeof(float) * (size_t)result->width * (size_t)result->height);
+  if (job->pixels == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for a picture of %dx%d pixels", result->width, result->height);
+  hl_error error = {0};
+  for (int setting = 0; setting < SETTING_COUNT; setting++) {
+    result->run[setting].supported = true;
+    result->run[setting].samples = calloc((size_t)result->frames, sizeof(bench_sample));
+    if (result->run[setting].samples == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for %d frames", result->frames);
+    hl_status status = hl_renderer_create(job->host->context, &job->renderer[setting], &error);
+    if (status != HL_OK) return host_fail(job->host, PHASE_RUN, status, &error);
+  }
+  return EXIT_CODE_OK;
+}
+
+static bench_sample sample_of(double frame, const hl_render_statistics *statistics) {
+  bench_sample sample = {.frame = frame};
+  sample.stage[STAGE_PREPARE] = statistics->seconds_prepare;
+  sample.stage[STAGE_SORT] = statistics->seconds_sort;
+  sample.stage[STAGE_SPLAT_EYE] = statistics->seconds_fill_image;
+  sample.stage[STAGE_SPLAT_LIGHT] = statistics->seconds_fill_light - statistics->seconds_composite_light;
+  sample.stage[STAGE_SHADE] = statistics->seconds_shade;
+  sample.stage[STAGE_COMPOSITE_LIGHT] = statistics->seconds_composite_light;
+  sample.stage[STAGE_SOFTEN] = statistics->seconds_soften;
+  sample.stage[STAGE_OTHER] = frame;
+  for (int stage = 0; stage < STAGE_OTHER; stage++) sample.stage[STAGE_OTHER] -= sample.stage[stage];
+  return sample;
+}
+
+/* One frame of one setting; frame -1 is the warm-up. A setting that the renderer does not know is left out from then on. */
+static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
+  bench_result *result = job->result;
+  bench_run *run = &result->run[setting];
+  int exit_code = EXIT_CODE_OK;
+  hl_scene *scene = bench_scene_at(job->host, job->scene, job->bare, setting, (enum bench_move)result->move,
+                                   (double)(frame + 1) / (result->frames + 1), &exit_code);
+  if (scene == NULL) return exit_code;
+  hl_error error = {0};
+  run->statistics = (hl_render_statistics){.struct_size = sizeof run->statistics};
+  double start = clock_seconds();
+  hl_status status = hl_renderer_render(job->renderer[setting], scene, job->pixels, 4 * (size_t)result->width,
+                                        &run->statistics, &error);
+  bench_sample sample = sample_of(clock_seconds() - start, &run->statistics);
+  hl_scene_release(scene);
+  if (status == HL_ERROR_UNSUPPORTED && setting == SETTING_SUBLIGHTS) {
+    run->supported = false;
+    return EXIT_CODE_OK;
+  }
+  if (status != HL_OK) return host_fail(job->host, PHASE_RUN, status, &error);
+  if (frame < 0) run->first = sample;
+  else run->samples[frame] = sample;
+  return EXIT_CODE_OK;
+}
+
+/* Settings take turns within each frame, so that a machine that slows down slows all of them. */
+static int run_frames(bench_job *job) {
+  for (int frame = -1; frame < job->result->frames; frame++)
+    for (int setting = 0; setting < SETTING_COUNT; setting++) {
+      if (!job->result->run[setting].supported) continue;
+      int exit_code = run_frame(job, (enum bench_setting)setting, frame);
+      if (exit_code != EXIT_CODE_OK) return exit_code;
+    }
+  return EXIT_CODE_OK;
+}
+
+static int measure(cli_host *host, const cli_value *values, const char *path, bench_result *result) {
+  bench_job job = {.host = host, .values = values, .result = result};
+  result->input = path == NULL ? "built-in" : path;
+  int exit_code = load(&job, path);
+  if (exit_code == EXIT_CODE_OK) exit_code = open_renderers(&job);
+  if (exit_code == EXIT_CODE_OK) exit_code = run_frames(&job);
+  for (int setting = 0; setting < SETTING_COUNT; setting++) hl_renderer_destroy(job.renderer[setting]);
+  hl_scene_release(job.scene);
+  free(job.pixels);
+  return exit_code;
+}
+
+static int run_bench(const cli_value *values, char **operands) {
+  cli_host host;
+  cli_host_options options = {.quiet = true,
+                              .subject = operands[0] != NULL ? operands[0] : "built-in",
+                              .memory_limit = values[BENCH_MAX_MEMORY].bytes,
+                              .instruction_set = (hl_instruction_set)values[BENCH_INSTRUCTION_SET].choice};
+  int exit_code = host_open(&options, &host);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  bench_result results[MAXIMUM_OPERANDS + 1] = {0};
+  size_t count = 0;
+  do {
+    exit_code = measure(&host, values, operands[count], &results[count]);
+    host_clear_bar(&host);
+    if (exit_code == EXIT_CODE_OK && !values[BENCH_JSON].given) bench_print_text(&results[count]);
+    count++;
+  } while (exit_code == EXIT_CODE_OK && operands[count] != NULL);
+  if (exit_code == EXIT_CODE_OK && values[BENCH_JSON].given) bench_print_json(results, count);
+  if (exit_code == EXIT_CODE_OK) exit_code = finish_stdout();
+  for (size_t i = 0; i < count; i++)
+    for (int setting = 0; setting < SETTING_COUNT; setting++) free(results[i].run[setting].samples);
+  host_close(&host);
+  return exit_code;
+}
+
+const cli_command bench_command = {
+    .name = "bench",
+    .operands = "[INPUT ...]",
+    .operand_count = 0,
+    .operand_most = MAXIMUM_OPERANDS,
+    .summary = "time frames without, with hard and with soft shadows",
+    .description =
+        "Times frames of scenes or volumes (without INPUT: of a volume of its own) without shadows,\n"
+        "with hard ones and with each kind of soft ones, in turn, after a warm-up. Prints medians in\n"
+        "milliseconds, whole and by stage.",
+    .options = bench_options,
+    .option_count = BENCH_OPTION_COUNT,
+    .run = run_bench,
+};

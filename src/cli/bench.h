@@ -1,0 +1,70 @@
+/* cli/bench.h - shared by the files of `halflight bench`. */
+#ifndef HL_CLI_BENCH_H
+#define HL_CLI_BENCH_H
+
+#include "host.h"
+#include "options.h"
+
+enum bench_option {
+  BENCH_FRAMES,
+  BENCH_MOVE,
+  BENCH_SIZE,
+  BENCH_TF,
+  BENCH_SHEET_SPACING,
+  BENCH_KERNEL,
+  BENCH_RECONSTRUCTION,
+  BENCH_THREADS,
+  BENCH_INSTRUCTION_SET,
+  BENCH_MAX_MEMORY,
+  BENCH_JSON,
+  BENCH_OPTION_COUNT
+};
+
+/* What is compared: kinds of shadows. */
+enum bench_setting { SETTING_OFF, SETTING_HARD, SETTING_PAPER, SETTING_CASCADE, SETTING_SUBLIGHTS, SETTING_COUNT };
+
+/* What changes from frame to frame. */
+enum bench_move { MOVE_CAMERA, MOVE_LIGHT, MOVE_TF };
+
+/* One frame's seconds, in the order in which they are reported. */
+enum bench_stage {
+  STAGE_PREPARE,
+  STAGE_SORT,
+  STAGE_SPLAT_EYE,
+  STAGE_SPLAT_LIGHT,
+  STAGE_SHADE,
+  STAGE_COMPOSITE_LIGHT,
+  STAGE_SOFTEN,
+  STAGE_OTHER,
+  STAGE_COUNT
+};
+
+typedef struct bench_sample {
+  double frame, stage[STAGE_COUNT]; /* seconds */
+} bench_sample;
+
+typedef struct bench_run {
+  bool supported;
+  bench_sample first;    /* the warm-up's first frame: includes preparing the volumes */
+  bench_sample *samples; /* owned; [frames] */
+  hl_render_statistics statistics; /* of the last frame */
+} bench_run;
+
+typedef struct bench_result {
+  const char *input;
+  int width, height, frames, move;
+  bench_run run[SETTING_COUNT];
+} bench_result;
+
+/* The scene as a frame of one setting sees it; null after a printed error. at: 0 to 1, the place in the motion. */
+hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, bool bare, enum bench_setting setting, enum bench_move move,
+                         double at, int *exit_code);
+
+/* A scene without files: balls in a box. */
+hl_status bench_scene_built_in(hl_context *context, hl_scene **scene, hl_error *error);
+
+/* Medians over the frames, as JSON or as a table on stdout. */
+void bench_print_json(const bench_result *results, size_t count);
+void bench_print_text(const bench_result *result);
+
+#endif
