@@ -1,6 +1,8 @@
 /* light/light_source.c - lights from the scene's words into frame space. */
 #include "light/light_source.h"
 
+#include "scene/light_shape.h"
+
 light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 centre, vec3 content) {
   light_source source = {.parallel = light->type == HL_LIGHT_DIRECTIONAL, .light = light};
   source.shadows = light->shadows == HL_SHADOWS_DEFAULT ? settings->shadows : light->shadows;
@@ -9,10 +11,12 @@ light_source hl_light_source(const hl_light *light, const hl_render_settings *se
     source.direction = vec3_normalise(vec3_of(light->direction));
     source.size = 2 * tan(light->angular_diameter_deg * HL_PI / 360);
   } else {
-    source.position = vec3_subtract(vec3_of(light->position), centre);
+    source.position = vec3_subtract(hl_light_centre(light), centre);
     vec3 way = vec3_subtract(content, source.position);
     source.direction = vec3_length(way) > 0 ? vec3_normalise(way) : (vec3){0, 0, 1};
-    source.size = 2 * light->radius;
+    mat3 spread = hl_light_spread(light, vec3_scale(source.direction, -1));
+    /* a disk of diameter D spreads D^2 / 16 along both its axes: the one that spreads as much in all */
+    source.size = 4 * sqrt((spread.row[0].x + spread.row[1].y + spread.row[2].z) / 2);
   }
   if (source.shadows == HL_SHADOWS_SOFT && !(source.size > 0)) source.shadows = HL_SHADOWS_HARD;
   return source;

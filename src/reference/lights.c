@@ -2,13 +2,21 @@
  *
  * A light is shaded as if all its light came from its centre; its extent matters to shadows alone: the
  * transmittance is the mean over a fixed set of points on the light, the same for every sample, so that
- * the picture has no noise.
+ * the picture has no noise. A sphere is the disk of its radius that faces the sample.
  */
 #include "core/memory.h"
 #include "reference/reference.h"
+#include "scene/light_shape.h"
 
 /* Optical depth in every channel beyond which nothing is seen of a light: exp(-30) is 1e-13. */
 static const double DARK_DEPTH = 30;
+
+/* Part of 1 that is left of i steps of `step` from the middle of the first: a golden section spreads any number of
+ * them evenly. */
+static double spread(size_t i, double step) {
+  double x = 0.5 + (double)i * step;
+  return x - floor(x);
+}
 
 /* Point i of n spread evenly over the disk of radius 1: the sunflower, by the golden angle
  * (Vogel, "A better way to construct the sunflower head", 1979). */
@@ -18,68 +26,113 @@ static void sunflower(size_t i, size_t n, double *u, double *v) {
   *v = radius * sin(angle);
 }
 
-static void fill_disk(vec3 centre, vec3 normal, double radius, size_t n, vec3 *points) {
+static vec3 point_of_disk(vec3 centre, vec3 normal, double radius, size_t i, size_t n) {
   vec3 u_axis = vec3_perpendicular(normal), v_axis = vec3_cross(normal, u_axis);
+  double u, v;
+  sunflower(i, n, &u, &v);
+  return vec3_add(centre, vec3_add(vec3_scale(u_axis, radius * u), vec3_scale(v_axis, radius * v)));
+}
+
+/* One point in each of n strips along the first edge, golden sections apart along the second. */
+static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points) {
+  vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
   for (size_t i = 0; i < n; i++) {
-    double u, v;
-    sunflower(i, n, &u, &v);
-    points[i] = vec3_add(centre, vec3_add(vec3_scale(u_axis, radius * u), vec3_scale(v_axis, radius * v)));
+    double a = ((double)i + 0.5) / (double)n - 0.5, b = spread(i, (sqrt(5) - 1) / 2) - 0.5;
+    points[i] = vec3_add(centre, vec3_add(vec3_scale(edge1, a), vec3_scale(edge2, b)));
   }
 }
 
-/* Centre of the world bounds of all boxes. */
-static vec3 scene_centre(const reference *all) {
-  vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t v = 0; v < all->scene->volume_count; v++) {
-    const reference_volume *volume = &all->volumes[v];
-    affine3 to_world = hl_scene_volume_index_to_world(volume->described);
-    for (int corner = 0; corner < 8; corner++) {
-      vec3 p = affine3_apply(to_world, (vec3){corner & 1 ? volume->high[0] : volume->low[0],
-                                              corner & 2 ? volume->high[1] : volume->low[1],
-                                              corner & 4 ? volume->high[2] : volume->low[2]});
-      low = (vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
-      high = (vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
+/* Whether a point of the polygon's plane is inside: a ray from it along u crosses an odd number of edges. */
+static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 v_axis) {
+  bool inside = false;
+  for (size_t i = 0; i < light->vertex_count; i++) {
+    vec3 a = vec3_subtract(vec3_of(light->vertices[i]), point);
+    vec3 b = vec3_subtract(vec3_of(light->vertices[(i + 1) % light->vertex_count]), point);
+    double av = vec3_dot(a, v_axis), bv = vec3_dot(b, v_axis);
+    if ((av > 0) == (bv > 0)) continue;
+    double au = vec3_dot(a, u_axis), bu = vec3_dot(b, u_axis);
+    if (au + (bu - au) * av / (av - bv) > 0) inside = !inside;
+  }
+  return inside;
+}
+
+/* A sequence spread evenly over the rectangle around the polygon (Roberts's, by the powers of the plastic number),
+ * of which those inside are kept. The rectangle has a side along the polygon's longest edge. */
+static void fill_polygon(const hl_light *light, size_t n, vec3 *points) {
+  const double plastic = 1.32471795724474602596;
+  polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
+  vec3 u_axis = {0, 0, 0};
+  for (size_t i = 0; i < light->vertex_count; i++) {
+    vec3 edge = vec3_subtract(vec3_of(light->vertices[(i + 1) % light->vertex_count]), vec3_of(light->vertices[i]));
+    edge = vec3_subtract(edge, vec3_scale(shape.normal, vec3_dot(edge, shape.normal)));
+    if (vec3_length(edge) > vec3_length(u_axis)) u_axis = edge;
+  }
+  u_axis = vec3_normalise(u_axis);
+  vec3 v_axis = vec3_cross(shape.normal, u_axis);
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (size_t i = 0; i < light->vertex_count; i++) {
+    vec3 vertex = vec3_subtract(vec3_of(light->vertices[i]), shape.centre);
+    const double at[2] = {vec3_dot(vertex, u_axis), vec3_dot(vertex, v_axis)};
+    for (int axis = 0; axis < 2; axis++) {
+      low[axis] = fmin(low[axis], at[axis]);
+      high[axis] = fmax(high[axis], at[axis]);
     }
   }
-  return vec3_scale(vec3_add(low, high), 0.5);
+  for (size_t i = 0, found = 0; found < n; i++) {
+    double u = low[0] + (high[0] - low[0]) * spread(i, 1 / plastic);
+    double v = low[1] + (high[1] - low[1]) * spread(i, 1 / (plastic * plastic));
+    vec3 point = vec3_add(shape.centre, vec3_add(vec3_scale(u_axis, u), vec3_scale(v_axis, v)));
+    if (inside_polygon(light, point, u_axis, v_axis)) points[found++] = point;
+  }
 }
 
-/* Directional: a flat disk at unit distance, each of its points a direction. Point: a sphere is seen as a
- * disk, here as one disk for the whole scene, facing its centre. */
-static void fill_points(const reference *all, reference_light *light) {
+static void fill_points(reference_light *light) {
+  const hl_light *described = light->described;
   size_t n = light->point_count;
   if (n == 1) {
     light->points[0] = light->directional ? light->towards : light->centre;
-  } else if (light->directional) {
-    double radius = tan(light->described->angular_diameter_deg * HL_PI / 360);
-    fill_disk(light->towards, light->towards, radius, n, light->points);
-    for (size_t i = 0; i < n; i++) light->points[i] = vec3_normalise(light->points[i]);
-  } else {
-    vec3 axis = vec3_normalise(vec3_subtract(scene_centre(all), light->centre));
-    if (!(vec3_length(axis) > 0)) axis = (vec3){0, 0, 1};
-    fill_disk(light->centre, axis, light->described->radius, n, light->points);
+  } else if (light->directional) { /* a flat disk at unit distance, each of its points a direction */
+    double radius = tan(described->angular_diameter_deg * HL_PI / 360);
+    for (size_t i = 0; i < n; i++)
+      light->points[i] = vec3_normalise(point_of_disk(light->towards, light->towards, radius, i, n));
+  } else if (described->type == HL_LIGHT_RECT) {
+    fill_rect(described, light->centre, n, light->points);
+  } else if (described->type == HL_LIGHT_POLYGON) {
+    fill_polygon(described, n, light->points);
+  } else if (described->type == HL_LIGHT_DISK) {
+    vec3 normal = vec3_normalise(vec3_of(described->normal));
+    for (size_t i = 0; i < n; i++) light->points[i] = point_of_disk(light->centre, normal, described->radius, i, n);
   }
+}
+
+static bool has_extent(const hl_light *light) {
+  switch (light->type) {
+    case HL_LIGHT_DIRECTIONAL: return light->angular_diameter_deg > 0;
+    case HL_LIGHT_RECT: return vec3_length(vec3_of(light->edge1)) + vec3_length(vec3_of(light->edge2)) > 0;
+    case HL_LIGHT_POLYGON: return true;
+    case HL_LIGHT_POINT:
+    case HL_LIGHT_DISK:
+    case HL_LIGHT_SPOT: break;
+  }
+  return light->radius > 0;
 }
 
 hl_status hl_reference_light_create(const reference *all, const hl_light *light, int point_count,
                                     reference_light *made, hl_error *error) {
-  if (light->type != HL_LIGHT_DIRECTIONAL && light->type != HL_LIGHT_POINT)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "the reference renders directional and point lights only: use one of these");
   *made = (reference_light){.described = light, .directional = light->type == HL_LIGHT_DIRECTIONAL};
   for (int c = 0; c < 3; c++) made->color[c] = light->color[c] * light->intensity;
   if (made->directional)
     made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
   else
-    made->centre = vec3_of(light->position);
+    made->centre = hl_light_centre(light);
   hl_shadows shadows = light->shadows == HL_SHADOWS_DEFAULT ? all->scene->render.shadows : light->shadows;
   if (shadows == HL_SHADOWS_OFF) return HL_OK;
-  double extent = made->directional ? light->angular_diameter_deg : light->radius;
-  made->point_count = shadows == HL_SHADOWS_SOFT && extent > 0 ? (size_t)point_count : 1;
+  made->point_count = shadows == HL_SHADOWS_SOFT && has_extent(light) ? (size_t)point_count : 1;
   made->points = hl_allocate(all->context, made->point_count, sizeof *made->points);
   if (made->points == NULL)
     return hl_fail_memory(error, made->point_count * sizeof *made->points, "points on a light");
-  fill_points(all, made);
+  made->sphere = light->type == HL_LIGHT_POINT && made->point_count > 1;
+  fill_points(made);
   return HL_OK;
 }
 
@@ -119,8 +172,12 @@ static void add_transmittance(const reference *all, vec3 point, vec3 direction, 
 void hl_reference_light_transmittance(const reference *all, const reference_light *light, vec3 point,
                                       crossing *scratch, double transmittance[3]) {
   double sum[3] = {0, 0, 0};
+  vec3 facing = vec3_normalise(vec3_subtract(point, light->centre));
+  if (!(vec3_length(facing) > 0)) facing = (vec3){0, 0, 1};
   for (size_t i = 0; i < light->point_count; i++) {
     vec3 direction = light->points[i];
+    if (light->sphere) /* seen from the point: its disk */
+      direction = point_of_disk(light->centre, facing, light->described->radius, i, light->point_count);
     double distance = INFINITY;
     if (!light->directional) {
       vec3 offset = vec3_subtract(direction, point);

@@ -42,10 +42,11 @@ typedef struct reference_volume {
 typedef struct reference_light {
   const hl_light *described;
   bool directional;
+  bool sphere;                /* points are found anew for every sample */
   vec3 centre;                /* world; not for directional lights */
   vec3 towards;               /* directional lights: unit vector to the light */
   double color[3];            /* color * intensity */
-  vec3 *points;               /* owned; null where the light casts no shadows */
+  vec3 *points;               /* owned; null where the light casts no shadows; not set for spheres */
   size_t point_count;
 } reference_light;
 

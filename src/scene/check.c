@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/vector.h"
+#include "scene/light_shape.h"
 #include "scene/scene.h"
 
 /* Where we are: "/lights/3". */
@@ -103,33 +104,91 @@ static hl_status check_camera(const hl_camera *camera, hl_error *error) {
                         "give the picture's height in world units, above 0");
 }
 
-static hl_status check_light_place(const checker *check, const hl_light *light) {
-  hl_status status;
-  if (light->type == HL_LIGHT_DIRECTIONAL) {
-    if ((status = check_direction(check, "direction", light->direction)) != HL_OK) return status;
-    if (light->falloff != HL_FALLOFF_NONE)
-      return refuse(
-          check, "falloff",
-          "inverse_square on a directional light, which is infinitely far: use none, or a point light");
-    return check_range(check, "angular_diameter_deg", light->angular_diameter_deg, 0, 120,
-                       "give an angle in degrees from 0 (a sharp light) to 120");
-  }
-  if ((status = check_point(check, "position", light->position)) != HL_OK) return status;
+static hl_status check_count(const checker *check, const char *key, const void *points, size_t count,
+                             size_t limit) {
+  if (count > 0 && points == NULL)
+    return hl_fail(check->error, HL_ERROR_ARGUMENT, "%s/%s: is null but its count is %zu", check->place, key,
+                   count);
+  if (count > limit)
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: has %zu entries: at most %zu are allowed",
+                   check->place, key, count, limit);
+  return HL_OK;
+}
+
+static hl_status check_radius(const checker *check, const hl_light *light) {
   return check_range(check, "radius", light->radius, 0, HL_LIMIT_LENGTH,
                      "give a length in world units, 0 for a point");
 }
 
+static hl_status check_directional(const checker *check, const hl_light *light) {
+  hl_status status = check_direction(check, "direction", light->direction);
+  if (status != HL_OK) return status;
+  if (light->falloff != HL_FALLOFF_NONE)
+    return refuse(
+        check, "falloff",
+        "inverse_square on a directional light, which is infinitely far: use none, or a point light");
+  return check_range(check, "angular_diameter_deg", light->angular_diameter_deg, 0, 120,
+                     "give an angle in degrees from 0 (a sharp light) to 120");
+}
+
+/* Edges of no length are allowed: a line of light, or a point. */
+static hl_status check_rect(const checker *check, const hl_light *light) {
+  hl_status status = check_point(check, "position", light->position);
+  if (status == HL_OK) status = check_point(check, "edge1", light->edge1);
+  return status == HL_OK ? check_point(check, "edge2", light->edge2) : status;
+}
+
+static hl_status check_disk(const checker *check, const hl_light *light) {
+  hl_status status = check_point(check, "position", light->position);
+  if (status == HL_OK) status = check_direction(check, "normal", light->normal);
+  return status == HL_OK ? check_radius(check, light) : status;
+}
+
+/* Parts of the polygon's diameter: how far its vertices may leave its plane, and the least width. */
+static const double FLAT = 1e-3, THIN = 1e-6;
+
+static hl_status check_polygon(const checker *check, const hl_light *light) {
+  hl_status status = check_count(check, "vertices", light->vertices, light->vertex_count, HL_LIMIT_VERTICES);
+  if (status != HL_OK) return status;
+  if (light->vertex_count < 3)
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s/vertices: has %zu entries: give three points or more",
+                   check->place, light->vertex_count);
+  for (size_t v = 0; v < light->vertex_count; v++) {
+    char element[32];
+    snprintf(element, sizeof element, "vertices/%zu", v);
+    if ((status = check_point(check, element, light->vertices[v])) != HL_OK) return status;
+  }
+  polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
+  if (!(shape.area > THIN * shape.diameter * shape.diameter))
+    return refuse(check, "vertices", "span no area: move one off the line, or use a rect light with an edge of no length");
+  if (hl_polygon_unevenness(&shape, light->vertices, light->vertex_count) > FLAT * shape.diameter)
+    return refuse(check, "vertices", "do not lie in one plane: move them, or use several lights");
+  if (hl_polygon_crosses_itself(&shape, light->vertices, light->vertex_count))
+    return refuse(check, "vertices", "go around an outline that crosses itself: give them in order around it");
+  return HL_OK;
+}
+
+static hl_status check_light_place(const checker *check, const hl_light *light) {
+  switch (light->type) {
+    case HL_LIGHT_DIRECTIONAL: return check_directional(check, light);
+    case HL_LIGHT_RECT: return check_rect(check, light);
+    case HL_LIGHT_DISK: return check_disk(check, light);
+    case HL_LIGHT_POLYGON: return check_polygon(check, light);
+    case HL_LIGHT_POINT:
+    case HL_LIGHT_SPOT: break;
+  }
+  hl_status status = check_point(check, "position", light->position);
+  return status == HL_OK ? check_radius(check, light) : status;
+}
+
 static hl_status check_light(const hl_light *light, size_t index, hl_error *error) {
-  static const char *const type_names[] = {"directional", "point", "spot", "rect", "disk", "polygon"};
   checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "/lights/%zu", index);
   hl_status status;
   if ((status = check_choice(&check, "type", (int)light->type, 0, HL_LIGHT_POLYGON)) != HL_OK) return status;
-  if (light->type > HL_LIGHT_POINT)
+  if (light->type == HL_LIGHT_SPOT)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s/type: \"%s\" lights are not supported by this version: use directional or point, both "
-                   "of which can have a size",
-                   check.place, type_names[light->type]);
+                   "%s/type: \"spot\" lights are not supported by this version: use a point or disk light", check.place);
   if ((status = check_choice(&check, "falloff", (int)light->falloff, 0, HL_FALLOFF_INVERSE_SQUARE)) != HL_OK)
     return status;
   if ((status = check_choice(&check, "shadows", (int)light->shadows, 0, HL_SHADOWS_SOFT)) != HL_OK)
@@ -152,17 +211,6 @@ static hl_status check_order(const checker *check, const char *key, size_t index
         check->error, HL_ERROR_INPUT,
         "%s/%s/%zu/0: %.9g is there a third time: two points at one value make a step, remove the others",
         check->place, key, index, value);
-  return HL_OK;
-}
-
-static hl_status check_count(const checker *check, const char *key, const void *points, size_t count,
-                             size_t limit) {
-  if (count > 0 && points == NULL)
-    return hl_fail(check->error, HL_ERROR_ARGUMENT, "%s/%s: is null but its count is %zu", check->place, key,
-                   count);
-  if (count > limit)
-    return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: has %zu entries: at most %zu are allowed",
-                   check->place, key, count, limit);
   return HL_OK;
 }
 

@@ -167,10 +167,7 @@ hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const cha
   return hl_json_fail(reader, HL_ERROR_INPUT, key, "\"%.80s\" is no known choice: %s", name, mend);
 }
 
-hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count,
-                          double *numbers) {
-  const json_t *value = json_object_get(object, key);
-  if (value == NULL) return HL_OK;
+hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *key, size_t count, double *numbers) {
   size_t mark = hl_json_enter(reader, key);
   hl_status status = hl_json_array(reader, value, count, count);
   for (size_t n = 0; status == HL_OK && n < count; n++) {
@@ -182,4 +179,10 @@ hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const ch
   }
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
+}
+
+hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count,
+                          double *numbers) {
+  const json_t *value = json_object_get(object, key);
+  return value == NULL ? HL_OK : hl_json_row(reader, value, key, count, numbers);
 }

@@ -49,7 +49,9 @@ hl_status hl_json_text(hl_json_reader *reader, const json_t *object, const char 
 /* One of the null-terminated names; *choice gets its index plus first. */
 hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const char *key,
                          const char *const *names, int first, int *choice);
-/* An array of exactly count numbers. */
+/* The value, called key in errors, must be an array of exactly count numbers. */
+hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *key, size_t count, double *numbers);
+/* The same for a member, which may be absent. */
 hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count,
                           double *numbers);
 

@@ -1,6 +1,8 @@
 /* scene/json_view.c - camera, lights and render settings from JSON. */
+#include <stdio.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "scene/check.h"
 #include "scene/json_parts.h"
 #include "scene/scene.h"
@@ -57,36 +59,68 @@ hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_sc
   return status;
 }
 
+/* What each type of light may say, in the order of hl_light_type. */
+#define COMMON_KEYS "color", "intensity", "falloff", "shadows", NULL
+static const char *const directional_keys[] = {"type", "direction", "angular_diameter_deg", COMMON_KEYS};
+static const char *const point_keys[] = {"type", "position", "radius", COMMON_KEYS};
+static const char *const rect_keys[] = {"type", "position", "edge1", "edge2", COMMON_KEYS};
+static const char *const disk_keys[] = {"type", "position", "normal", "radius", COMMON_KEYS};
+static const char *const polygon_keys[] = {"type", "vertices", COMMON_KEYS};
+static const char *const *const light_keys[] = {directional_keys, point_keys, NULL, rect_keys, disk_keys, polygon_keys};
+
+/* The vertices in memory of the light's own. */
+static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_light *light) {
+  const json_t *value = json_object_get(object, "vertices");
+  if (value == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "vertices", "is missing: give three points or more, [ [x,y,z], ... ]");
+  size_t mark = hl_json_enter(reader, "vertices");
+  hl_status status = hl_json_array(reader, value, 3, HL_LIMIT_VERTICES);
+  if (status != HL_OK) return status;
+  size_t count = json_array_size(value);
+  double(*vertices)[3] = hl_allocate(reader->context, count, sizeof *vertices);
+  if (vertices == NULL) return hl_fail_memory(reader->error, count * sizeof *vertices, "a light's vertices");
+  light->vertices = (const double(*)[3])vertices;
+  light->vertex_count = count;
+  for (size_t v = 0; v < count; v++) {
+    char index[24];
+    snprintf(index, sizeof index, "%zu", v);
+    if ((status = hl_json_row(reader, json_array_get(value, v), index, 3, vertices[v])) != HL_OK) return status;
+  }
+  hl_json_leave(reader, mark);
+  return HL_OK;
+}
+
+static hl_status read_light_place(hl_json_reader *reader, const json_t *value, hl_light *light) {
+  hl_status status = hl_json_numbers(reader, value, "direction", 3, light->direction);
+  if (status == HL_OK)
+    status = hl_json_number(reader, value, "angular_diameter_deg", &light->angular_diameter_deg);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "position", 3, light->position);
+  if (status == HL_OK) status = hl_json_number(reader, value, "radius", &light->radius);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "normal", 3, light->normal);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "edge1", 3, light->edge1);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "edge2", 3, light->edge2);
+  return status == HL_OK && light->type == HL_LIGHT_POLYGON ? read_vertices(reader, value, light) : status;
+}
+
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light) {
   static const char *const all[] = {
       "type", "direction", "angular_diameter_deg", "position", "radius", "normal", "edge1", "edge2",
       "opening_angle_deg", "falloff_angle_deg", "vertices", "color", "intensity", "falloff", "shadows", "texture",
       NULL};
-  static const char *const directional[] = {
-      "type", "direction", "angular_diameter_deg", "color", "intensity", "falloff", "shadows", NULL};
-  static const char *const point[] = {"type",      "position", "radius",  "color",
-                                      "intensity", "falloff",  "shadows", NULL};
   hl_light_defaults(light);
   int type = (int)light->type, falloff = (int)light->falloff, shadows = (int)light->shadows;
   hl_status status = hl_json_object(reader, value, all);
   if (status == HL_OK) status = hl_json_choice(reader, value, "type", hl_light_type_names, 0, &type);
   if (status != HL_OK) return status;
-  if (type > HL_LIGHT_POINT)
+  if (type == HL_LIGHT_SPOT)
     return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "type",
-                        "\"%s\" lights are not supported by this version: use directional or point, both of "
-                        "which can have a size",
-                        hl_light_type_names[type]);
+                        "\"spot\" lights are not supported by this version: use a point or disk light");
   if (has(value, "texture"))
     return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "texture",
                         "projective textures are not supported by this version: remove the key");
-  if ((status = hl_json_object(reader, value, type == HL_LIGHT_POINT ? point : directional)) != HL_OK)
-    return status;
+  if ((status = hl_json_object(reader, value, light_keys[type])) != HL_OK) return status;
   light->type = (hl_light_type)type;
-  status = hl_json_numbers(reader, value, "direction", 3, light->direction);
-  if (status == HL_OK)
-    status = hl_json_number(reader, value, "angular_diameter_deg", &light->angular_diameter_deg);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "position", 3, light->position);
-  if (status == HL_OK) status = hl_json_number(reader, value, "radius", &light->radius);
+  status = read_light_place(reader, value, light);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "color", 3, light->color);
   if (status == HL_OK) status = hl_json_number(reader, value, "intensity", &light->intensity);
   if (status == HL_OK) status = hl_json_choice(reader, value, "falloff", hl_falloff_names, 0, &falloff);

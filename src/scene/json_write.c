@@ -143,17 +143,33 @@ static void write_camera(writer *w, const hl_camera *camera) {
   close_bracket(w, "}");
 }
 
-static void write_light(writer *w, const hl_light *light) {
-  open_bracket(w, NULL, "{");
-  write_name(w, "type", hl_light_type_names[light->type]);
+static void write_light_place(writer *w, const hl_light *light) {
   if (light->type == HL_LIGHT_DIRECTIONAL) {
     write_row(w, "direction", light->direction, 3);
     write_number(w, "angular_diameter_deg", light->angular_diameter_deg);
-  } else {
-    write_row(w, "position", light->position, 3);
-    write_number(w, "radius", light->radius);
-    write_name(w, "falloff", hl_falloff_names[light->falloff]);
+    return;
   }
+  if (light->type == HL_LIGHT_POLYGON) {
+    open_bracket(w, "vertices", "[");
+    for (size_t v = 0; v < light->vertex_count; v++) write_row(w, NULL, light->vertices[v], 3);
+    close_bracket(w, "]");
+    return;
+  }
+  write_row(w, "position", light->position, 3);
+  if (light->type == HL_LIGHT_RECT) {
+    write_row(w, "edge1", light->edge1, 3);
+    write_row(w, "edge2", light->edge2, 3);
+    return;
+  }
+  if (light->type == HL_LIGHT_DISK) write_row(w, "normal", light->normal, 3);
+  write_number(w, "radius", light->radius);
+}
+
+static void write_light(writer *w, const hl_light *light) {
+  open_bracket(w, NULL, "{");
+  write_name(w, "type", hl_light_type_names[light->type]);
+  write_light_place(w, light);
+  if (light->type != HL_LIGHT_DIRECTIONAL) write_name(w, "falloff", hl_falloff_names[light->falloff]);
   write_row(w, "color", light->color, 3);
   write_number(w, "intensity", light->intensity);
   if (light->shadows != HL_SHADOWS_DEFAULT)

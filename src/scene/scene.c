@@ -71,6 +71,7 @@ static void destroy(hl_scene *scene) {
   hl_scene_description *d = &scene->description;
   for (size_t v = 0; v < d->volume_count; v++) release_volume(context, (hl_scene_volume *)&d->volumes[v]);
   hl_release(context, (void *)d->volumes);
+  for (size_t l = 0; l < d->light_count; l++) hl_release(context, (void *)d->lights[l].vertices);
   hl_release(context, (void *)d->lights);
   hl_release(context, scene);
 }
@@ -140,13 +141,20 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
   hl_status status = copy_array(scene->context, from->lights, from->light_count, sizeof *from->lights,
                                 "a scene's lights", &lights, error);
   if (status != HL_OK) return status;
-  scene->description.lights = lights;
-  scene->description.light_count = from->light_count;
-  for (size_t l = 0; l < from->light_count; l++) { /* only polygons, refused so far, have vertices */
-    ((hl_light *)lights)[l].vertices = NULL;
-    ((hl_light *)lights)[l].vertex_count = 0;
+  hl_light *copies = lights;
+  for (size_t l = 0; l < from->light_count; l++) {
+    copies[l].vertices = NULL;
+    if (copies[l].type != HL_LIGHT_POLYGON) copies[l].vertex_count = 0;
   }
-  return HL_OK;
+  scene->description.lights = copies;
+  scene->description.light_count = from->light_count;
+  for (size_t l = 0; l < from->light_count && status == HL_OK; l++) {
+    void *vertices = NULL;
+    status = copy_array(scene->context, from->lights[l].vertices, copies[l].vertex_count,
+                        sizeof *from->lights[l].vertices, "a light's vertices", &vertices, error);
+    copies[l].vertices = vertices;
+  }
+  return status;
 }
 
 /* The camera's up, or another where it lies along the line of sight. */

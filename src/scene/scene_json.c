@@ -31,6 +31,8 @@ static void release(hl_context *context, gathered *g) {
   }
   hl_release(context, g->loaded);
   hl_release(context, g->volumes);
+  for (size_t l = 0; g->lights != NULL && l < g->description.light_count; l++)
+    hl_release(context, (void *)g->lights[l].vertices);
   hl_release(context, g->lights);
 }
 

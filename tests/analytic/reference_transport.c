@@ -263,10 +263,11 @@ static double disk_below(double s) {
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* Under the edge of a plate that fills x < 0 the part of the light at u > -x/h is seen; it runs through the
- * disk's cumulative profile. The plate is thin: its two faces give nearly the same profile. */
-static void check_penumbra(stage *set, double radius_at_unit_distance, double height) {
+/* Under the edge of a plate that fills x < 0 at height 6 the light on the near side is hidden: hidden(x) is its part.
+ * The plate is thin: its two faces give nearly the same profile. */
+static void check_penumbra(stage *set, double (*hidden)(double x), double tolerance) {
   static float pixels[64 * 2 * 4];
+  set->scene.render.shadows = HL_SHADOWS_SOFT;
   set->scene.width = 64;
   set->scene.height = 2;
   set->scene.camera.height = 0.5;
@@ -274,38 +275,123 @@ static void check_penumbra(stage *set, double radius_at_unit_distance, double he
   double worst = 0;
   int partial = 0;
   for (int x = 0; x < 64; x++) {
-    double at = (x + 0.5 - 32) / 4, seen = 1 - disk_below(-at / height / radius_at_unit_distance);
+    double seen = 1 - hidden((x + 0.5 - 32) / 4);
     partial += seen > 0 && seen < 1;
     worst = fmax(worst, fabs(pixels[4 * (64 + x)] - seen));
   }
   assert_true(partial > 20);
-  assert_near(worst, 0, 0.008);
+  assert_near(worst, 0, tolerance);
 }
+
+static void stage_half_plane(stage *set) {
+  stage_open(set);
+  stage_plate(set, (vec3){-30, -30, 6}, (vec3){0, 30, 6.01});
+}
+
+static double hidden_of_directional(double x) { return disk_below(-x / 6 / tan(25 * HL_PI / 180)); }
 
 static void test_penumbra_of_directional_light(void **state) {
   (void)state;
   stage set;
-  stage_open(&set);
-  stage_plate(&set, (vec3){-30, -30, 6}, (vec3){0, 30, 6.05});
-  set.scene.render.shadows = HL_SHADOWS_SOFT;
+  stage_half_plane(&set);
   stage_add_directional(&set, (vec3){0, 0, -1})->angular_diameter_deg = 50;
-  check_penumbra(&set, tan(25 * HL_PI / 180), 6);
+  check_penumbra(&set, hidden_of_directional, 0.008);
   stage_close(&set);
 }
 
-/* The disk of a point light faces the scene's centre, straight below it: a ray from x to (u, v, H) passes
- * height h at x + (u - x) h / H. At x the plate hides u < -x (H - h) / h. */
-static void test_penumbra_of_point_light(void **state) {
+/* From here on the light is around (0, 0, 14). A ray from (x, 0, 0) to (u, v, 14 + w) passes height 6 at
+ * x + (u - x) 6 / (14 + w): over the edge where x (8 + w) + 6 u = 0. With u = s c, w = s d that is
+ * s = -8 x / (6 c + d x). */
+static double edge_on_light(double x, double c, double d) { return -8 * x / (6 * c + d * x); }
+
+/* The disk facing (x, 0, 0) contains the direction (14, 0, x). */
+static double hidden_of_sphere(double x) {
+  double distance = sqrt(x * x + 14 * 14);
+  return disk_below(edge_on_light(x, 14 / distance, x / distance) / 5);
+}
+
+static void test_penumbra_of_sphere(void **state) {
   (void)state;
   stage set;
-  stage_open(&set);
-  stage_plate(&set, (vec3){-30, -30, 6}, (vec3){0, 30, 6.05});
-  set.volumes[0].clipped = 0;
-  hl_scene_volume *balance = stage_add_box(&set, (vec3){29, -30, -0.5}, (vec3){30, 30, -0.4});
-  balance->visible = balance->casts_shadow = 0; /* brings the centre of the bounds to x = 0 */
-  set.scene.render.shadows = HL_SHADOWS_SOFT;
+  stage_half_plane(&set);
   stage_add_point(&set, (vec3){0, 0, 14})->radius = 5;
-  check_penumbra(&set, 5.0 / (14 - 6), 6);
+  check_penumbra(&set, hidden_of_sphere, 0.008);
+  stage_close(&set);
+}
+
+static double hidden_of_disk(double x) {
+  return disk_below(edge_on_light(x, cos(0.5), sin(0.5)) / 5);
+}
+
+static void test_penumbra_of_disk(void **state) {
+  (void)state;
+  stage set;
+  stage_half_plane(&set);
+  hl_light *light = stage_add_point(&set, (vec3){0, 0, 14});
+  light->type = HL_LIGHT_DISK;
+  light->radius = 5;
+  light->normal[0] = sin(0.5);
+  light->normal[2] = -cos(0.5);
+  check_penumbra(&set, hidden_of_disk, 0.008);
+  stage_close(&set);
+}
+
+/* One edge leaves the other's plane by 1 in 4; the edge along the plate's has no say. */
+static double hidden_of_rect(double x) { return fmin(fmax(edge_on_light(x, 8, 2) + 0.5, 0), 1); }
+
+static void test_penumbra_of_rect(void **state) {
+  (void)state;
+  for (int turned = 0; turned < 2; turned++) {
+    stage set;
+    stage_half_plane(&set);
+    hl_light *light = stage_add_point(&set, (vec3){0, 0, 14});
+    light->type = HL_LIGHT_RECT;
+    double *across = turned ? light->edge2 : light->edge1, *along = turned ? light->edge1 : light->edge2;
+    across[0] = 8;
+    across[1] = 0;
+    across[2] = 2;
+    along[0] = along[2] = 0;
+    along[1] = 3;
+    check_penumbra(&set, hidden_of_rect, 0.004);
+    stage_close(&set);
+  }
+}
+
+/* An L of three squares with edge 5 around (0, 0, 14). */
+static double hidden_of_polygon(double x) {
+  double s = fmin(fmax(edge_on_light(x, 1, 0), -5), 5);
+  return s < 0 ? 10 * (s + 5) / 75 : (50 + 5 * s) / 75;
+}
+
+static void test_penumbra_of_polygon(void **state) {
+  (void)state;
+  static const double outline[][3] = {{-5, -5, 14}, {5, -5, 14}, {5, 0, 14}, {0, 0, 14}, {0, 5, 14}, {-5, 5, 14}};
+  stage set;
+  stage_half_plane(&set);
+  hl_light *light = stage_add_point(&set, (vec3){0, 0, 0});
+  light->type = HL_LIGHT_POLYGON;
+  light->vertices = outline;
+  light->vertex_count = 6;
+  check_penumbra(&set, hidden_of_polygon, 0.008);
+  stage_close(&set);
+}
+
+/* Without extent a light is its centre. */
+static void test_lights_without_extent(void **state) {
+  (void)state;
+  static float point[16 * 16 * 4], other[16 * 16 * 4];
+  stage set;
+  stage_half_plane(&set);
+  set.scene.render.shadows = HL_SHADOWS_SOFT;
+  hl_light *light = stage_add_point(&set, (vec3){1, 2, 14});
+  stage_render(&set, NULL, point);
+  light->type = HL_LIGHT_DISK;
+  stage_render(&set, NULL, other);
+  assert_memory_equal(point, other, sizeof point);
+  light->type = HL_LIGHT_RECT;
+  for (int axis = 0; axis < 3; axis++) light->edge1[axis] = light->edge2[axis] = 0;
+  stage_render(&set, NULL, other);
+  assert_memory_equal(point, other, sizeof point);
   stage_close(&set);
 }
 
@@ -357,7 +443,11 @@ int main(void) {
       cmocka_unit_test(test_inverse_square),
       cmocka_unit_test(test_plate_under_point_light),
       cmocka_unit_test(test_penumbra_of_directional_light),
-      cmocka_unit_test(test_penumbra_of_point_light),
+      cmocka_unit_test(test_penumbra_of_sphere),
+      cmocka_unit_test(test_penumbra_of_disk),
+      cmocka_unit_test(test_penumbra_of_rect),
+      cmocka_unit_test(test_penumbra_of_polygon),
+      cmocka_unit_test(test_lights_without_extent),
       cmocka_unit_test(test_shadow_settings),
   };
   return cmocka_run_group_tests_name("reference_transport", tests, NULL, NULL);

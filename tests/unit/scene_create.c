@@ -87,9 +87,23 @@ SPOIL(light_falloff, p->light.falloff = HL_FALLOFF_INVERSE_SQUARE)
 SPOIL(light_radius, p->light.type = HL_LIGHT_POINT; p->light.radius = -1)
 SPOIL(light_radius_nan, p->light.type = HL_LIGHT_POINT; p->light.radius = NAN)
 SPOIL(light_spot, p->light.type = HL_LIGHT_SPOT)
-SPOIL(light_rect, p->light.type = HL_LIGHT_RECT)
-SPOIL(light_disk, p->light.type = HL_LIGHT_DISK)
-SPOIL(light_polygon, p->light.type = HL_LIGHT_POLYGON)
+SPOIL(light_edge, p->light.type = HL_LIGHT_RECT; p->light.edge2[1] = NAN)
+SPOIL(light_normal, p->light.type = HL_LIGHT_DISK; p->light.normal[2] = 0)
+SPOIL(light_disk_radius, p->light.type = HL_LIGHT_DISK; p->light.radius = -2)
+
+static void make_polygon(parts *p, const double (*vertices)[3], size_t count) {
+  p->light.type = HL_LIGHT_POLYGON;
+  p->light.vertices = vertices;
+  p->light.vertex_count = count;
+}
+static const double line[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, bent[][3] = {{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}},
+                    crossed[][3] = {{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 3, 0}}, infinite[][3] = {{0, 0, 0}, {1, INFINITY, 0}, {1, 1, 0}};
+SPOIL(polygon_null, make_polygon(p, NULL, 3))
+SPOIL(polygon_two, make_polygon(p, line, 2))
+SPOIL(polygon_line, make_polygon(p, line, 3))
+SPOIL(polygon_bent, make_polygon(p, bent, 4))
+SPOIL(polygon_crossed, make_polygon(p, crossed, 4))
+SPOIL(polygon_infinite, make_polygon(p, infinite, 3))
 SPOIL(light_color, p->light.color[2] = -0.1)
 SPOIL(light_intensity, p->light.intensity = -3)
 SPOIL(light_shadows, p->light.shadows = (hl_shadows)9)
@@ -156,18 +170,20 @@ static const refusal refusals[] = {
      light_radius},
     {"/lights/0/radius: nan is not a number: give a length in world units, 0 for a point", HL_ERROR_INPUT,
      light_radius_nan},
-    {"/lights/0/type: \"spot\" lights are not supported by this version: use directional or point, both of "
-     "which can have a size",
+    {"/lights/0/type: \"spot\" lights are not supported by this version: use a point or disk light",
      HL_ERROR_UNSUPPORTED, light_spot},
-    {"/lights/0/type: \"rect\" lights are not supported by this version: use directional or point, both of "
-     "which can have a size",
-     HL_ERROR_UNSUPPORTED, light_rect},
-    {"/lights/0/type: \"disk\" lights are not supported by this version: use directional or point, both of "
-     "which can have a size",
-     HL_ERROR_UNSUPPORTED, light_disk},
-    {"/lights/0/type: \"polygon\" lights are not supported by this version: use directional or point, both "
-     "of which can have a size",
-     HL_ERROR_UNSUPPORTED, light_polygon},
+    {"/lights/0/edge2/1: nan is not a number: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT, light_edge},
+    {"/lights/0/normal: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT, light_normal},
+    {"/lights/0/radius: -2 is negative: give a length in world units, 0 for a point", HL_ERROR_INPUT, light_disk_radius},
+    {"/lights/0/vertices: is null but its count is 3", HL_ERROR_ARGUMENT, polygon_null},
+    {"/lights/0/vertices: has 2 entries: give three points or more", HL_ERROR_INPUT, polygon_two},
+    {"/lights/0/vertices: span no area: move one off the line, or use a rect light with an edge of no length",
+     HL_ERROR_INPUT, polygon_line},
+    {"/lights/0/vertices: do not lie in one plane: move them, or use several lights", HL_ERROR_INPUT, polygon_bent},
+    {"/lights/0/vertices: go around an outline that crosses itself: give them in order around it", HL_ERROR_INPUT,
+     polygon_crossed},
+    {"/lights/0/vertices/1/1: inf is out of range: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT,
+     polygon_infinite},
     {"/lights/0/color/2: -0.1 is negative: give linear RGB, none below 0", HL_ERROR_INPUT, light_color},
     {"/lights/0/intensity: -3 is negative: give a factor, 0 or more", HL_ERROR_INPUT, light_intensity},
     {"/lights/0/shadows: 9 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,

@@ -1,0 +1,93 @@
+/* scene/light_shape.c - polygons, and the first and second moments of lights. */
+#include "scene/light_shape.h"
+
+/* a b' */
+static mat3 outer(vec3 a, vec3 b) { return (mat3){{vec3_scale(b, a.x), vec3_scale(b, a.y), vec3_scale(b, a.z)}}; }
+
+static mat3 add(mat3 a, mat3 b, double scale) {
+  for (int row = 0; row < 3; row++) a.row[row] = vec3_add(a.row[row], vec3_scale(b.row[row], scale));
+  return a;
+}
+
+static double greatest_side(const double (*vertices)[3], size_t count) {
+  double side = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < count; i++) {
+      low = fmin(low, vertices[i][axis]);
+      high = fmax(high, vertices[i][axis]);
+    }
+    side = fmax(side, high - low);
+  }
+  return side;
+}
+
+/* A fan of triangles from the first vertex, each with a signed area: what lies outside the polygon cancels. Over a
+ * triangle a, b, c the mean of x is s / 3 and that of x x' is (a a' + b b' + c c' + s s') / 12, s = a + b + c, since
+ * barycentric coordinates have the mean products 1/6 (squares) and 1/12 (derived). */
+polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
+  polygon_shape shape = {.diameter = greatest_side(vertices, count)};
+  vec3 first = vec3_of(vertices[0]), twice_area = {0, 0, 0}, sum = {0, 0, 0};
+  for (size_t i = 1; i + 1 < count; i++) {
+    vec3 b = vec3_subtract(vec3_of(vertices[i]), first), c = vec3_subtract(vec3_of(vertices[i + 1]), first);
+    twice_area = vec3_add(twice_area, vec3_cross(b, c));
+  }
+  shape.normal = vec3_normalise(twice_area);
+  shape.area = vec3_length(twice_area) / 2;
+  shape.centre = first;
+  if (!(shape.area > 0)) return shape;
+  mat3 squares = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+  for (size_t i = 1; i + 1 < count; i++) {
+    vec3 b = vec3_subtract(vec3_of(vertices[i]), first), c = vec3_subtract(vec3_of(vertices[i + 1]), first);
+    vec3 s = vec3_add(b, c);
+    double area = vec3_dot(vec3_cross(b, c), shape.normal) / 2;
+    sum = vec3_add(sum, vec3_scale(s, area / 3));
+    squares = add(squares, add(add(outer(b, b), outer(c, c), 1), outer(s, s), 1), area / 12);
+  }
+  vec3 centre = vec3_scale(sum, 1 / shape.area);
+  shape.spread = add((mat3){{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, squares, 1 / shape.area);
+  shape.spread = add(shape.spread, outer(centre, centre), -1);
+  shape.centre = vec3_add(first, centre);
+  return shape;
+}
+
+double hl_polygon_unevenness(const polygon_shape *shape, const double (*vertices)[3], size_t count) {
+  double greatest = 0;
+  for (size_t i = 0; i < count; i++)
+    greatest = fmax(greatest, fabs(vec3_dot(shape->normal, vec3_subtract(vec3_of(vertices[i]), shape->centre))));
+  return greatest;
+}
+
+/* Twice the signed area of the triangle a, b, c as seen along the normal. */
+static double side_of(vec3 normal, vec3 a, vec3 b, vec3 c) {
+  return vec3_dot(normal, vec3_cross(vec3_subtract(b, a), vec3_subtract(c, a)));
+}
+
+bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertices)[3], size_t count) {
+  for (size_t i = 0; i < count; i++)
+    for (size_t j = i + 1; j < count; j++) {
+      vec3 a = vec3_of(vertices[i]), b = vec3_of(vertices[(i + 1) % count]);
+      vec3 c = vec3_of(vertices[j]), d = vec3_of(vertices[(j + 1) % count]);
+      if (side_of(shape->normal, a, b, c) * side_of(shape->normal, a, b, d) < 0 &&
+          side_of(shape->normal, c, d, a) * side_of(shape->normal, c, d, b) < 0)
+        return true;
+    }
+  return false;
+}
+
+vec3 hl_light_centre(const hl_light *light) {
+  if (light->type == HL_LIGHT_POLYGON) return hl_polygon_shape(light->vertices, light->vertex_count).centre;
+  return vec3_of(light->position);
+}
+
+/* Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12; the mean of x^2 over a disk of radius r is r^2/4. */
+mat3 hl_light_spread(const hl_light *light, vec3 towards) {
+  mat3 spread = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  if (light->type == HL_LIGHT_POLYGON) return hl_polygon_shape(light->vertices, light->vertex_count).spread;
+  if (light->type == HL_LIGHT_RECT) {
+    vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
+    return add(add(spread, outer(edge1, edge1), 1.0 / 12), outer(edge2, edge2), 1.0 / 12);
+  }
+  vec3 normal = light->type == HL_LIGHT_DISK ? vec3_normalise(vec3_of(light->normal)) : towards;
+  return add(spread, add(unit, outer(normal, normal), -1), light->radius * light->radius / 4);
+}
