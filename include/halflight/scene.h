@@ -39,6 +39,18 @@ typedef enum hl_shadows {
 
 typedef enum hl_falloff { HL_FALLOFF_NONE = 0, HL_FALLOFF_INVERSE_SQUARE = 1 } hl_falloff;
 
+/* An image that a light projects along its rays (section 4 of the paper): a ray has the colour of the image where it
+ * passes the light screen, a parallelogram in space, over its whole length, before the screen too; rays that pass beside
+ * the screen are dark. Bilinear between the middles of pixels. */
+typedef struct hl_light_texture {
+  const char *file;             /* where the pixels came from, for hl_scene_to_json; may be null */
+  const float *pixels;          /* [height][width][3]: linear RGB, top row first; null: the light has no texture */
+  int width, height;
+  double screen_center[3];
+  double screen_right[3];       /* from the centre to the middle of the image's right edge */
+  double screen_up[3];          /* from the centre to the middle of its top edge */
+} hl_light_texture;
+
 typedef struct hl_light {
   hl_light_type type;
   double direction[3];          /* directional, spot: the way the light travels */
@@ -55,6 +67,7 @@ typedef struct hl_light {
   double intensity;             /* I_light = color * intensity at the sample (no falloff unless asked) */
   hl_falloff falloff;
   hl_shadows shadows;
+  hl_light_texture texture;     /* copied with its pixels by hl_scene_create() */
 } hl_light;
 
 typedef struct hl_opacity_point { double value, opacity; } hl_opacity_point;

@@ -7,12 +7,15 @@ light_source hl_light_source(const hl_light *light, const hl_render_settings *se
   light_source source = {.parallel = light->type == HL_LIGHT_DIRECTIONAL, .light = light};
   source.shadows = light->shadows == HL_SHADOWS_DEFAULT ? settings->shadows : light->shadows;
   source.soft_method = settings->soft_method;
+  source.screen_center = vec3_subtract(vec3_of(light->texture.screen_center), centre);
+  source.screen_right = vec3_of(light->texture.screen_right);
+  source.screen_up = vec3_of(light->texture.screen_up);
   if (source.parallel) {
     source.direction = vec3_normalise(vec3_of(light->direction));
     source.size = 2 * tan(light->angular_diameter_deg * HL_PI / 360);
   } else {
     source.position = vec3_subtract(hl_light_centre(light), centre);
-    vec3 way = vec3_subtract(content, source.position);
+    vec3 way = vec3_subtract(light->texture.pixels != NULL ? source.screen_center : content, source.position);
     source.direction = vec3_length(way) > 0 ? vec3_normalise(way) : (vec3){0, 0, 1};
     mat3 spread = hl_light_spread(light, vec3_scale(source.direction, -1));
     /* a disk of diameter D spreads D^2 / 16 along both its axes: the one that spreads as much in all */

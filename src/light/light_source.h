@@ -8,12 +8,13 @@
 
 typedef struct light_source {
   bool parallel;
-  vec3 direction;  /* unit, the way light travels: parallel, or from the light's centre to the content's */
+  vec3 direction;  /* unit, the way light travels: parallel, or from the light's centre to its screen's or the content's */
   vec3 position;   /* of the light's centre, unless parallel; frame space */
   double size;     /* parallel: diameter of the disk of directions, 2 tan(angle / 2); else the light's diameter */
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
   const hl_light *light;
+  vec3 screen_center, screen_right, screen_up; /* of a light with a texture: the light screen; frame space */
 } light_source;
 
 /* content: the middle of what is lit; frame space. centre: world position of frame space's origin. */

@@ -1,8 +1,8 @@
 /* reference/lights.c - points on the lights, and how much of their light reaches a sample.
  *
- * A light is shaded as if all its light came from its centre; its extent matters to shadows alone: the
- * transmittance is the mean over a fixed set of points on the light, the same for every sample, so that
- * the picture has no noise. A sphere is the disk of its radius that faces the sample.
+ * A light is shaded as if all its light came from its centre; its extent matters to shadows and to what it
+ * projects alone: transmittance and texture are means over a fixed set of points on the light, the same for
+ * every sample, so that the picture has no noise. A sphere is the disk of its radius that faces the sample.
  */
 #include "core/memory.h"
 #include "reference/reference.h"
@@ -121,6 +121,7 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
                                     reference_light *made, hl_error *error) {
   *made = (reference_light){.described = light, .directional = light->type == HL_LIGHT_DIRECTIONAL};
   for (int c = 0; c < 3; c++) made->color[c] = light->color[c] * light->intensity;
+  if (light->texture.pixels != NULL) made->texture = &light->texture;
   if (made->directional)
     made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
   else
@@ -137,8 +138,7 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
 }
 
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived) {
-  *arrived = (arrival){
-      .towards = light->towards, .transmittance = {1, 1, 1}, .transmittance_known = light->points == NULL};
+  *arrived = (arrival){.towards = light->towards};
   double factor = 1;
   if (!light->directional) {
     vec3 offset = vec3_subtract(light->centre, point);
@@ -149,9 +149,9 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
 
-/* Adds exp(-optical depth) along one ray to sum. */
-static void add_transmittance(const reference *all, vec3 point, vec3 direction, double distance,
-                              crossing *scratch, double sum[3]) {
+/* exp(-optical depth) along one ray. */
+static void find_transmittance(const reference *all, vec3 point, vec3 direction, double distance,
+                               crossing *scratch, double passing[3]) {
   double depth[3] = {0, 0, 0};
   march walk;
   hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, point, direction, 0, distance, scratch, &walk);
@@ -166,25 +166,39 @@ static void add_transmittance(const reference *all, vec3 point, vec3 direction, 
     }
     if (fmin(depth[0], fmin(depth[1], depth[2])) > DARK_DEPTH) break;
   }
-  for (int c = 0; c < 3; c++) sum[c] += exp(-depth[c]);
+  for (int c = 0; c < 3; c++) passing[c] = exp(-depth[c]);
 }
 
-void hl_reference_light_transmittance(const reference *all, const reference_light *light, vec3 point,
-                                      crossing *scratch, double transmittance[3]) {
+/* One point's light: texture times transmittance, added to sum. light_point is a direction where directional. */
+static void add_point(const reference *all, const reference_light *light, vec3 light_point, vec3 point,
+                      bool attenuated, crossing *scratch, double sum[3]) {
+  double distance = INFINITY, pattern[3] = {1, 1, 1}, passing[3] = {1, 1, 1};
+  vec3 direction = light_point;
+  if (light->texture != NULL)
+    hl_reference_texture(light->texture, light->directional, light_point, point, pattern);
+  if (!(pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0)) return;
+  if (!light->directional) {
+    vec3 offset = vec3_subtract(light_point, point);
+    distance = vec3_length(offset);
+    direction = vec3_normalise(offset);
+  }
+  if (attenuated) find_transmittance(all, point, direction, distance, scratch, passing);
+  for (int c = 0; c < 3; c++) sum[c] += pattern[c] * passing[c];
+}
+
+void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
+                              crossing *scratch, double reach[3]) {
   double sum[3] = {0, 0, 0};
+  vec3 centre = light->directional ? light->towards : light->centre;
   vec3 facing = vec3_normalise(vec3_subtract(point, light->centre));
   if (!(vec3_length(facing) > 0)) facing = (vec3){0, 0, 1};
-  for (size_t i = 0; i < light->point_count; i++) {
-    vec3 direction = light->points[i];
+  bool casts = light->points != NULL;
+  size_t count = casts ? light->point_count : 1;
+  for (size_t i = 0; i < count; i++) {
+    vec3 light_point = casts ? light->points[i] : centre;
     if (light->sphere) /* seen from the point: its disk */
-      direction = point_of_disk(light->centre, facing, light->described->radius, i, light->point_count);
-    double distance = INFINITY;
-    if (!light->directional) {
-      vec3 offset = vec3_subtract(direction, point);
-      distance = vec3_length(offset);
-      direction = vec3_normalise(offset);
-    }
-    add_transmittance(all, point, direction, distance, scratch, sum);
+      light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
+    add_point(all, light, light_point, point, casts && attenuated, scratch, sum);
   }
-  for (int c = 0; c < 3; c++) transmittance[c] = sum[c] / (double)light->point_count;
+  for (int c = 0; c < 3; c++) reach[c] = sum[c] / (double)count;
 }

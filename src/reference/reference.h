@@ -7,6 +7,7 @@
  *     march.c       a ray through the boxes of the volumes, step by step, jumping over empty bricks
  *     field.c       reconstruction of one volume at a point: value, gradient, extinction
  *     bricks.c      where a volume has nothing
+ *     texture.c     the image that a light projects
  *     lights.c      points on the lights, and the transmittance towards them
  *     shade.c       the light that one sample sends to the eye
  */
@@ -46,6 +47,7 @@ typedef struct reference_light {
   vec3 centre;                /* world; not for directional lights */
   vec3 towards;               /* directional lights: unit vector to the light */
   double color[3];            /* color * intensity */
+  const hl_light_texture *texture; /* null: none */
   vec3 *points;               /* owned; null where the light casts no shadows; not set for spheres */
   size_t point_count;
 } reference_light;
@@ -82,9 +84,10 @@ typedef struct march {
 /* The light of one source that arrives at a sample. */
 typedef struct arrival {
   vec3 towards;               /* unit vector to the light's centre */
-  double incoming[3];         /* without attenuation by volumes; eq. (1) */
-  double transmittance[3];
-  bool transmittance_known;
+  double incoming[3];         /* without texture and without attenuation by volumes; eq. (1) */
+  double pattern[3];          /* the texture's colour, mean over the light's points; 1 without one; eq. (2) */
+  double shadowed[3];         /* mean over the light's points of texture times transmittance */
+  bool pattern_known, shadowed_known;
 } arrival;
 
 /* What one thread needs; all arrays are owned by hl_reference_render. */
@@ -124,8 +127,13 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
                                     reference_light *made, hl_error *error);
 /* The light at a world point, before any volume. */
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived);
-void hl_reference_light_transmittance(const reference *all, const reference_light *light, vec3 point,
-                                      crossing *scratch, double transmittance[3]);
+/* Mean over the light's points of texture (its colour, or 1) times transmittance; attenuated: false takes
+ * the transmittance as 1. */
+void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
+                              crossing *scratch, double reach[3]);
+
+/* The colour of a texture on the ray from a point of the light (or, far: from a direction) to `point`. */
+void hl_reference_texture(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double color[3]);
 
 /* The colour that a sample of one volume sends along `to_eye`. `index_point` is the same point as `point`. */
 void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,

@@ -7,15 +7,16 @@
  */
 #include "reference/reference.h"
 
-/* The transmittance is found when first asked for: it is by far the dearest part of a sample. */
-static const double *light_transmittance(const reference *all, size_t light, vec3 point,
-                                         reference_worker *worker) {
+/* What reaches a point is found when first asked for: it is by far the dearest part of a sample. */
+static const double *light_reach(const reference *all, const reference_volume *volume, size_t light,
+                                 vec3 point, reference_worker *worker) {
   arrival *arrived = &worker->arrivals[light];
-  if (!arrived->transmittance_known) {
-    hl_reference_light_transmittance(all, &all->lights[light], point, worker->shadow, arrived->transmittance);
-    arrived->transmittance_known = true;
-  }
-  return arrived->transmittance;
+  bool attenuated = volume->described->receives_shadow, *known = &arrived->pattern_known;
+  double *reach = arrived->pattern;
+  if (attenuated) known = &arrived->shadowed_known, reach = arrived->shadowed;
+  if (!*known) hl_reference_light_reach(all, &all->lights[light], point, attenuated, worker->shadow, reach);
+  *known = true;
+  return reach;
 }
 
 /* Outward normal, and how much of the sample is a surface. Outward is from the values that are there
@@ -32,7 +33,6 @@ static vec3 find_normal(const reference_volume *volume, vec3 index_point, double
 
 void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
                         double value, vec3 to_eye, reference_worker *worker, double color[3]) {
-  static const double unattenuated[3] = {1, 1, 1};
   const hl_material *material = &volume->described->material;
   double own[3], surface;
   hl_transfer_function_color(&volume->described->transfer_function, value, own);
@@ -48,9 +48,8 @@ void hl_reference_shade(const reference *all, const reference_volume *volume, ve
     }
     double matt = surface * material->diffuse * fmax(cosine, 0) + (1 - surface);
     if (matt <= 0 && gloss <= 0) continue;
-    const double *transmittance =
-        volume->described->receives_shadow ? light_transmittance(all, l, point, worker) : unattenuated;
+    const double *reach = light_reach(all, volume, l, point, worker);
     for (int c = 0; c < 3; c++)
-      color[c] += (own[c] * matt + surface * gloss) * arrived->incoming[c] * transmittance[c];
+      color[c] += (own[c] * matt + surface * gloss) * arrived->incoming[c] * reach[c];
   }
 }

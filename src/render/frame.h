@@ -24,6 +24,7 @@ typedef struct frame {
   int oversampling;        /* pixels a side of which the mean is one of the picture's */
   view eye;
   vec3 eye_direction;      /* e: unit, from the eye to the content */
+  vec3 middle;             /* of the content */
   double pixel;            /* edge of an image pixel where the content is nearest, frame units */
   double middle_pixel;     /* the same at the content's middle */
   double spacing;          /* ds, world units */

@@ -137,15 +137,15 @@ static vec3 content_middle(const frame *frame) {
 }
 
 /* e: towards the middle of the content where the eye is outside of it, else straight ahead. */
-static void look(frame *frame, vec3 middle) {
+static void look(frame *frame) {
   vec3 start, forward;
   hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);
   forward = vec3_normalise(forward);
   frame->eye_direction = forward;
-  vec3 way = vec3_subtract(middle, frame->eye.origin);
+  vec3 way = vec3_subtract(frame->middle, frame->eye.origin);
   double distance = vec3_length(way), radius = 0;
   for (int i = 0; i < frame->point_count; i++)
-    radius = fmax(radius, vec3_length(vec3_subtract(frame->points[i], middle)));
+    radius = fmax(radius, vec3_length(vec3_subtract(frame->points[i], frame->middle)));
   if (frame->eye.perspective && distance > radius) {
     vec3 towards = vec3_normalise(way);
     if (vec3_dot(towards, forward) > 0.5) frame->eye_direction = vec3_normalise(vec3_add(towards, forward));
@@ -176,15 +176,14 @@ static int oversampling(const frame *frame, const hl_scene_description *scene, d
 }
 
 /* The eye at the resolution that the content needs. */
-static hl_status set_up_eye(const hl_renderer *renderer, const hl_scene_description *scene, frame *frame, vec3 *middle,
+static hl_status set_up_eye(const hl_renderer *renderer, const hl_scene_description *scene, frame *frame,
                             hl_error *error) {
   for (frame->oversampling = 1;;) {
     frame->width = scene->width * frame->oversampling;
     frame->height = scene->height * frame->oversampling;
     hl_status status = hl_frame_eye(&scene->camera, frame->width, frame->height, frame->centre, &frame->eye, error);
     if (status != HL_OK) return status;
-    *middle = content_middle(frame);
-    look(frame, *middle);
+    look(frame);
     int wanted = frame->oversampling > 1 || frame->point_count == 0 ? 1 : oversampling(frame, scene, smallest_edge(renderer));
     if (wanted == 1) return HL_OK;
     frame->oversampling = wanted;
@@ -207,15 +206,15 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
     hl_frame_content(&work->grids[i], frame->points + frame->point_count);
     frame->point_count += 8;
   }
-  vec3 middle;
-  hl_status status = set_up_eye(renderer, scene, frame, &middle, error);
+  frame->middle = content_middle(frame);
+  hl_status status = set_up_eye(renderer, scene, frame, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < scene->volume_count; i++)
     if (frame->eye.perspective && inside_box(&work->grids[i], frame->eye.origin)) work->grids[i].cut = true;
   frame->spacing = scene->render.sheet_spacing * smallest_edge(renderer);
   frame->light_count = (int)scene->light_count;
   for (size_t i = 0; i < scene->light_count; i++) {
-    frame->lights[i] = hl_light_source(&scene->lights[i], &scene->render, frame->centre, middle);
+    frame->lights[i] = hl_light_source(&scene->lights[i], &scene->render, frame->centre, frame->middle);
     if (frame->lights[i].shadows == HL_SHADOWS_SOFT && frame->lights[i].soft_method == HL_SOFT_SUBLIGHTS)
       return hl_fail(error, HL_ERROR_UNSUPPORTED, "/render/soft_method: sublights is not in this version: use cascade or paper");
   }

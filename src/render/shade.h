@@ -6,6 +6,7 @@
 #define HL_RENDER_SHADE_H
 
 #include "light/attenuate.h"
+#include "light/light_screen.h"
 
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
@@ -38,6 +39,7 @@ typedef struct shade_light {
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0); rows stride apart */
   size_t stride;
   int width, height, channels;
+  light_screen screen;            /* the image that the light projects */
   int nearest;                    /* lookup: nearest pixel instead of bilinear */
 } shade_light;
 

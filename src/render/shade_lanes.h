@@ -3,6 +3,7 @@
 #define HL_RENDER_SHADE_LANES_H
 
 #include "light/attenuate_lanes.h"
+#include "light/light_screen_lanes.h"
 #include "render/shade.h"
 
 /* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
@@ -182,7 +183,13 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
     path = light->path / lanes_max(climb, lanes_set(1e-3f));
     if (light->inverse_square) strength = 1.0f / squared;
   }
-  for (int c = 0; c < 3; c++) arriving.full.c[c] = arriving.shadowed.c[c] = strength * light->color[c];
+  for (int c = 0; c < 3; c++) arriving.full.c[c] = strength * light->color[c];
+  if (light->screen.pixels != NULL) {
+    lanes pattern[3];
+    screen_pattern(&light->screen, g->position, pattern);
+    for (int c = 0; c < 3; c++) arriving.full.c[c] = arriving.full.c[c] * pattern[c];
+  }
+  arriving.shadowed = arriving.full;
   if (!light->shadowed) return arriving;
   lanes place[3];
   for (int row = 0; row < 3; row++)

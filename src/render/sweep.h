@@ -42,6 +42,8 @@ typedef struct sweep_light {
   shadow_buffer *buffer;          /* null: no shadows */
   occupancy occupancy;
   voxel_lists *lists;             /* owned; [grids]; splat only */
+  light_screen screen;            /* the image that the light projects */
+  float *screen_pixels;           /* owned; the image averaged; null where it is used as it is */
   float *enter, *leave;           /* owned; [patches][256]; null where no box cuts */
   float *density;                 /* owned; [patches][RING][256]; the last sheets, block-major */
   kept_tile *kept;                /* owned; [patches][RING]; what is in density */

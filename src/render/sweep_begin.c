@@ -124,7 +124,9 @@ static double penumbra_margin(const sweep *sweep, const light_source *source) {
 static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source, shadow_buffer *buffer,
                              vec3 *points, hl_error *error) {
   light->source = source;
-  if (source->shadows == HL_SHADOWS_OFF) return HL_OK;
+  hl_status status = hl_light_screen_create(sweep->context, source, sweep->frame->middle, sweep->frame->middle_pixel,
+                                            &light->screen, &light->screen_pixels, error);
+  if (status != HL_OK || source->shadows == HL_SHADOWS_OFF) return status;
   light->buffer = buffer;
   bool soft = source->shadows == HL_SHADOWS_SOFT;
   vec3 plane_normal = soft ? sweep->geometry->sheets.normal : source->direction;
@@ -149,7 +151,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
     hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, edge);
     reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
   }
-  hl_status status = hl_shadow_buffer_reset(sweep->context, buffer, &view, sweep->channels, paper, reach, error);
+  status = hl_shadow_buffer_reset(sweep->context, buffer, &view, sweep->channels, paper, reach, error);
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_CASCADE)
     status = hl_soft_cascade_begin(sweep->context, &light->cascade, source, sheets->normal, sheets->first,
                                    sheets->first + (sheets->count - 1) * sheets->spacing, edge, buffer, error);
@@ -213,7 +215,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   vec3 normal = sweep->geometry->sheets.normal;
   double spacing = sweep->geometry->sheets.spacing;
   *light = (shade_light){.parallel = from->source->parallel, .shadowed = from->buffer != NULL,
-                         .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
+                         .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE, .screen = from->screen,
                          .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST};
   vec3_store(light->towards, vec3_scale(from->source->direction, -1));
   vec3_store(light->position, from->source->position);
@@ -289,6 +291,7 @@ void hl_sweep_end(sweep *sweep) {
     sweep_light *light = &sweep->lights[i];
     hl_occupancy_release(context, &light->occupancy);
     release_lists(sweep, light->lists);
+    hl_release(context, light->screen_pixels);
     hl_release(context, light->enter);
     hl_release(context, light->leave);
     hl_release(context, light->density);

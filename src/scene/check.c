@@ -181,6 +181,48 @@ static hl_status check_light_place(const checker *check, const hl_light *light) 
   return status == HL_OK ? check_radius(check, light) : status;
 }
 
+static hl_status check_texture_pixels(const checker *check, const hl_light_texture *texture) {
+  const char *size = "give an image of at most 32768 pixels a side, 67108864 in all";
+  hl_status status;
+  if ((status = check_range(check, "width", texture->width, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK) return status;
+  if ((status = check_range(check, "height", texture->height, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK)
+    return status;
+  size_t count = (size_t)texture->width * (size_t)texture->height;
+  if (count > HL_LIMIT_TEXTURE_PIXELS)
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s: has %d x %d pixels: %s", check->place, texture->width,
+                   texture->height, size);
+  for (size_t i = 0; i < 3 * count; i++)
+    if (!(texture->pixels[i] >= 0 && (double)texture->pixels[i] <= HL_LIMIT_LENGTH))
+      return hl_fail(check->error, HL_ERROR_INPUT,
+                     "%s/file: pixel (%zu, %zu) has %.9g in channel %zu: give linear RGB, finite and none below 0",
+                     check->place, i / 3 % (size_t)texture->width, i / 3 / (size_t)texture->width,
+                     (double)texture->pixels[i], i % 3);
+  return HL_OK;
+}
+
+/* The light's rays must cross the screen. */
+static hl_status check_texture(const checker *parent, const hl_light *light) {
+  const hl_light_texture *texture = &light->texture;
+  checker check = {parent->error, ""};
+  hl_status status;
+  if (texture->pixels == NULL) return HL_OK;
+  snprintf(check.place, sizeof check.place, "%s/texture", parent->place);
+  if ((status = check_texture_pixels(&check, texture)) != HL_OK) return status;
+  if ((status = check_point(&check, "screen/center", texture->screen_center)) != HL_OK) return status;
+  if ((status = check_direction(&check, "screen/right", texture->screen_right)) != HL_OK) return status;
+  if ((status = check_direction(&check, "screen/up", texture->screen_up)) != HL_OK) return status;
+  vec3 right = vec3_normalise(vec3_of(texture->screen_right)), up = vec3_normalise(vec3_of(texture->screen_up));
+  vec3 normal = vec3_cross(right, up), center = vec3_of(texture->screen_center);
+  if (!(vec3_length(normal) > 1e-4))
+    return refuse(&check, "screen/up", "lies along right: give two directions that span the screen");
+  vec3 way = light->type == HL_LIGHT_DIRECTIONAL ? vec3_of(light->direction)
+                                                 : vec3_subtract(center, hl_light_centre(light));
+  if (!(fabs(vec3_dot(vec3_normalise(normal), vec3_normalise(way))) > 1e-4))
+    return refuse(&check, "screen/center",
+                  "the light's rays run along the screen, not through it: turn or move the screen");
+  return HL_OK;
+}
+
 static hl_status check_light(const hl_light *light, size_t index, hl_error *error) {
   checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "/lights/%zu", index);
@@ -196,6 +238,7 @@ static hl_status check_light(const hl_light *light, size_t index, hl_error *erro
   if ((status = check_light_place(&check, light)) != HL_OK) return status;
   if ((status = check_vector(&check, "color", light->color, 0, HL_LIMIT_LENGTH,
                              "give linear RGB, none below 0")) != HL_OK) return status;
+  if ((status = check_texture(&check, light)) != HL_OK) return status;
   return check_range(&check, "intensity", light->intensity, 0, HL_LIMIT_LENGTH, "give a factor, 0 or more");
 }
 

@@ -8,6 +8,8 @@
 #define HL_LIMIT_LIGHTS 256
 #define HL_LIMIT_VOLUMES 256
 #define HL_LIMIT_VERTICES 1024         /* of one polygon */
+#define HL_LIMIT_TEXTURE_SIDE 32768    /* pixels of a light's texture */
+#define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
 #define HL_LIMIT_POINTS 65536          /* of one transfer function */
 #define HL_LIMIT_LENGTH 1e15           /* any coordinate or length: squares and cubes stay finite */
 #define HL_LIMIT_LIGHT_SAMPLES 64

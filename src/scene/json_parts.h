@@ -7,7 +7,10 @@
 /* The camera (null: absent) of a description whose image and volumes are known: what is absent is framed. */
 hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_scene_description *description);
 
-/* One light. */
+/* The image that a light projects (null: none); its pixels and file name are owned by *texture. */
+hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture);
+
+/* One light, with its texture: hl_light_texture_release(). */
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light);
 
 /* A volume that a scene names by file, found again when it is named twice. */

@@ -60,7 +60,7 @@ hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_sc
 }
 
 /* What each type of light may say, in the order of hl_light_type. */
-#define COMMON_KEYS "color", "intensity", "falloff", "shadows", NULL
+#define COMMON_KEYS "color", "intensity", "falloff", "shadows", "texture", NULL
 static const char *const directional_keys[] = {"type", "direction", "angular_diameter_deg", COMMON_KEYS};
 static const char *const point_keys[] = {"type", "position", "radius", COMMON_KEYS};
 static const char *const rect_keys[] = {"type", "position", "edge1", "edge2", COMMON_KEYS};
@@ -115,9 +115,6 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
   if (type == HL_LIGHT_SPOT)
     return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "type",
                         "\"spot\" lights are not supported by this version: use a point or disk light");
-  if (has(value, "texture"))
-    return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "texture",
-                        "projective textures are not supported by this version: remove the key");
   if ((status = hl_json_object(reader, value, light_keys[type])) != HL_OK) return status;
   light->type = (hl_light_type)type;
   status = read_light_place(reader, value, light);
@@ -128,6 +125,7 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
     status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
   light->falloff = (hl_falloff)falloff;
   light->shadows = (hl_shadows)shadows;
+  if (status == HL_OK) status = hl_json_read_texture(reader, json_object_get(value, "texture"), &light->texture);
   return status;
 }
 

@@ -143,6 +143,18 @@ static void write_camera(writer *w, const hl_camera *camera) {
   close_bracket(w, "}");
 }
 
+static void write_texture(writer *w, const hl_light_texture *texture) {
+  if (texture->pixels == NULL) return;
+  open_bracket(w, "texture", "{");
+  write_name(w, "file", texture->file);
+  open_bracket(w, "screen", "{");
+  write_row(w, "center", texture->screen_center, 3);
+  write_row(w, "right", texture->screen_right, 3);
+  write_row(w, "up", texture->screen_up, 3);
+  close_bracket(w, "}");
+  close_bracket(w, "}");
+}
+
 static void write_light_place(writer *w, const hl_light *light) {
   if (light->type == HL_LIGHT_DIRECTIONAL) {
     write_row(w, "direction", light->direction, 3);
@@ -174,6 +186,7 @@ static void write_light(writer *w, const hl_light *light) {
   write_number(w, "intensity", light->intensity);
   if (light->shadows != HL_SHADOWS_DEFAULT)
     write_name(w, "shadows", hl_shadows_names[light->shadows - HL_SHADOWS_OFF]);
+  write_texture(w, &light->texture);
   close_bracket(w, "}");
 }
 
@@ -272,12 +285,20 @@ static bool is_utf8(const char *text) {
   return good;
 }
 
-hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text, hl_error *error) {
-  if (context == NULL || scene == NULL || text == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_to_json: null context, scene or text");
-  *text = NULL;
-  for (size_t v = 0; v < scene->description.volume_count; v++) {
-    const hl_scene_volume *volume = &scene->description.volumes[v];
+/* What a text cannot say: voxels and pixels without a file, names that are not UTF-8. */
+static hl_status check_writable(const hl_scene_description *d, hl_error *error) {
+  for (size_t l = 0; l < d->light_count; l++) {
+    const hl_light_texture *texture = &d->lights[l].texture;
+    if (texture->pixels != NULL && texture->file == NULL)
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "/lights/%zu/texture/file: the image came from memory: write it to a file and name that in the scene",
+                     l);
+    if (texture->pixels != NULL && !is_utf8(texture->file))
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "/lights/%zu/texture/file: is not UTF-8, as JSON texts must be: rename it", l);
+  }
+  for (size_t v = 0; v < d->volume_count; v++) {
+    const hl_scene_volume *volume = &d->volumes[v];
     if (volume->file == NULL)
       return hl_fail(
           error, HL_ERROR_ARGUMENT,
@@ -286,6 +307,15 @@ hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **te
       return hl_fail(error, HL_ERROR_ARGUMENT,
                      "/volumes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", v);
   }
+  return HL_OK;
+}
+
+hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text, hl_error *error) {
+  if (context == NULL || scene == NULL || text == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_to_json: null context, scene or text");
+  *text = NULL;
+  hl_status status = check_writable(&scene->description, error);
+  if (status != HL_OK) return status;
   writer w = {.context = context, .first = true};
   write_scene(&w, &scene->description);
   if (w.failed) {

@@ -71,7 +71,10 @@ static void destroy(hl_scene *scene) {
   hl_scene_description *d = &scene->description;
   for (size_t v = 0; v < d->volume_count; v++) release_volume(context, (hl_scene_volume *)&d->volumes[v]);
   hl_release(context, (void *)d->volumes);
-  for (size_t l = 0; l < d->light_count; l++) hl_release(context, (void *)d->lights[l].vertices);
+  for (size_t l = 0; l < d->light_count; l++) {
+    hl_release(context, (void *)d->lights[l].vertices);
+    hl_light_texture_release(context, (hl_light_texture *)&d->lights[l].texture);
+  }
   hl_release(context, (void *)d->lights);
   hl_release(context, scene);
 }
@@ -90,7 +93,7 @@ static hl_status copy_array(hl_context *context, const void *items, size_t count
 static hl_status copy_text(hl_context *context, const char *text, const char **copy, hl_error *error) {
   if (text == NULL) return HL_OK;
   *copy = hl_copy_text(context, text);
-  return *copy != NULL ? HL_OK : hl_fail_memory(error, strlen(text) + 1, "a volume's name");
+  return *copy != NULL ? HL_OK : hl_fail_memory(error, strlen(text) + 1, "a name");
 }
 
 hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
@@ -136,23 +139,44 @@ static hl_status copy_volumes(hl_scene *scene, const hl_scene_description *from,
   return HL_OK;
 }
 
+void hl_light_texture_release(hl_context *context, hl_light_texture *texture) {
+  hl_release(context, (void *)texture->file);
+  hl_release(context, (void *)texture->pixels);
+  texture->file = NULL;
+  texture->pixels = NULL;
+}
+
+/* to: its pointers are null until they are its own. */
+static hl_status copy_texture(hl_context *context, const hl_light_texture *from, hl_light_texture *to,
+                              hl_error *error) {
+  if (from->pixels == NULL) return HL_OK;
+  void *pixels = NULL;
+  hl_status status = copy_array(context, from->pixels, (size_t)from->width * (size_t)from->height,
+                                3 * sizeof(float), "a light's texture", &pixels, error);
+  to->pixels = pixels;
+  return status == HL_OK ? copy_text(context, from->file, &to->file, error) : status;
+}
+
 static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
-  void *lights = NULL;
+  void *copied = NULL;
   hl_status status = copy_array(scene->context, from->lights, from->light_count, sizeof *from->lights,
-                                "a scene's lights", &lights, error);
+                                "a scene's lights", &copied, error);
   if (status != HL_OK) return status;
-  hl_light *copies = lights;
+  hl_light *lights = copied;
   for (size_t l = 0; l < from->light_count; l++) {
-    copies[l].vertices = NULL;
-    if (copies[l].type != HL_LIGHT_POLYGON) copies[l].vertex_count = 0;
+    lights[l].vertices = NULL;
+    if (lights[l].type != HL_LIGHT_POLYGON) lights[l].vertex_count = 0;
+    lights[l].texture.file = NULL;
+    lights[l].texture.pixels = NULL;
   }
-  scene->description.lights = copies;
+  scene->description.lights = lights;
   scene->description.light_count = from->light_count;
   for (size_t l = 0; l < from->light_count && status == HL_OK; l++) {
     void *vertices = NULL;
-    status = copy_array(scene->context, from->lights[l].vertices, copies[l].vertex_count,
+    status = copy_array(scene->context, from->lights[l].vertices, lights[l].vertex_count,
                         sizeof *from->lights[l].vertices, "a light's vertices", &vertices, error);
-    copies[l].vertices = vertices;
+    lights[l].vertices = vertices;
+    if (status == HL_OK) status = copy_texture(scene->context, &from->lights[l].texture, &lights[l].texture, error);
   }
   return status;
 }

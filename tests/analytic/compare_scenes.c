@@ -288,6 +288,40 @@ static void make_eye_within_parallel(stage *set) {
   stage_look(set, (vec3){2, -4, 3}, (vec3){-7, 8, -3}, (vec3){0, 0, 1});
 }
 
+/* ---- textured lights ---- */
+
+/* Bright and dark, every colour; smooth enough that a reference without prefilter does not alias. */
+static const float *slide(void) {
+  static float pixels[12 * 9 * 3];
+  for (int y = 0; y < 9; y++)
+    for (int x = 0; x < 12; x++)
+      for (int c = 0; c < 3; c++) pixels[3 * (12 * y + x) + c] = 1.4f * stage_noise(0.9 * x + c, 0.7 * y, 3 * c) * (float)((x + y) % 3 != 0);
+  return pixels;
+}
+static void make_slide(stage *set) { /* parallel light, screen aslant */
+  make_balls(set);
+  set->volumes[0].shading = HL_SHADING_NONE;
+  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){12, -9, 30}, (vec3){14, 3, 4}, (vec3){-4, 15, -2});
+}
+static void make_projector(stage *set) { /* a point light through a skewed screen at its side of the volume */
+  make_balls_medium(set);
+  set->scene.light_count = 0;
+  stage_set_texture(stage_add_point(set, (vec3){17, -8, 32}), 12, 9, slide(), (vec3){10, -6, 20}, (vec3){6, 2, 0},
+                    (vec3){-2, 4, 2});
+}
+static void make_projector_behind(stage *set) { /* the screen on the far side; inverse square */
+  make_projector(set);
+  set->lights[0].falloff = HL_FALLOFF_INVERSE_SQUARE;
+  set->lights[0].intensity = 1000;
+  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){-14, 8, -30}, (vec3){20, 3, -10}, (vec3){2, 20, 4});
+}
+static void make_window_in_haze(stage *set) { /* beams towards the eye through a smoke, one part unshadowed */
+  make_smoke_backlit(set);
+  set->volumes[0].attenuation_color[0] = set->volumes[0].attenuation_color[1] = 1;
+  set->volumes[0].receives_shadow = 0;
+  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){-40, 50, -30}, (vec3){10, 8, 0}, (vec3){0, -2, 12});
+}
+
 /* Walls lit at a grazing angle want shadow pixels well below a voxel (at 0.3 voxels both are within 0.006 and
  * 0.02); what lies behind a lamp, seen along its sheets, is not shadowed yet; the borders of holes lie half
  * way between empty and the least value in the reference, nearer to the least in the sheets. */
@@ -328,6 +362,10 @@ static const scenario SCENARIOS[] = {
     {"balls-backlit", make_balls_backlit, 0.006},
     {"eye-within-parallel", make_eye_within_parallel, 0.006},
     {"hidden-occluder", make_hidden_occluder, 0.006},
+    {"slide", make_slide, 0.006},
+    {"projector", make_projector, 0.006},
+    {"projector-behind", make_projector_behind, 0.006},
+    {"window-in-haze", make_window_in_haze, 0.006},
 };
 
 const scenario *compare_scenarios(size_t *count) {

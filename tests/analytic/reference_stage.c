@@ -127,6 +127,16 @@ hl_light *stage_add_point(stage *set, vec3 position) {
   return light;
 }
 
+void stage_set_texture(hl_light *light, int width, int height, const float *pixels, vec3 center, vec3 right,
+                       vec3 up) {
+  light->texture.pixels = pixels;
+  light->texture.width = width;
+  light->texture.height = height;
+  copy_vector(light->texture.screen_center, center);
+  copy_vector(light->texture.screen_right, right);
+  copy_vector(light->texture.screen_up, up);
+}
+
 void stage_look(stage *set, vec3 position, vec3 target, vec3 up) {
   copy_vector(set->scene.camera.position, position);
   copy_vector(set->scene.camera.target, target);

@@ -34,6 +34,9 @@ void stage_set_color(stage *set, hl_scene_volume *volume, double r, double g, do
 hl_light *stage_add_directional(stage *set, vec3 direction);
 hl_light *stage_add_point(stage *set, vec3 position);
 
+/* pixels: [height][width][3], borrowed until the pictures are made. */
+void stage_set_texture(hl_light *light, int width, int height, const float *pixels, vec3 center, vec3 right, vec3 up);
+
 void stage_look(stage *set, vec3 position, vec3 target, vec3 up);
 /* The ray through the centre of pixel (x, y), as the scene format defines it. */
 void stage_eye_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction);

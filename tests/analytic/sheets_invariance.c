@@ -69,6 +69,8 @@ static void open_watched(stage *set, watch *w, hl_instruction_set instructions) 
 static const hl_opacity_point SOFT_EDGE[] = {{0, 0}, {0.35, 0}, {0.6, 0.7}, {1, 0.9}};
 static const hl_color_point WARM[] = {{0, {0.2, 0.3, 0.9}}, {0.5, {0.9, 0.4, 0.2}}, {1, {1, 0.9, 0.6}}};
 
+static const float QUARTERS[2 * 2 * 3] = {1, 0.2f, 0, 0.1f, 1, 0.9f, 1, 1, 1, 0, 0.5f, 1};
+
 static hl_scene_volume *add_noise(stage *set, size_t n, vec3 corner, hl_voxel_type type) {
   float *voxels = malloc(n * n * n * sizeof *voxels);
   assert_non_null(voxels);
@@ -102,7 +104,9 @@ static void build_scene(stage *set, hl_shadows shadows, hl_soft_method method, h
   add_noise(set, 8, (vec3){-1, -2, -1}, HL_VOXEL_F32)->attenuation_color[0] = 0.3;
   stage_add_directional(set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 12;
   stage_add_directional(set, (vec3){1, 1, 0.2})->angular_diameter_deg = 5; /* a sweep of its own */
-  stage_add_point(set, (vec3){25, 5, 30})->radius = 3;
+  hl_light *projector = stage_add_point(set, (vec3){25, 5, 30});
+  projector->radius = 3;
+  stage_set_texture(projector, 2, 2, QUARTERS, (vec3){12, 2, 15}, (vec3){3, 4, -2}, (vec3){1, -3, 4});
   set->scene.ambient[1] = 0.2;
 }
 

@@ -9,11 +9,14 @@ static void copies_everything(void **state) {
   assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
   /* What the caller does to its own arrays no longer matters. */
   p.light.intensity = 77;
+  p.slide[1] = 77;
   p.opacity[1].opacity = 0.9;
   p.scene_volume.scale = 5;
   const hl_scene_description *d = hl_scene_describe(scene);
   assert_true(d->lights[0].intensity == 1 && d->volumes[0].scale == 1);
   assert_true(d->volumes[0].transfer_function.opacity[1].opacity == 0.25);
+  assert_true(d->lights[0].texture.pixels[1] == 0.2f && d->lights[0].texture.pixels[5] == 1);
+  assert_string_equal(d->lights[0].texture.file, "slide.png");
   assert_string_equal(d->volumes[0].name, "cube");
   assert_ptr_not_equal(d->volumes[0].name, p.scene_volume.name);
   assert_ptr_equal(d->volumes[0].volume, p.volume);
@@ -107,6 +110,15 @@ SPOIL(polygon_infinite, make_polygon(p, infinite, 3))
 SPOIL(light_color, p->light.color[2] = -0.1)
 SPOIL(light_intensity, p->light.intensity = -3)
 SPOIL(light_shadows, p->light.shadows = (hl_shadows)9)
+SPOIL(texture_width, p->light.texture.width = 0)
+SPOIL(texture_height, p->light.texture.height = 40000)
+SPOIL(texture_vast, p->light.texture.width = p->light.texture.height = 32768)
+SPOIL(texture_nan, p->slide[4] = NAN)
+SPOIL(texture_negative, p->slide[2] = -1)
+SPOIL(screen_nan, p->light.texture.screen_center[1] = NAN)
+SPOIL(screen_narrow, p->light.texture.screen_right[0] = 0)
+SPOIL(screen_flat, p->light.texture.screen_up[0] = 1e6)
+SPOIL(screen_edge_on, p->light.direction[1] = 1; p->light.direction[2] = 0)
 SPOIL(volumes_none, p->description.volume_count = 0)
 SPOIL(volume_null, p->scene_volume.volume = NULL)
 SPOIL(scale_zero, p->scene_volume.scale = 0)
@@ -188,6 +200,25 @@ static const refusal refusals[] = {
     {"/lights/0/intensity: -3 is negative: give a factor, 0 or more", HL_ERROR_INPUT, light_intensity},
     {"/lights/0/shadows: 9 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,
      light_shadows},
+    {"/lights/0/texture/width: 0 is out of range: give an image of at most 32768 pixels a side, 67108864 in all",
+     HL_ERROR_INPUT, texture_width},
+    {"/lights/0/texture/height: 40000 is out of range: give an image of at most 32768 pixels a side, 67108864 in all",
+     HL_ERROR_INPUT, texture_height},
+    {"/lights/0/texture: has 32768 x 32768 pixels: give an image of at most 32768 pixels a side, 67108864 in all",
+     HL_ERROR_INPUT, texture_vast},
+    {"/lights/0/texture/file: pixel (1, 0) has nan in channel 1: give linear RGB, finite and none below 0",
+     HL_ERROR_INPUT, texture_nan},
+    {"/lights/0/texture/file: pixel (0, 0) has -1 in channel 2: give linear RGB, finite and none below 0",
+     HL_ERROR_INPUT, texture_negative},
+    {"/lights/0/texture/screen/center/1: nan is not a number: give a coordinate between -1e15 and 1e15",
+     HL_ERROR_INPUT, screen_nan},
+    {"/lights/0/texture/screen/right: has no length: give the direction as three numbers, not all 0",
+     HL_ERROR_INPUT, screen_narrow},
+    {"/lights/0/texture/screen/up: lies along right: give two directions that span the screen", HL_ERROR_INPUT,
+     screen_flat},
+    {"/lights/0/texture/screen/center: the light's rays run along the screen, not through it: turn or move the "
+     "screen",
+     HL_ERROR_INPUT, screen_edge_on},
     {"/volumes: is empty: name at least one volume", HL_ERROR_INPUT, volumes_none},
     {"/volumes/0/volume: is null: give a volume", HL_ERROR_ARGUMENT, volume_null},
     {"/volumes/0/transform/scale: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, scale_zero},

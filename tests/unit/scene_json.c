@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include <halflight/image.h>
+
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene_parts.h"
@@ -20,6 +22,25 @@ static void write_file(const char *name, const void *bytes, size_t length) {
   fclose(file);
 }
 
+/* A picture of 2 x 1 pixels: red, and white of half alpha. */
+static int write_slide(const char *name) {
+  char path[300];
+  hl_context *context = make_context();
+  hl_image *image = NULL;
+  hl_image_write_options options;
+  hl_image_write_options_defaults(&options);
+  options.background_transparent = 1;
+  options.png_depth = 16;
+  const float pixels[8] = {1, 0, 0, 1, 0.5f, 0.5f, 0.5f, 0.5f};
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  assert_int_equal(hl_image_create(context, 2, 1, &image, NULL), HL_OK);
+  memcpy(hl_image_pixels(image), pixels, sizeof pixels);
+  hl_status status = hl_image_write(context, image, path, &options, NULL);
+  hl_image_destroy(image);
+  hl_context_destroy(context);
+  return status == HL_OK ? 0 : -1;
+}
+
 static int make_folder(void **state) {
   (void)state;
   unsigned char cube[64];
@@ -30,12 +51,12 @@ static int make_folder(void **state) {
   write_file("function.json", function, strlen(function));
   const char *colors = "[{\"RGBPoints\": [0, 1, 0, 0, 255, 0, 0, 1]}]";
   write_file("colors.json", colors, strlen(colors));
-  return 0;
+  return write_slide("slide.png");
 }
 
 static int remove_folder(void **state) {
   (void)state;
-  const char *names[] = {"cube_4x4x4_uint8.raw", "function.json", "colors.json", "scene.json"};
+  const char *names[] = {"cube_4x4x4_uint8.raw", "function.json", "colors.json", "scene.json", "slide.png"};
   for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
     char path[300];
     snprintf(path, sizeof path, "%s/%s", folder, names[n]);
@@ -241,6 +262,46 @@ static void files_are_relative_to_the_scene_file(void **state) {
   hl_context_destroy(context);
 }
 
+/* Decoded to linear light, over black; the name as it opens from here, and the screen, survive a round trip. */
+static void textures_are_read_linear(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = NULL;
+  char path[300];
+  const char *text = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}], \"lights\": [{\"texture\": "
+                     "{\"file\": \"slide.png\", \"screen\": {\"center\": [0.1, 2, 9], \"right\": [3, 0, 1], \"up\": [0, "
+                     "2, -0.0]}}}]}";
+  assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
+  const hl_light_texture *texture = &hl_scene_describe(scene)->lights[0].texture;
+  const float expected[6] = {1, 0, 0, 0.5f, 0.5f, 0.5f};
+  assert_true(texture->width == 2 && texture->height == 1);
+  for (int i = 0; i < 6; i++) assert_near(texture->pixels[i], expected[i], 1e-4f);
+  assert_true(texture->screen_center[0] == 0.1 && texture->screen_right[2] == 1 && texture->screen_up[1] == 2);
+  snprintf(path, sizeof path, "%s/slide.png", folder);
+  assert_string_equal(texture->file, path);
+  assert_round_trip(context, scene);
+  hl_scene_release(scene);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void textures_from_memory_cannot_be_written(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  p.light.texture.file = NULL;
+  p.scene_volume.file = "cube.nrrd";
+  hl_scene *scene = NULL;
+  char *text = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
+  assert_int_equal(hl_scene_to_json(p.context, scene, &text, &error), HL_ERROR_ARGUMENT);
+  assert_string_equal(error.message, "/lights/0/texture/file: the image came from memory: write it to a file and name "
+                                     "that in the scene");
+  hl_scene_release(scene);
+  parts_release(&p);
+}
+
 static void volumes_from_memory_cannot_be_written(void **state) {
   (void)state;
   parts p;
@@ -318,6 +379,8 @@ int main(void) {
       cmocka_unit_test(defaults_are_the_documented_ones),
       cmocka_unit_test(colors_alone_keep_opacity),
       cmocka_unit_test(files_are_relative_to_the_scene_file),
+      cmocka_unit_test(textures_are_read_linear),
+      cmocka_unit_test(textures_from_memory_cannot_be_written),
       cmocka_unit_test(volumes_from_memory_cannot_be_written),
       cmocka_unit_test(odd_values_survive),
       cmocka_unit_test(damaged_scenes_are_answered),

@@ -32,12 +32,13 @@ static inline hl_volume *make_volume(hl_context *context, size_t n, const float 
   return volume;
 }
 
-/* A scene with one light and one volume, in storage that the tests may change. */
+/* A scene with one light, which projects an image, and one volume, in storage that the tests may change. */
 typedef struct parts {
   hl_context *context;
   hl_volume *volume;
   hl_opacity_point opacity[4];
   hl_color_point color[3];
+  float slide[6];
   hl_light light;
   hl_scene_volume scene_volume;
   hl_scene_description description;
@@ -51,7 +52,9 @@ static inline void parts_make(parts *p) {
   p->volume = make_volume(p->context, 3, values);
   for (int n = 0; n < 4; n++) p->opacity[n] = (hl_opacity_point){8.0 * n, 0.25 * n};
   for (int n = 0; n < 3; n++) p->color[n] = (hl_color_point){10.0 * n, {0.5 * n, 0.25 * n, 1 - 0.5 * n}};
+  for (int n = 0; n < 6; n++) p->slide[n] = 0.2f * (float)n;
   hl_light_defaults(&p->light);
+  p->light.texture = (hl_light_texture){"slide.png", p->slide, 2, 1, {0, 0, 9}, {2, 0, 0}, {0, 1, 0}};
   hl_scene_volume_defaults(&p->scene_volume);
   p->scene_volume.name = "cube";
   p->scene_volume.volume = p->volume;

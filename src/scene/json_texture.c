@@ -1,0 +1,68 @@
+/* scene/json_texture.c - the image that a light projects, from JSON: its file and the screen it stands on. */
+#include <string.h>
+
+#include <halflight/image.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/json_parts.h"
+#include "scene/scene.h"
+
+static hl_status read_screen(hl_json_reader *reader, const json_t *value, hl_light_texture *texture) {
+  static const char *const keys[] = {"center", "right", "up", NULL};
+  double *const parts[] = {texture->screen_center, texture->screen_right, texture->screen_up};
+  if (value == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "screen",
+                        "is missing: say where the image stands, { \"center\": ..., \"right\": ..., \"up\": ... }");
+  size_t mark = hl_json_enter(reader, "screen");
+  hl_status status = hl_json_object(reader, value, keys);
+  for (int k = 0; status == HL_OK && keys[k] != NULL; k++)
+    if (json_object_get(value, keys[k]) == NULL)
+      status = hl_json_fail(reader, HL_ERROR_INPUT, keys[k], "is missing: give center, right and up");
+  for (int k = 0; status == HL_OK && keys[k] != NULL; k++)
+    status = hl_json_numbers(reader, value, keys[k], 3, parts[k]);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+/* Premultiplied colours are those over black: alpha is left out. */
+static hl_status take_pixels(hl_context *context, const hl_image *image, hl_light_texture *texture, hl_error *error) {
+  size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
+  const float *from = hl_image_pixels_const(image);
+  float *pixels = hl_allocate(context, count, 3 * sizeof *pixels);
+  if (pixels == NULL) return hl_fail_memory(error, count * 3 * sizeof *pixels, "a light's texture");
+  for (size_t i = 0; i < count; i++)
+    for (size_t c = 0; c < 3; c++) pixels[3 * i + c] = from[4 * i + c];
+  texture->pixels = pixels;
+  texture->width = hl_image_width(image);
+  texture->height = hl_image_height(image);
+  return HL_OK;
+}
+
+static hl_status load(hl_json_reader *reader, const char *file, hl_light_texture *texture) {
+  char *path = hl_path_join(reader->context, reader->folder, file);
+  if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
+  texture->file = path;
+  hl_image *image = NULL;
+  hl_status status = hl_image_read(reader->context, path, &image, reader->error);
+  if (status == HL_OK) status = take_pixels(reader->context, image, texture, reader->error);
+  hl_image_destroy(image);
+  if (status == HL_OK) return HL_OK;
+  hl_json_enter(reader, "file");
+  return hl_json_prefix(reader, reader->place), status;
+}
+
+hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture) {
+  static const char *const keys[] = {"file", "screen", NULL};
+  const char *file = NULL;
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "texture");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_text(reader, value, "file", &file);
+  if (status == HL_OK && (file == NULL || file[0] == 0))
+    status = hl_json_fail(reader, HL_ERROR_INPUT, "file", "%s: name the image's file", file == NULL ? "is missing" : "is empty");
+  if (status == HL_OK) status = read_screen(reader, json_object_get(value, "screen"), texture);
+  if (status == HL_OK) status = load(reader, file, texture);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}

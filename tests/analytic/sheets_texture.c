@@ -1,0 +1,212 @@
+/* analytic/sheets_texture.c - where projected images fall, what colour they bring and how far, against closed forms. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 96, FINE = 1024 };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* count x count pixels of squares pixels a side, black and white; white in the top left corner. */
+static float *checker(int count, int squares) {
+  float *pixels = malloc((size_t)count * (size_t)count * 3 * sizeof *pixels);
+  assert_non_null(pixels);
+  for (int i = 0; i < 3 * count * count; i++)
+    pixels[i] = (i / 3 % count / squares + i / 3 / count / squares) % 2 == 0;
+  return pixels;
+}
+
+/* An opaque floor with its surface at z = 0, seen from straight above in pixels of a quarter. */
+static void stage_floor(stage *set) {
+  hl_scene_volume *floor =
+      stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1}, (vec3){-20, -20, -2}, NULL);
+  stage_set_opacity(set, floor, 0.9999, 0.005);
+  floor->casts_shadow = 0;
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 24;
+  set->scene.render.shadows = HL_SHADOWS_OFF;
+}
+
+/* Where brightness first passes one half after a place; world coordinate along a row or column of the floor's picture. */
+static double edge_after(const float *first, int step, double from) {
+  for (int i = 0; i + 1 < SIDE; i++) {
+    double at = -12 + (i + 0.5) * 0.25, a = first[4 * i * step], b = first[4 * (i + 1) * step];
+    if (at >= from && (a - 0.5) * (b - 0.5) <= 0 && a != b) return at + 0.25 * (0.5 - a) / (b - a);
+  }
+  return INFINITY;
+}
+
+/* Parallel light at 30 degrees to the floor's normal, the screen across it: squares keep their width along y and are
+ * longer by 1 / cos 30 along x. */
+static void test_checker_at_30_degrees(void **state) {
+  (void)state;
+  static float pixels[SIDE * SIDE * 4];
+  float *image = checker(256, 32);
+  stage set;
+  stage_open(&set);
+  stage_floor(&set);
+  double s = 0.5, c = sqrt(0.75);
+  hl_light *light = stage_add_directional(&set, (vec3){s, 0, -c});
+  stage_set_texture(light, 256, 256, image, (vec3){-30 * s, 0, 30 * c}, (vec3){8 * c, 0, 8 * s}, (vec3){0, 8, 0});
+  for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
+    set.scene.render.shadows = (hl_shadows)shadows;
+    stage_render_sheets(&set, pixels);
+    for (int line = -3; line <= 3; line++) {
+      double x = 2 * line / c, y = 2 * line;
+      assert_near(edge_after(&pixels[4 * SIDE * 44], 1, x - 0.9), x, 0.125);
+      assert_near(edge_after(&pixels[4 * 44], SIDE, y - 0.9), y, 0.125);
+    }
+    /* beside the screen it is dark, two pixels from its edge */
+    int outside = (int)floor((-8 / c + 12) / 0.25) - 2, sum = 0;
+    for (int y = 0; y < SIDE; y++) {
+      assert_true(pixels[4 * (SIDE * y + outside)] == 0);
+      sum += pixels[4 * (SIDE * y + outside + 4)] > 0.99f;
+    }
+    assert_in_range(sum, 30, 32); /* of the screen's 64 rows half are white there */
+  }
+  stage_close(&set);
+  free(image);
+}
+
+/* A point light above the floor: an edge at height h of the screen falls H / (H - h) as far out. Above itself the same
+ * light gives nothing through its screen. */
+static void test_point_light_through_a_screen(void **state) {
+  (void)state;
+  static float pixels[SIDE * SIDE * 4];
+  float *image = checker(64, 16);
+  stage set;
+  stage_open(&set);
+  stage_floor(&set);
+  hl_light *light = stage_add_point(&set, (vec3){1, 0.5, 10});
+  stage_set_texture(light, 64, 64, image, (vec3){0.8, 0, 6}, (vec3){4, 0, 0}, (vec3){0, 3, 0});
+  for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
+    set.scene.render.shadows = (hl_shadows)shadows;
+    stage_render_sheets(&set, pixels);
+    for (int line = -1; line <= 1; line++) {
+      double x = 1 + (0.8 + 2 * line - 1) * 2.5, y = 0.5 + (1.5 * line - 0.5) * 2.5;
+      assert_near(edge_after(&pixels[4 * SIDE * 44], 1, x - 2), x, 0.125);
+      /* rows run downwards */
+      assert_near(-edge_after(&pixels[4 * 56], SIDE, -y - 1.5), y, 0.125);
+    }
+  }
+  light->position[2] = -10;
+  light->texture.screen_center[2] = -14;
+  light->shadows = HL_SHADOWS_OFF;
+  stage_render_sheets(&set, pixels);
+  for (int i = 0; i < SIDE * SIDE; i++) assert_true(pixels[4 * i] == 0);
+  stage_close(&set);
+  free(image);
+}
+
+/* An image finer than the picture is its mean there, at any angle. Over the 3.2 pixels a side that are averaged here,
+ * single pixels of -1 and 1 leave at most 1 / 3.2 along a row, and 1 / 3.2^2 of the half between black and white: 0.05. */
+static void test_fine_images_are_averaged(void **state) {
+  (void)state;
+  static float pixels[SIDE * SIDE * 4];
+  float *image = checker(FINE, 1);
+  stage set;
+  stage_open(&set);
+  stage_floor(&set);
+  hl_light *light = stage_add_directional(&set, (vec3){0.3, 0.2, -1});
+  for (int turn = 0; turn < 8; turn++) {
+    double a = turn * 0.2;
+    stage_set_texture(light, FINE, FINE, image, (vec3){-9, -6, 30}, (vec3){40 * cos(a), 40 * sin(a), 0},
+                      (vec3){-40 * sin(a), 40 * cos(a), 0});
+    stage_render_sheets(&set, pixels);
+    for (int i = 0; i < SIDE * SIDE; i++) assert_near((double)pixels[4 * i], 0.5, 0.05);
+  }
+  stage_close(&set);
+  free(image);
+}
+
+/* Three beams of one colour each cross a translucent cube seen from the side: without attenuation what comes out is what
+ * went in, with it exp(-sigma way) of that. */
+static void test_beams_through_a_cube(void **state) {
+  (void)state;
+  static float pixels[SIDE * SIDE * 4];
+  enum { ROWS = 70 };
+  static float image[ROWS * 3];
+  for (int y = 0; y < ROWS; y++)
+    for (int c = 0; c < 3; c++) image[3 * y + c] = y / 10 % 2 == 1 && y / 20 == c;
+  stage set;
+  stage_open(&set);
+  hl_scene_volume *cube =
+      stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1}, (vec3){-10, -10, -10}, NULL);
+  stage_set_opacity(&set, cube, 0.1, 1);
+  double sigma = -log(0.9);
+  stage_look(&set, (vec3){0, -50, 0}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  set.scene.width = set.scene.height = SIDE;
+  set.scene.camera.height = 24;
+  hl_light *light = stage_add_directional(&set, (vec3){1, 0, 0});
+  stage_set_texture(light, 1, ROWS, image, (vec3){-30, 0, 0}, (vec3){0, 12, 0}, (vec3){0, 0, 8.75});
+  for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
+    set.scene.render.shadows = (hl_shadows)shadows;
+    stage_render_sheets(&set, pixels);
+    int first = 12, last = 83; /* pixels more than a slab inside the cube's faces */
+    for (int beam = 0; beam < 3; beam++) {
+      /* the beam's middle: rows 15, 35 and 55 of the image, a quarter of a unit each, as the picture's */
+      int y = (int)((12 - (8.75 - (15 + 20 * beam) * 0.25)) / 0.25);
+      const float *entry = &pixels[4 * (SIDE * y + first)], *exit = &pixels[4 * (SIDE * y + last)];
+      double passed = shadows == HL_SHADOWS_OFF ? 1 : exp(-sigma * (last - first) * 0.25);
+      double entered = (1 - exp(-sigma * 20)) * (shadows == HL_SHADOWS_OFF ? 1 : exp(-sigma * ((first + 0.5) * 0.25 - 2)));
+      for (int c = 0; c < 3; c++) {
+        assert_near((double)entry[c], c == beam ? entered : 0, c == beam ? 0.01 * entered : 1e-4);
+        assert_near((double)exit[c], c == beam ? passed * (double)entry[c] : 0, c == beam ? 0.01 * passed * entered : 1e-4);
+      }
+      const float *beside = &pixels[4 * (SIDE * (y + 10) + 48)];
+      for (int c = 0; c < 3; c++) assert_true(beside[c] < 1e-4f);
+    }
+  }
+  stage_close(&set);
+}
+
+/* No pixels of the shadow buffer where the screen leaves the volume dark. */
+static void test_the_shadow_buffer_follows_the_screen(void **state) {
+  (void)state;
+  static float pixels[SIDE * SIDE * 4];
+  const float white[3] = {1, 1, 1};
+  uint64_t filled[2];
+  stage set;
+  stage_open(&set);
+  stage_set_opacity(&set, stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1}, (vec3){-10, -10, -10}, NULL),
+                    0.1, 1);
+  set.scene.width = set.scene.height = SIDE;
+  set.scene.camera.height = 24;
+  hl_light *light = stage_add_point(&set, (vec3){5, -8, 40});
+  for (int small = 0; small < 2; small++) {
+    hl_error error = {0};
+    hl_scene *scene = NULL;
+    hl_renderer *renderer = NULL;
+    hl_render_statistics statistics = {.struct_size = sizeof statistics};
+    double size = small ? 1 : 30;
+    stage_set_texture(light, 1, 1, white, (vec3){4, -6.4, 32}, (vec3){size, 0, 0}, (vec3){0, size, 0});
+    if (hl_scene_create(set.context, &set.scene, &scene, &error) != HL_OK ||
+        hl_renderer_create(set.context, &renderer, &error) != HL_OK ||
+        hl_renderer_render(renderer, scene, pixels, 4 * SIDE, &statistics, &error) != HL_OK)
+      fail_msg("%s", error.message);
+    filled[small] = statistics.tiles_filled_light;
+    hl_renderer_destroy(renderer);
+    hl_scene_release(scene);
+  }
+  print_message("# tiles filled for the light: %d, through a small screen %d\n", (int)filled[0], (int)filled[1]);
+  assert_true(filled[1] > 0 && filled[1] * 3 < filled[0]);
+  stage_close(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_checker_at_30_degrees),
+      cmocka_unit_test(test_point_light_through_a_screen),
+      cmocka_unit_test(test_fine_images_are_averaged),
+      cmocka_unit_test(test_beams_through_a_cube),
+      cmocka_unit_test(test_the_shadow_buffer_follows_the_screen),
+  };
+  return cmocka_run_group_tests_name("sheets_texture", tests, NULL, NULL);
+}
