@@ -31,6 +31,7 @@
 #include "image.h"
 #include "render.h"
 #include "scene.h"
+#include "shape.h"
 #include "volume.h"
 
 #endif

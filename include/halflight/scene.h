@@ -6,6 +6,7 @@
 #ifndef HALFLIGHT_SCENE_H
 #define HALFLIGHT_SCENE_H
 
+#include "shape.h"
 #include "volume.h"
 
 #ifdef __cplusplus
@@ -89,6 +90,7 @@ typedef struct hl_material { double ambient, diffuse, specular, shininess; } hl_
 typedef struct hl_scene_volume {
   const char *name;             /* may be null */
   const char *file;             /* where the voxels came from, for hl_scene_to_json; may be null */
+  const char *shapes;           /* or the text they came from, as for hl_volume_from_shapes; may be null */
   hl_volume *volume;            /* retained by the scene */
   double scale;                 /* transform: scale, then rotate, then translate */
   double rotate_axis[3];
@@ -138,6 +140,7 @@ typedef struct hl_scene_description {
   const hl_scene_volume *volumes;
   size_t volume_count;
   hl_render_settings render;
+  const char *description;     /* one sentence on the scene; may be null */
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* immutable and counted */

@@ -366,6 +366,8 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
   hl_status status;
   if (volume->volume == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s/volume: is null: give a volume", check.place);
+  if (volume->file != NULL && volume->shapes != NULL)
+    return refuse(&check, "shapes", "and file exclude each other: the voxels came from one of them");
   if ((status = check_transform(volume, check.place, error)) != HL_OK) return status;
   char place[80];
   snprintf(place, sizeof place, "/volumes/%zu/transfer_function", index);

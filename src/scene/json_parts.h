@@ -13,20 +13,33 @@ hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_l
 /* One light, with its texture: hl_light_texture_release(). */
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light);
 
-/* A volume that a scene names by file, found again when it is named twice. */
+/* A volume that a scene has, found again when it is there twice. */
 typedef struct hl_loaded_volume {
-  char *path;        /* owned */
+  char *source;      /* owned; the file's path, or the text of its shapes */
   hl_volume *volume; /* owned */
 } hl_loaded_volume;
 
-/* One volume: texts are the tree's, except file, which is the loaded volume's path; the volume is borrowed
- * from loaded[0 .. *loaded_count), which has room for one more; the transfer function's points are owned by
- * *volume. */
-hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded,
-                              size_t *loaded_count, hl_scene_volume *volume);
+/* What the volumes of one scene share. */
+typedef struct hl_volume_shelf {
+  hl_loaded_volume *loaded; /* owned; [count], with room for one more whenever a volume is read */
+  size_t count;
+  const json_t *groups;     /* of shapes; may be null */
+  int threads;              /* to sample shapes with; 0: one per processor */
+} hl_volume_shelf;
 
-/* A transfer function for a volume (null: not known, so nothing can adapt to it). value null: automatic. */
-hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
+/* One volume: texts are the tree's, except file and shapes, which are the loaded volume's source; the volume is
+ * borrowed from the shelf; the transfer function's points are owned by *volume. */
+hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
+                              hl_scene_volume *volume);
+
+/* What a transfer function is for: adapts to the volume (null: nothing can adapt), is solid for shapes. */
+typedef struct hl_function_subject {
+  const hl_volume *volume;
+  bool is_solid;
+} hl_function_subject;
+
+/* value null: the subject's default, which is automatic where it is not solid. */
+hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                                          hl_transfer_function *function);
 
 hl_status hl_json_read_render(hl_json_reader *reader, const json_t *value, hl_render_settings *render);

@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "scene/automatic.h"
 #include "scene/json_parts.h"
+#include "scene/json_shapes.h"
 #include "scene/scene.h"
 
 static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
@@ -58,50 +59,95 @@ static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene
   return status;
 }
 
+static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source) {
+  for (size_t v = 0; v < shelf->count; v++)
+    if (strcmp(shelf->loaded[v].source, source) == 0) return &shelf->loaded[v];
+  return NULL;
+}
+
+/* Takes over source and volume. */
+static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source, hl_volume *volume) {
+  shelf->loaded[shelf->count] = (hl_loaded_volume){source, volume};
+  return &shelf->loaded[shelf->count++];
+}
+
 /* The volume of a file, loaded now or earlier. */
-static hl_status load(hl_json_reader *reader, const char *file, hl_loaded_volume *loaded,
-                      size_t *loaded_count, hl_scene_volume *volume) {
+static hl_status load(hl_json_reader *reader, const char *file, hl_volume_shelf *shelf, hl_scene_volume *volume) {
   char *path = hl_path_join(reader->context, reader->folder, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
-  for (size_t v = 0; v < *loaded_count; v++)
-    if (strcmp(loaded[v].path, path) == 0) {
-      hl_release(reader->context, path);
-      volume->volume = loaded[v].volume;
-      volume->file = loaded[v].path;
-      return HL_OK;
-    }
-  hl_status status = hl_volume_load(reader->context, path, &volume->volume, reader->error);
-  if (status != HL_OK) {
+  const hl_loaded_volume *loaded = find_loaded(shelf, path);
+  if (loaded != NULL) {
     hl_release(reader->context, path);
-    hl_json_enter(reader, "file");
-    hl_json_prefix(reader, reader->place);
-    return status;
+  } else {
+    hl_volume *made = NULL;
+    hl_status status = hl_volume_load(reader->context, path, &made, reader->error);
+    if (status != HL_OK) {
+      hl_release(reader->context, path);
+      hl_json_enter(reader, "file");
+      hl_json_prefix(reader, reader->place);
+      return status;
+    }
+    loaded = put_on_shelf(shelf, path, made);
   }
-  volume->file = path;
-  loaded[(*loaded_count)++] = (hl_loaded_volume){path, volume->volume};
+  volume->volume = loaded->volume;
+  volume->file = loaded->source;
   return HL_OK;
 }
 
-static hl_status read_file(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded,
-                           size_t *loaded_count, hl_scene_volume *volume) {
-  static const char *const procedural[] = {"shapes", "voxel_size"};
-  for (int k = 0; k < 2; k++)
-    if (json_object_get(value, procedural[k]) != NULL)
-      return hl_json_fail(
-          reader, HL_ERROR_UNSUPPORTED, procedural[k],
-          "procedural volumes in scenes are not supported by this version: write a volume file and name it");
+/* The volume of shapes; the same list, voxel size and groups make it once. */
+static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
+                             hl_scene_volume *volume) {
+  const json_t *shapes = json_object_get(value, "shapes");
+  double voxel_size = json_number_value(json_object_get(value, "voxel_size"));
+  char *text = hl_json_shapes_text(reader->context, shapes, shelf->groups, voxel_size);
+  const hl_loaded_volume *loaded = text != NULL ? find_loaded(shelf, text) : NULL;
+  hl_release(reader->context, text);
+  if (loaded == NULL) {
+    hl_shapes_options options;
+    hl_shapes_options_defaults(&options);
+    options.threads = shelf->threads;
+    hl_volume *made = NULL;
+    hl_status status = hl_json_read_shapes(reader, value, shelf->groups, &options, &made, &voxel_size);
+    if (status != HL_OK) return status;
+    text = hl_json_shapes_text(reader->context, shapes, shelf->groups, voxel_size);
+    if (text == NULL) {
+      hl_volume_release(made);
+      return hl_fail_memory(reader->error, 1000, "the text of shapes");
+    }
+    loaded = put_on_shelf(shelf, text, made);
+  }
+  volume->volume = loaded->volume;
+  volume->shapes = loaded->source;
+  return HL_OK;
+}
+
+static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
+                             hl_scene_volume *volume) {
   const char *file = NULL;
+  bool shapes = json_object_get(value, "shapes") != NULL;
   hl_status status = hl_json_text(reader, value, "file", &file);
   if (status != HL_OK) return status;
-  if (file == NULL) return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is missing: name the volume's file");
+  if (file != NULL && shapes)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "shapes", "and file exclude each other: remove one");
+  if (!shapes && json_object_get(value, "voxel_size") != NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "voxel_size", "is for shapes: remove it");
+  if (shapes) return read_shapes(reader, value, shelf, volume);
+  if (file == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is missing: name the volume's file, or give shapes");
   if (file[0] == 0) return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is empty: name the volume's file");
-  return load(reader, file, loaded, loaded_count, volume);
+  return load(reader, file, shelf, volume);
+}
+
+/* Orbitals are signed, everything else that shapes make is a density. */
+static bool is_solid(const hl_scene_volume *volume) {
+  return volume->shapes != NULL && volume->volume->storage != HL_STORAGE_F32;
 }
 
 /* Without a word on it, smoke is a medium and the rest has surfaces. */
 static hl_status read_shading(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   int shading = HL_SHADING_PHONG;
-  if (json_object_get(value, "shading") == NULL && json_object_get(value, "transfer_function") == NULL) {
+  if (json_object_get(value, "shading") == NULL && json_object_get(value, "transfer_function") == NULL &&
+      volume->shapes == NULL) {
     hl_data_analysis analysis;
     hl_status status = hl_data_analyse(volume->volume, &analysis, reader->error);
     if (status != HL_OK) return hl_json_prefix(reader, reader->place), status;
@@ -112,8 +158,8 @@ static hl_status read_shading(hl_json_reader *reader, const json_t *value, hl_sc
   return status;
 }
 
-hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_loaded_volume *loaded,
-                              size_t *loaded_count, hl_scene_volume *volume) {
+hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
+                              hl_scene_volume *volume) {
   static const char *const keys[] = {"name",
                                      "file",
                                      "shapes",
@@ -139,9 +185,10 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_lo
   if (status == HL_OK) status = hl_json_flag(reader, value, "casts_shadow", &volume->casts_shadow);
   if (status == HL_OK) status = hl_json_flag(reader, value, "receives_shadow", &volume->receives_shadow);
   if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
-  if (status == HL_OK) status = read_file(reader, value, loaded, loaded_count, volume);
+  if (status == HL_OK) status = read_source(reader, value, shelf, volume);
   if (status == HL_OK) status = read_shading(reader, value, volume);
   if (status != HL_OK) return status;
-  return hl_json_read_transfer_function(reader, json_object_get(value, "transfer_function"), volume->volume,
+  hl_function_subject subject = {volume->volume, is_solid(volume)};
+  return hl_json_read_transfer_function(reader, json_object_get(value, "transfer_function"), subject,
                                         &volume->transfer_function);
 }

@@ -13,6 +13,7 @@
 
 #include "core/memory.h"
 #include "scene/json_read.h"
+#include "scene/json_shapes.h"
 #include "scene/scene.h"
 
 /* A text that grows. After a failed allocation everything is ignored until the end. */
@@ -219,10 +220,54 @@ static void write_transform(writer *w, const hl_scene_volume *volume) {
   close_bracket(w, "}");
 }
 
+static void write_json(writer *w, const char *key, const json_t *value);
+
+/* Members on one line where they are plain, each shape on a line of its own. */
+static void write_object(writer *w, const char *key, const json_t *value) {
+  const char *name;
+  json_t *member;
+  open_bracket(w, key, "{");
+  json_object_foreach((json_t *)value, name, member) write_json(w, name, member);
+  close_bracket(w, "}");
+}
+
+static void write_list(writer *w, const char *key, const json_t *value) {
+  if (json_is_number(json_array_get(value, 0))) {
+    double numbers[3] = {0};
+    for (size_t n = 0; n < 3; n++) numbers[n] = json_number_value(json_array_get(value, n));
+    write_row(w, key, numbers, json_array_size(value) < 3 ? json_array_size(value) : 3);
+    return;
+  }
+  open_bracket(w, key, "[");
+  for (size_t n = 0; n < json_array_size(value); n++) write_json(w, NULL, json_array_get(value, n));
+  close_bracket(w, "]");
+}
+
+static void write_json(writer *w, const char *key, const json_t *value) {
+  if (json_is_object(value)) write_object(w, key, value);
+  else if (json_is_array(value)) write_list(w, key, value);
+  else if (json_is_string(value)) write_name(w, key, json_string_value(value));
+  else if (json_is_number(value)) write_number(w, key, json_number_value(value));
+  else write_flag(w, key, json_is_true(value));
+}
+
+/* text: {"shapes": [...], "voxel_size": h}, found good by hl_scene_to_json(); groups go into their shapes. */
+static void write_shapes(writer *w, const char *text) {
+  json_t *root = json_loads(text, 0, NULL);
+  json_t *shapes = hl_json_expand_shapes(json_object_get(root, "shapes"), json_object_get(root, "groups"));
+  if (shapes == NULL) w->failed = true;
+  write_list(w, "shapes", shapes);
+  if (json_object_get(root, "voxel_size") != NULL)
+    write_number(w, "voxel_size", json_number_value(json_object_get(root, "voxel_size")));
+  json_decref(shapes);
+  json_decref(root);
+}
+
 static void write_volume(writer *w, const hl_scene_volume *volume) {
   open_bracket(w, NULL, "{");
   if (volume->name != NULL) write_name(w, "name", volume->name);
-  write_name(w, "file", volume->file);
+  if (volume->shapes != NULL) write_shapes(w, volume->shapes);
+  else write_name(w, "file", volume->file);
   write_transform(w, volume);
   write_transfer_function(w, &volume->transfer_function);
   write_name(w, "shading", hl_shading_names[volume->shading]);
@@ -264,6 +309,7 @@ static void write_render(writer *w, const hl_render_settings *render) {
 static void write_scene(writer *w, const hl_scene_description *d) {
   open_bracket(w, NULL, "{");
   write_number(w, "halflight", 1);
+  if (d->description != NULL) write_name(w, "description", d->description);
   write_image(w, d);
   write_camera(w, &d->camera);
   write_row(w, "ambient", d->ambient, 3);
@@ -279,10 +325,31 @@ static void write_scene(writer *w, const hl_scene_description *d) {
 }
 
 static bool is_utf8(const char *text) {
+  if (text == NULL) return true;
   json_t *string = json_string(text); /* null for what is not */
   bool good = string != NULL;
   json_decref(string);
   return good;
+}
+
+static bool is_text_of_shapes(const char *text) {
+  json_t *root = json_loads(text, 0, NULL);
+  bool good = json_is_array(json_object_get(root, "shapes"));
+  json_decref(root);
+  return good;
+}
+
+static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_error *error) {
+  if (volume->file == NULL && volume->shapes == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "/volumes/%zu/file: the volume came from memory: write it to a file and name that in the scene",
+                   index);
+  if (volume->shapes != NULL && !is_text_of_shapes(volume->shapes))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "/volumes/%zu/shapes: is no text that hl_volume_from_shapes() reads: give that, or null", index);
+  if (is_utf8(volume->file) && is_utf8(volume->name)) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT,
+                 "/volumes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", index);
 }
 
 /* What a text cannot say: voxels and pixels without a file, names that are not UTF-8. */
@@ -298,16 +365,11 @@ static hl_status check_writable(const hl_scene_description *d, hl_error *error) 
                      "/lights/%zu/texture/file: is not UTF-8, as JSON texts must be: rename it", l);
   }
   for (size_t v = 0; v < d->volume_count; v++) {
-    const hl_scene_volume *volume = &d->volumes[v];
-    if (volume->file == NULL)
-      return hl_fail(
-          error, HL_ERROR_ARGUMENT,
-          "/volumes/%zu/file: the volume came from memory: write it to a file and name that in the scene", v);
-    if (!is_utf8(volume->file) || (volume->name != NULL && !is_utf8(volume->name)))
-      return hl_fail(error, HL_ERROR_ARGUMENT,
-                     "/volumes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", v);
+    hl_status status = check_volume(&d->volumes[v], v, error);
+    if (status != HL_OK) return status;
   }
-  return HL_OK;
+  if (is_utf8(d->description)) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT, "/description: is not UTF-8, as JSON texts must be");
 }
 
 hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text, hl_error *error) {

@@ -62,6 +62,7 @@ void hl_scene_description_defaults(hl_scene_description *description) {
 static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_release(context, (void *)volume->name);
   hl_release(context, (void *)volume->file);
+  hl_release(context, (void *)volume->shapes);
   hl_transfer_function_release(context, &volume->transfer_function);
   hl_volume_release(volume->volume);
 }
@@ -76,6 +77,7 @@ static void destroy(hl_scene *scene) {
     hl_light_texture_release(context, (hl_light_texture *)&d->lights[l].texture);
   }
   hl_release(context, (void *)d->lights);
+  hl_release(context, (void *)d->description);
   hl_release(context, scene);
 }
 
@@ -116,11 +118,12 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
 static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to,
                              hl_error *error) {
   *to = *from;
-  to->name = to->file = NULL;
+  to->name = to->file = to->shapes = NULL;
   to->transfer_function = (hl_transfer_function){0};
   hl_volume_retain(to->volume);
   hl_status status = copy_text(context, from->name, &to->name, error);
   if (status == HL_OK) status = copy_text(context, from->file, &to->file, error);
+  if (status == HL_OK) status = copy_text(context, from->shapes, &to->shapes, error);
   if (status == HL_OK)
     status = hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);
   return status;
@@ -208,9 +211,11 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   made->description = *description;
   made->description.lights = NULL;
   made->description.volumes = NULL;
+  made->description.description = NULL;
   made->description.light_count = made->description.volume_count = 0;
   mend_up(&made->description.camera);
-  status = copy_lights(made, description, error);
+  status = copy_text(context, description->description, &made->description.description, error);
+  if (status == HL_OK) status = copy_lights(made, description, error);
   if (status == HL_OK) status = copy_volumes(made, description, error);
   if (status != HL_OK) {
     destroy(made);

@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "scene/check.h"
 #include "scene/json_parts.h"
+#include "scene/json_shapes.h"
 #include "scene/scene.h"
 
 /* What reading gathers and must let go of, whatever happens. */
@@ -17,19 +18,18 @@ typedef struct gathered {
   hl_scene_description description;
   hl_light *lights;           /* owned; [light_count] */
   hl_scene_volume *volumes;   /* owned, with their transfer functions' points; [volume_count] */
-  hl_loaded_volume *loaded;   /* owned; [volume_count], loaded_count of them filled */
-  size_t loaded_count;
+  hl_volume_shelf shelf;
   hl_light key_light;
 } gathered;
 
 static void release(hl_context *context, gathered *g) {
   for (size_t v = 0; v < g->description.volume_count; v++)
     hl_transfer_function_release(context, &g->volumes[v].transfer_function);
-  for (size_t v = 0; v < g->loaded_count; v++) {
-    hl_volume_release(g->loaded[v].volume);
-    hl_release(context, g->loaded[v].path);
+  for (size_t v = 0; v < g->shelf.count; v++) {
+    hl_volume_release(g->shelf.loaded[v].volume);
+    hl_release(context, g->shelf.loaded[v].source);
   }
-  hl_release(context, g->loaded);
+  hl_release(context, g->shelf.loaded);
   hl_release(context, g->volumes);
   for (size_t l = 0; g->lights != NULL && l < g->description.light_count; l++) {
     hl_release(context, (void *)g->lights[l].vertices);
@@ -64,20 +64,21 @@ static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gather
   if (value == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "volumes",
                         "is missing: name at least one volume, [ { \"file\": ... } ]");
+  g->shelf.groups = json_object_get(root, "groups");
+  g->shelf.threads = g->description.render.threads;
   size_t mark = hl_json_enter(reader, "volumes");
   hl_status status = hl_json_array(reader, value, 1, HL_LIMIT_VOLUMES);
   if (status != HL_OK) return status;
   size_t count = json_array_size(value);
   g->volumes = hl_allocate_zeroed(reader->context, count, sizeof *g->volumes);
-  g->loaded = hl_allocate_zeroed(reader->context, count, sizeof *g->loaded);
-  if (g->volumes == NULL || g->loaded == NULL)
+  g->shelf.loaded = hl_allocate_zeroed(reader->context, count, sizeof *g->shelf.loaded);
+  if (g->volumes == NULL || g->shelf.loaded == NULL)
     return hl_fail_memory(reader->error, count * sizeof *g->volumes, "a scene's volumes");
   g->description.volumes = g->volumes;
   for (size_t v = 0; v < count; v++) {
     g->description.volume_count = v + 1;
     size_t inner = hl_json_enter_index(reader, v);
-    status =
-        hl_json_read_volume(reader, json_array_get(value, v), g->loaded, &g->loaded_count, &g->volumes[v]);
+    status = hl_json_read_volume(reader, json_array_get(value, v), &g->shelf, &g->volumes[v]);
     if (status != HL_OK) return status;
     hl_json_leave(reader, inner);
   }
@@ -123,16 +124,18 @@ static hl_status read_version(hl_json_reader *reader, const json_t *root) {
 }
 
 static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
-  static const char *const keys[] = {"halflight", "image", "camera", "ambient", "lights", "volumes", "render",
-                                     "$schema", NULL};
+  static const char *const keys[] = {"halflight", "description", "image",   "camera",  "ambient", "lights",
+                                     "groups",    "volumes",     "render", "$schema", NULL};
   hl_scene_description *d = &g->description;
   const char *schema = NULL;
   hl_status status = hl_json_object(reader, root, keys);
   if (status == HL_OK) status = read_version(reader, root);
   if (status == HL_OK) status = hl_json_text(reader, root, "$schema", &schema);
+  if (status == HL_OK) status = hl_json_text(reader, root, "description", &d->description);
   if (status == HL_OK) status = read_image(reader, root, d);
   if (status == HL_OK) status = hl_json_numbers(reader, root, "ambient", 3, d->ambient);
   if (status == HL_OK) status = hl_json_read_render(reader, json_object_get(root, "render"), &d->render);
+  if (status == HL_OK) status = hl_json_check_groups(reader, json_object_get(root, "groups"));
   if (status == HL_OK) status = read_volumes(reader, root, g);
   if (status == HL_OK) status = hl_json_read_camera(reader, json_object_get(root, "camera"), d);
   return status == HL_OK ? read_lights(reader, root, g) : status;

@@ -11,7 +11,8 @@ import sys
 ALLOWED = {
     "core": set(),
     "volume": {"core"},
-    "scene": {"core", "volume"},
+    "shape": {"core", "volume"},
+    "scene": {"core", "volume", "shape"},
     "image": {"core"},
     "simd": {"core", "volume", "scene", "splat", "light", "render"},
     "splat": {"core", "volume", "scene", "simd"},

@@ -136,6 +136,48 @@ static void every_case(void **state) {
   hl_context_destroy(context);
 }
 
+/* Equal shapes are sampled once, and a program's own text, groups and all, can be written. */
+static void shapes_are_made_once(void **state) {
+  (void)state;
+  static const char text[] =
+      "{\"halflight\": 1, \"groups\": {\"ball\": [{\"type\": \"sphere\", \"radius\": 3}]}, \"volumes\": ["
+      "{\"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 1},"
+      "{\"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 1, \"transform\": {\"scale\": 2}},"
+      "{\"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 2}]}";
+  hl_context *context = make_context();
+  hl_scene *scene = NULL, *changed = NULL;
+  assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
+  hl_scene_description d = *hl_scene_describe(scene);
+  assert_ptr_equal(d.volumes[0].volume, d.volumes[1].volume);
+  assert_ptr_not_equal(d.volumes[0].volume, d.volumes[2].volume);
+  const hl_transfer_function *f = &d.volumes[2].transfer_function;
+  assert_true(f->unit_distance == 2 && f->color_count == 0 && f->opacity_count == 2);
+  assert_true(hl_transfer_function_opacity(f, 0.5) > 0.4 && hl_transfer_function_opacity(f, 0.3) == 0);
+
+  hl_scene_volume volume = d.volumes[0];
+  volume.shapes = "{\"groups\": {\"ball\": [{\"type\": \"sphere\", \"radius\": 3}]},"
+                  " \"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 1}";
+  d.volumes = &volume;
+  d.volume_count = 1;
+  hl_error error = {0};
+  assert_int_equal(hl_scene_create(context, &d, &changed, &error), HL_OK);
+  assert_round_trip(context, changed);
+  hl_scene_release(changed);
+  volume.file = "ball.nrrd";
+  assert_int_equal(hl_scene_create(context, &d, &changed, &error), HL_ERROR_INPUT);
+  assert_string_equal(error.message,
+                      "/volumes/0/shapes: and file exclude each other: the voxels came from one of them");
+  volume.file = NULL, volume.shapes = "a ball";
+  assert_int_equal(hl_scene_create(context, &d, &changed, &error), HL_OK);
+  char *written = NULL;
+  assert_int_equal(hl_scene_to_json(context, changed, &written, &error), HL_ERROR_ARGUMENT);
+  assert_memory_equal(error.message, "/volumes/0/shapes: is no text", 29);
+  hl_scene_release(changed);
+  hl_scene_release(scene);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* The names that the schema lists are the library's, in its order. */
 static void assert_enumeration(const json_t *schema, const char *key, const char *(*name_at)(size_t index)) {
   const json_t *function = json_object_get(json_object_get(schema, "$defs"), "transfer_function");
@@ -375,6 +417,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_case),
       cmocka_unit_test(the_schema_knows_all_names),
+      cmocka_unit_test(shapes_are_made_once),
       cmocka_unit_test(syntax_errors_have_line_and_column),
       cmocka_unit_test(defaults_are_the_documented_ones),
       cmocka_unit_test(colors_alone_keep_opacity),

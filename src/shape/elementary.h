@@ -1,0 +1,62 @@
+/* shape/elementary.h - exp, log, sine and cosine from plain arithmetic.
+ *
+ * The C library's own differ in their last bits from machine to machine, and shapes promise the same bytes
+ * everywhere. These are good to a few units in the last place.
+ */
+#ifndef HL_SHAPE_ELEMENTARY_H
+#define HL_SHAPE_ELEMENTARY_H
+
+#include <stdint.h>
+#include <string.h>
+
+#define HL_LN2 0.69314718055994530942
+
+/* 2^k for -1022 <= k <= 1023. */
+static inline double hl_power_of_two(int k) {
+  uint64_t bits = (uint64_t)(k + 1023) << 52;
+  double power;
+  memcpy(&power, &bits, sizeof power);
+  return power;
+}
+
+/* e^x for x <= 0: derived, x = k ln 2 + r with abs(r) <= ln 2 / 2, e^x = 2^k * (Taylor series of e^r). */
+static inline double hl_exp_negative(double x) {
+  if (!(x > -700)) return 0;
+  int k = (int)(x / HL_LN2 - 0.5);
+  double r = x - k * HL_LN2, sum = 1;
+  for (int n = 14; n >= 1; n--) sum = 1 + sum * r / n;
+  return sum * hl_power_of_two(k);
+}
+
+/* ln x for normal x > 0: derived, x = 2^k m with sqrt(1/2) <= m < sqrt(2), ln m = 2 artanh((m - 1) / (m + 1)). */
+static inline double hl_log(double x) {
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  int k = (int)(bits >> 52 & 0x7ff) - 1023;
+  double m = x * (k < 0 ? hl_power_of_two(-k) : 1 / hl_power_of_two(k));
+  if (m > 1.4142135623730951) m /= 2, k++;
+  double s = (m - 1) / (m + 1), square = s * s, sum = 0;
+  for (int n = 23; n >= 1; n -= 2) sum = sum * square + 1.0 / n;
+  return k * HL_LN2 + 2 * s * sum;
+}
+
+/* Sine and cosine of an angle in degrees; exact at multiples of 90. Derived: a turn by the nearest multiple of
+ * 90 degrees, and Taylor series of what is left, at most 45 degrees. abs(angle_deg) <= 1e6. */
+static inline void hl_sine_cosine(double angle_deg, double *sine, double *cosine) {
+  int64_t quarter = (int64_t)(angle_deg / 90 + (angle_deg < 0 ? -0.5 : 0.5));
+  double x = (angle_deg - 90.0 * (double)quarter) * (3.14159265358979323846 / 180), square = x * x;
+  double s = 1, c = 1;
+  for (int n = 18; n >= 2; n -= 2) {
+    s = 1 - s * square / (n * (n + 1));
+    c = 1 - c * square / (n * (n - 1));
+  }
+  s *= x;
+  switch (quarter & 3) {
+    case 0: *sine = s, *cosine = c; break;
+    case 1: *sine = c, *cosine = -s; break;
+    case 2: *sine = -s, *cosine = -c; break;
+    default: *sine = -c, *cosine = s; break;
+  }
+}
+
+#endif

@@ -1,0 +1,81 @@
+/* shape/noise.c - Perlin's noise, turbulence, bias and gain, in arithmetic that is the same on every machine. */
+#include "shape/noise.h"
+
+#include "shape/elementary.h"
+
+/* SplitMix64 (Steele, Lea and Flood 2014). */
+static uint64_t next_number(uint64_t *state) {
+  uint64_t z = *state += 0x9e3779b97f4a7c15u;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+  return z ^ z >> 31;
+}
+
+void hl_noise_begin(hl_noise *noise, uint64_t seed) {
+  uint8_t *p = noise->permutation;
+  for (int n = 0; n < 256; n++) p[n] = (uint8_t)n;
+  for (int n = 255; n > 0; n--) { /* Fisher and Yates */
+    int other = (int)(next_number(&seed) % (uint64_t)(n + 1));
+    uint8_t swap = p[n];
+    p[n] = p[other];
+    p[other] = swap;
+  }
+  memcpy(p + 256, p, 256);
+}
+
+static double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
+static double mix(double t, double a, double b) { return a + t * (b - a); }
+
+/* The product of an offset with the hash's gradient; four of the sixteen codes repeat an edge. */
+static double slope(int hash, double x, double y, double z) {
+  static const signed char gradient[16][3] = {{1, 1, 0},  {-1, 1, 0},  {1, -1, 0}, {-1, -1, 0},
+                                              {1, 0, 1},  {-1, 0, 1},  {1, 0, -1}, {-1, 0, -1},
+                                              {0, 1, 1},  {0, -1, 1},  {0, 1, -1}, {0, -1, -1},
+                                              {1, 1, 0},  {0, -1, 1},  {-1, 1, 0}, {0, -1, -1}};
+  const signed char *g = gradient[hash & 15];
+  return g[0] * x + g[1] * y + g[2] * z;
+}
+
+static int64_t cell(double x) {
+  int64_t whole = (int64_t)x;
+  return whole - (x < (double)whole);
+}
+
+double hl_noise_at(const hl_noise *noise, vec3 p) {
+  if (!(fabs(p.x) + fabs(p.y) + fabs(p.z) < 0x1p50)) return 0; /* so far out, doubles are on the lattice */
+  int64_t cx = cell(p.x), cy = cell(p.y), cz = cell(p.z);
+  double x = p.x - (double)cx, y = p.y - (double)cy, z = p.z - (double)cz;
+  double u = fade(x), v = fade(y), w = fade(z);
+  const uint8_t *t = noise->permutation;
+  int i = (int)(cx & 255), j = (int)(cy & 255), k = (int)(cz & 255);
+  int a = t[i] + j, b = t[i + 1] + j;
+  int aa = t[a] + k, ab = t[a + 1] + k, ba = t[b] + k, bb = t[b + 1] + k;
+  double near = mix(v, mix(u, slope(t[aa], x, y, z), slope(t[ba], x - 1, y, z)),
+                    mix(u, slope(t[ab], x, y - 1, z), slope(t[bb], x - 1, y - 1, z)));
+  double far = mix(v, mix(u, slope(t[aa + 1], x, y, z - 1), slope(t[ba + 1], x - 1, y, z - 1)),
+                   mix(u, slope(t[ab + 1], x, y - 1, z - 1), slope(t[bb + 1], x - 1, y - 1, z - 1)));
+  return mix(w, near, far);
+}
+
+double hl_noise_sum(const hl_noise *noise, vec3 p, int octaves) {
+  double sum = 0, weight = 1;
+  for (int i = 0; i < octaves; i++, weight /= 2, p = vec3_scale(p, 2)) sum += weight * hl_noise_at(noise, p);
+  return sum;
+}
+
+double hl_turbulence(const hl_noise *noise, vec3 p, int octaves) {
+  double sum = 0, weight = 1;
+  for (int i = 0; i < octaves; i++, weight /= 2, p = vec3_scale(p, 2))
+    sum += weight * fabs(hl_noise_at(noise, p));
+  return sum;
+}
+
+double hl_bias(double bias, double t) {
+  if (bias == 0.5 || t <= 0 || t >= 1) return t;
+  return hl_exp_negative(hl_log(t) * hl_log(bias) / -HL_LN2);
+}
+
+double hl_gain(double gain, double t) {
+  if (gain == 0.5) return t;
+  return t < 0.5 ? hl_bias(1 - gain, 2 * t) / 2 : 1 - hl_bias(1 - gain, 2 - 2 * t) / 2;
+}
