@@ -25,8 +25,8 @@ typedef struct hl_render_statistics {
   uint64_t samples_shaded;    /* image samples classified, lit and composited */
   uint64_t tiles_filled_image, tiles_filled_light;   /* sheet tiles reconstructed */
   uint64_t tiles_skipped_image, tiles_skipped_light; /* skipped because they were already opaque or dark */
-  /* wall-clock seconds per stage; the light's fill includes its composite into the shadow buffer. Image and light are
-   * filled in one stage, whose time is split as the threads spent it. */
+  /* wall-clock seconds per stage; the light's fill includes its composite into the shadow buffer. The image
+   * is filled and shaded in one stage, whose time is split as the threads spent it. */
   double seconds_sort, seconds_fill_image, seconds_fill_light, seconds_shade, seconds_soften;
   double seconds_composite_light;                         /* the part of seconds_fill_light that is classification and
                                                              composite */

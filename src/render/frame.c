@@ -15,15 +15,14 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, vec3 cent
   eye->perspective = camera->type == HL_CAMERA_PERSPECTIVE;
   double half_height = eye->perspective ? tan(camera->fovy_deg * HL_PI / 360) : camera->height / 2;
   double half_width = half_height * width / height;
-  eye->width = width + 2 * FRAME_MARGIN;
-  eye->height = height + 2 * FRAME_MARGIN;
+  eye->width = width;
+  eye->height = height;
   eye->origin = position;
   eye->direction = forward;
   eye->corner = vec3_add(vec3_scale(up, half_height), vec3_scale(right, -half_width));
   eye->corner = vec3_add(eye->corner, eye->perspective ? forward : position);
   eye->du = vec3_scale(right, 2 * half_width / width);
   eye->dv = vec3_scale(up, -2 * half_height / height);
-  eye->corner = vec3_subtract(eye->corner, vec3_scale(vec3_add(eye->du, eye->dv), FRAME_MARGIN));
   if (!hl_view_finish(eye))
     return hl_fail(error, HL_ERROR_INPUT, "/camera: position, target and up do not span a view: move one of them");
   return HL_OK;

@@ -34,10 +34,7 @@ typedef struct frame {
   int light_count;
 } frame;
 
-/* Pixels filled around the picture, whose densities the outermost central differences read: one block. */
-enum { FRAME_MARGIN = BLOCK };
-
-/* The eye's view of a scene in width x height pixels, and FRAME_MARGIN more on every side. */
+/* The eye's view of a scene in width x height pixels. */
 hl_status hl_frame_eye(const hl_camera *camera, int width, int height, vec3 centre, view *eye, hl_error *error);
 
 /* Corners of the box around a grid's relevant bricks, of which there is one at least. */

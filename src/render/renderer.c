@@ -229,7 +229,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
 }
 
 static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
-  double image = 0, light = 0, composite = 0;
+  double fill = 0, shade = 0, light = 0, composite = 0;
   for (int i = 0; i < hl_pool_threads(sweep->pool); i++) {
     statistics->samples_shaded += sweep->counts[i].samples;
     statistics->tiles_filled_image += sweep->counts[i].filled_image;
@@ -240,17 +240,18 @@ static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
     statistics->pixels_filled_light += sweep->counts[i].pixels_light;
     statistics->pixels_skipped_image += sweep->counts[i].pixels_skipped_image;
     statistics->pixels_skipped_light += sweep->counts[i].pixels_skipped_light;
-    image += sweep->counts[i].seconds_image;
+    fill += sweep->counts[i].seconds_fill;
+    shade += sweep->counts[i].seconds_shade;
     light += sweep->counts[i].seconds_light;
     composite += sweep->counts[i].seconds_composite;
   }
   statistics->sheets += sweep->geometry->sheets.count;
   statistics->seconds_sort += sweep->seconds_sort;
-  double share = image + light > 0 ? image / (image + light) : 1;
-  statistics->seconds_fill_image += sweep->seconds_fill * share;
-  statistics->seconds_fill_light += sweep->seconds_fill * (1 - share);
-  if (light > 0) statistics->seconds_composite_light += sweep->seconds_fill * (1 - share) * composite / light;
-  statistics->seconds_shade += sweep->seconds_shade;
+  double share = fill + shade > 0 ? fill / (fill + shade) : 1;
+  statistics->seconds_fill_image += sweep->seconds_image * share;
+  statistics->seconds_shade += sweep->seconds_image * (1 - share);
+  statistics->seconds_fill_light += sweep->seconds_light;
+  if (light > 0) statistics->seconds_composite_light += sweep->seconds_light * composite / light;
   statistics->seconds_soften += sweep->seconds_soften;
 }
 
@@ -282,9 +283,9 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
 
 /* One pixel of the frame, all sweeps: contributions of lights add, opacity is the same in every sweep. */
 static void add_pixel(const frame_work *work, int column, int row, float sum[4]) {
-  int x = column + FRAME_MARGIN, y = row + FRAME_MARGIN;
-  size_t tile = (size_t)(y / TILE) * work->tiles_x + (size_t)(x / TILE);
-  size_t block = (size_t)(y % TILE / BLOCK * 4 + x % TILE / BLOCK), lane = (size_t)(y % BLOCK * 4 + x % BLOCK);
+  size_t tile = (size_t)(row / TILE) * work->tiles_x + (size_t)(column / TILE);
+  size_t block = (size_t)(row % TILE / BLOCK * 4 + column % TILE / BLOCK);
+  size_t lane = (size_t)(row % BLOCK * 4 + column % BLOCK);
   const float *from = work->pixels + (tile * TILE_BLOCKS + block) * 4 * BLOCK_PIXELS + lane;
   for (int c = 0; c < 4; c++) sum[c] += from[c * BLOCK_PIXELS];
   for (int s = 1; s < work->sweep_count; s++)

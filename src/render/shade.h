@@ -1,7 +1,8 @@
 /* render/shade.h - steps 12 to 16: gradient, classification, shadow lookup, illumination, compositing.
  *
  * What is shaded is the slab between two sheets: density runs linearly from one to the other along each ray, the
- * gradient is central in the middle, and the shadow buffer holds the light that reaches the first sheet. */
+ * gradient is the kernel's where the slab's matter is seen, and the shadow buffer holds the light that reaches the
+ * first sheet. */
 #ifndef HL_RENDER_SHADE_H
 #define HL_RENDER_SHADE_H
 
@@ -12,8 +13,8 @@ enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 typedef struct shade_volume {
   const classifier *classifier;
-  const float *before, *current;         /* sheets k-1 and k of the image; rows stride apart */
-  size_t stride;
+  const grid *grid;
+  const kernel *kernel;
   int phong, visible, receives_shadow;
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
@@ -23,8 +24,9 @@ typedef struct shade_volume {
 /* One volume's part in a tile. */
 typedef struct shade_patch {
   const shade_volume *volume;
-  size_t start;                          /* of the tile in the volume's sheets, floats */
-  const float *enter, *leave;            /* [256]; null: the box does not cut anything visible */
+  const float *before, *current;         /* [256], block-major; on sheets k-1 and k */
+  uint32_t blocks;                       /* those with density on either */
+  const float *enter, *leave;            /* [256], block-major; null: the box does not cut anything visible */
 } shade_patch;
 
 typedef struct shade_light {

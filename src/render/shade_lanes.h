@@ -5,6 +5,7 @@
 #include "light/attenuate_lanes.h"
 #include "light/light_screen_lanes.h"
 #include "render/shade.h"
+#include "splat/slope_lanes.h"
 
 /* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
 static const float OPAQUE = 1.0f - 1.0f / 2048;
@@ -12,9 +13,6 @@ static const float OPAQUE = 1.0f - 1.0f / 2048;
 typedef struct color_lanes { lanes c[3]; } color_lanes;
 
 LANES_INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
-  return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 LANES_INLINE lanes3 scale3(lanes3 a, lanes s) { return (lanes3){a.x * s, a.y * s, a.z * s}; }
 LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
 LANES_INLINE lanes3 set3(const float v[3]) { return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])}; }
@@ -23,53 +21,41 @@ LANES_INLINE lanes3 set3(const float v[3]) { return (lanes3){lanes_set(v[0]), la
 typedef struct block_geometry {
   lanes3 position;       /* frame space, in the slab: where it is lit */
   lanes3 start;          /* where the ray enters the slab */
-  lanes3 step_u, step_v; /* to the next pixel along the sheet */
   lanes3 step_sheet;     /* to the next sheet along the ray */
   lanes3 towards_eye;    /* unit */
   lanes path;            /* of the eye's ray through the sheet; 0 behind the eye */
 } block_geometry;
 
-/* Derived: on the ray E + s W with s = step / H, H = h.W, moving one pixel gives s (Wu - (Hu / H) W), moving one
- * sheet gives W ds / H: a skew basis, since the sheet is not perpendicular to the ray. */
+/* Derived: on the ray E + s W with s = step / H, H = h.W, moving one sheet gives W ds / H. */
 LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lanes v) {
   const sheet_rays *rays = &job->rays;
   block_geometry g;
   g.position = rays_positions(rays, u, v);
   g.path = path_through_sheet(rays, job->path, u, v);
   if (!rays->perspective) {
-    g.step_u = set3(rays->wu);
-    g.step_v = set3(rays->wv);
     g.step_sheet = set3(job->through);
     g.towards_eye = set3(job->towards_eye);
     return g;
   }
   lanes3 w = rays_linear(rays, u, v);
   lanes inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
-  lanes s = inverse * rays->step, slip_u = inverse * rays->hu, slip_v = inverse * rays->hv;
-  lanes3 wu = set3(rays->wu), wv = set3(rays->wv);
-  g.step_u = (lanes3){(wu.x - w.x * slip_u) * s, (wu.y - w.y * slip_u) * s, (wu.z - w.z * slip_u) * s};
-  g.step_v = (lanes3){(wv.x - w.x * slip_v) * s, (wv.y - w.y * slip_v) * s, (wv.z - w.z * slip_v) * s};
   g.step_sheet = scale3(w, inverse * job->spacing);
   g.towards_eye = scale3(w, -1.0f / lanes_sqrt(dot3(w, w)));
   return g;
 }
 
-/* Sum of a block on both sheets. */
-LANES_INLINE lanes on_both(const shade_volume *volume, ptrdiff_t at) {
-  return lanes_load_block(volume->before + at, volume->stride) + lanes_load_block(volume->current + at, volume->stride);
-}
-
-/* Step 12. World gradient = B^-T differences, B the columns step_u, step_v, step_sheet; the rows of the inverse are
- * cross products over the determinant. Differences along the sheets are the mean of both sheets'. */
-LANES_INLINE lanes3 gradient(const block_geometry *g, const shade_volume *volume, size_t start) {
-  ptrdiff_t at = (ptrdiff_t)start, row = (ptrdiff_t)volume->stride;
-  lanes du = (on_both(volume, at + 1) - on_both(volume, at - 1)) * 0.25f;
-  lanes dv = (on_both(volume, at + row) - on_both(volume, at - row)) * 0.25f;
-  lanes dz = lanes_load_block(volume->current + at, volume->stride) - lanes_load_block(volume->before + at, volume->stride);
-  lanes3 a = cross3(g->step_v, g->step_sheet), b = cross3(g->step_sheet, g->step_u), c = cross3(g->step_u, g->step_v);
-  lanes determinant = dot3(g->step_u, a);
-  lanes inverse = 1.0f / lanes_select(lanes_abs(determinant) > 0.0f, determinant, lanes_set(1.0f));
-  return scale3(add3(add3(scale3(a, du), scale3(b, dv)), scale3(c, dz)), inverse);
+/* Step 12. df/dframe = (dindex/dframe)^T df/dindex, at a point of frame space; stored units. */
+LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t active) {
+  lanes at[3];
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis];
+    at[axis] = point.x * row[0] + point.y * row[1] + (point.z * row[2] + row[3]);
+  }
+  lanes3 slope = slopes_at(volume->grid, volume->kernel, (lanes3){at[0], at[1], at[2]}, active);
+  const float(*m)[4] = volume->to_index;
+  return (lanes3){slope.x * m[0][0] + slope.y * m[1][0] + slope.z * m[2][0],
+                  slope.x * m[0][1] + slope.y * m[1][1] + slope.z * m[2][1],
+                  slope.x * m[0][2] + slope.y * m[1][2] + slope.z * m[2][2]};
 }
 
 /* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1]. */
@@ -249,17 +235,11 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   return alpha;
 }
 
-/* Where a block starts in a volume's sheets. */
-LANES_INLINE size_t place_of_block(const shade_patch *patch, int block) {
-  return patch->start + (size_t)(block / 4 * BLOCK) * patch->volume->stride + (size_t)(block % 4 * BLOCK);
-}
-
 /* Step 13 for one volume; false where none of it is there. */
 LANES_INLINE int classify_block(const shade_job *job, const shade_patch *patch, int block, block_density *d) {
   const shade_volume *volume = patch->volume;
-  size_t at = place_of_block(patch, block);
-  lanes before = lanes_load_block(volume->before + at, volume->stride);
-  lanes after = lanes_load_block(volume->current + at, volume->stride);
+  lanes before = lanes_load(patch->before + block * BLOCK_PIXELS);
+  lanes after = lanes_load(patch->current + block * BLOCK_PIXELS);
   d->patch = patch;
   d->middle = (before + after) * 0.5f;
   d->before = classify_place(volume->classifier, before);
@@ -308,7 +288,7 @@ LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densi
 
 /* Colours of the volumes, lit and averaged weighted by extinction. */
 static color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
-                                  const block_density *densities, int count, int block, lanes total) {
+                                  const block_density *densities, int count, lanes total, uint32_t seen) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
   for (int i = 0; i < count; i++) {
@@ -319,7 +299,9 @@ static color_lanes color_of_block(const shade_job *job, const block_geometry *g,
     color_lanes color;
     for (int c = 0; c < 3; c++) color.c[c] = table_value(volume->classifier->color[c], place);
     lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
-    if (volume->phong) slope = gradient(g, volume, place_of_block(d.patch, block));
+    uint32_t lit_here = seen & lanes_bits(d.extinction > 0.0f);
+    if (volume->phong && lit_here != 0)
+      slope = gradient(volume, add3(g->start, scale3(g->step_sheet, d.part.begin + d.part.length * d.seen)), lit_here);
     color_lanes lit = illuminate(job, volume, g, lights, color, slope, d.middle);
     lanes weight = count == 1 ? lanes_set(1.0f) : d.extinction * inverse;
     for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
@@ -333,7 +315,7 @@ static int shade_block(const shade_job *job, const shade_patch *patches, int pat
   int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK, count = 0;
   lanes total = lanes_set(0);
   for (int i = 0; i < patch_count; i++) {
-    if (!classify_block(job, &patches[i], block, &densities[count])) continue;
+    if (!(patches[i].blocks >> block & 1) || !classify_block(job, &patches[i], block, &densities[count])) continue;
     if (patches[i].volume->visible) total = total + densities[count].extinction;
     count++;
   }
@@ -348,7 +330,7 @@ static int shade_block(const shade_job *job, const shade_patch *patches, int pat
   g.start = add3(g.position, scale3(g.step_sheet, lanes_set(-0.5f)));
   g.position = add3(g.start, scale3(g.step_sheet, seen_at));
   for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, depth, densities, count);
-  color_lanes lit = color_of_block(job, &g, lights, densities, count, block, total);
+  color_lanes lit = color_of_block(job, &g, lights, densities, count, total, bits);
   for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(seen, lit.c[c]);
   lanes opacity = lanes_keep(seen, 1.0f - lanes_exp_negative(depth));
   lanes alpha = composite(job->back_to_front, opacity, lit, pixels);

@@ -5,26 +5,26 @@
  *    3. opacity map = 0                                      hl_sweep_begin
  *    4. shadow buffer = full light                           hl_sweep_begin
  *    5. for each sheet
- *    6, 7.   image and shadow sheets = 0                     hl_sweep_fill
- *    8 - 11. add every footprint to both                     hl_sweep_fill
+ *    6, 7.   image and shadow sheets = 0                     hl_sweep_shade, hl_sweep_attenuate
+ *    8 - 11. add every footprint to both                     hl_sweep_shade, hl_sweep_attenuate
  *   12 - 15. gradient, classification, shadow, illumination  hl_sweep_shade
  *   16.      composite to the frame buffer                   hl_sweep_shade
- *   17.      classify and composite the shadow sheet         hl_sweep_fill
+ *   17.      classify and composite the shadow sheet         hl_sweep_attenuate
  *            (soft: convolve for the next sheet)             hl_sweep_soften
  *   18. end
  *
  * What is lit, classified and composited is the slab between a sheet and the one before, so that nothing of a sharp
- * transfer function falls between sheets. A slab is lit by what passed the slabs before it: the shadow sheet runs one
- * behind the image sheet, and both are filled in the same stage. The first and last sheets lie outside the content. */
+ * transfer function falls between sheets. A slab is lit by what passed the slabs before it. The first and last sheets
+ * lie outside the content. */
 #include "core/context.h"
 #include "render/sweep.h"
 
 hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
   int sheets = sweep->geometry->sheets.count;
   for (int sheet = 1; sheet < sheets; sheet++) {
-    hl_sweep_fill(sweep, sheet, sheet - 1);
-    hl_sweep_soften(sweep, sheet - 1);
     hl_sweep_shade(sweep, sheet);
+    hl_sweep_attenuate(sweep, sheet);
+    hl_sweep_soften(sweep, sheet);
     if ((sheet & 7) == 0) hl_progress(sweep->context, "render", (double)sheet / sheets);
     if (hl_cancelled(sweep->context)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled");
   }

@@ -62,7 +62,7 @@ static bool try_light(const frame *frame, const hl_render_settings *settings, fr
   return false;
 }
 
-/* Sheets over the whole content, one to spare on either side for central differences. */
+/* Sheets over the whole content, one to spare on either side. */
 static void place_sheets(const frame *frame, sheet_stack *sheets) {
   double low = INFINITY, high = -INFINITY;
   for (int i = 0; i < frame->point_count; i++) {

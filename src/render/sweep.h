@@ -24,29 +24,29 @@ typedef struct prepared_volume {
 
 enum { RING = 2 }; /* sheets k-1 and k */
 
-/* The image's sheets of one volume, as far as its rectangle of tiles goes. */
-typedef struct image_sheets {
-  float *density[RING];           /* the rectangle's first pixel of each; rows stride apart; in memory */
-  size_t stride;                  /* floats; a tile of margin on either side, a row above and below */
-} image_sheets;
-
-/* A light's tile of one sheet, kept for the next slab. */
-typedef struct kept_tile {
+/* A patch of one sheet, kept for the next slab. */
+typedef struct kept_patch {
   int32_t sheet;                  /* -1: none */
   uint16_t need, blocks;          /* blocks that were filled; those of them with density */
-} kept_tile;
+} kept_patch;
+
+/* What one view, the eye's or a light's, sees of the last sheets. */
+typedef struct view_sheets {
+  occupancy occupancy;
+  voxel_lists *lists;             /* owned; [grids]; splat only */
+  fill_source *sources;           /* owned; [RING][grids]; of sheet k at k % RING */
+  float *enter, *leave;           /* owned; [patches][256]; null where no box cuts anything visible */
+  float *density;                 /* owned; [patches][RING][256], block-major */
+  kept_patch *kept;               /* owned; [patches][RING]; what is in density */
+} view_sheets;
 
 /* One light of a sweep with its buffer. */
 typedef struct sweep_light {
   const light_source *source;
   shadow_buffer *buffer;          /* null: no shadows */
-  occupancy occupancy;
-  voxel_lists *lists;             /* owned; [grids]; splat only */
+  view_sheets sheets;
   light_screen screen;            /* the image that the light projects */
   float *screen_pixels;           /* owned; the image averaged; null where it is used as it is */
-  float *enter, *leave;           /* owned; [patches][256]; null where no box cuts */
-  float *density;                 /* owned; [patches][RING][256]; the last sheets, block-major */
-  kept_tile *kept;                /* owned; [patches][RING]; what is in density */
   soft_paper paper;               /* by the source's soft method */
   soft_cascade cascade;
 } sweep_light;
@@ -54,7 +54,8 @@ typedef struct sweep_light {
 typedef struct sweep_counts {
   uint64_t samples, filled_image, filled_light, skipped_image, skipped_light; /* pixels shaded; tiles */
   uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
-  double seconds_image, seconds_light, seconds_composite; /* spent filling; the composite is part of the light's */
+  double seconds_fill, seconds_shade; /* of the image stage */
+  double seconds_light, seconds_composite; /* of the light stage; the composite is part of it */
 } sweep_counts;
 
 typedef struct sweep {
@@ -72,33 +73,26 @@ typedef struct sweep {
   bool first;                     /* the sweep that carries ambient light and opacity */
   int channels;                   /* of light attenuation */
   /* the image */
-  occupancy occupancy;
-  voxel_lists *lists;             /* [grids]; splat only */
-  image_sheets *sheets;           /* [grids] */
-  float *sheet_memory;
-  uint16_t *filled[RING];         /* [patches]; blocks that hold density; 0: the patch is all zero */
-  float *enter, *leave;           /* [patches][256]; null where no box cuts anything visible */
+  view_sheets image;
   size_t tiles;
   int tiles_x, tiles_y;
   uint16_t *open;                 /* [tiles]; blocks not yet opaque */
   float *pixels;                  /* [tiles][16][4][16] */
   sweep_light lights[FRAME_LIGHTS];
   /* the stage now running */
-  int fill_sheet, light_sheet;
-  uint32_t *tasks;                /* tiles of the stage: the image's, then each light's */
+  int sheet;
+  uint32_t *tasks;                /* tiles of the stage: the image's, or each light's */
   size_t task_capacity;
-  int task_start[FRAME_LIGHTS + 2]; /* where each kind starts */
-  fill_source *image_sources;     /* [grids]; of fill_sheet */
-  fill_source *light_sources;     /* [lights][RING][grids]; of light_sheet and the one before */
+  int task_start[FRAME_LIGHTS + 1]; /* where each light's start, and the end */
   shade_volume *shade_volumes;    /* [grids] */
   shade_patch *shade_patches;     /* [threads][grids] */
   shade_light shade_lights[FRAME_LIGHTS];
   shade_job shade;
   attenuate_job attenuate[FRAME_LIGHTS];
-  float *scratch;                 /* [threads][grids][256] */
+  unsigned char *scratch;         /* [threads][grids][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][grids] */
   sweep_counts *counts;           /* [threads] */
-  double seconds_sort, seconds_fill, seconds_shade, seconds_soften;
+  double seconds_sort, seconds_image, seconds_light, seconds_soften;
 } sweep;
 
 /* Steps 1 and 2, and memory. buffers: one per light of the sweep, kept by the caller between frames. */
@@ -108,9 +102,19 @@ void hl_sweep_end(sweep *sweep);
 /* The sheet loop: steps 3 to 18. */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
-/* Stages (sweep_stages.c). */
-void hl_sweep_fill(sweep *sweep, int image_sheet, int light_sheet); /* steps 6 to 11, and 17 for the slab before light_sheet */
-void hl_sweep_shade(sweep *sweep, int sheet);                      /* steps 12 to 16 for the slab before sheet */
-void hl_sweep_soften(sweep *sweep, int sheet);                     /* section 5 */
+/* Stages (sweep_stages.c), each for the slab before the sheet. */
+void hl_sweep_shade(sweep *sweep, int sheet);     /* steps 6, 8 to 16: the image */
+void hl_sweep_attenuate(sweep *sweep, int sheet); /* steps 7 to 11 and 17: the lights */
+void hl_sweep_soften(sweep *sweep, int sheet);    /* section 5 */
+
+/* A view's sheets (view_sheets.c). What fails half-way is released by hl_view_sheets_end. */
+hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error);
+void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets);
+/* Before patches of a sheet are asked for. */
+void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets);
+/* Densities of a patch on a sheet, [256], in the needed blocks at least: kept from the slab before, or filled now.
+ * blocks: gains those with density; pixels: is raised by the pixels filled. */
+const float *hl_patch_density(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet,
+                              uint32_t need, uint32_t *blocks, uint64_t *pixels);
 
 #endif

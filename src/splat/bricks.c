@@ -4,7 +4,7 @@
  * contributes there. By the convex hull of non-negative kernels, a point's density lies between the least
  * and the greatest of its 64 voxels; a partial sum lies between those and empty. So a brick matters if
  * anything between its bounds, stretched to empty, is visible (derived). One more cell on each side keeps
- * the neighbours that central differences read. */
+ * the neighbours that slabs across its faces read. */
 #include "splat/bricks.h"
 
 #include <string.h>

@@ -36,40 +36,45 @@ LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offset
   return a + b;
 }
 
-/* All 64 taps lie inside the grid: offsets are the byte offsets of tap (0,0,0) from voxels. The loops stay loops:
- * unrolled, they outgrow the instruction cache and take a compiler minutes. */
-LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const unsigned char *voxels,
-                            const lanes_offsets *offsets, const lanes weight[3][4]) {
-  size_t bytes = hl_storage_bytes(storage), row_bytes = (size_t)grid->dimension[0] * bytes;
-  size_t slice_bytes = row_bytes * (size_t)grid->dimension[1];
+LANES_INLINE lanes sum_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
+  return storage == HL_STORAGE_U8    ? row_u8(row, offsets, weight)
+         : storage == HL_STORAGE_U16 ? row_u16(row, offsets, weight)
+                                     : row_f32(row, offsets, weight);
+}
+
+/* Where the 64 taps of every lane are: all inside the grid. */
+typedef struct tap_window {
+  const unsigned char *voxels;
+  lanes_offsets offsets; /* bytes from voxels to tap (0,0,0) */
+} tap_window;
+
+LANES_INLINE const unsigned char *window_row(const grid *grid, hl_storage storage, const tap_window *window, int y, int z) {
+  size_t row_bytes = (size_t)grid->dimension[0] * hl_storage_bytes(storage);
+  return window->voxels + ((size_t)z * (size_t)grid->dimension[1] + (size_t)y) * row_bytes;
+}
+
+/* The loops stay loops: unrolled, they outgrow the instruction cache and take a compiler minutes. */
+LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
 #pragma GCC unroll 1
   for (int z = 0; z < 4; z++) {
     lanes plane = lanes_set(0);
 #pragma GCC unroll 1
-    for (int y = 0; y < 4; y++) {
-      const unsigned char *row = voxels + (size_t)z * slice_bytes + (size_t)y * row_bytes;
-      lanes along = storage == HL_STORAGE_U8    ? row_u8(row, offsets, weight[0])
-                    : storage == HL_STORAGE_U16 ? row_u16(row, offsets, weight[0])
-                                                : row_f32(row, offsets, weight[0]);
-      plane = plane + along * weight[1][y];
-    }
+    for (int y = 0; y < 4; y++)
+      plane = plane + sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, weight[0]) * weight[1][y];
     sum = sum + plane * weight[2][z];
   }
   return sum;
 }
 
-static __attribute__((noinline)) lanes sum_u8(const grid *grid, const unsigned char *voxels,
-                                              const lanes_offsets *offsets, const lanes weight[3][4]) {
-  return sum_taps(grid, HL_STORAGE_U8, voxels, offsets, weight);
+static __attribute__((noinline)) lanes sum_u8(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_U8, window, weight);
 }
-static __attribute__((noinline)) lanes sum_u16(const grid *grid, const unsigned char *voxels,
-                                              const lanes_offsets *offsets, const lanes weight[3][4]) {
-  return sum_taps(grid, HL_STORAGE_U16, voxels, offsets, weight);
+static __attribute__((noinline)) lanes sum_u16(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_U16, window, weight);
 }
-static __attribute__((noinline)) lanes sum_f32(const grid *grid, const unsigned char *voxels,
-                                              const lanes_offsets *offsets, const lanes weight[3][4]) {
-  return sum_taps(grid, HL_STORAGE_F32, voxels, offsets, weight);
+static __attribute__((noinline)) lanes sum_f32(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_F32, window, weight);
 }
 
 static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
@@ -82,11 +87,11 @@ static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t
 }
 
 /* The same sum in grids less than four voxels thick somewhere. One lane at a time, same order. */
-static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const block_place *place, uint32_t active, const lanes weight[3][4]) {
+static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const lanes_int cell[3], uint32_t active, const lanes weight[3][4]) {
   lanes sums = lanes_set(0);
   for (; active != 0; active &= active - 1) {
     int lane = __builtin_ctz(active);
-    int64_t x = place->cell[0][lane] - 1, y = place->cell[1][lane] - 1, z = place->cell[2][lane] - 1;
+    int64_t x = cell[0][lane] - 1, y = cell[1][lane] - 1, z = cell[2][lane] - 1;
     float sum = 0;
     for (int c = 0; c < 4; c++) {
       float plane = 0;
@@ -117,10 +122,26 @@ LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4
   return lanes_select_int(inside > count - 3, lanes_set_int(count - 3), inside);
 }
 
-LANES_INLINE lanes_int taps_inside(const grid *grid, const block_place *place) {
+LANES_INLINE lanes_int taps_inside(const grid *grid, const lanes_int cell[3]) {
   lanes_int inside = lanes_set_int(-1);
-  for (int a = 0; a < 3; a++) inside &= (place->cell[a] >= 1) & (place->cell[a] < grid->dimension[a] - 2);
+  for (int a = 0; a < 3; a++) inside &= (cell[a] >= 1) & (cell[a] < grid->dimension[a] - 2);
   return inside;
+}
+
+/* Offsets from the first active lane's cell fit 32 bits in any volume; idle lanes read there. */
+LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uint32_t active) {
+  int first = __builtin_ctz(active);
+  int32_t reference[3];
+  for (int a = 0; a < 3; a++) reference[a] = cell[a][first];
+  size_t bytes = hl_storage_bytes(grid->storage);
+  tap_window window;
+  window.voxels = (const unsigned char *)grid->voxels +
+                  (((size_t)(reference[2] - 1) * (size_t)grid->dimension[1] + (size_t)(reference[1] - 1)) *
+                       (size_t)grid->dimension[0] + (size_t)(reference[0] - 1)) * bytes;
+  lanes_int offset = (cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
+                     (cell[1] - reference[1]) * grid->dimension[0] + (cell[0] - reference[0]);
+  lanes_store_offsets(&window.offsets, (offset * (int32_t)bytes) & lanes_from_bits(active));
+  return window;
 }
 
 LANES_INLINE lanes gather_block(const fill_source *source, const block_place *place, uint32_t active, int degree) {
@@ -130,29 +151,16 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
   tap_weights(source->kernel, degree, place->point.x - lanes_from_int(cell[0]), weight[0]);
   tap_weights(source->kernel, degree, place->point.y - lanes_from_int(cell[1]), weight[1]);
   tap_weights(source->kernel, degree, place->point.z - lanes_from_int(cell[2]), weight[2]);
-  if ((lanes_bits(taps_inside(grid, place)) & active) != active) {
+  const lanes(*weights)[4] = (const lanes(*)[4])weight;
+  if ((lanes_bits(taps_inside(grid, cell)) & active) != active) {
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
-      return sum_in_thin_grid(grid, place, active, (const lanes(*)[4])weight);
+      return sum_in_thin_grid(grid, cell, active, weights);
     for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
-  /* Offsets from the first active lane's cell fit 32 bits in any volume; idle lanes read there. */
-  int first = __builtin_ctz(active);
-  int32_t reference[3];
-  for (int a = 0; a < 3; a++) reference[a] = cell[a][first];
-  size_t bytes = hl_storage_bytes(grid->storage);
-  const unsigned char *voxels =
-      (const unsigned char *)grid->voxels +
-      (((size_t)(reference[2] - 1) * (size_t)grid->dimension[1] + (size_t)(reference[1] - 1)) *
-           (size_t)grid->dimension[0] + (size_t)(reference[0] - 1)) * bytes;
-  lanes_int offset = (cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
-                     (cell[1] - reference[1]) * grid->dimension[0] + (cell[0] - reference[0]);
-  offset = (offset * (int32_t)bytes) & lanes_from_bits(active);
-  const lanes(*weights)[4] = (const lanes(*)[4])weight;
-  lanes_offsets offsets;
-  lanes_store_offsets(&offsets, offset);
-  if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, voxels, &offsets, weights);
-  if (grid->storage == HL_STORAGE_U16) return sum_u16(grid, voxels, &offsets, weights);
-  return sum_f32(grid, voxels, &offsets, weights);
+  tap_window window = window_at(grid, cell, active);
+  if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);
+  if (grid->storage == HL_STORAGE_U16) return sum_u16(grid, &window, weights);
+  return sum_f32(grid, &window, weights);
 }
 
 static uint32_t gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {

@@ -16,7 +16,7 @@
 
 enum {
   HL_BRICK_CELLS = 4,
-  GRID_MARGIN = 4 /* voxels outside its box that a grid still continues, for central differences at its faces */
+  GRID_MARGIN = 4 /* voxels outside its box that a grid still continues, for slabs across its faces */
 };
 
 typedef struct grid {

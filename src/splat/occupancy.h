@@ -14,6 +14,8 @@ typedef struct sheet_stack {
   int count;
 } sheet_stack;
 
+static inline double hl_sheet_height(const sheet_stack *sheets, int sheet) { return sheets->first + sheet * sheets->spacing; }
+
 /* The tiles of a view that one grid can touch: nothing is kept or done for it elsewhere. */
 typedef struct tile_rectangle {
   int x, y, width, height; /* tiles */

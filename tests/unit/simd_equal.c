@@ -221,8 +221,22 @@ static void test_coverage(void **unused) {
 /* A classifier of one ramp, from a bench. */
 static bench classifier_bench;
 
+/* Grids whose gradients are taken: of each type of voxel, and a thin one. */
+enum { GRADIENT_GRIDS = 4 };
+static bench gradient_bench[GRADIENT_GRIDS];
+
+static void open_gradient_grids(void) {
+  static float voxels[9 * 10 * 11];
+  uint32_t seed = 7;
+  for (size_t i = 0; i < 9 * 10 * 11; i++) voxels[i] = random_between(&seed, 0, 1); /* read as bytes and halves too */
+  for (int i = 0; i < GRADIENT_GRIDS; i++)
+    bench_open(&gradient_bench[i], (size_t[3]){9, 10, i == 3 ? 3 : 11}, i == 3 ? HL_STORAGE_F32 : (hl_storage)i, voxels,
+               mat3_from_columns((vec3){1, 0, 0}, (vec3){0, 1, 0}, (vec3){0, 0, 1}));
+}
+
 static int open_classifier(void **unused) {
   (void)unused;
+  open_gradient_grids();
   static const hl_opacity_point ramp[] = {{0, 0}, {0.3, 0}, {0.5, 0.8}, {1, 0.99}};
   static const float voxels[] = {0, 1, 0.2f, 0.7f, 0.4f, 0.9f, 0.1f, 0.6f};
   bench_open(&classifier_bench, (size_t[3]){2, 2, 2}, HL_STORAGE_F32, voxels,
@@ -236,6 +250,7 @@ static int open_classifier(void **unused) {
 
 static int close_classifier(void **unused) {
   (void)unused;
+  for (int i = 0; i < GRADIENT_GRIDS; i++) bench_close(&gradient_bench[i]);
   bench_close(&classifier_bench);
   return 0;
 }
@@ -350,7 +365,7 @@ typedef struct shade_state {
   int patch_count;
   shade_light lights[3];
   uint32_t blocks;
-  float sheet[4][3 * TILE][3 * TILE];     /* one tile with a tile of margin */
+  float density[4][TILE_PIXELS];
   float cut[2][TILE_PIXELS];
   float buffer[HL_CHANNELS][64][64];
   struct { float pixels[4 * TILE_PIXELS]; uint64_t samples; uint32_t open; } out;
@@ -395,13 +410,15 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   if (round == 0) s->job.light_count = 2;
   set_up_lights(s, seed, round);
   for (int v = 0; v < 2; v++) {
-    fill_salted(&s->sheet[2 * v][0][0], 2 * 9 * TILE_PIXELS, seed, -0.1, 1.1);
-    if (round % 8 == 3) s->sheet[2 * v][20][20] = NAN;
-    s->volumes[v] = (shade_volume){&classifier_bench.classifier, &s->sheet[2 * v][TILE][TILE], &s->sheet[2 * v + 1][TILE][TILE],
-                                   3 * TILE, (round + v) % 2, (round + v) % 7 != 6, v == 0, 0.5f, 0.8f, 0.3f, 25, {1, 0.5f, 0},
+    fill_salted(s->density[2 * v], 2 * TILE_PIXELS, seed, -0.1, 1.1);
+    if (round % 8 == 3) s->density[2 * v][20] = NAN;
+    s->volumes[v] = (shade_volume){&classifier_bench.classifier, &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
+                                   hl_kernel_get((hl_kernel)(round % 3)),
+                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, 0.5f, 0.8f, 0.3f, 25, {1, 0.5f, 0},
                                    {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}}, {-0.5f, -0.5f, -0.5f},
                                    {8.5f, 9.5f, 10.5f}};
-    s->patches[v] = (shade_patch){&s->volumes[v], 0, v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL};
+    s->patches[v] = (shade_patch){&s->volumes[v], s->density[2 * v], s->density[2 * v + 1],
+                                  round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL};
   }
   fill_salted(s->cut[0], TILE_PIXELS, seed, 0, 1);
   fill_salted(s->cut[1], TILE_PIXELS, seed, 0.5, 2);

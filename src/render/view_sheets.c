@@ -1,0 +1,112 @@
+/* render/view_sheets.c - what one view, the eye's or a light's, sees of the last sheets: where, in what order, and the
+ * densities of patches, filled when they are asked for and kept for the next slab. */
+#include "core/memory.h"
+#include "render/sweep.h"
+#include "splat/voxel_sort.h"
+
+typedef struct coverage_work {
+  coverage_tile_function *coverage_tile;
+  box_rays rays;
+  view_sheets *sheets;
+  const tile_rectangle *rectangle;
+} coverage_work;
+
+static void cover_tile(void *data, size_t index, int worker) {
+  (void)worker;
+  const coverage_work *work = data;
+  const tile_rectangle *r = work->rectangle;
+  size_t at = (size_t)work->sheets->occupancy.patch_of[r->first + index] * TILE_PIXELS;
+  work->coverage_tile(&work->rays, r->x + (int)(index % (size_t)r->width), r->y + (int)(index / (size_t)r->width),
+                      work->sheets->enter + at, work->sheets->leave + at);
+}
+
+/* Where the view's rays enter and leave the boxes that cut something visible. */
+static hl_status cover(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
+  const sheet_stack *stack = &sweep->geometry->sheets;
+  size_t pixels = sheets->occupancy.patch_count * TILE_PIXELS;
+  bool any = false;
+  for (int g = 0; g < sweep->volume_count; g++) any = any || sweep->grids[g].cut;
+  if (!any) return HL_OK;
+  sheets->enter = hl_allocate(sweep->context, pixels, sizeof(float));
+  sheets->leave = hl_allocate(sweep->context, pixels, sizeof(float));
+  if (sheets->enter == NULL || sheets->leave == NULL) return hl_fail_memory(error, pixels * 8, "the rays' entries");
+  for (int g = 0; g < sweep->volume_count; g++) {
+    const grid *grid = &sweep->grids[g];
+    const tile_rectangle *r = &sheets->occupancy.rectangle[g];
+    if (!grid->cut) continue;
+    coverage_work work = {.coverage_tile = sweep->hot->coverage_tile, .sheets = sheets, .rectangle = r};
+    hl_box_rays(view, stack->normal, stack->first, grid->frame_to_index, grid->box_low, grid->box_high, &work.rays);
+    hl_pool_run(sweep->pool, (size_t)r->width * (size_t)r->height, cover_tile, &work);
+  }
+  return HL_OK;
+}
+
+static hl_status sort_voxels(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
+  if (!sweep->splat) return HL_OK;
+  sheets->lists = hl_allocate_zeroed(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->lists);
+  if (sheets->lists == NULL) return hl_fail_memory(error, sizeof *sheets->lists, "the sorted voxels");
+  hl_status status = HL_OK;
+  for (int g = 0; g < sweep->volume_count && status == HL_OK; g++)
+    status = hl_voxel_lists_build(sweep->context, sweep->pool, &sweep->grids[g], sweep->kernel, view,
+                                  &sweep->geometry->sheets, &sheets->lists[g], error);
+  return status;
+}
+
+static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error *error) {
+  size_t count = sheets->occupancy.patch_count * RING;
+  sheets->density = hl_allocate(sweep->context, count * TILE_PIXELS, sizeof(float));
+  sheets->kept = hl_allocate(sweep->context, count, sizeof *sheets->kept);
+  sheets->sources = hl_allocate(sweep->context, RING * (size_t)sweep->volume_count, sizeof *sheets->sources);
+  if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL)
+    return hl_fail_memory(error, count * TILE_PIXELS * sizeof(float), "the last sheets");
+  for (size_t i = 0; i < count; i++) sheets->kept[i] = (kept_patch){.sheet = -1};
+  return HL_OK;
+}
+
+void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
+  for (int g = 0; g < sweep->volume_count; g++) {
+    fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + g];
+    *source = (fill_source){.grid = &sweep->grids[g], .kernel = sweep->kernel, .sheet = sheet,
+                            .lists = sheets->lists == NULL ? NULL : &sheets->lists[g]};
+    hl_view_sheet_rays(view, sweep->geometry->sheets.normal, hl_sheet_height(&sweep->geometry->sheets, sheet),
+                       sweep->grids[g].frame_to_index, &source->rays);
+  }
+}
+
+hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
+  hl_status status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, view,
+                                        &sweep->geometry->sheets, &sheets->occupancy, error);
+  if (status == HL_OK) status = sort_voxels(sweep, view, sheets, error);
+  if (status == HL_OK) status = cover(sweep, view, sheets, error);
+  if (status == HL_OK) status = keep_patches(sweep, sheets, error);
+  if (status == HL_OK) hl_view_sheets_reach(sweep, view, 0, sheets);
+  return status;
+}
+
+void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
+  for (int g = 0; sheets->lists != NULL && g < sweep->volume_count; g++)
+    hl_voxel_lists_release(sweep->context, &sheets->lists[g]);
+  void *owned[] = {sheets->lists, sheets->sources, sheets->enter, sheets->leave, sheets->density, sheets->kept};
+  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
+  hl_occupancy_release(sweep->context, &sheets->occupancy);
+}
+
+const float *hl_patch_density(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet,
+                              uint32_t need, uint32_t *blocks, uint64_t *pixels) {
+  static const float nothing[TILE_PIXELS];
+  const occupancy *o = &sheets->occupancy;
+  if (sheet < 0 || !hl_occupancy_has(o, patch, sheet)) return nothing;
+  size_t at = patch * RING + (size_t)(sheet % RING);
+  float *density = sheets->density + at * TILE_PIXELS;
+  kept_patch *kept = &sheets->kept[at];
+  if (kept->sheet != sheet || (need & ~(uint32_t)kept->need) != 0) {
+    const fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + (int)o->patch_grid[patch]];
+    fill_tile_function *fill = sweep->splat ? sweep->hot->splat_tile : sweep->hot->gather_tile;
+    kept->blocks = (uint16_t)fill(source, (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x), need, density);
+    kept->sheet = sheet;
+    kept->need = (uint16_t)need;
+    *pixels += (uint64_t)__builtin_popcount(kept->blocks) * BLOCK_PIXELS;
+  }
+  *blocks |= kept->blocks & need;
+  return density;
+}

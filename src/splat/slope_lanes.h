@@ -1,0 +1,94 @@
+/* splat/slope_lanes.h - the gradient of a volume's density at points of index space: the kernel's derivative along
+ * each axis in turn, over the same 4x4x4 voxels that gathering weighs. */
+#ifndef HL_SPLAT_SLOPE_LANES_H
+#define HL_SPLAT_SLOPE_LANES_H
+
+#include "splat/gather_lanes.h"
+
+/* d/dt of a piece. */
+LANES_INLINE lanes kernel_piece_slope(const float *piece, lanes a) {
+  lanes sum = lanes_set(piece[HL_KERNEL_DEGREE] * HL_KERNEL_DEGREE);
+  for (int power = HL_KERNEL_DEGREE - 1; power >= 1; power--) sum = sum * a + piece[power] * (float)power;
+  return sum;
+}
+
+/* Derivatives of the four taps' weights; the two on the far side see their distance shrink. */
+LANES_INLINE void tap_slopes(const kernel *kernel, lanes t, lanes slope[4]) {
+  lanes s = 1.0f - t;
+  slope[0] = kernel_piece_slope(kernel->outer, t);
+  slope[1] = kernel_piece_slope(kernel->inner, t);
+  slope[2] = -kernel_piece_slope(kernel->inner, s);
+  slope[3] = -kernel_piece_slope(kernel->outer, s);
+}
+
+typedef struct tap_slope_weights { lanes weight[3][4], slope[3][4]; } tap_slope_weights;
+
+/* The three sums share the loads: along x once with the weights and once with their slopes. */
+LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window, const tap_slope_weights *w) {
+  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+#pragma GCC unroll 1
+  for (int z = 0; z < 4; z++) {
+    lanes value = lanes_set(0), along_x = value, along_y = value;
+#pragma GCC unroll 1
+    for (int y = 0; y < 4; y++) {
+      const unsigned char *row = window_row(grid, storage, window, y, z);
+      lanes plain = sum_row(storage, row, &window->offsets, w->weight[0]);
+      along_x = along_x + sum_row(storage, row, &window->offsets, w->slope[0]) * w->weight[1][y];
+      along_y = along_y + plain * w->slope[1][y];
+      value = value + plain * w->weight[1][y];
+    }
+    sum.x = sum.x + along_x * w->weight[2][z];
+    sum.y = sum.y + along_y * w->weight[2][z];
+    sum.z = sum.z + value * w->slope[2][z];
+  }
+  return sum;
+}
+
+static __attribute__((noinline)) lanes3 slopes_u8(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
+  return sum_slopes(grid, HL_STORAGE_U8, window, w);
+}
+static __attribute__((noinline)) lanes3 slopes_u16(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
+  return sum_slopes(grid, HL_STORAGE_U16, window, w);
+}
+static __attribute__((noinline)) lanes3 slopes_f32(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
+  return sum_slopes(grid, HL_STORAGE_F32, window, w);
+}
+
+static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uint32_t active, const tap_slope_weights *w) {
+  lanes3 slope;
+  lanes *sums[3] = {&slope.x, &slope.y, &slope.z};
+  for (int axis = 0; axis < 3; axis++) {
+    lanes weight[3][4];
+    for (int a = 0; a < 3; a++)
+      for (int tap = 0; tap < 4; tap++) weight[a][tap] = a == axis ? w->slope[a][tap] : w->weight[a][tap];
+    *sums[axis] = sum_in_thin_grid(grid, cell, active, (const lanes(*)[4])weight);
+  }
+  return slope;
+}
+
+/* Derivatives along the index axes, stored units a voxel, for the active lanes, of which there is one at least. */
+static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active) {
+  tap_slope_weights w;
+  lanes_int cell[3];
+  lanes at[3] = {point.x, point.y, point.z};
+  for (int a = 0; a < 3; a++) {
+    at[a] = lanes_clamp(at[a], -1.0f, (float)grid->dimension[a] * (1 - 1e-6f));
+    cell[a] = lanes_floor(at[a]);
+    tap_weights(kernel, HL_KERNEL_DEGREE, at[a] - lanes_from_int(cell[a]), w.weight[a]);
+    tap_slopes(kernel, at[a] - lanes_from_int(cell[a]), w.slope[a]);
+  }
+  if ((lanes_bits(taps_inside(grid, cell)) & active) != active) {
+    if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
+      return slopes_in_thin_grid(grid, cell, active, &w);
+    for (int a = 0; a < 3; a++) {
+      (void)fold_border(cell[a], grid->dimension[a], w.slope[a]);
+      cell[a] = fold_border(cell[a], grid->dimension[a], w.weight[a]);
+    }
+  }
+  tap_window window = window_at(grid, cell, active);
+  if (grid->storage == HL_STORAGE_U8) return slopes_u8(grid, &window, &w);
+  if (grid->storage == HL_STORAGE_U16) return slopes_u16(grid, &window, &w);
+  return slopes_f32(grid, &window, &w);
+}
+
+#endif
