@@ -57,11 +57,11 @@ typedef struct hl_light {
   double direction[3];          /* directional, spot: the way the light travels */
   double angular_diameter_deg;  /* directional: > 0 is soft */
   double position[3];           /* point, spot, rect, disk (its centre) */
-  double radius;                /* point (a sphere), spot, disk */
+  double radius;                /* point and spot (spheres), disk */
   double normal[3];             /* disk */
   double edge1[3], edge2[3];    /* rect: full edges */
-  double opening_angle_deg;     /* spot: full angle */
-  double falloff_angle_deg;     /* spot: width of the smooth edge */
+  double opening_angle_deg;     /* spot: full angle of its cone, beyond which it is dark */
+  double falloff_angle_deg;     /* spot: width of the smooth edge inside the cone */
   const double (*vertices)[3];  /* polygon; [vertex_count][3] */
   size_t vertex_count;
   double color[3];

@@ -16,6 +16,7 @@ light_source hl_light_source(const hl_light *light, const hl_render_settings *se
   } else {
     source.position = vec3_subtract(hl_light_centre(light), centre);
     vec3 way = vec3_subtract(light->texture.pixels != NULL ? source.screen_center : content, source.position);
+    if (light->type == HL_LIGHT_SPOT) way = vec3_of(light->direction);
     source.direction = vec3_length(way) > 0 ? vec3_normalise(way) : (vec3){0, 0, 1};
     mat3 spread = hl_light_spread(light, vec3_scale(source.direction, -1));
     /* a disk of diameter D spreads D^2 / 16 along both its axes: the one that spreads as much in all */

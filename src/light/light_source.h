@@ -8,7 +8,8 @@
 
 typedef struct light_source {
   bool parallel;
-  vec3 direction;  /* unit, the way light travels: parallel, or from the light's centre to its screen's or the content's */
+  vec3 direction;  /* unit, the way light travels: parallel, a spot light's axis, or from the
+                      light's centre to its screen's or the content's */
   vec3 position;   /* of the light's centre, unless parallel; frame space */
   double size;     /* parallel: diameter of the disk of directions, 2 tan(angle / 2); else the light's diameter */
   hl_shadows shadows; /* off, hard or soft */

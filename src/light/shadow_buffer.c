@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "light/lit_region.h"
 
 /* Tangent of the widest angle that a point light's buffer covers. */
 static const double WIDEST = 6;
@@ -31,25 +32,6 @@ static void bound_points(const view *unit, const light_source *source, const sha
     low[axis] = fmax(low[axis], -WIDEST);
     high[axis] = fmin(high[axis], WIDEST);
     if (!(high[axis] > low[axis])) high[axis] = low[axis] + 1e-3;
-  }
-}
-
-/* What the light's screen leaves dark needs no shadows. */
-static void bound_screen(const view *unit, const light_source *source, double low[2], double high[2]) {
-  double screen_low[2] = {INFINITY, INFINITY}, screen_high[2] = {-INFINITY, -INFINITY};
-  if (source->light->texture.pixels == NULL || source->shadows != HL_SHADOWS_HARD) return;
-  for (int corner = 0; corner < 4; corner++) {
-    vec3 at = vec3_add(source->screen_center, vec3_scale(source->screen_right, corner & 1 ? 1 : -1));
-    double uv[2];
-    if (!hl_view_project(unit, vec3_add(at, vec3_scale(source->screen_up, corner & 2 ? 1 : -1)), uv)) return;
-    for (int axis = 0; axis < 2; axis++) {
-      screen_low[axis] = fmin(screen_low[axis], uv[axis]);
-      screen_high[axis] = fmax(screen_high[axis], uv[axis]);
-    }
-  }
-  for (int axis = 0; axis < 2; axis++) { /* beside the content: nothing is lit, and the least buffer will do */
-    low[axis] = fmin(fmax(low[axis], screen_low[axis]), high[axis]);
-    high[axis] = fmax(fmin(high[axis], screen_high[axis]), low[axis]);
   }
 }
 
@@ -83,7 +65,7 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
   view->dv = v;
   hl_view_finish(view);
   bound_points(view, source, extent, low, high);
-  bound_screen(view, source, low, high);
+  hl_lit_region(view, source, low, high);
   for (int axis = 0; axis < 2; axis++) size[axis] = fmax(high[axis] - low[axis], 1e-9);
   double pixel = pixel_edge(source, plane_normal, extent, size);
   double margin = BORDER_PIXELS * pixel + extent->margin;

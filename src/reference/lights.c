@@ -132,9 +132,21 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
   made->points = hl_allocate(all->context, made->point_count, sizeof *made->points);
   if (made->points == NULL)
     return hl_fail_memory(error, made->point_count * sizeof *made->points, "points on a light");
-  made->sphere = light->type == HL_LIGHT_POINT && made->point_count > 1;
+  made->sphere = (light->type == HL_LIGHT_POINT || light->type == HL_LIGHT_SPOT) && made->point_count > 1;
   fill_points(made);
   return HL_OK;
+}
+
+/* A spot light's brightness goes from 0 to 1 by a smooth step of the cosine to its axis, between half the
+ * opening angle and the falloff angle less. */
+static double spot_brightness(const hl_light *light, vec3 towards) {
+  double cosine = -vec3_dot(towards, vec3_normalise(vec3_of(light->direction)));
+  double outer = cos(light->opening_angle_deg * HL_PI / 360);
+  double full = cos((light->opening_angle_deg / 2 - light->falloff_angle_deg) * HL_PI / 180);
+  if (cosine <= outer) return 0;
+  if (cosine >= full) return 1;
+  double x = (cosine - outer) / (full - outer);
+  return x * x * (3 - 2 * x);
 }
 
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived) {
@@ -145,6 +157,7 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
     arrived->towards = vec3_normalise(offset);
     if (light->described->falloff == HL_FALLOFF_INVERSE_SQUARE)
       factor = 1 / fmax(vec3_dot(offset, offset), 1e-30);
+    if (light->described->type == HL_LIGHT_SPOT) factor *= spot_brightness(light->described, arrived->towards);
   }
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }

@@ -7,6 +7,7 @@
 #define HL_RENDER_SHADE_H
 
 #include "light/attenuate.h"
+#include "light/light_cone.h"
 #include "light/light_screen.h"
 
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
@@ -42,6 +43,7 @@ typedef struct shade_light {
   size_t stride;
   int width, height, channels;
   light_screen screen;            /* the image that the light projects */
+  light_cone cone;                /* of a spot light */
   int nearest;                    /* lookup: nearest pixel instead of bilinear */
 } shade_light;
 

@@ -154,6 +154,16 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geom
   return depths;
 }
 
+/* Brightness of a spot light: a smooth step over its cone's edge. */
+LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
+  lanes x = lanes_clamp((-dot3(towards, set3(cone->axis)) - cone->outer) * cone->scale, 0, 1);
+  return x * x * (3.0f - 2.0f * x);
+}
+
+LANES_INLINE int is_dark(const color_lanes *light) {
+  return lanes_bits((light->c[0] > 0.0f) | (light->c[1] > 0.0f) | (light->c[2] > 0.0f)) == 0;
+}
+
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_geometry *g,
                                      lanes depth, const block_density *densities, int count) {
   arriving_light arriving;
@@ -168,6 +178,7 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
     lanes climb = lanes_abs(dot3(arriving.towards, set3(job->normal)));
     path = light->path / lanes_max(climb, lanes_set(1e-3f));
     if (light->inverse_square) strength = 1.0f / squared;
+    if (light->cone.scale > 0) strength = strength * within_cone(&light->cone, arriving.towards);
   }
   for (int c = 0; c < 3; c++) arriving.full.c[c] = strength * light->color[c];
   if (light->screen.pixels != NULL) {
@@ -176,7 +187,7 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
     for (int c = 0; c < 3; c++) arriving.full.c[c] = arriving.full.c[c] * pattern[c];
   }
   arriving.shadowed = arriving.full;
-  if (!light->shadowed) return arriving;
+  if (!light->shadowed || is_dark(&arriving.full)) return arriving;
   lanes place[3];
   for (int row = 0; row < 3; row++)
     place[row] = g->position.x * light->map[row][0] + g->position.y * light->map[row][1] +

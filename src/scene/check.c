@@ -168,14 +168,26 @@ static hl_status check_polygon(const checker *check, const hl_light *light) {
   return HL_OK;
 }
 
+static hl_status check_spot(const checker *check, const hl_light *light) {
+  hl_status status = check_point(check, "position", light->position);
+  if (status == HL_OK) status = check_direction(check, "direction", light->direction);
+  if (status == HL_OK)
+    status = check_range(check, "opening_angle_deg", light->opening_angle_deg, 0.01, 179,
+                         "give the cone's full angle in degrees, from 0.01 to 179");
+  if (status == HL_OK)
+    status = check_range(check, "falloff_angle_deg", light->falloff_angle_deg, 0, light->opening_angle_deg / 2,
+                         "give the width of the cone's smooth edge in degrees, from 0 to half the opening angle");
+  return status == HL_OK ? check_radius(check, light) : status;
+}
+
 static hl_status check_light_place(const checker *check, const hl_light *light) {
   switch (light->type) {
     case HL_LIGHT_DIRECTIONAL: return check_directional(check, light);
     case HL_LIGHT_RECT: return check_rect(check, light);
     case HL_LIGHT_DISK: return check_disk(check, light);
     case HL_LIGHT_POLYGON: return check_polygon(check, light);
-    case HL_LIGHT_POINT:
-    case HL_LIGHT_SPOT: break;
+    case HL_LIGHT_SPOT: return check_spot(check, light);
+    case HL_LIGHT_POINT: break;
   }
   hl_status status = check_point(check, "position", light->position);
   return status == HL_OK ? check_radius(check, light) : status;
@@ -228,9 +240,6 @@ static hl_status check_light(const hl_light *light, size_t index, hl_error *erro
   snprintf(check.place, sizeof check.place, "/lights/%zu", index);
   hl_status status;
   if ((status = check_choice(&check, "type", (int)light->type, 0, HL_LIGHT_POLYGON)) != HL_OK) return status;
-  if (light->type == HL_LIGHT_SPOT)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s/type: \"spot\" lights are not supported by this version: use a point or disk light", check.place);
   if ((status = check_choice(&check, "falloff", (int)light->falloff, 0, HL_FALLOFF_INVERSE_SQUARE)) != HL_OK)
     return status;
   if ((status = check_choice(&check, "shadows", (int)light->shadows, 0, HL_SHADOWS_SOFT)) != HL_OK)

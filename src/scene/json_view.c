@@ -63,10 +63,13 @@ hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_sc
 #define COMMON_KEYS "color", "intensity", "falloff", "shadows", "texture", NULL
 static const char *const directional_keys[] = {"type", "direction", "angular_diameter_deg", COMMON_KEYS};
 static const char *const point_keys[] = {"type", "position", "radius", COMMON_KEYS};
+static const char *const spot_keys[] = {"type",   "position", "direction", "opening_angle_deg", "falloff_angle_deg",
+                                        "radius", COMMON_KEYS};
 static const char *const rect_keys[] = {"type", "position", "edge1", "edge2", COMMON_KEYS};
 static const char *const disk_keys[] = {"type", "position", "normal", "radius", COMMON_KEYS};
 static const char *const polygon_keys[] = {"type", "vertices", COMMON_KEYS};
-static const char *const *const light_keys[] = {directional_keys, point_keys, NULL, rect_keys, disk_keys, polygon_keys};
+static const char *const *const light_keys[] = {directional_keys, point_keys, spot_keys,
+                                                    rect_keys,        disk_keys,  polygon_keys};
 
 /* The vertices in memory of the light's own. */
 static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_light *light) {
@@ -90,12 +93,20 @@ static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_
   return HL_OK;
 }
 
+/* Without a word on it the edge is as wide as a narrow cone allows. */
+static hl_status read_cone(hl_json_reader *reader, const json_t *value, hl_light *light) {
+  hl_status status = hl_json_number(reader, value, "opening_angle_deg", &light->opening_angle_deg);
+  if (light->falloff_angle_deg > light->opening_angle_deg / 2) light->falloff_angle_deg = light->opening_angle_deg / 2;
+  return status == HL_OK ? hl_json_number(reader, value, "falloff_angle_deg", &light->falloff_angle_deg) : status;
+}
+
 static hl_status read_light_place(hl_json_reader *reader, const json_t *value, hl_light *light) {
   hl_status status = hl_json_numbers(reader, value, "direction", 3, light->direction);
   if (status == HL_OK)
     status = hl_json_number(reader, value, "angular_diameter_deg", &light->angular_diameter_deg);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "position", 3, light->position);
   if (status == HL_OK) status = hl_json_number(reader, value, "radius", &light->radius);
+  if (status == HL_OK) status = read_cone(reader, value, light);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "normal", 3, light->normal);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "edge1", 3, light->edge1);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "edge2", 3, light->edge2);
@@ -112,9 +123,6 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
   hl_status status = hl_json_object(reader, value, all);
   if (status == HL_OK) status = hl_json_choice(reader, value, "type", hl_light_type_names, 0, &type);
   if (status != HL_OK) return status;
-  if (type == HL_LIGHT_SPOT)
-    return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "type",
-                        "\"spot\" lights are not supported by this version: use a point or disk light");
   if ((status = hl_json_object(reader, value, light_keys[type])) != HL_OK) return status;
   light->type = (hl_light_type)type;
   status = read_light_place(reader, value, light);

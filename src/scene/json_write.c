@@ -175,6 +175,11 @@ static void write_light_place(writer *w, const hl_light *light) {
     return;
   }
   if (light->type == HL_LIGHT_DISK) write_row(w, "normal", light->normal, 3);
+  if (light->type == HL_LIGHT_SPOT) {
+    write_row(w, "direction", light->direction, 3);
+    write_number(w, "opening_angle_deg", light->opening_angle_deg);
+    write_number(w, "falloff_angle_deg", light->falloff_angle_deg);
+  }
   write_number(w, "radius", light->radius);
 }
 

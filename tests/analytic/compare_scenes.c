@@ -322,6 +322,18 @@ static void make_window_in_haze(stage *set) { /* beams towards the eye through a
   stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){-40, 50, -30}, (vec3){10, 8, 0}, (vec3){0, -2, 12});
 }
 
+static void make_spot(stage *set) {
+  make_balls_medium(set);
+  set->scene.light_count = 0;
+  stage_add_spot(set, (vec3){17, -8, 32}, (vec3){-16, 5, -30}, 32, 9)->radius = 3;
+}
+static void make_spot_in_smoke(stage *set) { /* a sharp cone across the view; with a slide in it */
+  make_smoke(set);
+  set->scene.light_count = 0;
+  hl_light *light = stage_add_spot(set, (vec3){-30, -16, 12}, (vec3){30, 17, -12}, 24, 0);
+  stage_set_texture(light, 12, 9, slide(), (vec3){-15, -8, 6}, (vec3){3, -3, 0}, (vec3){1, 0, 3});
+}
+
 /* Walls lit at a grazing angle want shadow pixels well below a voxel (at 0.3 voxels both are within 0.006 and
  * 0.02); what lies behind a lamp, seen along its sheets, is not shadowed yet; the borders of holes lie half
  * way between empty and the least value in the reference, nearer to the least in the sheets. */
@@ -366,6 +378,8 @@ static const scenario SCENARIOS[] = {
     {"projector", make_projector, 0.006},
     {"projector-behind", make_projector_behind, 0.006},
     {"window-in-haze", make_window_in_haze, 0.006},
+    {"spot", make_spot, 0.006},
+    {"spot-in-smoke", make_spot_in_smoke, 0.006},
 };
 
 const scenario *compare_scenarios(size_t *count) {

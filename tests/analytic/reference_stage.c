@@ -127,6 +127,15 @@ hl_light *stage_add_point(stage *set, vec3 position) {
   return light;
 }
 
+hl_light *stage_add_spot(stage *set, vec3 position, vec3 direction, double opening_deg, double falloff_deg) {
+  hl_light *light = add_light(set, HL_LIGHT_SPOT);
+  copy_vector(light->position, position);
+  copy_vector(light->direction, direction);
+  light->opening_angle_deg = opening_deg;
+  light->falloff_angle_deg = falloff_deg;
+  return light;
+}
+
 void stage_set_texture(hl_light *light, int width, int height, const float *pixels, vec3 center, vec3 right,
                        vec3 up) {
   light->texture.pixels = pixels;

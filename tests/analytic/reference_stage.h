@@ -33,6 +33,7 @@ void stage_set_opacity(stage *set, hl_scene_volume *volume, double opacity, doub
 void stage_set_color(stage *set, hl_scene_volume *volume, double r, double g, double b);
 hl_light *stage_add_directional(stage *set, vec3 direction);
 hl_light *stage_add_point(stage *set, vec3 position);
+hl_light *stage_add_spot(stage *set, vec3 position, vec3 direction, double opening_deg, double falloff_deg);
 
 /* pixels: [height][width][3], borrowed until the pictures are made. */
 void stage_set_texture(hl_light *light, int width, int height, const float *pixels, vec3 center, vec3 right, vec3 up);

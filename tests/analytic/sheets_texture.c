@@ -1,4 +1,4 @@
-/* analytic/sheets_texture.c - where projected images fall, what colour they bring and how far, against closed forms. */
+/* analytic/sheets_texture.c - where projected images and cones of light fall, how bright and how far, against closed forms. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -167,12 +167,53 @@ static void test_beams_through_a_cube(void **state) {
   stage_close(&set);
 }
 
-/* No pixels of the shadow buffer where the screen leaves the volume dark. */
-static void test_the_shadow_buffer_follows_the_screen(void **state) {
+/* A tilted cone on the floor: brightness is the smooth step of the cosine to the axis at every pixel, with shadows or
+ * without, and nothing outside. */
+static void test_spot_light(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
+  vec3 position = {-4, 3, 18}, direction = {0.25, -0.1, -1};
+  double outer = cos(15 * HL_PI / 180), full = cos(8 * HL_PI / 180);
+  stage set;
+  stage_open(&set);
+  stage_floor(&set);
+  stage_add_spot(&set, position, direction, 30, 7);
+  for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
+    set.scene.render.shadows = (hl_shadows)shadows;
+    stage_render_sheets(&set, pixels);
+    for (int y = 0; y < SIDE; y++)
+      for (int x = 0; x < SIDE; x++) {
+        vec3 at = {-12 + (x + 0.5) * 0.25, 12 - (y + 0.5) * 0.25, 0};
+        double cosine = vec3_dot(vec3_normalise(vec3_subtract(at, position)), vec3_normalise(direction));
+        double part = fmin(fmax((cosine - outer) / (full - outer), 0), 1);
+        if (part == 0) assert_true(pixels[4 * (SIDE * y + x)] == 0);
+        assert_near((double)pixels[4 * (SIDE * y + x)], part * part * (3 - 2 * part), 2e-3);
+      }
+  }
+  stage_close(&set);
+}
+
+/* ---- what is not lit costs nothing ---- */
+
+static uint64_t tiles_filled_for_light(stage *set) {
+  static float pixels[SIDE * SIDE * 4];
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  hl_render_statistics statistics = {.struct_size = sizeof statistics};
+  if (hl_scene_create(set->context, &set->scene, &scene, &error) != HL_OK ||
+      hl_renderer_create(set->context, &renderer, &error) != HL_OK ||
+      hl_renderer_render(renderer, scene, pixels, 4 * SIDE, &statistics, &error) != HL_OK)
+    fail_msg("%s", error.message);
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+  return statistics.tiles_filled_light;
+}
+
+/* No pixels of the shadow buffer where the screen or the cone leaves the volume dark. */
+static void test_the_shadow_buffer_follows_what_is_lit(void **state) {
+  (void)state;
   const float white[3] = {1, 1, 1};
-  uint64_t filled[2];
   stage set;
   stage_open(&set);
   stage_set_opacity(&set, stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1}, (vec3){-10, -10, -10}, NULL),
@@ -180,23 +221,15 @@ static void test_the_shadow_buffer_follows_the_screen(void **state) {
   set.scene.width = set.scene.height = SIDE;
   set.scene.camera.height = 24;
   hl_light *light = stage_add_point(&set, (vec3){5, -8, 40});
-  for (int small = 0; small < 2; small++) {
-    hl_error error = {0};
-    hl_scene *scene = NULL;
-    hl_renderer *renderer = NULL;
-    hl_render_statistics statistics = {.struct_size = sizeof statistics};
-    double size = small ? 1 : 30;
-    stage_set_texture(light, 1, 1, white, (vec3){4, -6.4, 32}, (vec3){size, 0, 0}, (vec3){0, size, 0});
-    if (hl_scene_create(set.context, &set.scene, &scene, &error) != HL_OK ||
-        hl_renderer_create(set.context, &renderer, &error) != HL_OK ||
-        hl_renderer_render(renderer, scene, pixels, 4 * SIDE, &statistics, &error) != HL_OK)
-      fail_msg("%s", error.message);
-    filled[small] = statistics.tiles_filled_light;
-    hl_renderer_destroy(renderer);
-    hl_scene_release(scene);
-  }
-  print_message("# tiles filled for the light: %d, through a small screen %d\n", (int)filled[0], (int)filled[1]);
-  assert_true(filled[1] > 0 && filled[1] * 3 < filled[0]);
+  int all = (int)tiles_filled_for_light(&set);
+  stage_set_texture(light, 1, 1, white, (vec3){4, -6.4, 32}, (vec3){1, 0, 0}, (vec3){0, 1, 0});
+  int screen = (int)tiles_filled_for_light(&set);
+  set.scene.light_count = 0;
+  stage_add_spot(&set, (vec3){5, -8, 40}, (vec3){-5, 8, -40}, 12, 2);
+  int cone = (int)tiles_filled_for_light(&set);
+  print_message("# tiles filled for a point light: %d, through a screen %d, for a spot %d\n", all, screen, cone);
+  assert_in_range(screen, 1, all / 3);
+  assert_in_range(cone, 1, all / 3);
   stage_close(&set);
 }
 
@@ -206,7 +239,8 @@ int main(void) {
       cmocka_unit_test(test_point_light_through_a_screen),
       cmocka_unit_test(test_fine_images_are_averaged),
       cmocka_unit_test(test_beams_through_a_cube),
-      cmocka_unit_test(test_the_shadow_buffer_follows_the_screen),
+      cmocka_unit_test(test_spot_light),
+      cmocka_unit_test(test_the_shadow_buffer_follows_what_is_lit),
   };
   return cmocka_run_group_tests_name("sheets_texture", tests, NULL, NULL);
 }

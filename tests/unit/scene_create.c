@@ -89,7 +89,10 @@ SPOIL(light_diameter, p->light.angular_diameter_deg = -1)
 SPOIL(light_falloff, p->light.falloff = HL_FALLOFF_INVERSE_SQUARE)
 SPOIL(light_radius, p->light.type = HL_LIGHT_POINT; p->light.radius = -1)
 SPOIL(light_radius_nan, p->light.type = HL_LIGHT_POINT; p->light.radius = NAN)
-SPOIL(light_spot, p->light.type = HL_LIGHT_SPOT)
+SPOIL(spot_wide, p->light.type = HL_LIGHT_SPOT; p->light.opening_angle_deg = 180)
+SPOIL(spot_nan, p->light.type = HL_LIGHT_SPOT; p->light.opening_angle_deg = NAN)
+SPOIL(spot_edge, p->light.type = HL_LIGHT_SPOT; p->light.falloff_angle_deg = 21)
+SPOIL(spot_direction, p->light.type = HL_LIGHT_SPOT; p->light.direction[2] = 0)
 SPOIL(light_edge, p->light.type = HL_LIGHT_RECT; p->light.edge2[1] = NAN)
 SPOIL(light_normal, p->light.type = HL_LIGHT_DISK; p->light.normal[2] = 0)
 SPOIL(light_disk_radius, p->light.type = HL_LIGHT_DISK; p->light.radius = -2)
@@ -182,8 +185,15 @@ static const refusal refusals[] = {
      light_radius},
     {"/lights/0/radius: nan is not a number: give a length in world units, 0 for a point", HL_ERROR_INPUT,
      light_radius_nan},
-    {"/lights/0/type: \"spot\" lights are not supported by this version: use a point or disk light",
-     HL_ERROR_UNSUPPORTED, light_spot},
+    {"/lights/0/opening_angle_deg: 180 is out of range: give the cone's full angle in degrees, from 0.01 to 179",
+     HL_ERROR_INPUT, spot_wide},
+    {"/lights/0/opening_angle_deg: nan is not a number: give the cone's full angle in degrees, from 0.01 to 179",
+     HL_ERROR_INPUT, spot_nan},
+    {"/lights/0/falloff_angle_deg: 21 is out of range: give the width of the cone's smooth edge in degrees, from 0 to "
+     "half the opening angle",
+     HL_ERROR_INPUT, spot_edge},
+    {"/lights/0/direction: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT,
+     spot_direction},
     {"/lights/0/edge2/1: nan is not a number: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT, light_edge},
     {"/lights/0/normal: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT, light_normal},
     {"/lights/0/radius: -2 is negative: give a length in world units, 0 for a point", HL_ERROR_INPUT, light_disk_radius},

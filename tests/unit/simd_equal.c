@@ -392,6 +392,7 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
       for (int column = 0; column < 4; column++) light->map[row][column] = random_between(seed, -9, 9);
     light->map[0][3] = 10;
     light->map[1][3] = light->map[2][3] = 250;
+    if (round % 4 == 3) light->cone = (light_cone){{-light->towards[0], 0.6f, -light->towards[2]}, 0.3f, 4};
     if ((round + i) % 3 == 0) {
       light->screen = (light_screen){.pixels = &s->buffer[0][0][0], .width = 1 + round % 30, .height = 20, .sharpness = {1, 2.5f}};
       for (int row = 0; row < 3; row++)
