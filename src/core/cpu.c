@@ -8,7 +8,8 @@ hl_instruction_set hl_cpu_best_instruction_set(void) {
 #if defined(__x86_64__)
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vnni"))
     return HL_INSTRUCTION_SET_AVX512;
   if (__builtin_cpu_supports("avx2")) return HL_INSTRUCTION_SET_AVX2;
 #endif

@@ -61,7 +61,7 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
     if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
     covered_part part = covered_block(volume->enter, volume->leave, block, job->height, job->spacing);
     if (volume->enter != NULL) cut_way(part, &a, &b);
-    lanes whole, extinction = mean_extinction(volume->classifier, a, b, &whole) * part.length;
+    lanes extinction = sums_of_way(volume->classifier, a, b).extinction * part.length;
     for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
   }
   lanes any = depth[0] + depth[1] + depth[2];

@@ -8,7 +8,6 @@
 #include "light/soft_cascade.h"
 #include "light/soft_paper.h"
 #include "render/frame.h"
-#include "render/layers.h"
 #include "simd/hot.h"
 
 /* A volume made ready: kept between frames while its voxels and transfer function stay. */
@@ -28,6 +27,7 @@ enum { RING = 2 }; /* sheets k-1 and k */
 /* A patch of one sheet, kept for the next slab. */
 typedef struct kept_patch {
   int32_t sheet;                  /* -1: none */
+  uint16_t relevant;              /* blocks that can hold density */
   uint16_t need, blocks;          /* blocks that were filled; those of them with density */
 } kept_patch;
 
@@ -72,8 +72,6 @@ typedef struct sweep {
   const kernel *kernel;
   bool splat;                     /* else gather */
   bool first;                     /* the sweep that carries ambient light and opacity */
-  const layer_pixels *layer_pixels; /* where the layers go; null: none */
-  bool measures;                  /* the sweep that carries depth and normals */
   int channels;                   /* of light attenuation */
   /* the image */
   view_sheets image;
@@ -91,7 +89,6 @@ typedef struct sweep {
   shade_patch *shade_patches;     /* [threads][grids] */
   shade_light shade_lights[FRAME_LIGHTS];
   shade_job shade;
-  sweep_layers layers;
   attenuate_job attenuate[FRAME_LIGHTS];
   unsigned char *scratch;         /* [threads][grids][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][grids] */
@@ -111,22 +108,19 @@ void hl_sweep_shade(sweep *sweep, int sheet);     /* steps 6, 8 to 16: the image
 void hl_sweep_attenuate(sweep *sweep, int sheet); /* steps 7 to 11 and 17: the lights */
 void hl_sweep_soften(sweep *sweep, int sheet);    /* section 5 */
 
-/* Layers (layers.c): the passes of the sweep's lights, after hl_sweep_begin; their sheet, as the sweep's own shading has
- * it; and one tile of all of them. */
-hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
-void hl_sweep_layers_end(sweep *sweep);
-void hl_sweep_layers_sheet(sweep *sweep);
-void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks,
-                          int worker, void *scratch);
-
 /* A view's sheets (view_sheets.c). What fails half-way is released by hl_view_sheets_end. */
 hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets);
 /* Before patches of a sheet are asked for. */
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets);
-/* Densities of a patch on a sheet, [256], in the needed blocks at least: kept from the slab before, or filled now.
- * blocks: gains those with density; pixels: is raised by the pixels filled. */
-const float *hl_patch_density(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet,
-                              uint32_t need, uint32_t *blocks, uint64_t *pixels);
+/* A patch's densities on the sheet and the one before, [256] block-major, in the needed blocks that hold any: kept from
+ * the slab before, or filled now. */
+typedef struct patch_slab {
+  const float *before, *current; /* valid in blocks */
+  uint32_t blocks;
+} patch_slab;
+/* pixels: is raised by the pixels filled. */
+patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
+                         uint64_t *pixels);
 
 #endif

@@ -26,13 +26,12 @@ static int fill_image_tile(sweep *sweep, size_t tile, int worker, shade_patch *p
   uint32_t need = sweep->open[tile];
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
-    uint32_t g = sheets->occupancy.patch_grid[p], own = 0;
-    const float *before = hl_patch_density(sweep, sheets, tile, p, sweep->sheet - 1, need, &own, &counts->pixels_image);
-    const float *current = hl_patch_density(sweep, sheets, tile, p, sweep->sheet, need, &own, &counts->pixels_image);
-    if (own == 0) continue;
-    *blocks |= own;
+    uint32_t g = sheets->occupancy.patch_grid[p];
+    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, &counts->pixels_image);
+    if (slab.blocks == 0) continue;
+    *blocks |= slab.blocks;
     bool cut = sweep->grids[g].cut;
-    patches[count++] = (shade_patch){&sweep->shade_volumes[g], before, current, own,
+    patches[count++] = (shade_patch){&sweep->shade_volumes[g], slab.before, slab.current, slab.blocks,
                                      cut ? sheets->enter + p * TILE_PIXELS : NULL,
                                      cut ? sheets->leave + p * TILE_PIXELS : NULL};
   }
@@ -55,11 +54,10 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   counts->filled_image++;
   counts->seconds_fill += filled - start;
   if (blocks == 0) return;
-  void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * SHADE_SCRATCH_BYTES;
-  uint32_t open = sweep->hot->shade_tile(&sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
-                                         (int)(tile / (size_t)sweep->tiles_x), blocks, scratch,
-                                         sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
-  hl_sweep_layers_tile(sweep, patches, count, tile, blocks, worker, scratch);
+  uint32_t open = sweep->hot->shade_tile(
+      &sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x), (int)(tile / (size_t)sweep->tiles_x), blocks,
+      sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * SHADE_SCRATCH_BYTES,
+      sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
   sweep->open[tile] = (uint16_t)((need & ~blocks) | open);
   counts->seconds_shade += hl_clock_seconds() - filled;
 }
@@ -79,7 +77,6 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
   hl_view_sheet_rays(&sweep->frame->eye, sheets->normal, hl_sheet_height(sheets, sheet) - 0.5 * sheets->spacing,
                      affine3_identity(), &sweep->shade.rays);
   sweep->shade.height = (float)(sheet * sheets->spacing);
-  hl_sweep_layers_sheet(sweep);
   hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task, sweep);
   sweep->seconds_image += hl_clock_seconds() - start;
 }
@@ -93,15 +90,14 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
   uint64_t *pixels = &sweep->counts[worker].pixels_light;
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
-    uint32_t g = sheets->occupancy.patch_grid[p], blocks = 0;
+    uint32_t g = sheets->occupancy.patch_grid[p];
     const hl_scene_volume *scene = sweep->volumes[g].scene;
     if (!scene->casts_shadow) continue;
-    const float *before = hl_patch_density(sweep, sheets, tile, p, sweep->sheet - 1, need, &blocks, pixels);
-    const float *density = hl_patch_density(sweep, sheets, tile, p, sweep->sheet, need, &blocks, pixels);
-    if (blocks == 0) continue;
+    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, pixels);
+    if (slab.blocks == 0) continue;
     bool cut = sweep->grids[g].cut;
-    volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = blocks,
-                                        .before = before, .density = density,
+    volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = slab.blocks,
+                                        .before = slab.before, .density = slab.current,
                                         .enter = cut ? sheets->enter + p * TILE_PIXELS : NULL,
                                         .leave = cut ? sheets->leave + p * TILE_PIXELS : NULL};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];

@@ -1,5 +1,7 @@
 /* render/view_sheets.c - what one view, the eye's or a light's, sees of the last sheets: where, in what order, and the
  * densities of patches, filled when they are asked for and kept for the next slab. */
+#include <string.h>
+
 #include "core/memory.h"
 #include "render/sweep.h"
 #include "splat/voxel_sort.h"
@@ -91,22 +93,49 @@ void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
   hl_occupancy_release(sweep->context, &sheets->occupancy);
 }
 
-const float *hl_patch_density(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet,
-                              uint32_t need, uint32_t *blocks, uint64_t *pixels) {
-  static const float nothing[TILE_PIXELS];
+/* What is kept of a patch on a sheet; which of its blocks matter is found when it is first asked for. */
+static kept_patch *patch_on_sheet(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet) {
   const occupancy *o = &sheets->occupancy;
-  if (sheet < 0 || !hl_occupancy_has(o, patch, sheet)) return nothing;
-  size_t at = patch * RING + (size_t)(sheet % RING);
-  float *density = sheets->density + at * TILE_PIXELS;
-  kept_patch *kept = &sheets->kept[at];
-  if (kept->sheet != sheet || (need & ~(uint32_t)kept->need) != 0) {
-    const fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + (int)o->patch_grid[patch]];
+  kept_patch *kept = &sheets->kept[patch * RING + (size_t)(sheet % RING)];
+  if (kept->sheet == sheet) return kept;
+  *kept = (kept_patch){.sheet = sheet};
+  if (!hl_occupancy_has(o, patch, sheet)) return kept;
+  const fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + (int)o->patch_grid[patch]];
+  kept->relevant = (uint16_t)sweep->hot->relevant_blocks_tile(source, (int)(tile % (size_t)o->tiles_x),
+                                                              (int)(tile / (size_t)o->tiles_x));
+  return kept;
+}
+
+/* Fills what is missing of the wanted blocks; returns the pixels filled. Blocks that do not matter are empty. */
+static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, kept_patch *kept,
+                           uint32_t wanted) {
+  const occupancy *o = &sheets->occupancy;
+  uint32_t missing = wanted & ~(uint32_t)kept->need, filled = 0;
+  if (missing == 0) return 0;
+  int slot = kept->sheet % RING;
+  float *density = sheets->density + (patch * RING + (size_t)slot) * TILE_PIXELS;
+  for (uint32_t left = missing & ~(uint32_t)kept->relevant; left != 0; left &= left - 1)
+    memset(density + __builtin_ctz(left) * BLOCK_PIXELS, 0, BLOCK_PIXELS * sizeof(float));
+  if ((missing & kept->relevant) != 0) {
+    const fill_source *source = &sheets->sources[slot * sweep->volume_count + (int)o->patch_grid[patch]];
     fill_tile_function *fill = sweep->splat ? sweep->hot->splat_tile : sweep->hot->gather_tile;
-    kept->blocks = (uint16_t)fill(source, (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x), need, density);
-    kept->sheet = sheet;
-    kept->need = (uint16_t)need;
-    *pixels += (uint64_t)__builtin_popcount(kept->blocks) * BLOCK_PIXELS;
+    filled = fill(source, (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x), missing & kept->relevant,
+                  density);
   }
-  *blocks |= kept->blocks & need;
-  return density;
+  kept->need = (uint16_t)(kept->need | missing);
+  kept->blocks = (uint16_t)(kept->blocks | filled);
+  return (uint64_t)__builtin_popcount(filled) * BLOCK_PIXELS;
+}
+
+patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
+                         uint64_t *pixels) {
+  kept_patch *before = patch_on_sheet(sweep, sheets, tile, patch, sheet - 1);
+  kept_patch *current = patch_on_sheet(sweep, sheets, tile, patch, sheet);
+  uint32_t wanted = need & ((uint32_t)before->relevant | current->relevant);
+  if (wanted == 0) return (patch_slab){NULL, NULL, 0};
+  *pixels += fill_patch(sweep, sheets, tile, patch, before, wanted);
+  *pixels += fill_patch(sweep, sheets, tile, patch, current, wanted);
+  const float *density = sheets->density + patch * RING * TILE_PIXELS;
+  return (patch_slab){density + (sheet - 1) % RING * TILE_PIXELS, density + sheet % RING * TILE_PIXELS,
+                      wanted & ((uint32_t)before->blocks | current->blocks)};
 }

@@ -3,20 +3,20 @@
 
 #include "light/blur_lanes.h"
 #include "light/cascade_lanes.h"
-#include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
+#include "splat/relevant_lanes.h"
 #include "splat/splat_lanes.h"
 
 const hot_functions HL_HOT_TABLE = {
     .bound_rows = {bound_rows_u8, bound_rows_u16, bound_rows_f32},
+    .relevant_blocks_tile = relevant_blocks_tile,
     .splat_tile = splat_tile,
     .gather_tile = gather_tile,
     .coverage_tile = coverage_tile,
     .attenuate_tile = attenuate_tile,
     .lit_blocks_tile = lit_blocks_tile,
     .shade_tile = shade_tile,
-    .measure_tile = measure_tile,
     .blur_rows_tile = blur_rows_tile,
     .blur_columns_tile = blur_columns_tile,
     .blur_multiply_tile = blur_multiply_tile,

@@ -180,6 +180,59 @@ LANES_INLINE lanes lanes_gather(const float *table, lanes_int index) {
   return (lanes)lanes_gather_bytes((const unsigned char *)table, index * 4);
 }
 
+#if defined(__AVX512F__)
+/* From sixteen rows of four floats, given for the lanes 4 q + j in quarter q of rows[j], each column as a vector. */
+LANES_INLINE void lanes_columns(const __m512 rows[4], lanes columns[4]) {
+  __m512 a = _mm512_unpacklo_ps(rows[0], rows[1]), b = _mm512_unpacklo_ps(rows[2], rows[3]);
+  __m512 c = _mm512_unpackhi_ps(rows[0], rows[1]), d = _mm512_unpackhi_ps(rows[2], rows[3]);
+  columns[0] = (lanes)_mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(a), _mm512_castps_pd(b)));
+  columns[1] = (lanes)_mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(a), _mm512_castps_pd(b)));
+  columns[2] = (lanes)_mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(c), _mm512_castps_pd(d)));
+  columns[3] = (lanes)_mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(c), _mm512_castps_pd(d)));
+}
+#endif
+
+/* table[4 index + c] as columns[c]: one load a row instead of four. */
+LANES_CALL void lanes_gather_rows(const float *table, lanes_int index, lanes columns[4]) {
+#if defined(__AVX512F__)
+  lanes_offsets offsets;
+  lanes_store_offsets(&offsets, index * 4);
+  __m512 rows[4];
+  for (int j = 0; j < 4; j++) {
+    __m512 row = _mm512_castps128_ps512(_mm_loadu_ps(table + offsets.at[j]));
+    row = _mm512_insertf32x4(row, _mm_loadu_ps(table + offsets.at[4 + j]), 1);
+    row = _mm512_insertf32x4(row, _mm_loadu_ps(table + offsets.at[8 + j]), 2);
+    rows[j] = _mm512_insertf32x4(row, _mm_loadu_ps(table + offsets.at[12 + j]), 3);
+  }
+  lanes_columns(rows, columns);
+#else
+  for (int c = 0; c < 4; c++) columns[c] = lanes_gather(table + c, index * 4);
+#endif
+}
+
+/* table[index] and table[index + 1]: one load for both. */
+LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *first, lanes *second) {
+#if defined(__AVX512F__)
+  lanes_offsets offsets;
+  lanes_store_offsets(&offsets, index);
+  __m512 pairs[2];
+  for (int j = 0; j < 2; j++) {
+    __m128 part[4];
+    for (int q = 0; q < 4; q++) {
+      part[q] = _mm_castpd_ps(_mm_load_sd((const double *)(const void *)(table + offsets.at[4 * q + 2 * j])));
+      part[q] = _mm_loadh_pi(part[q], (const __m64 *)(const void *)(table + offsets.at[4 * q + 2 * j + 1]));
+    }
+    __m512 pair = _mm512_insertf32x4(_mm512_castps128_ps512(part[0]), part[1], 1);
+    pairs[j] = _mm512_insertf32x4(_mm512_insertf32x4(pair, part[2], 2), part[3], 3);
+  }
+  *first = (lanes)_mm512_shuffle_ps(pairs[0], pairs[1], 0x88);
+  *second = (lanes)_mm512_shuffle_ps(pairs[0], pairs[1], 0xdd);
+#else
+  *first = lanes_gather(table, index);
+  *second = lanes_gather(table + 1, index);
+#endif
+}
+
 /* 2^x for |x| < 126, relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by its Taylor series in
  * f ln 2 to degree 7 (derived; the remainder (0.3466)^8/8! is 5e-9), 2^n by the exponent bits. */
 LANES_CALL lanes lanes_exp2(lanes x) {

@@ -1,6 +1,8 @@
 /* splat/classify.c - builds the tables of a transfer function. */
 #include "splat/classify.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 
 /* sigma = -ln(1 - alpha) / u, alpha clamped to 0.9999 (algorithm, optical model). */
@@ -23,10 +25,10 @@ static bool below_all(const hl_scene_volume *volume, double empty, double value)
 static void integrate(classifier *classifier) {
   double integral = 0, moment = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
-    classifier->integral[entry] = (float)integral;
-    classifier->moment[entry] = (float)moment;
+    classifier->sums[entry][1] = (float)integral;
+    classifier->sums[entry][2] = (float)moment;
     if (entry > CLASSIFIER_ENTRIES) break;
-    double e0 = classifier->extinction[entry], e1 = classifier->extinction[entry + 1];
+    double e0 = classifier->sums[entry][0], e1 = classifier->sums[entry + 1][0];
     integral += (e0 + e1) / 2;
     moment += entry * (e0 + e1) / 2 + (e0 + 2 * e1) / 6;
   }
@@ -38,21 +40,20 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
     double value = low + (high - low) * entry / CLASSIFIER_ENTRIES, color[3];
     double extinction = below_all(volume, empty, value) ? 0 : extinction_of(function, value);
-    classifier->extinction[entry] = (float)extinction;
+    classifier->sums[entry][0] = (float)extinction;
     hl_transfer_function_color(function, value, color);
-    for (int c = 0; c < 3; c++) classifier->color[c][entry] = (float)color[c];
+    for (int c = 0; c < 3; c++) classifier->color[entry][c] = (float)color[c];
   }
-  classifier->extinction[CLASSIFIER_ENTRIES + 1] = classifier->extinction[CLASSIFIER_ENTRIES];
-  for (int c = 0; c < 3; c++)
-    classifier->color[c][CLASSIFIER_ENTRIES + 1] = classifier->color[c][CLASSIFIER_ENTRIES];
+  classifier->sums[CLASSIFIER_ENTRIES + 1][0] = classifier->sums[CLASSIFIER_ENTRIES][0];
+  memcpy(classifier->color[CLASSIFIER_ENTRIES + 1], classifier->color[CLASSIFIER_ENTRIES], sizeof classifier->color[0]);
   integrate(classifier);
   int32_t next = CLASSIFIER_ENTRIES + 2;
   for (int entry = CLASSIFIER_ENTRIES + 1; entry >= 0; entry--) {
-    if (classifier->extinction[entry] > 0) next = entry;
+    if (classifier->sums[entry][0] > 0) next = entry;
     classifier->next_visible[entry] = next;
   }
   int last = CLASSIFIER_ENTRIES;
-  while (last > 0 && !(classifier->extinction[last] > 0)) last--;
+  while (last > 0 && !(classifier->sums[last][0] > 0)) last--;
   classifier->first_visible = (float)classifier->next_visible[0] - 1;
   classifier->last_visible = (float)last + 1;
 }
@@ -72,15 +73,13 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
                                classifier *classifier, hl_error *error) {
   enum { COUNT = CLASSIFIER_ENTRIES + 2 };
   *classifier = (struct classifier){0};
-  classifier->extinction = hl_allocate(context, 6 * (size_t)COUNT, sizeof(float));
+  classifier->sums = hl_allocate_zeroed(context, 2 * (size_t)COUNT, sizeof *classifier->sums);
   classifier->next_visible = hl_allocate(context, COUNT, sizeof(int32_t));
-  if (classifier->extinction == NULL || classifier->next_visible == NULL) {
+  if (classifier->sums == NULL || classifier->next_visible == NULL) {
     hl_classifier_release(context, classifier);
-    return hl_fail_memory(error, 7 * COUNT * sizeof(float), "a transfer-function table");
+    return hl_fail_memory(error, 9 * COUNT * sizeof(float), "a transfer-function table");
   }
-  classifier->integral = classifier->extinction + COUNT;
-  classifier->moment = classifier->extinction + 2 * COUNT;
-  for (int c = 0; c < 3; c++) classifier->color[c] = classifier->extinction + (size_t)(c + 3) * COUNT;
+  classifier->color = classifier->sums + COUNT;
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
   if (!(high > low)) high = low + 1;
@@ -92,7 +91,7 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
 }
 
 void hl_classifier_release(hl_context *context, classifier *classifier) {
-  hl_release(context, classifier->extinction);
+  hl_release(context, classifier->sums);
   hl_release(context, classifier->next_visible);
   *classifier = (struct classifier){0};
 }

@@ -13,10 +13,9 @@ enum { CLASSIFIER_ENTRIES = 4096 };
 
 typedef struct classifier {
   float scale, offset;   /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
-  float *extinction;     /* owned; [CLASSIFIER_ENTRIES + 2]; per world unit */
-  float *integral;       /* owned with extinction; [same]; of extinction over entries, from entry 0 */
-  float *moment;         /* owned with extinction; [same]; of extinction * entry */
-  float *color[3];       /* owned with extinction; [same] each; linear RGB */
+  float (*sums)[4];      /* owned; [CLASSIFIER_ENTRIES + 2]; extinction per world unit; its integral over entries, from
+                            entry 0; the integral of extinction * entry; 0 */
+  float (*color)[4];     /* owned with sums; [same]; linear RGB; 0 */
   int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: first entry at or above with extinction > 0 */
   float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
   float normal_edge;     /* the least gradient (density per world unit) that counts as a surface */

@@ -17,23 +17,34 @@ LANES_INLINE table_place classify_place(const classifier *classifier, lanes dens
   return place_of_coordinate(lanes_clamp(density * classifier->scale + classifier->offset, 0, CLASSIFIER_ENTRIES));
 }
 
-LANES_INLINE lanes table_value(const float *table, table_place place) {
-  lanes a = lanes_gather(table, place.entry), b = lanes_gather(table + 1, place.entry);
-  return a + (b - a) * place.fraction;
+/* The values of a table's columns at a place. */
+LANES_INLINE void table_values(float (*table)[4], table_place place, lanes values[3]) {
+  lanes a[4], b[4];
+  lanes_gather_rows(&table[0][0], place.entry, a);
+  lanes_gather_rows(&table[1][0], place.entry, b);
+  for (int i = 0; i < 3; i++) values[i] = a[i] + (b[i] - a[i]) * place.fraction;
 }
 
 /* Closer than this many entries the integral's difference loses digits; the ends' mean is as good there. */
 static const float NEAR_ENTRIES = 4;
 
-/* Mean extinction between two places: (I(b) - I(a)) / (b - a). *whole: I(b) - I(a), 0 where they are near. */
-LANES_INLINE lanes mean_extinction(const classifier *classifier, table_place a, table_place b, lanes *whole) {
-  lanes ends = (table_value(classifier->extinction, a) + table_value(classifier->extinction, b)) * 0.5f;
-  lanes distance = b.x - a.x;
+/* The way from place a to place b. */
+typedef struct way_sums {
+  lanes extinction; /* its mean, (I(b) - I(a)) / (b - a) */
+  lanes whole;      /* I(b) - I(a), 0 where the places are near */
+  lanes moment;     /* the same of extinction * entry */
+} way_sums;
+
+LANES_INLINE way_sums sums_of_way(const classifier *classifier, table_place a, table_place b) {
+  lanes at_a[3], at_b[3];
+  table_values(classifier->sums, a, at_a);
+  table_values(classifier->sums, b, at_b);
+  lanes ends = (at_a[0] + at_b[0]) * 0.5f, distance = b.x - a.x;
   lanes_int far = lanes_abs(distance) > NEAR_ENTRIES;
-  *whole = lanes_set(0);
-  if (lanes_bits(far) == 0) return ends;
-  *whole = lanes_keep(far, table_value(classifier->integral, b) - table_value(classifier->integral, a));
-  return lanes_select(far, lanes_max(*whole / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0)), ends);
+  way_sums sums = {ends, lanes_keep(far, at_b[1] - at_a[1]), at_b[2] - at_a[2]};
+  lanes mean = lanes_max(sums.whole / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0));
+  sums.extinction = lanes_select(far, mean, ends);
+  return sums;
 }
 
 /* Lanes in which anything between the two places can have extinction. */
@@ -48,13 +59,11 @@ LANES_INLINE lanes part_of_way(table_place a, table_place b, table_place place) 
   return lanes_select(far, (place.x - a.x) / lanes_select(far, way, lanes_set(1.0f)), lanes_set(0.5f));
 }
 
-/* The place between a and b where, weighted by extinction, the density lies; whole as mean_extinction gives it. */
-LANES_INLINE table_place mean_place(const classifier *classifier, table_place a, table_place b, lanes whole) {
+/* The place between a and b where, weighted by extinction, the density lies. */
+LANES_INLINE table_place mean_place(table_place a, table_place b, const way_sums *sums) {
   lanes low = lanes_min(a.x, b.x), high = lanes_max(a.x, b.x), middle = (low + high) * 0.5f;
-  lanes_int usable = lanes_abs(whole) > 0.0f;
-  if (lanes_bits(usable) == 0) return place_of_coordinate(middle);
-  lanes moment = table_value(classifier->moment, b) - table_value(classifier->moment, a);
-  lanes mean = moment / lanes_select(usable, whole, lanes_set(1.0f));
+  lanes_int usable = lanes_abs(sums->whole) > 0.0f;
+  lanes mean = sums->moment / lanes_select(usable, sums->whole, lanes_set(1.0f));
   return place_of_coordinate(lanes_min(lanes_max(lanes_select(usable, mean, middle), low), high));
 }
 

@@ -34,8 +34,10 @@ typedef struct fill_source {
 } fill_source;
 
 /* Fills density[16][16] (block, lane) for the blocks in need (one bit each); others are left alone.
- * Returns the blocks in which some pixel lies in a relevant brick; blocks of need that are not returned
- * were set to zero. */
+ * Returns the blocks in which some pixel holds density; blocks of need that are not returned were set to zero. */
 typedef uint32_t fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density);
+
+/* The blocks of a tile outside of which a sheet holds nothing that matters. */
+typedef uint32_t relevant_blocks_function(const fill_source *source, int tile_x, int tile_y);
 
 #endif

@@ -6,6 +6,7 @@
 #define HL_SPLAT_GATHER_LANES_H
 
 #include "splat/place_lanes.h"
+#include "splat/window_lanes.h"
 
 /* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t. */
 LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes weight[4]) {
@@ -16,12 +17,11 @@ LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes w
   weight[3] = kernel_piece(kernel->outer, degree, s);
 }
 
-/* Four neighbouring voxels along x for every lane; offsets in bytes. */
-LANES_INLINE lanes row_u8(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
+/* Four neighbouring voxels along x for every lane, weighed and added; offsets in bytes. u8 in WHOLE_UNITs. */
+LANES_INLINE lanes row_u8(const unsigned char *row, const lanes_offsets *offsets, const whole_weights *weight) {
   lanes_int word = lanes_load_words(row, offsets);
-  lanes a = lanes_from_int(word & 255) * weight[0] + lanes_from_int((word >> 8) & 255) * weight[1];
-  lanes b = lanes_from_int((word >> 16) & 255) * weight[2] + lanes_from_int((word >> 24) & 255) * weight[3];
-  return a + b;
+  return lanes_from_int(((word & 255) * weight->tap[0] + ((word >> 8) & 255) * weight->tap[1]) +
+                        (((word >> 16) & 255) * weight->tap[2] + ((word >> 24) & 255) * weight->tap[3]));
 }
 LANES_INLINE lanes row_u16(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
   lanes_int low = lanes_load_words(row, offsets), high = lanes_load_words(row + 4, offsets);
@@ -36,10 +36,20 @@ LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offset
   return a + b;
 }
 
-LANES_INLINE lanes sum_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
-  return storage == HL_STORAGE_U8    ? row_u8(row, offsets, weight)
-         : storage == HL_STORAGE_U16 ? row_u16(row, offsets, weight)
-                                     : row_f32(row, offsets, weight);
+/* Weights along x in either form: whole for u8. */
+typedef struct row_weights { lanes real[4]; whole_weights whole; } row_weights;
+
+LANES_INLINE lanes sum_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets, const row_weights *weights) {
+  return storage == HL_STORAGE_U8    ? row_u8(row, offsets, &weights->whole)
+         : storage == HL_STORAGE_U16 ? row_u16(row, offsets, weights->real)
+                                     : row_f32(row, offsets, weights->real);
+}
+
+LANES_INLINE row_weights weights_of_row(hl_storage storage, const lanes weight[4], int total) {
+  row_weights weights;
+  for (int tap = 0; tap < 4; tap++) weights.real[tap] = weight[tap];
+  if (storage == HL_STORAGE_U8) weights.whole = round_weights(weight, total);
+  return weights;
 }
 
 /* Where the 64 taps of every lane are: all inside the grid. */
@@ -56,15 +66,16 @@ LANES_INLINE const unsigned char *window_row(const grid *grid, hl_storage storag
 /* The loops stay loops: unrolled, they outgrow the instruction cache and take a compiler minutes. */
 LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
+  row_weights along = weights_of_row(storage, weight[0], 1);
 #pragma GCC unroll 1
   for (int z = 0; z < 4; z++) {
     lanes plane = lanes_set(0);
 #pragma GCC unroll 1
     for (int y = 0; y < 4; y++)
-      plane = plane + sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, weight[0]) * weight[1][y];
+      plane = plane + sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along) * weight[1][y];
     sum = sum + plane * weight[2][z];
   }
-  return sum;
+  return storage == HL_STORAGE_U8 ? sum * WHOLE_INVERSE : sum;
 }
 
 static __attribute__((noinline)) lanes sum_u8(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
@@ -157,6 +168,10 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
       return sum_in_thin_grid(grid, cell, active, weights);
     for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
+#ifdef HL_BYTE_WINDOWS
+  byte_window bytes;
+  if (grid->storage == HL_STORAGE_U8 && open_window(grid, cell, active, &bytes)) return sum_window(&bytes, weights);
+#endif
   tap_window window = window_at(grid, cell, active);
   if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);
   if (grid->storage == HL_STORAGE_U16) return sum_u16(grid, &window, weights);

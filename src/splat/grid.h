@@ -16,8 +16,12 @@
 
 enum {
   HL_BRICK_CELLS = 4,
+  HL_NEAR_CELLS = 2,
   GRID_MARGIN = 4 /* voxels outside its box that a grid still continues, for slabs across its faces */
 };
+
+/* How far a relevant brick is from some cells: within as many more cells on every side. */
+enum { NEAR_CLOSE = 1 /* HL_NEAR_CELLS */, NEAR_FAR = 2 /* twice as far */ };
 
 typedef struct grid {
   const void *voxels;          /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's */
@@ -31,6 +35,9 @@ typedef struct grid {
   float *brick_minimum, *brick_maximum; /* owned; [bricks z][y][x]; stored units, over the voxels that the
                                            brick's cells and their neighbours depend on */
   unsigned char *relevant;     /* owned; [bricks z][y][x]; 1 where the volume can matter */
+  unsigned char *near;         /* owned; [near_count z][y][x], of 2x2x2 cells each; NEAR_ bits; null where 32 bits cannot
+                                  number them */
+  int32_t near_count[3];
   uint32_t *relevant_list;     /* owned; [relevant_count]; indices of the relevant bricks, rising */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest place of a relevant brick along each axis */

@@ -15,7 +15,7 @@ LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
 typedef struct block_place {
   lanes3 point;     /* index space, clamped to [-1, n) */
   lanes_int cell[3]; /* floor(point): -1 .. n-1 */
-  lanes_int inside; /* within the grid or a little outside, and in a relevant brick */
+  lanes_int inside; /* within the grid or a little outside */
 } block_place;
 
 LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
@@ -32,11 +32,6 @@ LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
     place.cell[a] = lanes_floor(axis[a]);
   }
   place.point = (lanes3){axis[0], axis[1], axis[2]};
-  if (lanes_bits(place.inside) == 0) return place;
-  lanes_int brick = (place.cell[2] + 1) >> 2;
-  brick = brick * grid->brick_count[1] + ((place.cell[1] + 1) >> 2);
-  brick = brick * grid->brick_count[0] + ((place.cell[0] + 1) >> 2);
-  place.inside &= (lanes_gather_bytes(grid->relevant, brick & place.inside) & 255) != 0;
   return place;
 }
 

@@ -26,14 +26,15 @@ typedef struct tap_slope_weights { lanes weight[3][4], slope[3][4]; } tap_slope_
 /* The three sums share the loads: along x once with the weights and once with their slopes. */
 LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window, const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  row_weights weights = weights_of_row(storage, w->weight[0], 1), slopes = weights_of_row(storage, w->slope[0], 0);
 #pragma GCC unroll 1
   for (int z = 0; z < 4; z++) {
     lanes value = lanes_set(0), along_x = value, along_y = value;
 #pragma GCC unroll 1
     for (int y = 0; y < 4; y++) {
       const unsigned char *row = window_row(grid, storage, window, y, z);
-      lanes plain = sum_row(storage, row, &window->offsets, w->weight[0]);
-      along_x = along_x + sum_row(storage, row, &window->offsets, w->slope[0]) * w->weight[1][y];
+      lanes plain = sum_row(storage, row, &window->offsets, &weights);
+      along_x = along_x + sum_row(storage, row, &window->offsets, &slopes) * w->weight[1][y];
       along_y = along_y + plain * w->slope[1][y];
       value = value + plain * w->weight[1][y];
     }
@@ -41,8 +42,33 @@ LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_w
     sum.y = sum.y + along_y * w->weight[2][z];
     sum.z = sum.z + value * w->slope[2][z];
   }
-  return sum;
+  if (storage != HL_STORAGE_U8) return sum;
+  return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
 }
+
+#ifdef HL_BYTE_WINDOWS
+static __attribute__((noinline)) lanes3 slopes_of_window(const byte_window *window, const tap_slope_weights *w) {
+  whole_weights whole = round_weights(w->weight[0], 1), whole_slopes = round_weights(w->slope[0], 0);
+  byte_weights weights = split_weights(&whole), slopes = split_weights(&whole_slopes);
+  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int slice = 0; slice < window->slices; slice++) {
+    __m512i voxels = window_slice(window, slice);
+    lanes value = lanes_set(0), along_x = value, along_y = value;
+    for (int y = 0; y < 4; y++) {
+      __m512i taps = window_taps(window, voxels, y);
+      lanes plain = weigh_taps(taps, &weights);
+      along_x = along_x + weigh_taps(taps, &slopes) * w->weight[1][y];
+      along_y = along_y + plain * w->slope[1][y];
+      value = value + plain * w->weight[1][y];
+    }
+    lanes weight = weight_of_slice(window, slice, w->weight[2]);
+    sum.x = sum.x + along_x * weight;
+    sum.y = sum.y + along_y * weight;
+    sum.z = sum.z + value * weight_of_slice(window, slice, w->slope[2]);
+  }
+  return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
+}
+#endif
 
 static __attribute__((noinline)) lanes3 slopes_u8(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
   return sum_slopes(grid, HL_STORAGE_U8, window, w);
@@ -85,6 +111,10 @@ static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, ui
       cell[a] = fold_border(cell[a], grid->dimension[a], w.weight[a]);
     }
   }
+#ifdef HL_BYTE_WINDOWS
+  byte_window bytes;
+  if (grid->storage == HL_STORAGE_U8 && open_window(grid, cell, active, &bytes)) return slopes_of_window(&bytes, &w);
+#endif
   tap_window window = window_at(grid, cell, active);
   if (grid->storage == HL_STORAGE_U8) return slopes_u8(grid, &window, &w);
   if (grid->storage == HL_STORAGE_U16) return slopes_u16(grid, &window, &w);

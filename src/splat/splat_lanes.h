@@ -13,9 +13,19 @@ typedef struct tile_place {
   lanes3 low, high;
 } tile_place;
 
+/* Leaves the pixels in relevant bricks: voxels of others are not in the lists. */
+LANES_INLINE void keep_relevant(const grid *grid, block_place *place) {
+  if (lanes_bits(place->inside) == 0) return;
+  lanes_int brick = (place->cell[2] + 1) >> 2;
+  brick = brick * grid->brick_count[1] + ((place->cell[1] + 1) >> 2);
+  brick = brick * grid->brick_count[0] + ((place->cell[0] + 1) >> 2);
+  place->inside &= (lanes_gather_bytes(grid->relevant, brick & place->inside) & 255) != 0;
+}
+
 static void place_tile(const fill_source *source, int tile_x, int tile_y, tile_place *tile) {
   for (int block = 0; block < TILE_BLOCKS; block++) {
     tile->block[block] = place_block(source, tile_x * TILE + block % 4 * BLOCK, tile_y * TILE + block / 4 * BLOCK);
+    keep_relevant(source->grid, &tile->block[block]);
     const lanes3 *p = &tile->block[block].point;
     tile->low.x[block] = lanes_least(p->x);
     tile->low.y[block] = lanes_least(p->y);

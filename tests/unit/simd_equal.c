@@ -183,6 +183,7 @@ static void test_fill(void **unused) {
   (void)unused;
   for (int storage = 0; storage < 3; storage++) {
     check_fill((size_t[3]){13, 11, 12}, (hl_storage)storage, 17);
+    check_fill((size_t[3]){5, 13, 9}, (hl_storage)storage, 19);
     check_fill((size_t[3]){1, 7, 3}, (hl_storage)storage, 18);
   }
 }

@@ -1,0 +1,138 @@
+/* splat/window_lanes.h - the voxels around a block of pixels, u8, held in registers.
+ *
+ * Sixteen neighbouring pixels of a sheet draw on few voxels: most often on a window of 8x8 voxels and up to eight
+ * slices. One slice of it fills a 512-bit register, one byte permutation takes four neighbouring taps of every lane from
+ * it, and dot products of bytes weigh them. Lanes whose taps do not reach a slice weigh it by zero, which changes
+ * no bit of their sums: these are the sums of gather_lanes.h and slope_lanes.h, in the same order. */
+#ifndef HL_SPLAT_WINDOW_LANES_H
+#define HL_SPLAT_WINDOW_LANES_H
+
+#include "simd/lanes.h"
+#include "splat/grid.h"
+
+/* Weights along x as whole numbers, so that sums of u8 taps are exact whatever the instruction set. Of this unit, the
+ * sum of four taps of 255 times derivatives' weights still fits 32 bits. */
+static const float WHOLE_UNIT = 1 << 21, WHOLE_INVERSE = 1.0f / (1 << 21);
+
+typedef struct whole_weights { lanes_int tap[4]; } whole_weights;
+
+/* Rounded; the third takes the error of the others, so that the sum is total units. */
+LANES_INLINE whole_weights round_weights(const lanes weight[4], int total) {
+  whole_weights whole;
+  for (int i = 0; i < 4; i++) whole.tap[i] = lanes_floor(weight[i] * WHOLE_UNIT + 0.5f);
+  whole.tap[2] = total * (1 << 21) - (whole.tap[0] + whole.tap[1] + whole.tap[3]);
+  return whole;
+}
+
+#if defined(__AVX512VBMI__) && defined(__AVX512VNNI__)
+#define HL_BYTE_WINDOWS 1
+
+enum { WINDOW_SIDE = 8, WINDOW_SPREAD = WINDOW_SIDE - 4 }; /* voxels; how far lanes' first taps may lie apart */
+
+typedef struct byte_window {
+  const unsigned char *voxels;   /* the window's first voxel */
+  size_t row_bytes, slice_bytes;
+  __m512i index;                 /* of each lane's taps in the first row of a slice, a byte each */
+  __mmask16 starts[WINDOW_SPREAD + 1]; /* lanes whose taps start at this slice */
+  int slices;
+} byte_window;
+
+/* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. False where they do not fit a window. */
+LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, byte_window *window) {
+  __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
+  int32_t low[3];
+  __m512i offset[3];
+  if (grid->dimension[0] < WINDOW_SIDE || grid->dimension[1] < WINDOW_SIDE) return 0;
+  for (int a = 0; a < 3; a++) {
+    low[a] = _mm512_mask_reduce_min_epi32(lanes_mask, (__m512i)cell[a]) - 1;
+    if (a < 2 && low[a] > grid->dimension[a] - WINDOW_SIDE) low[a] = grid->dimension[a] - WINDOW_SIDE;
+    offset[a] = _mm512_maskz_sub_epi32(lanes_mask, (__m512i)cell[a], _mm512_set1_epi32(low[a] + 1));
+    fits = _mm512_mask_cmple_epu32_mask(fits, offset[a], _mm512_set1_epi32(WINDOW_SPREAD));
+  }
+  if (fits != lanes_mask) return 0;
+  window->slices = 4;
+  for (int slice = 0; slice <= WINDOW_SPREAD; slice++) {
+    window->starts[slice] = _mm512_mask_cmpeq_epi32_mask(lanes_mask, offset[2], _mm512_set1_epi32(slice));
+    if (window->starts[slice] != 0) window->slices = slice + 4;
+  }
+  __m512i first = _mm512_add_epi32(_mm512_slli_epi32(offset[1], 3), offset[0]);
+  const __m512i lowest_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
+  window->index = _mm512_add_epi8(_mm512_shuffle_epi8(first, lowest_byte), _mm512_set1_epi32(0x03020100));
+  window->row_bytes = (size_t)grid->dimension[0];
+  window->slice_bytes = window->row_bytes * (size_t)grid->dimension[1];
+  window->voxels = (const unsigned char *)grid->voxels + (size_t)low[2] * window->slice_bytes +
+                   (size_t)low[1] * window->row_bytes + (size_t)low[0];
+  return 1;
+}
+
+LANES_INLINE __m128i two_rows(const unsigned char *row, size_t row_bytes) {
+  __m128i first = _mm_loadl_epi64((const __m128i *)row);
+  return _mm_castps_si128(_mm_loadh_pi(_mm_castsi128_ps(first), (const __m64 *)(row + row_bytes)));
+}
+
+LANES_INLINE __m512i window_slice(const byte_window *window, int slice) {
+  const unsigned char *row = window->voxels + (size_t)slice * window->slice_bytes;
+  size_t step = window->row_bytes;
+  __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(two_rows(row, step)), two_rows(row + 2 * step, step), 1);
+  row += 4 * step;
+  __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(two_rows(row, step)), two_rows(row + 2 * step, step), 1);
+  return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+}
+
+/* The four taps of every lane in row y of a slice. */
+LANES_INLINE __m512i window_taps(const byte_window *window, __m512i slice, int y) {
+  return _mm512_permutexvar_epi8(_mm512_add_epi8(window->index, _mm512_set1_epi8((char)(WINDOW_SIDE * y))), slice);
+}
+
+/* A lane's four weights as three signed bytes each, the highest first: whole = (d0 256 + d1) 256 + d2. */
+typedef struct byte_weights { __m512i digit[3]; } byte_weights;
+
+LANES_INLINE byte_weights split_weights(const whole_weights *whole) {
+  byte_weights weights;
+  __m512i biased[4];
+  const __m512i bias = _mm512_set1_epi32(0x808080);
+  for (int tap = 0; tap < 4; tap++) biased[tap] = _mm512_add_epi32((__m512i)whole->tap[tap], bias);
+  const __m512i byte = _mm512_set1_epi32(255);
+  for (int place = 0; place < 3; place++) {
+    __m512i packed = _mm512_setzero_si512();
+    for (int tap = 0; tap < 4; tap++) {
+      __m512i digit = _mm512_and_si512(_mm512_srli_epi32(biased[tap], (unsigned)(16 - 8 * place)), byte);
+      packed = _mm512_or_si512(packed, _mm512_slli_epi32(digit, (unsigned)(8 * tap)));
+    }
+    weights.digit[place] = _mm512_xor_si512(packed, _mm512_set1_epi32((int)0x80808080));
+  }
+  return weights;
+}
+
+LANES_INLINE lanes weigh_taps(__m512i taps, const byte_weights *weights) {
+  __m512i sum = _mm512_dpbusd_epi32(_mm512_setzero_si512(), taps, weights->digit[0]);
+  sum = _mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), taps, weights->digit[1]);
+  sum = _mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), taps, weights->digit[2]);
+  return lanes_from_int((lanes_int)sum);
+}
+
+/* Every lane's weight of a slice: that of the tap that lies in it, or zero. */
+LANES_INLINE lanes weight_of_slice(const byte_window *window, int slice, const lanes weight[4]) {
+  __m512 found = _mm512_setzero_ps();
+  for (int tap = 0; tap < 4; tap++) {
+    int start = slice - tap;
+    if (start >= 0 && start <= WINDOW_SPREAD) found = _mm512_mask_mov_ps(found, window->starts[start], (__m512)weight[tap]);
+  }
+  return (lanes)found;
+}
+
+static __attribute__((noinline)) lanes sum_window(const byte_window *window, const lanes weight[3][4]) {
+  whole_weights whole = round_weights(weight[0], 1);
+  byte_weights along = split_weights(&whole);
+  lanes sum = lanes_set(0);
+  for (int slice = 0; slice < window->slices; slice++) {
+    __m512i voxels = window_slice(window, slice);
+    lanes plane = lanes_set(0);
+    for (int y = 0; y < 4; y++) plane = plane + weigh_taps(window_taps(window, voxels, y), &along) * weight[1][y];
+    sum = sum + plane * weight_of_slice(window, slice, weight[2]);
+  }
+  return sum * WHOLE_INVERSE;
+}
+#endif
+
+#endif

@@ -1,0 +1,1 @@
+halflight render --layers x.nrrd
