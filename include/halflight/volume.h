@@ -69,6 +69,12 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
 HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path,
                                                hl_volume **volume, hl_error *error);
 
+/* Writes .nrrd (gzip), .raw or .raw.gz, told by the name's end; bare voxels need their size and type in the name,
+ * as for reading. Data values are kept: as 8 or 16 bit integers where the volume has such without a scale, else as
+ * float. The file appears whole or not at all. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path,
+                                               hl_error *error);
+
 HL_API void hl_volume_retain(hl_volume *volume);
 HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 

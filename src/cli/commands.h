@@ -8,5 +8,6 @@ extern const cli_command render_command; /* render.c */
 extern const cli_command info_command;   /* info.c */
 extern const cli_command diff_command;   /* diff.c */
 extern const cli_command bench_command;  /* bench.c */
+extern const cli_command make_command;   /* make.c */
 
 #endif

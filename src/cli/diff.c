@@ -183,7 +183,7 @@ static int run_diff(const cli_value *values, char **operands) {
   if (values[DIFF_AMPLIFY].given && !values[DIFF_OUTPUT].given)
     return fail(EXIT_CODE_USAGE, "--amplify is for --output: give both or none");
   int exit_code =
-      values[DIFF_OUTPUT].given ? output_check(values[DIFF_OUTPUT].text, operands, 2) : EXIT_CODE_OK;
+      values[DIFF_OUTPUT].given ? output_check(values[DIFF_OUTPUT].text, picture_extensions, operands, 2) : EXIT_CODE_OK;
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host host;
   cli_host_options options = {.subject = operands[0]};

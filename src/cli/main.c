@@ -5,11 +5,12 @@
 #include "commands.h"
 #include "message.h"
 
-static const cli_command *const commands[] = {&render_command, &info_command, &diff_command, &bench_command};
+static const cli_command *const commands[] = {&render_command, &info_command, &make_command, &diff_command,
+                                             &bench_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 /* Names that are promised, and refused until they are kept. */
-static const char *const reserved_commands[] = {"make", "view"};
+static const char *const reserved_commands[] = {"view"};
 enum { RESERVED_COUNT = sizeof reserved_commands / sizeof reserved_commands[0] };
 
 static const char *command_name(const void *data, size_t index) {

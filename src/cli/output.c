@@ -3,13 +3,18 @@
 #include "output.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "input.h"
 #include "message.h"
+
+const char *const picture_extensions[] = {".png", ".exr", ".npy", NULL};
+const char *const volume_extensions[] = {".nrrd", ".raw", ".raw.gz", NULL};
 
 bool has_extension(const char *path, const char *extension) {
   size_t length = strlen(path), extension_length = strlen(extension);
@@ -30,9 +35,21 @@ static int check_folder(const char *path) {
   return exit_code;
 }
 
-int output_check(const char *path, char *const *inputs, int input_count) {
-  if (!has_extension(path, ".png") && !has_extension(path, ".exr") && !has_extension(path, ".npy"))
-    return fail(EXIT_CODE_USAGE, "--output: '%s' must end in .png, .exr or .npy", path);
+/* A name in one of the formats that OUT is for. */
+static int check_extension(const char *path, const char *const *extensions) {
+  char list[80] = "";
+  size_t used = 0;
+  for (int i = 0; extensions[i] != NULL; i++) {
+    if (has_extension(path, extensions[i])) return EXIT_CODE_OK;
+    const char *before = i == 0 ? "" : extensions[i + 1] != NULL ? ", " : " or ";
+    if (used < sizeof list) used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", before, extensions[i]);
+  }
+  return fail(EXIT_CODE_USAGE, "--output: '%s' must end in %s", path, list);
+}
+
+int output_check(const char *path, const char *const *extensions, char *const *inputs, int input_count) {
+  int exit_code = check_extension(path, extensions);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
   struct stat about, about_input;
   if (stat(path, &about) == 0) {
     if (S_ISDIR(about.st_mode)) return fail(EXIT_CODE_FAILURE, "%s: is a folder: name a file in it", path);
@@ -43,4 +60,18 @@ int output_check(const char *path, char *const *inputs, int input_count) {
                     inputs[i]);
   }
   return check_folder(path);
+}
+
+char *output_default_name(const char *input, const char *extension) {
+  const char *base = input_base_name(input);
+  size_t length = strlen(base);
+  if (has_extension(base, ".gz")) length -= 3;
+  size_t stem = length;
+  while (stem > 0 && base[stem - 1] != '.') stem--;
+  stem = stem > 1 ? stem - 1 : length;
+  char *name = malloc(stem + strlen(extension) + 1);
+  if (name == NULL) return NULL;
+  memcpy(name, base, stem);
+  strcpy(name + stem, extension);
+  return name;
 }

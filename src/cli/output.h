@@ -1,4 +1,4 @@
-/* cli/output.h - is OUT a name that a picture can be written to? Found out before the work, not after. */
+/* cli/output.h - is OUT a name that can be written to? Found out before the work, not after. */
 #ifndef HL_CLI_OUTPUT_H
 #define HL_CLI_OUTPUT_H
 
@@ -7,8 +7,15 @@
 /* True if path ends in extension (".png"), in upper or lower case, and has something before it. */
 bool has_extension(const char *path, const char *extension);
 
-/* Refuses a name without a picture's extension, a folder, a place that cannot be written, and any of
+/* The extensions of what is written; null after the last. */
+extern const char *const picture_extensions[], *const volume_extensions[];
+
+/* Refuses a name without one of the extensions, a folder, a place that cannot be written, and any of
  * the inputs. Returns the exit code. */
-int output_check(const char *path, char *const *inputs, int input_count);
+int output_check(const char *path, const char *const *extensions, char *const *inputs, int input_count);
+
+/* "head.png" for "scans/head.nii.gz" and ".png", in the current folder; owned by the caller (free), null without
+ * memory. */
+char *output_default_name(const char *input, const char *extension);
 
 #endif

@@ -24,28 +24,13 @@ typedef struct render_job {
   render_result result;
 } render_job;
 
-/* "head.png" for "scans/head.nii.gz", in the current folder; owned by the caller. */
-static char *default_output(const char *input) {
-  const char *base = input_base_name(input);
-  size_t length = strlen(base);
-  if (has_extension(base, ".gz")) length -= 3;
-  size_t stem = length;
-  while (stem > 0 && base[stem - 1] != '.') stem--;
-  stem = stem > 1 ? stem - 1 : length;
-  char *name = malloc(stem + sizeof ".png");
-  if (name == NULL) return NULL;
-  memcpy(name, base, stem);
-  memcpy(name + stem, ".png", sizeof ".png");
-  return name;
-}
-
 static int job_open(render_job *job) {
   const cli_value *values = job->values;
   int exit_code = render_check_options(values);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  job->output = values[RENDER_OUTPUT].given ? strdup(values[RENDER_OUTPUT].text) : default_output(job->input);
+  job->output = values[RENDER_OUTPUT].given ? strdup(values[RENDER_OUTPUT].text) : output_default_name(job->input, ".png");
   if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  exit_code = output_check(job->output, &job->input, 1);
+  exit_code = output_check(job->output, picture_extensions, &job->input, 1);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,

@@ -120,7 +120,7 @@ def png_pixel(path, x, y):
 
 def json_get(path, expression):
     """Evaluates a Python expression in which `d` is the parsed file."""
-    print(eval(expression, {"d": json.load(open(path)), "len": len, "sum": sum, "sorted": sorted, "abs": abs}))
+    print(eval(expression, {"d": json.load(open(path)), "len": len, "sum": sum, "sorted": sorted, "abs": abs, "max": max}))
 
 
 COMMANDS = {"ball": ball, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage,

@@ -1,0 +1,1 @@
+halflight make sphere --size 512 --max-memory 16M

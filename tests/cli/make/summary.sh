@@ -1,0 +1,1 @@
+halflight make torus --size 32

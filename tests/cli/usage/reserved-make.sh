@@ -1,1 +1,0 @@
-halflight make rings -o rings.nrrd

@@ -1,0 +1,121 @@
+/* tests/unit/volume_save.c - what is saved is what is loaded: values, type and place. */
+#define _GNU_SOURCE
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "volume/volume.h"
+
+static char folder[] = "/tmp/halflight-save-XXXXXX";
+
+static int make_folder(void **state) {
+  (void)state;
+  return mkdtemp(folder) != NULL ? 0 : -1;
+}
+static int remove_folder(void **state) {
+  (void)state;
+  return rmdir(folder);
+}
+
+static const char *place(const char *name) {
+  static char path[300];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return path;
+}
+
+static hl_context *make_context(void) {
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  return context;
+}
+
+/* 5 x 4 x 3 voxels of a type, on a grid that is oblique and left-handed. */
+static hl_volume *make_volume(hl_context *context, hl_voxel_type type, double scale) {
+  unsigned char bytes[60 * 8];
+  for (size_t n = 0; n < sizeof bytes; n++) bytes[n] = (unsigned char)(37 * n + n / 7);
+  if (type == HL_VOXEL_F32)
+    for (int n = 0; n < 60; n++) {
+      float value = n == 7 ? NAN : (float)(n - 30) / 7;
+      memcpy(bytes + 4 * n, &value, 4);
+    }
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  d.dimensions[0] = 5, d.dimensions[1] = 4, d.dimensions[2] = 3;
+  d.type = type;
+  d.value_scale = scale;
+  d.value_offset = scale - 1;
+  d.voxels = bytes;
+  const double axes[3][3] = {{0.3, 0.1, 0}, {0, 1 / 3.0, 0.25}, {0.1, 0, -2}}, origin[3] = {-1e-3, 7, 1 / 7.0};
+  memcpy(d.axis, axes, sizeof axes);
+  memcpy(d.origin, origin, sizeof origin);
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  return volume;
+}
+
+static void assert_same(const hl_volume *a, const hl_volume *b, bool with_place) {
+  assert_memory_equal(a->dimension, b->dimension, sizeof a->dimension);
+  if (with_place) assert_memory_equal(&a->index_to_world, &b->index_to_world, sizeof a->index_to_world);
+  for (size_t k = 0; k < 3; k++)
+    for (size_t j = 0; j < 4; j++)
+      for (size_t i = 0; i < 5; i++) {
+        double x = hl_volume_value(a, i, j, k), y = hl_volume_value(b, i, j, k);
+        if (isnan(x)) assert_true(isnan(y));
+        else assert_true((float)x == (float)y);
+      }
+}
+
+static void values_and_place_survive(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  for (int type = HL_VOXEL_U8; type <= HL_VOXEL_F32; type++)
+    for (int scaled = 0; scaled < 2; scaled++) {
+      hl_volume *volume = make_volume(context, (hl_voxel_type)type, scaled ? 0.25 : 1), *again = NULL;
+      hl_error error = {0};
+      if (hl_volume_save(context, volume, place("a.nrrd"), &error) != HL_OK) fail_msg("%s", error.message);
+      if (hl_volume_load(context, place("a.nrrd"), &again, &error) != HL_OK) fail_msg("%s", error.message);
+      assert_same(volume, again, true);
+      assert_int_equal(again->type, !scaled && type <= HL_VOXEL_I16 ? type : HL_VOXEL_F32);
+      char name[80];
+      snprintf(name, sizeof name, "a_5x4x3_%s.raw%s", hl_voxel_type_name(again->type), scaled ? ".gz" : "");
+      hl_volume_release(again);
+      assert_int_equal(hl_volume_save(context, volume, place(name), &error), HL_OK);
+      assert_int_equal(hl_volume_load(context, place(name), &again, &error), HL_OK);
+      assert_same(volume, again, false);
+      unlink(place(name));
+      hl_volume_release(again);
+      hl_volume_release(volume);
+    }
+  unlink(place("a.nrrd"));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void impossible_names_are_refused(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_volume *volume = make_volume(context, HL_VOXEL_U8, 1);
+  static const char *const names[] = {"a.png", "a.raw", "a_5x4x3_uint16.raw", "a_5x4x4_uint8.raw", ".nrrd"};
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+    hl_error error = {0};
+    assert_int_equal(hl_volume_save(context, volume, names[n], &error), HL_ERROR_ARGUMENT);
+    assert_memory_equal(error.message, names[n], strlen(names[n]));
+    assert_int_not_equal(access(names[n], F_OK), 0);
+  }
+  hl_error error = {0};
+  assert_int_equal(hl_volume_save(context, volume, "/no such folder/a.nrrd", &error), HL_ERROR_IO);
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(values_and_place_survive),
+                                     cmocka_unit_test(impossible_names_are_refused)};
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
