@@ -29,6 +29,7 @@
 
 #include "context.h"
 #include "image.h"
+#include "layers.h"
 #include "render.h"
 #include "scene.h"
 #include "shape.h"

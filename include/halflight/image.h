@@ -21,6 +21,11 @@ HL_API int hl_image_height(const hl_image *image);
 HL_API float *hl_image_pixels(hl_image *image);
 HL_API const float *hl_image_pixels_const(const hl_image *image);
 
+/* Adds a layer beside the picture's RGBA, all zero. name: letters, digits and '_', not yet taken; channels: one letter
+ * each, "RGB", "XYZ" or "Z". *values: [height][width][channels], owned by the image. */
+HL_API HL_WARN_UNUSED hl_status hl_image_add_layer(hl_image *image, const char *name, const char *channels,
+                                                   float **values, hl_error *error);
+
 typedef struct hl_image_write_options {
   size_t struct_size;      /* set by hl_image_write_options_defaults() */
   int png_depth;           /* 8 or 16 */
@@ -32,8 +37,9 @@ typedef struct hl_image_write_options {
 HL_API void hl_image_write_options_defaults(hl_image_write_options *options);
 
 /* By extension: .png (sRGB, composited over the background), .exr (linear float), .npy (float32,
- * height x width x 4). Written to a temporary name beside path and renamed: never half a file.
- * options may be null. */
+ * height x width x 4). Written to a temporary name beside path and renamed: never half a file. Layers become channels
+ * "name.R" and so on of an .exr, and files of their own beside an .npy, "picture-name.npy" (height x width x channels,
+ * or height x width), which are written before it; a .png cannot hold them and is refused. options may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                                                const hl_image_write_options *options, hl_error *error);
 

@@ -3,6 +3,7 @@
 #define HALFLIGHT_RENDER_H
 
 #include "image.h"
+#include "layers.h"
 #include "scene.h"
 
 #ifdef __cplusplus
@@ -44,6 +45,12 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const 
                                                    size_t row_stride, hl_render_statistics *statistics,
                                                    hl_error *error);
 
+/* The same, and the layers that are asked for. Takes longer: each light is shaded once more for its picture and once for
+ * its shadow. */
+HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene, float *pixels,
+                                                          size_t row_stride, const hl_layers *layers,
+                                                          hl_render_statistics *statistics, hl_error *error);
+
 typedef struct hl_reference_options {
   size_t struct_size;   /* set by hl_reference_options_defaults() */
   int light_points;     /* points on each extended light; default 1024 */
@@ -57,6 +64,12 @@ HL_API void hl_reference_options_defaults(hl_reference_options *options);
 HL_API HL_WARN_UNUSED hl_status hl_reference_render(hl_context *context, const hl_scene *scene,
                                                     const hl_reference_options *options, float *pixels,
                                                     size_t row_stride, hl_error *error);
+
+/* The same, and the layers that are asked for. */
+HL_API HL_WARN_UNUSED hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
+                                                           const hl_reference_options *options, float *pixels,
+                                                           size_t row_stride, const hl_layers *layers,
+                                                           hl_error *error);
 
 #ifdef __cplusplus
 }

@@ -20,6 +20,7 @@ typedef struct render_job {
   bool bare;       /* INPUT is a volume file */
   hl_scene *scene; /* owned */
   hl_image *image; /* owned */
+  render_layers layers; /* owned */
   double started;  /* seconds of clock_seconds() */
   render_result result;
 } render_job;
@@ -60,6 +61,11 @@ static uint64_t count_voxels(const hl_scene_description *description) {
   return voxels;
 }
 
+/* What --layers asks for; null: nothing. */
+static const hl_layers *wanted_layers(const render_job *job) {
+  return job->values[RENDER_LAYERS].given ? &job->layers.all : NULL;
+}
+
 static hl_status render_reference(render_job *job, const hl_scene_description *description, hl_error *error) {
   const cli_value *values = job->values;
   hl_render_statistics *statistics = &job->result.statistics;
@@ -69,8 +75,9 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
   if (values[RENDER_STEP].given) options.step = values[RENDER_STEP].number[0];
   options.threads = description->render.threads;
   double started = clock_seconds();
-  hl_status status = hl_reference_render(job->host.context, job->scene, &options, hl_image_pixels(job->image),
-                                         4 * (size_t)description->width, error);
+  hl_status status =
+      hl_reference_render_layers(job->host.context, job->scene, &options, hl_image_pixels(job->image),
+                                 4 * (size_t)description->width, wanted_layers(job), error);
   statistics->seconds_render = clock_seconds() - started;
   statistics->threads = options.threads > 0 ? options.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
   statistics->instruction_set = HL_INSTRUCTION_SET_SCALAR;
@@ -82,8 +89,9 @@ static hl_status render_sheets(render_job *job, const hl_scene_description *desc
   hl_renderer *renderer = NULL;
   hl_status status = hl_renderer_create(job->host.context, &renderer, error);
   if (status == HL_OK)
-    status = hl_renderer_render(renderer, job->scene, hl_image_pixels(job->image),
-                                4 * (size_t)description->width, &job->result.statistics, error);
+    status = hl_renderer_render_layers(renderer, job->scene, hl_image_pixels(job->image),
+                                       4 * (size_t)description->width, wanted_layers(job),
+                                       &job->result.statistics, error);
   hl_renderer_destroy(renderer);
   return status;
 }
@@ -94,6 +102,8 @@ static int job_render(render_job *job) {
   job->result.statistics.struct_size = sizeof job->result.statistics;
   hl_status status =
       hl_image_create(job->host.context, description->width, description->height, &job->image, &error);
+  if (status == HL_OK && job->values[RENDER_LAYERS].given)
+    status = render_layers_create(job->image, description->light_count, &job->layers, &error);
   if (status == HL_OK)
     status = job->result.reference ? render_reference(job, description, &error)
                                    : render_sheets(job, description, &error);
@@ -134,6 +144,7 @@ static int job_report(render_job *job) {
 }
 
 static void job_close(render_job *job) {
+  render_layers_release(&job->layers);
   hl_image_destroy(job->image);
   hl_scene_release(job->scene);
   host_close(&job->host);

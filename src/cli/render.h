@@ -55,6 +55,20 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
 int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_volume *volume,
                              hl_transfer_function *function);
 
+/* The layers that --layers asks for: buffers of the picture's. */
+typedef struct render_layers {
+  hl_layers all;
+  hl_light_layers *lights; /* owned */
+} render_layers;
+
+/* Adds a layer "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean" and "normal" to the picture.
+ * Released in any case. */
+hl_status render_layers_create(hl_image *image, size_t light_count, render_layers *layers, hl_error *error);
+void render_layers_release(render_layers *layers);
+
+/* Refuses --layers for an OUT that cannot hold them. */
+int render_layers_check(const cli_value *values);
+
 typedef struct render_seconds {
   double load, prepare, render, write, total;
 } render_seconds;

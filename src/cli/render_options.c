@@ -60,7 +60,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .separator = ',',
                            .low = 0,
                            .high = 1},
-    [RENDER_LAYERS] = {.name = "layers", .kind = OPTION_SWITCH, .help = "", .reserved = true},
+    [RENDER_LAYERS] = {.name = "layers",
+                       .kind = OPTION_SWITCH,
+                       .help = "each light, its shadow, ambient, depth, normals:\nchannels of an .exr, files beside an .npy"},
 
     [RENDER_AZIMUTH] = {.name = "azimuth",
                         .kind = OPTION_NUMBERS,
@@ -225,5 +227,5 @@ int render_check_options(const cli_value *values) {
   if (values[RENDER_LIGHT].given && fabs(values[RENDER_LIGHT].number[1]) > 90)
     return fail(EXIT_CODE_USAGE, "--light: '%s': the elevation must be from -90 to 90",
                 values[RENDER_LIGHT].text);
-  return EXIT_CODE_OK;
+  return render_layers_check(values);
 }

@@ -1,11 +1,12 @@
 /* exr_write.c - pictures as OpenEXR through OpenEXRCore: scanlines, ZIP, 32-bit float, linear.
  *
- * In: named float channels (exr.h). Out: bytes in output->file; values are stored bit by bit. OpenEXRCore
+ * In: named float channels (exr.h), or a picture with its layers. Out: bytes in output->file; values are stored bit by bit. OpenEXRCore
  * writes through on_write, so that a full disk is noticed here and the file is the caller's temporary one.
  */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <openexr.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -134,12 +135,37 @@ hl_status hl_exr_encode_channels(int width, int height, const hl_exr_channel *ch
   return HL_OK;
 }
 
+typedef struct layer_channel_name { char text[HL_IMAGE_LAYER_NAME + 3]; } layer_channel_name; /* "layer.C" */
+
+/* R, G, B, A, and the layers' channels. names: room for all of the latter. */
+static void list_channels(const hl_image *image, layer_channel_name *names, hl_exr_channel *channels) {
+  static const char *const own[4] = {"R", "G", "B", "A"};
+  for (int c = 0; c < 4; c++) *channels++ = (hl_exr_channel){own[c], image->pixels + c, 4};
+  for (size_t i = 0; i < image->layer_count; i++) {
+    const hl_image_layer *layer = &image->layers[i];
+    size_t count = strlen(layer->channels);
+    for (size_t c = 0; c < count; c++, names++) {
+      snprintf(names->text, sizeof names->text, "%s.%c", layer->name, layer->channels[c]);
+      *channels++ = (hl_exr_channel){names->text, layer->values + c, count};
+    }
+  }
+}
+
 hl_status hl_exr_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error) {
   (void)options; /* depth and background are PNG's */
-  const hl_exr_channel channels[4] = {{"A", image->pixels + 3, 4},
-                                      {"B", image->pixels + 2, 4},
-                                      {"G", image->pixels + 1, 4},
-                                      {"R", image->pixels, 4}};
-  return hl_exr_encode_channels(image->width, image->height, channels, 4, output, error);
+  size_t count = 4;
+  for (size_t i = 0; i < image->layer_count; i++) count += strlen(image->layers[i].channels);
+  layer_channel_name *names = hl_allocate(output->context, count, sizeof *names);
+  hl_exr_channel *channels = hl_allocate(output->context, count, sizeof *channels);
+  hl_status status = HL_OK;
+  if (names == NULL || channels == NULL)
+    status = hl_fail_memory(error, count * sizeof *channels, output->path);
+  else
+    list_channels(image, names, channels);
+  if (status == HL_OK)
+    status = hl_exr_encode_channels(image->width, image->height, channels, count, output, error);
+  hl_release(output->context, names);
+  hl_release(output->context, channels);
+  return status;
 }

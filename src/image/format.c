@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -19,12 +20,15 @@ typedef struct picture_format {
   size_t mark_length;
   hl_status (*encode)(const hl_image *, const hl_image_write_options *, hl_output *, hl_error *);
   hl_status (*decode)(hl_context *, const char *, const unsigned char *, size_t, hl_image **, hl_error *);
+  bool holds_layers; /* encode writes them too */
+  hl_status (*encode_layer)(const hl_image *, const hl_image_layer *, hl_output *, hl_error *); /* in files of their own */
 } picture_format;
 
 static const picture_format formats[] = {
-    {".png", "PNG", {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, 8, hl_png_encode, hl_png_decode},
-    {".exr", "OpenEXR", {0x76, 0x2f, 0x31, 0x01}, 4, hl_exr_encode, hl_exr_decode},
-    {".npy", "NPY", {0x93, 'N', 'U', 'M', 'P', 'Y'}, 6, hl_npy_encode, hl_npy_decode}};
+    {".png", "PNG", {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, 8, hl_png_encode, hl_png_decode, false, NULL},
+    {".exr", "OpenEXR", {0x76, 0x2f, 0x31, 0x01}, 4, hl_exr_encode, hl_exr_decode, true, NULL},
+    {".npy", "NPY", {0x93, 'N', 'U', 'M', 'P', 'Y'}, 6, hl_npy_encode, hl_npy_decode, false,
+     hl_npy_encode_layer}};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
@@ -79,6 +83,42 @@ hl_status hl_fail_write(hl_error *error, const hl_output *output, int system_err
                  system_error != 0 ? strerror(system_error) : "the file took less than was given");
 }
 
+/* "folder/picture-layer.npy" for "folder/picture.npy"; owned by the caller; null without memory. */
+static char *layer_path(hl_context *context, const char *path, const char *layer) {
+  const char *dot = strrchr(path, '.');
+  size_t stem = (size_t)(dot - path), length = strlen(path) + strlen(layer) + 2;
+  char *made = hl_allocate(context, length, 1);
+  if (made != NULL) snprintf(made, length, "%.*s-%s%s", (int)stem, path, layer, dot);
+  return made;
+}
+
+static hl_status write_layer_file(const picture_format *format, hl_context *context, const hl_image *image,
+                                  const hl_image_layer *layer, const char *path, hl_error *error) {
+  char *name = layer_path(context, path, layer->name);
+  if (name == NULL) return hl_fail_memory(error, strlen(path), path);
+  hl_output output;
+  hl_status status = hl_output_begin(context, name, &output, error);
+  if (status == HL_OK) {
+    status = format->encode_layer(image, layer, &output, error);
+    if (status == HL_OK) status = hl_output_commit(&output, error);
+    hl_output_abort(&output);
+  }
+  hl_release(context, name);
+  return status;
+}
+
+/* Layers that do not go into the picture's own file. */
+static hl_status write_layers(const picture_format *format, hl_context *context, const hl_image *image,
+                              const char *path, hl_error *error) {
+  if (image->layer_count == 0 || format->holds_layers) return HL_OK;
+  if (format->encode_layer == NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s cannot hold layers: write .exr or .npy", path, format->title);
+  hl_status status = HL_OK;
+  for (size_t i = 0; i < image->layer_count && status == HL_OK; i++)
+    status = write_layer_file(format, context, image, &image->layers[i], path, error);
+  return status;
+}
+
 hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                          const hl_image_write_options *options, hl_error *error) {
   if (context == NULL || image == NULL || path == NULL)
@@ -92,6 +132,8 @@ hl_status hl_image_write(hl_context *context, const hl_image *image, const char 
   if (format == NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "%s: unknown picture format: end the name in .png, .exr or .npy", path);
+  status = write_layers(format, context, image, path, error);
+  if (status != HL_OK) return status;
   hl_output output;
   status = hl_output_begin(context, path, &output, error);
   if (status != HL_OK) return status;

@@ -13,6 +13,8 @@ hl_status hl_exr_encode(const hl_image *image, const hl_image_write_options *opt
                         hl_error *error);
 hl_status hl_npy_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error);
+/* One layer alone; the picture's own file leaves layers out. */
+hl_status hl_npy_encode_layer(const hl_image *image, const hl_image_layer *layer, hl_output *output, hl_error *error);
 
 /* Decoders take the bytes of a whole file, which may be anything; name is what errors call it. */
 hl_status hl_png_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,

@@ -6,6 +6,7 @@
 #include "image/image.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 #include "core/memory.h"
 
@@ -44,8 +45,65 @@ hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64
   return hl_image_create(context, (int)width, (int)height, image, error);
 }
 
+/* OpenEXR names a channel "layer.C", and NPY a file "picture-layer.npy". */
+static bool is_layer_name(const char *name) {
+  static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+  size_t length = strlen(name);
+  return length >= 1 && length <= HL_IMAGE_LAYER_NAME && strspn(name, letters) == length;
+}
+
+static bool are_channels(const char *channels) {
+  size_t length = strlen(channels);
+  for (size_t i = 0; i < length; i++)
+    if (channels[i] < 'A' || channels[i] > 'Z' || strchr(channels + i + 1, channels[i]) != NULL) return false;
+  return length >= 1 && length <= HL_IMAGE_LAYER_CHANNELS;
+}
+
+static hl_status check_layer(const hl_image *image, const char *name, const char *channels, hl_error *error) {
+  if (!is_layer_name(name))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_image_add_layer: '%.40s' is no name: give 1 to %d letters, digits and '_'", name,
+                   (int)HL_IMAGE_LAYER_NAME);
+  if (!are_channels(channels))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_image_add_layer: channels '%.40s': give 1 to %d different capital letters", channels,
+                   (int)HL_IMAGE_LAYER_CHANNELS);
+  for (size_t i = 0; i < image->layer_count; i++)
+    if (strcmp(image->layers[i].name, name) == 0)
+      return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_add_layer: the picture has a layer '%s' already", name);
+  return HL_OK;
+}
+
+hl_status hl_image_add_layer(hl_image *image, const char *name, const char *channels, float **values,
+                             hl_error *error) {
+  if (image == NULL || name == NULL || channels == NULL || values == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_add_layer: no argument may be null");
+  *values = NULL;
+  hl_status status = check_layer(image, name, channels, error);
+  if (status != HL_OK) return status;
+  size_t pixels = (size_t)image->width * (size_t)image->height, floats = pixels * strlen(channels);
+  hl_image_layer *layers = hl_allocate(image->context, image->layer_count + 1, sizeof *layers);
+  float *made = hl_allocate_zeroed(image->context, floats, sizeof *made);
+  if (layers == NULL || made == NULL) {
+    hl_release(image->context, layers);
+    hl_release(image->context, made);
+    return hl_fail_memory(error, floats * sizeof *made, "a layer");
+  }
+  if (image->layer_count > 0) memcpy(layers, image->layers, image->layer_count * sizeof *layers);
+  hl_release(image->context, image->layers);
+  image->layers = layers;
+  hl_image_layer *layer = &layers[image->layer_count++];
+  *layer = (hl_image_layer){.values = made};
+  memcpy(layer->name, name, strlen(name));
+  memcpy(layer->channels, channels, strlen(channels));
+  *values = made;
+  return HL_OK;
+}
+
 void hl_image_destroy(hl_image *image) {
   if (image == NULL) return;
+  for (size_t i = 0; i < image->layer_count; i++) hl_release(image->context, image->layers[i].values);
+  hl_release(image->context, image->layers);
   hl_release(image->context, image->pixels);
   hl_release(image->context, image);
 }

@@ -10,10 +10,20 @@ enum {
   HL_IMAGE_READ_PIXELS_MAX = 1 << 28
 };
 
+enum { HL_IMAGE_LAYER_NAME = 28, HL_IMAGE_LAYER_CHANNELS = 4 };
+
+typedef struct hl_image_layer {
+  char name[HL_IMAGE_LAYER_NAME + 1];
+  char channels[HL_IMAGE_LAYER_CHANNELS + 1]; /* one letter each */
+  float *values;                              /* owned; [height][width][channels] */
+} hl_image_layer;
+
 struct hl_image {
   hl_context *context;
   int width, height;
   float *pixels; /* owned; [height][width][4]; linear premultiplied R, G, B, A; top row first */
+  hl_image_layer *layers; /* owned; [layer_count] */
+  size_t layer_count;
 };
 
 /* hl_image_create for a size that a file claims; an error names the file. */

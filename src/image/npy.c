@@ -1,6 +1,7 @@
 /* npy.c - pictures as NumPy arrays (NPY format), float32, C order.
  *
- * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4. Read: versions 1 to 3,
+ * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer with its own channels, or as
+ * height x width where it has one. Read: versions 1 to 3,
  * '<f4' or '<f8', height x width or height x width x 1, 3 or 4; grey fills R, G and B, a missing alpha is 1.
  * Values are stored bit by bit.
  *
@@ -41,37 +42,56 @@ static void put_float(unsigned char *to, float value) {
   for (int i = 0; i < 4; i++) to[i] = (unsigned char)(bits >> 8 * i);
 }
 
-static void make_header(const hl_image *image, unsigned char header[HEADER_BYTES + 1]) {
+/* What is written: [height][width][channels], or [height][width] where there is one channel. */
+typedef struct npy_array {
+  int height, width;
+  size_t channels;
+  const float *values; /* borrowed */
+} npy_array;
+
+static void make_header(const npy_array *array, unsigned char header[HEADER_BYTES + 1]) {
   memcpy(header, "\x93NUMPY\x01\x00", 8);
   header[8] = HEADER_BYTES - PREAMBLE_BYTES;
   header[9] = 0;
-  char text[HEADER_BYTES - PREAMBLE_BYTES];
-  snprintf(text, sizeof text, "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d, 4), }",
-           image->height, image->width);
+  char text[HEADER_BYTES - PREAMBLE_BYTES], channels[24] = "";
+  if (array->channels > 1) snprintf(channels, sizeof channels, ", %zu", array->channels);
+  snprintf(text, sizeof text, "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d%s), }",
+           array->height, array->width, channels);
   snprintf((char *)header + PREAMBLE_BYTES, HEADER_BYTES - PREAMBLE_BYTES + 1, "%-*s\n",
            HEADER_BYTES - PREAMBLE_BYTES - 1, text);
 }
 
-hl_status hl_npy_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
-                        hl_error *error) {
-  (void)options; /* depth and background are PNG's */
-  size_t row_floats = (size_t)image->width * 4;
+static hl_status encode_array(const npy_array *array, hl_output *output, hl_error *error) {
+  size_t row_floats = (size_t)array->width * array->channels;
   unsigned char header[HEADER_BYTES + 1], *row = hl_allocate(output->context, row_floats, 4);
   if (row == NULL) return hl_fail_memory(error, row_floats * 4, output->path);
-  make_header(image, header);
+  make_header(array, header);
   errno = 0;
   bool written = fwrite(header, 1, HEADER_BYTES, output->file) == HEADER_BYTES;
   hl_status status = HL_OK;
-  for (int y = 0; y < image->height && written && status == HL_OK; y++) {
-    status = hl_encode_step(output->context, y, image->height, error);
+  for (int y = 0; y < array->height && written && status == HL_OK; y++) {
+    status = hl_encode_step(output->context, y, array->height, error);
     if (status != HL_OK) break;
-    for (size_t i = 0; i < row_floats; i++) put_float(row + 4 * i, image->pixels[(size_t)y * row_floats + i]);
+    for (size_t i = 0; i < row_floats; i++) put_float(row + 4 * i, array->values[(size_t)y * row_floats + i]);
     errno = 0;
     written = fwrite(row, 4, row_floats, output->file) == row_floats;
   }
   if (!written) status = hl_fail_write(error, output, errno);
   hl_release(output->context, row);
   return status;
+}
+
+hl_status hl_npy_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
+                        hl_error *error) {
+  (void)options; /* depth and background are PNG's */
+  const npy_array array = {image->height, image->width, 4, image->pixels};
+  return encode_array(&array, output, error);
+}
+
+hl_status hl_npy_encode_layer(const hl_image *image, const hl_image_layer *layer, hl_output *output,
+                              hl_error *error) {
+  const npy_array array = {image->height, image->width, strlen(layer->channels), layer->values};
+  return encode_array(&array, output, error);
 }
 
 /* ---- reading the header ---- */

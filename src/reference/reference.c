@@ -11,9 +11,13 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "reference/reference.h"
+#include "scene/layers.h"
 
 /* A ray ends where the eye sees no more through it. */
 static const double OPAQUE = 1 - 1e-5;
+
+/* Alpha from which on a ray has met something (halflight/layers.h). */
+static const double FIRST_OPACITY = 0.01;
 
 /* What one sample may add to a pixel: light that grazes a dense volume fades within a small part of a step.
  */
@@ -33,6 +37,7 @@ typedef struct picture {
   eye_rays eye;
   reference_worker *workers; /* [threads] */
   float *pixels;             /* the caller's */
+  const hl_layers *layers;   /* the caller's; null: none */
   size_t row_stride;         /* floats */
   size_t runs_per_row;
   atomic_size_t runs_done;
@@ -71,62 +76,65 @@ static double total_extinction(const march *walk) {
   return total;
 }
 
-/* What all volumes send from one sample: the sum of extinctions, and of colours times extinctions. */
-static double sample(const reference *all, const march *walk, vec3 point, vec3 to_eye,
-                     reference_worker *worker, double color[3]) {
-  double total = 0;
-  color[0] = color[1] = color[2] = 0;
+/* What all volumes send from one sample, weighted by extinction. */
+static void sample(const reference *all, const march *walk, vec3 point, vec3 to_eye, reference_worker *worker) {
+  reference_parts *made = &worker->sample;
+  hl_reference_parts_clear(made, all->scene->light_count);
   for (size_t v = 0; v < walk->count; v++) {
     const crossing *part = &walk->crossings[v];
     if (!part->occupied) continue;
-    double value = hl_reference_value(part->volume, part->here), one[3];
+    double value = hl_reference_value(part->volume, part->here);
     double extinction = hl_reference_extinction(part->volume, value);
     if (extinction <= 0) continue;
-    if (total == 0)
+    if (made->weight == 0)
       for (size_t l = 0; l < all->scene->light_count; l++)
         hl_reference_light_arrive(&all->lights[l], point, &worker->arrivals[l]);
-    hl_reference_shade(all, part->volume, point, part->here, value, to_eye, worker, one);
-    for (int c = 0; c < 3; c++) color[c] += extinction * one[c];
-    total += extinction;
+    hl_reference_shade(all, part->volume, point, part->here, value, extinction, to_eye, worker);
   }
-  return total;
+  made->depth = made->weight * walk->at;
 }
 
 /* Adds the sample at which the march stands, for a step of this length, and gives its extinction. Front to
  * back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), the exact integral of a step in which
  * nothing varies. */
 static double composite(const reference *all, const march *walk, double length, vec3 origin, vec3 direction,
-                        reference_worker *worker, double rgba[4]) {
-  double color[3];
+                        reference_worker *worker) {
   vec3 point = vec3_add(origin, vec3_scale(direction, walk->at));
-  double extinction = sample(all, walk, point, vec3_scale(direction, -1), worker, color);
+  sample(all, walk, point, vec3_scale(direction, -1), worker);
+  double extinction = worker->sample.weight;
   if (extinction <= 0) return 0;
-  double opacity = (1 - rgba[3]) * -expm1(-extinction * length);
-  for (int c = 0; c < 3; c++) rgba[c] += opacity * color[c] / extinction;
-  rgba[3] += opacity;
+  double opacity = (1 - worker->ray.weight) * -expm1(-extinction * length);
+  hl_reference_parts_add(&worker->ray, &worker->sample, opacity / extinction, all->scene->light_count);
   return extinction;
+}
+
+/* Where alpha went from `before` past FIRST_OPACITY, in a step from `start` on: (1 - A) exp(-sigma t) = 1 - FIRST_OPACITY. */
+static double first_within(double before, double extinction, double start) {
+  return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
 /* A perspective eye sees what is before it; an orthographic one has no place along its rays, and sees all.
  * Every step of the march is cut so finely that no part adds more than MOST_OPACITY, judged by the extinction
- * of the part before. */
-static void trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
-                  double rgba[4]) {
+ * of the part before. The ray's parts are left in the worker; returns the first depth. */
+static double trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker) {
   march walk;
-  double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0;
-  rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
+  reference_parts *ray = &worker->ray;
+  double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0, first = INFINITY;
+  hl_reference_parts_clear(ray, all->scene->light_count);
   hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, nearest, INFINITY, worker->eye, &walk);
-  while (rgba[3] < OPAQUE && hl_reference_march_next(&walk)) {
+  while (ray->weight < OPAQUE && hl_reference_march_next(&walk)) {
     double at = walk.at - walk.length / 2, end = at + walk.length, extinction = total_extinction(&walk);
     if (extinction <= 0) continue;
-    while (at < end && rgba[3] < OPAQUE) {
-      double length = end - at;
-      if (extinction > 0) length = fmin(length, MOST_OPACITY / (extinction * (1 - rgba[3])));
+    while (at < end && ray->weight < OPAQUE) {
+      double length = end - at, before = ray->weight;
+      if (extinction > 0) length = fmin(length, MOST_OPACITY / (extinction * (1 - before)));
       hl_reference_march_place(&walk, at + length / 2);
-      extinction = composite(all, &walk, length, origin, direction, worker, rgba);
+      extinction = composite(all, &walk, length, origin, direction, worker);
+      if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY) first = first_within(before, extinction, at);
       at += length;
     }
   }
+  return first;
 }
 
 /* Callbacks come from the calling thread alone, which is worker 0. */
@@ -136,6 +144,16 @@ static bool keep_going(picture *all, int worker) {
   return !atomic_load(&all->cancelled);
 }
 
+/* The picture is the sum of its parts. */
+static void write_pixel(const reference_parts *ray, size_t light_count, float rgba[4]) {
+  for (int c = 0; c < 3; c++) {
+    double sum = ray->ambient[c];
+    for (size_t l = 0; l < light_count; l++) sum += ray->lights[l].picture[c];
+    rgba[c] = (float)sum;
+  }
+  rgba[3] = (float)ray->weight;
+}
+
 static void render_run(void *data, size_t index, int worker) {
   picture *all = data;
   const hl_scene_description *scene = all->all->scene;
@@ -143,10 +161,11 @@ static void render_run(void *data, size_t index, int worker) {
   for (size_t x = first; x < first + RUN_PIXELS && x < (size_t)scene->width; x++) {
     if (!keep_going(all, worker)) return;
     vec3 origin, direction;
-    double rgba[4];
+    const reference_parts *ray = &all->workers[worker].ray;
     eye_ray(all, x, y, &origin, &direction);
-    trace(all->all, origin, direction, &all->workers[worker], rgba);
-    for (int c = 0; c < 4; c++) all->pixels[y * all->row_stride + 4 * x + (size_t)c] = (float)rgba[c];
+    double depth_first = trace(all->all, origin, direction, &all->workers[worker]);
+    write_pixel(ray, scene->light_count, all->pixels + y * all->row_stride + 4 * x);
+    if (all->layers != NULL) hl_reference_parts_write(ray, depth_first, all->layers, y * (size_t)scene->width + x);
   }
   size_t done = atomic_fetch_add(&all->runs_done, 1) + 1;
   if (worker == 0)
@@ -186,36 +205,41 @@ static void release(reference *all) {
   hl_release(all->context, all->lights);
 }
 
-/* One block: the workers, then their crossings, then their arrivals. */
+/* One block each: the workers, their crossings, their arrivals, their parts. */
 static reference_worker *workers_create(const reference *all, size_t threads) {
   size_t volumes = all->scene->volume_count, lights = all->scene->light_count;
   reference_worker *workers = hl_allocate_zeroed(all->context, threads, sizeof *workers);
   crossing *crossings = hl_allocate_zeroed(all->context, 2 * threads * volumes, sizeof *crossings);
   arrival *arrivals = hl_allocate_zeroed(all->context, threads * lights, sizeof *arrivals);
-  if (workers == NULL || crossings == NULL || arrivals == NULL) {
+  light_part *parts = hl_allocate_zeroed(all->context, 2 * threads * lights, sizeof *parts);
+  if (workers == NULL || crossings == NULL || arrivals == NULL || parts == NULL) {
     hl_release(all->context, workers);
     hl_release(all->context, crossings);
     hl_release(all->context, arrivals);
+    hl_release(all->context, parts);
     return NULL;
   }
   for (size_t t = 0; t < threads; t++)
     workers[t] = (reference_worker){crossings + 2 * t * volumes, crossings + (2 * t + 1) * volumes,
-                                    arrivals + t * lights};
+                                    arrivals + t * lights, {.lights = parts + 2 * t * lights},
+                                    {.lights = parts + (2 * t + 1) * lights}};
   return workers;
 }
 
 static void workers_release(hl_context *context, reference_worker *workers) {
   hl_release(context, workers[0].eye);
   hl_release(context, workers[0].arrivals);
+  hl_release(context, workers[0].sample.lights);
   hl_release(context, workers);
 }
 
 static hl_status render(const reference *all, hl_pool *pool, float *pixels, size_t row_stride,
-                        hl_error *error) {
+                        const hl_layers *layers, hl_error *error) {
   size_t threads = (size_t)hl_pool_threads(pool), width = (size_t)all->scene->width;
   picture made = {.all = all,
                   .eye = eye_rays_of(all->scene),
                   .pixels = pixels,
+                  .layers = layers,
                   .row_stride = row_stride,
                   .runs_per_row = (width + RUN_PIXELS - 1) / RUN_PIXELS};
   made.workers = workers_create(all, threads);
@@ -255,8 +279,14 @@ static hl_status check(const hl_reference_options *options, const hl_scene_descr
   return HL_OK;
 }
 
-hl_status hl_reference_render(hl_context *context, const hl_scene *scene, const hl_reference_options *options,
-                              float *pixels, size_t row_stride, hl_error *error) {
+static bool shadows_wanted(const hl_layers *layers) {
+  for (size_t l = 0; layers != NULL && l < layers->light_count; l++)
+    if (layers->lights[l].shadow != NULL) return true;
+  return false;
+}
+
+hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene, const hl_reference_options *options,
+                                     float *pixels, size_t row_stride, const hl_layers *layers, hl_error *error) {
   if (context == NULL || scene == NULL || pixels == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_reference_render: context, scene and pixels must not be null");
@@ -264,14 +294,20 @@ hl_status hl_reference_render(hl_context *context, const hl_scene *scene, const 
   hl_reference_options_defaults(&chosen);
   if (options != NULL) chosen = *options;
   hl_status status = check(&chosen, &scene->description, row_stride, error);
+  if (status == HL_OK) status = hl_layers_check(layers, scene->description.light_count, error);
   if (status != HL_OK) return status;
   hl_pool *pool = NULL;
   status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  reference all = {.context = context, .scene = &scene->description};
+  reference all = {.context = context, .scene = &scene->description, .all_shadows = shadows_wanted(layers)};
   status = prepare(&all, &chosen, pool, error);
-  if (status == HL_OK) status = render(&all, pool, pixels, row_stride, error);
+  if (status == HL_OK) status = render(&all, pool, pixels, row_stride, layers, error);
   release(&all);
   hl_pool_destroy(pool);
   return status;
+}
+
+hl_status hl_reference_render(hl_context *context, const hl_scene *scene, const hl_reference_options *options,
+                              float *pixels, size_t row_stride, hl_error *error) {
+  return hl_reference_render_layers(context, scene, options, pixels, row_stride, NULL, error);
 }

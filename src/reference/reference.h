@@ -10,11 +10,14 @@
  *     texture.c     the image that a light projects
  *     lights.c      points on the lights, and the transmittance towards them
  *     shade.c       the light that one sample sends to the eye
+ *     layers.c      that light by its sources, depth and normals
  */
 #ifndef HL_REFERENCE_REFERENCE_H
 #define HL_REFERENCE_REFERENCE_H
 
 #include <stdbool.h>
+
+#include <halflight/layers.h>
 
 #include "core/error.h"
 #include "core/pool.h"
@@ -58,6 +61,7 @@ typedef struct reference {
   reference_volume *volumes;  /* owned; [scene->volume_count] */
   reference_light *lights;    /* owned; [scene->light_count] */
   double step;                /* world units */
+  bool all_shadows;           /* the transmittance of every light is wanted at every sample */
 } reference;
 
 /* A ray inside one volume's box. */
@@ -90,10 +94,23 @@ typedef struct arrival {
   bool pattern_known, shadowed_known;
 } arrival;
 
+/* What one light gives: the light sent to the eye, and the transmittance towards it. */
+typedef struct light_part { double picture[3], shadow[3]; } light_part;
+
+/* What a sample or a whole ray is made of; sums, weighted by extinction (a sample) or by opacity (a ray). */
+typedef struct reference_parts {
+  double weight;              /* of a ray: alpha */
+  double ambient[3];
+  vec3 normal;
+  double depth;
+  light_part *lights;         /* [light_count] */
+} reference_parts;
+
 /* What one thread needs; all arrays are owned by hl_reference_render. */
 typedef struct reference_worker {
   crossing *eye, *shadow;     /* [volume_count] */
   arrival *arrivals;          /* [light_count] */
+  reference_parts sample, ray;
 } reference_worker;
 
 hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
@@ -135,8 +152,14 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
 /* The colour of a texture on the ray from a point of the light (or, far: from a direction) to `point`. */
 void hl_reference_texture(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double color[3]);
 
-/* The colour that a sample of one volume sends along `to_eye`. `index_point` is the same point as `point`. */
+/* Adds what a sample of one volume sends along `to_eye`, times its weight, to the worker's sample. `index_point` is the
+ * same point as `point`. */
 void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
-                        double value, vec3 to_eye, reference_worker *worker, double color[3]);
+                        double value, double weight, vec3 to_eye, reference_worker *worker);
+
+/* layers.c: parts at nothing; another's added, each times `scale`; and the caller's layers of one pixel. */
+void hl_reference_parts_clear(reference_parts *parts, size_t light_count);
+void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale, size_t light_count);
+void hl_reference_parts_write(const reference_parts *parts, double depth_first, const hl_layers *layers, size_t pixel);
 
 #endif

@@ -5,6 +5,8 @@
  *
  * A sample of a volume shaded "phong" goes from medium to surface as its gradient grows from nothing.
  */
+#include <string.h>
+
 #include "reference/reference.h"
 
 /* What reaches a point is found when first asked for: it is by far the dearest part of a sample. */
@@ -31,25 +33,56 @@ static vec3 find_normal(const reference_volume *volume, vec3 index_point, double
   return vec3_scale(gradient, (value > volume->empty_value ? -1 : 1) / size);
 }
 
-void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
-                        double value, vec3 to_eye, reference_worker *worker, double color[3]) {
+/* The part of the light that the volumes let through, whatever image it projects. */
+static void find_shadow(const reference *all, const reference_volume *volume, size_t light, vec3 point,
+                        reference_worker *worker, double shadow[3]) {
+  reference_light plain = all->lights[light];
+  bool attenuated = volume->described->receives_shadow;
+  if (plain.texture == NULL) {
+    memcpy(shadow, light_reach(all, volume, light, point, worker), 3 * sizeof *shadow);
+    return;
+  }
+  plain.texture = NULL;
+  hl_reference_light_reach(all, &plain, point, attenuated, worker->shadow, shadow);
+}
+
+/* The light of one source that the sample sends on, for a volume of colour `own`. */
+static void shade_light(const reference *all, const reference_volume *volume, size_t light, vec3 point,
+                        const double own[3], vec3 normal, double surface, vec3 to_eye, reference_worker *worker,
+                        light_part *part) {
   const hl_material *material = &volume->described->material;
+  const arrival *arrived = &worker->arrivals[light];
+  double cosine = vec3_dot(normal, arrived->towards), gloss = 0;
+  *part = (light_part){{0, 0, 0}, {0, 0, 0}};
+  if (all->all_shadows) find_shadow(all, volume, light, point, worker, part->shadow);
+  if (cosine > 0) {
+    /* R = 2 (N.L) N - L */
+    vec3 reflected = vec3_subtract(vec3_scale(normal, 2 * cosine), arrived->towards);
+    gloss = material->specular * pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
+  }
+  double matt = surface * material->diffuse * fmax(cosine, 0) + (1 - surface);
+  if (matt <= 0 && gloss <= 0) return;
+  const double *reach = light_reach(all, volume, light, point, worker);
+  for (int c = 0; c < 3; c++)
+    part->picture[c] = (own[c] * matt + surface * gloss) * arrived->incoming[c] * reach[c];
+}
+
+void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
+                        double value, double weight, vec3 to_eye, reference_worker *worker) {
+  reference_parts *sample = &worker->sample;
   double own[3], surface;
   hl_transfer_function_color(&volume->described->transfer_function, value, own);
   vec3 normal = find_normal(volume, index_point, value, &surface);
-  for (int c = 0; c < 3; c++) color[c] = own[c] * material->ambient * all->scene->ambient[c];
+  sample->weight += weight;
+  sample->normal = vec3_add(sample->normal, vec3_scale(normal, weight * surface));
+  for (int c = 0; c < 3; c++)
+    sample->ambient[c] += weight * own[c] * volume->described->material.ambient * all->scene->ambient[c];
   for (size_t l = 0; l < all->scene->light_count; l++) {
-    const arrival *arrived = &worker->arrivals[l];
-    double cosine = vec3_dot(normal, arrived->towards), gloss = 0;
-    if (cosine > 0) {
-      /* R = 2 (N.L) N - L */
-      vec3 reflected = vec3_subtract(vec3_scale(normal, 2 * cosine), arrived->towards);
-      gloss = material->specular * pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
+    light_part part;
+    shade_light(all, volume, l, point, own, normal, surface, to_eye, worker, &part);
+    for (int c = 0; c < 3; c++) {
+      sample->lights[l].picture[c] += weight * part.picture[c];
+      sample->lights[l].shadow[c] += weight * part.shadow[c];
     }
-    double matt = surface * material->diffuse * fmax(cosine, 0) + (1 - surface);
-    if (matt <= 0 && gloss <= 0) continue;
-    const double *reach = light_reach(all, volume, l, point, worker);
-    for (int c = 0; c < 3; c++)
-      color[c] += (own[c] * matt + surface * gloss) * arrived->incoming[c] * reach[c];
   }
 }

@@ -44,6 +44,9 @@ void hl_frame_content(const grid *grid, vec3 corners[8]);
  * how many there are: at least one. */
 int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, frame_sweep *sweeps);
 
+/* One more sweep, without lights, image-aligned: front to back for the eye. */
+void hl_frame_add_eye_sweep(const frame *frame, frame_sweep *sweeps, int *count);
+
 /* Refuses a sweep whose sheets a shadowing light does not cross (image-aligned slicing). */
 hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error);
 

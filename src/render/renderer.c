@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "render/clock.h"
 #include "render/prepare.h"
+#include "scene/layers.h"
 
 struct hl_renderer {
   hl_context *context;
@@ -106,6 +107,8 @@ typedef struct frame_work {
   int sweep_count;
   float *pixels;          /* [sweeps][tiles][16][4][16] */
   size_t tiles_x, tiles;
+  layer_pixels layers;
+  int measuring_sweep;    /* the one that carries depth and normals */
 } frame_work;
 
 static void release_work(hl_context *context, frame_work *work) {
@@ -114,6 +117,7 @@ static void release_work(hl_context *context, frame_work *work) {
   hl_release(context, work->grids);
   hl_release(context, work->sweeps);
   hl_release(context, work->pixels);
+  hl_layer_pixels_release(context, &work->layers);
 }
 
 /* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to its
@@ -190,8 +194,15 @@ static hl_status set_up_eye(const hl_renderer *renderer, const hl_scene_descript
   }
 }
 
-static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
-                              hl_error *error) {
+/* Depth and normals are measured from front to back: if no sweep goes that way for the eye, one more does. */
+static void choose_measuring_sweep(frame_work *work) {
+  while (work->measuring_sweep < work->sweep_count && work->sweeps[work->measuring_sweep].back_to_front)
+    work->measuring_sweep++;
+  if (work->measuring_sweep == work->sweep_count) hl_frame_add_eye_sweep(&work->frame, work->sweeps, &work->sweep_count);
+}
+
+static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers,
+                              frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   frame *frame = &work->frame;
   frame->points = hl_allocate(context, scene->volume_count * 8 + 1, sizeof(vec3));
@@ -221,11 +232,12 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
   status = hl_frame_check_sweeps(frame, work->sweeps, work->sweep_count, error);
   if (status != HL_OK) return status;
+  if (hl_layers_measure(layers)) choose_measuring_sweep(work);
   work->tiles_x = (size_t)hl_tiles(frame->eye.width);
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
   work->pixels = hl_allocate_zeroed(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
   if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
-  return HL_OK;
+  return hl_layer_pixels_create(context, layers, scene->light_count, work->tiles, &work->layers, error);
 }
 
 static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
@@ -270,6 +282,7 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
                  .geometry = &work->sweeps[index], .volumes = renderer->prepared, .grids = work->grids,
                  .volume_count = (int)scene->volume_count, .kernel = hl_kernel_get(scene->render.kernel),
                  .splat = scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT, .first = index == 0,
+                 .layer_pixels = &work->layers, .measures = index == work->measuring_sweep,
                  .channels = attenuation_channels(scene),
                  .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};
   double start = hl_clock_seconds();
@@ -304,8 +317,14 @@ static void write_pixels(const frame_work *work, const hl_scene_description *sce
     }
 }
 
-static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work, float *pixels,
-                              size_t row_stride, hl_render_statistics *statistics, hl_error *error) {
+static void write_layers(const frame_work *work, const hl_scene_description *scene) {
+  const layer_grid grid = {scene->width, scene->height, work->frame.oversampling, work->tiles_x};
+  hl_layer_pixels_write(&work->layers, &grid);
+}
+
+static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers,
+                              frame_work *work, float *pixels, size_t row_stride, hl_render_statistics *statistics,
+                              hl_error *error) {
   double start = hl_clock_seconds();
   hl_status status = make_room(renderer, scene, error);
   work->frame.centre = scene_centre(scene);
@@ -313,13 +332,14 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
     status = hl_prepare_volumes(renderer->context, renderer->pool,
                                 hl_hot_functions(renderer->context->options.instruction_set), scene,
                                 work->frame.centre, renderer->prepared, error);
-  if (status == HL_OK) status = set_up_frame(renderer, scene, work, error);
+  if (status == HL_OK) status = set_up_frame(renderer, scene, layers, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();
   for (int s = 0; s < work->sweep_count && status == HL_OK && work->frame.point_count > 0; s++)
     status = run_sweep(renderer, scene, work, s, statistics, error);
   if (status != HL_OK) return status;
   write_pixels(work, scene, pixels, row_stride);
+  write_layers(work, scene);
   statistics->seconds_render = hl_clock_seconds() - start;
   statistics->sweeps = work->sweep_count;
   statistics->threads = hl_pool_threads(renderer->pool);
@@ -332,8 +352,8 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   return HL_OK;
 }
 
-hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float *pixels, size_t row_stride,
-                             hl_render_statistics *statistics, hl_error *error) {
+static hl_status check_request(const hl_renderer *renderer, const hl_scene *scene, const float *pixels, size_t row_stride,
+                               const hl_layers *layers, const hl_render_statistics *statistics, hl_error *error) {
   if (renderer == NULL || scene == NULL || pixels == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: renderer, scene or pixels is null");
   const hl_scene_description *description = hl_scene_describe(scene);
@@ -343,10 +363,22 @@ hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float
   if (statistics != NULL && statistics->struct_size != sizeof *statistics)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: statistics->struct_size is %zu, expected %zu",
                    statistics->struct_size, sizeof *statistics);
+  return hl_layers_check(layers, description->light_count, error);
+}
+
+hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene, float *pixels, size_t row_stride,
+                                    const hl_layers *layers, hl_render_statistics *statistics, hl_error *error) {
+  hl_status status = check_request(renderer, scene, pixels, row_stride, layers, statistics, error);
+  if (status != HL_OK) return status;
   hl_render_statistics counted = {.struct_size = sizeof counted};
   frame_work work = {0};
-  hl_status status = render_frame(renderer, description, &work, pixels, row_stride, &counted, error);
+  status = render_frame(renderer, hl_scene_describe(scene), layers, &work, pixels, row_stride, &counted, error);
   release_work(renderer->context, &work);
   if (status == HL_OK && statistics != NULL) *statistics = counted;
   return status;
+}
+
+hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float *pixels, size_t row_stride,
+                             hl_render_statistics *statistics, hl_error *error) {
+  return hl_renderer_render_layers(renderer, scene, pixels, row_stride, NULL, statistics, error);
 }

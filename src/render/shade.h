@@ -51,6 +51,7 @@ typedef struct shade_job {
   sheet_rays rays;                /* image pixels -> frame space, in the middle between the two sheets */
   float through[3];               /* parallel: from one sheet to the next along the eye's rays */
   float towards_eye[3];           /* parallel: unit direction to the eye */
+  float eye[3];                   /* frame space; parallel: where depth is 0 */
   float normal[3];                /* h */
   float path;                     /* parallel: sheet spacing / |w.h|; perspective: sheet spacing */
   float height, spacing;          /* of sheet k above the first, and to sheet k-1; frame units */
@@ -67,5 +68,10 @@ typedef struct shade_job {
 enum { SHADE_SCRATCH_BYTES = 1024 };
 typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
                                      int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples);
+
+/* What is measured instead of lit, for sheets that go front to back: alpha; depth where alpha first reaches
+ * 0.01, infinite before; and, weighted by what a sample adds to alpha, sums of depth and normal. pixels:
+ * [16 blocks][MEASURES][16]. */
+enum { MEASURE_ALPHA, MEASURE_DEPTH_FIRST, MEASURE_DEPTH, MEASURE_NORMAL, MEASURES = MEASURE_NORMAL + 3 };
 
 #endif

@@ -212,13 +212,19 @@ LANES_INLINE lanes power(lanes base, float exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
+/* Unit normal away from the matter; *surface: 1 for a surface, falling to 0 for a medium, which has no normal. */
+LANES_INLINE lanes3 normal_of(const shade_volume *volume, lanes3 slope, lanes density, lanes *surface) {
+  lanes steepness = lanes_sqrt(dot3(slope, slope));
+  *surface = volume->phong ? lanes_min(steepness / volume->classifier->normal_edge, lanes_set(1.0f)) : lanes_set(0);
+  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-30f));
+  return scale3(slope, outward);
+}
+
 /* Step 15: eqs. (3) and (4) at the light's centre; a medium where there is no surface (algorithm, optical model). */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const shade_volume *volume, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color, lanes3 slope, lanes density) {
-  lanes steepness = lanes_sqrt(dot3(slope, slope));
-  lanes surface = volume->phong ? lanes_min(steepness / volume->classifier->normal_edge, lanes_set(1.0f)) : lanes_set(0);
-  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-30f));
-  lanes3 normal = scale3(slope, outward);
+  lanes surface;
+  lanes3 normal = normal_of(volume, slope, density, &surface);
   color_lanes lit;
   for (int c = 0; c < 3; c++) lit.c[c] = color.c[c] * (volume->ambient * job->ambient[c]);
   for (int i = 0; i < job->light_count; i++) {
@@ -279,11 +285,9 @@ LANES_INLINE lanes seen_part(lanes e) {
 
 /* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
  * with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is reached at
- * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where the slab is lit: the volumes' mean, in slabs. */
-LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densities, int count, lanes total,
-                                      lanes depth) {
-  lanes u = seen_part(depth), sum = lanes_set(0);
-  if (job->back_to_front) u = 1.0f - u;
+ * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes' mean, in slabs. */
+LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes total, lanes u) {
+  lanes sum = lanes_set(0);
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
     const shade_volume *volume = d->patch->volume;
@@ -299,6 +303,13 @@ LANES_INLINE lanes place_what_is_seen(const shade_job *job, block_density *densi
   return sum / lanes_max(total, lanes_set(1e-30f));
 }
 
+/* A volume's gradient where its matter is seen; 0 for a medium. */
+LANES_INLINE lanes3 slope_of_block(const block_geometry *g, const block_density *d, uint32_t seen) {
+  uint32_t here = seen & lanes_bits(d->extinction > 0.0f);
+  if (!d->patch->volume->phong || here == 0) return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
+  return gradient(d->patch->volume, add3(g->start, scale3(g->step_sheet, d->part.begin + d->part.length * d->seen)), here);
+}
+
 /* Colours of the volumes, lit and averaged weighted by extinction. */
 static color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
                                   const block_density *densities, int count, lanes total, uint32_t seen) {
@@ -311,20 +322,27 @@ static color_lanes color_of_block(const shade_job *job, const block_geometry *g,
     table_place place = place_of_coordinate(d.before.x + (d.after.x - d.before.x) * d.seen);
     color_lanes color;
     table_values(volume->classifier->color, place, color.c);
-    lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
-    uint32_t lit_here = seen & lanes_bits(d.extinction > 0.0f);
-    if (volume->phong && lit_here != 0)
-      slope = gradient(volume, add3(g->start, scale3(g->step_sheet, d.part.begin + d.part.length * d.seen)), lit_here);
-    color_lanes lit = illuminate(job, volume, g, lights, color, slope, d.middle);
+    color_lanes lit = illuminate(job, volume, g, lights, color, slope_of_block(g, &d, seen), d.middle);
     lanes weight = count == 1 ? lanes_set(1.0f) : d.extinction * inverse;
     for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
   }
   return sum;
 }
 
-/* Returns true while some pixel of the block is not opaque. */
-static int shade_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y, int block,
-                       block_density *densities, float *pixels, uint64_t *samples) {
+/* A block's way through the slab: geometry, and how much is seen of it where. */
+typedef struct block_slab {
+  block_geometry geometry; /* its position: where the slab is seen on average, and lit */
+  lanes total, depth;      /* extinction averaged over the slab; optical depth */
+  lanes opacity;           /* 0 where nothing is seen */
+  lanes_int seen;
+  int count;               /* of volumes that are there */
+} block_slab;
+
+/* Returns the pixels in which something is seen, one bit each; the slab is filled if there are any. alpha: of the
+ * pixels so far. */
+LANES_INLINE uint32_t slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
+                                    int tile_y, int block, const float *alpha, block_density *densities,
+                                    block_slab *slab) {
   int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK, count = 0;
   lanes total = lanes_set(0);
   for (int i = 0; i < patch_count; i++) {
@@ -332,21 +350,37 @@ static int shade_block(const shade_job *job, const shade_patch *patches, int pat
     if (patches[i].volume->visible) total = total + densities[count].extinction;
     count++;
   }
-  lanes_int seen = total > 0.0f;
-  if (!job->back_to_front) seen &= lanes_load(pixels + 3 * BLOCK_PIXELS) < OPAQUE;
-  uint32_t bits = lanes_bits(seen);
+  slab->seen = total > 0.0f;
+  if (!job->back_to_front) slab->seen &= lanes_load(alpha) < OPAQUE;
+  uint32_t bits = lanes_bits(slab->seen);
+  if (bits == 0) return 0;
+  block_geometry *g = &slab->geometry;
+  *g = geometry_of_block(job, block_u(x), block_v(y));
+  slab->count = count;
+  slab->total = total;
+  slab->depth = total * g->path;
+  slab->opacity = lanes_keep(slab->seen, 1.0f - lanes_exp_negative(slab->depth));
+  lanes u = seen_part(slab->depth);
+  if (job->back_to_front) u = 1.0f - u;
+  lanes seen_at = place_of_part(densities, count, total, u);
+  g->start = add3(g->position, scale3(g->step_sheet, lanes_set(-0.5f)));
+  g->position = add3(g->start, scale3(g->step_sheet, seen_at));
+  return bits;
+}
+
+/* Returns true while some pixel of the block is not opaque. */
+static int shade_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y, int block,
+                       block_density *densities, float *pixels, uint64_t *samples) {
+  block_slab slab;
+  uint32_t bits = slab_of_block(job, patches, patch_count, tile_x, tile_y, block, pixels + 3 * BLOCK_PIXELS, densities,
+                                &slab);
   if (bits == 0) return 1;
-  block_geometry g = geometry_of_block(job, block_u(x), block_v(y));
   arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
-  lanes depth = total * g.path;
-  lanes seen_at = place_what_is_seen(job, densities, count, total, depth);
-  g.start = add3(g.position, scale3(g.step_sheet, lanes_set(-0.5f)));
-  g.position = add3(g.start, scale3(g.step_sheet, seen_at));
-  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], &g, depth, densities, count);
-  color_lanes lit = color_of_block(job, &g, lights, densities, count, total, bits);
-  for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(seen, lit.c[c]);
-  lanes opacity = lanes_keep(seen, 1.0f - lanes_exp_negative(depth));
-  lanes alpha = composite(job->back_to_front, opacity, lit, pixels);
+  for (int i = 0; i < job->light_count; i++)
+    lights[i] = light_at(job, &job->lights[i], &slab.geometry, slab.depth, densities, slab.count);
+  color_lanes lit = color_of_block(job, &slab.geometry, lights, densities, slab.count, slab.total, bits);
+  for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(slab.seen, lit.c[c]);
+  lanes alpha = composite(job->back_to_front, slab.opacity, lit, pixels);
   *samples += (uint64_t)__builtin_popcount(bits);
   return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
 }

@@ -83,11 +83,18 @@ static void add_shadowing_light(const frame *frame, const hl_render_settings *se
   (void)try_light(frame, settings, &sweeps[(*count)++], light);
 }
 
-/* Lights without shadows go with any sweep; with none, sheets are image-aligned (section 2.2): h = e. */
+/* Section 2.2: h = e. */
+void hl_frame_add_eye_sweep(const frame *frame, frame_sweep *sweeps, int *count) {
+  frame_sweep *added = &sweeps[(*count)++];
+  *added = (frame_sweep){.sheets = {.normal = frame->eye_direction}};
+  place_sheets(frame, &added->sheets);
+}
+
+/* Lights without shadows go with any sweep; with none, sheets are image-aligned. */
 static void add_plain_light(const frame *frame, int light, frame_sweep *sweeps, int *count) {
   int s = 0;
   while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;
-  if (s == *count) sweeps[(*count)++] = (frame_sweep){.sheets = {.normal = frame->eye_direction}};
+  if (s == *count) hl_frame_add_eye_sweep(frame, sweeps, count);
   if (light >= 0) sweeps[s].light[sweeps[s].light_count++] = light;
 }
 

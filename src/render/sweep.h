@@ -8,6 +8,7 @@
 #include "light/soft_cascade.h"
 #include "light/soft_paper.h"
 #include "render/frame.h"
+#include "render/layers.h"
 #include "simd/hot.h"
 
 /* A volume made ready: kept between frames while its voxels and transfer function stay. */
@@ -72,6 +73,8 @@ typedef struct sweep {
   const kernel *kernel;
   bool splat;                     /* else gather */
   bool first;                     /* the sweep that carries ambient light and opacity */
+  const layer_pixels *layer_pixels; /* where the layers go; null: none */
+  bool measures;                  /* the sweep that carries depth and normals */
   int channels;                   /* of light attenuation */
   /* the image */
   view_sheets image;
@@ -89,6 +92,7 @@ typedef struct sweep {
   shade_patch *shade_patches;     /* [threads][grids] */
   shade_light shade_lights[FRAME_LIGHTS];
   shade_job shade;
+  sweep_layers layers;
   attenuate_job attenuate[FRAME_LIGHTS];
   unsigned char *scratch;         /* [threads][grids][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][grids] */
@@ -107,6 +111,14 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 void hl_sweep_shade(sweep *sweep, int sheet);     /* steps 6, 8 to 16: the image */
 void hl_sweep_attenuate(sweep *sweep, int sheet); /* steps 7 to 11 and 17: the lights */
 void hl_sweep_soften(sweep *sweep, int sheet);    /* section 5 */
+
+/* Layers (layers.c): the passes of the sweep's lights, after hl_sweep_begin; their sheet, as the sweep's own shading has
+ * it; and one tile of all of them. */
+hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
+void hl_sweep_layers_end(sweep *sweep);
+void hl_sweep_layers_sheet(sweep *sweep);
+void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks,
+                          int worker, void *scratch);
 
 /* A view's sheets (view_sheets.c). What fails half-way is released by hl_view_sheets_end. */
 hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error);

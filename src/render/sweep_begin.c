@@ -150,6 +150,7 @@ static void set_up_jobs(sweep *sweep) {
                        .lights = sweep->shade_lights, .light_count = sweep->geometry->light_count,
                        .channels = sweep->channels};
   vec3_store(shade->normal, normal);
+  vec3_store(shade->eye, eye->origin);
   if (!eye->perspective) {
     double climb = vec3_dot(eye->direction, normal);
     shade->path = (float)(spacing / fabs(climb));
@@ -180,11 +181,12 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, hl_error *error) 
   if (status != HL_OK) return status;
   set_up_shading(sweep);
   set_up_jobs(sweep);
-  return HL_OK;
+  return hl_sweep_layers_begin(sweep, error);
 }
 
 void hl_sweep_end(sweep *sweep) {
   hl_context *context = sweep->context;
+  hl_sweep_layers_end(sweep);
   for (int i = 0; i < FRAME_LIGHTS; i++) {
     sweep_light *light = &sweep->lights[i];
     hl_view_sheets_end(sweep, &light->sheets);

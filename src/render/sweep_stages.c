@@ -54,10 +54,11 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   counts->filled_image++;
   counts->seconds_fill += filled - start;
   if (blocks == 0) return;
-  uint32_t open = sweep->hot->shade_tile(
-      &sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x), (int)(tile / (size_t)sweep->tiles_x), blocks,
-      sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * SHADE_SCRATCH_BYTES,
-      sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
+  void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * SHADE_SCRATCH_BYTES;
+  uint32_t open = sweep->hot->shade_tile(&sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
+                                         (int)(tile / (size_t)sweep->tiles_x), blocks, scratch,
+                                         sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
+  hl_sweep_layers_tile(sweep, patches, count, tile, blocks, worker, scratch);
   sweep->open[tile] = (uint16_t)((need & ~blocks) | open);
   counts->seconds_shade += hl_clock_seconds() - filled;
 }
@@ -77,6 +78,7 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
   hl_view_sheet_rays(&sweep->frame->eye, sheets->normal, hl_sheet_height(sheets, sheet) - 0.5 * sheets->spacing,
                      affine3_identity(), &sweep->shade.rays);
   sweep->shade.height = (float)(sheet * sheets->spacing);
+  hl_sweep_layers_sheet(sweep);
   hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task, sweep);
   sweep->seconds_image += hl_clock_seconds() - start;
 }

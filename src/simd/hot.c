@@ -3,6 +3,7 @@
 
 #include "light/blur_lanes.h"
 #include "light/cascade_lanes.h"
+#include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
 #include "splat/relevant_lanes.h"
@@ -17,6 +18,7 @@ const hot_functions HL_HOT_TABLE = {
     .attenuate_tile = attenuate_tile,
     .lit_blocks_tile = lit_blocks_tile,
     .shade_tile = shade_tile,
+    .measure_tile = measure_tile,
     .blur_rows_tile = blur_rows_tile,
     .blur_columns_tile = blur_columns_tile,
     .blur_multiply_tile = blur_multiply_tile,

@@ -20,7 +20,7 @@ typedef struct hot_functions {
   coverage_tile_function *coverage_tile;
   attenuate_tile_function *attenuate_tile;
   lit_blocks_function *lit_blocks_tile;
-  shade_tile_function *shade_tile;
+  shade_tile_function *shade_tile, *measure_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
   blur_multiply_tile_function *blur_multiply_tile;
   field_tile_function *multiply_tile, *multiply_half_tile, *multiply_double_tile;

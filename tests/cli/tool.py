@@ -32,7 +32,7 @@ def read_npy(path):
     length, = struct.unpack("<H", data[8:10])
     header = ast.literal_eval(data[10:10 + length].decode())
     assert header["descr"] == "<f4" and not header["fortran_order"], header
-    height, width, channels = header["shape"]
+    height, width, channels = (*header["shape"], 1)[:3]
     return height, width, channels, struct.unpack(f"<{height * width * channels}f", data[10 + length:])
 
 
@@ -60,6 +60,17 @@ def coverage(path):
     assert covered, f"{path} is empty"
     xs, ys = [x for x, _ in covered], [y for _, y in covered]
     print(max(xs) - min(xs) + 1, max(ys) - min(ys) + 1)
+
+
+def sum_layers(picture, *layers):
+    """The layers of three channels sum to the picture's RGB."""
+    height, width, channels, numbers = read_npy(picture)
+    parts = [read_npy(layer) for layer in layers]
+    assert channels == 4 and all(part[:3] == (height, width, 3) for part in parts)
+    for i in range(height * width):
+        for c in range(3):
+            total = sum(part[3][3 * i + c] for part in parts)
+            assert abs(total - numbers[4 * i + c]) < 2e-6, f"pixel {i}: {total} is not {numbers[4 * i + c]}"
 
 
 def png_chunks(path):
@@ -124,5 +135,6 @@ def json_get(path, expression):
 
 
 COMMANDS = {"ball": ball, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage,
+            "sum_layers": sum_layers,
             "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel, "json": json_get}
 COMMANDS[sys.argv[1]](*sys.argv[2:])

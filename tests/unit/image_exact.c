@@ -108,6 +108,55 @@ static void exr_takes_layers(void **state) {
   end_context(context);
 }
 
+static bool holds_text(const unsigned char *bytes, size_t length, const char *text) {
+  for (size_t i = 0; i + strlen(text) < length; i++)
+    if (memcmp(bytes + i, text, strlen(text) + 1) == 0) return true;
+  return false;
+}
+
+/* Layers become channels of an .exr and files beside an .npy; the picture itself is read back as without them. */
+static void pictures_hold_layers(void **state) {
+  (void)state;
+  enum { W = 19, H = 35 };
+  hl_context *context = make_context();
+  hl_image *image = make_structured(context, W, H), *back = NULL;
+  float *key = NULL, *depth = NULL;
+  assert_int_equal(hl_image_add_layer(image, "key", "RGB", &key, NULL), HL_OK);
+  assert_int_equal(hl_image_add_layer(image, "depth_mean", "Z", &depth, NULL), HL_OK);
+  for (int i = 0; i < 3 * W * H; i++) {
+    assert_true(key[i] == 0);
+    key[i] = (float)i;
+  }
+  for (int i = 0; i < W * H; i++) depth[i] = i == 7 ? INFINITY : (float)i / 3;
+  char folder[64], path[100];
+  make_folder(folder);
+  snprintf(path, sizeof path, "%s/a.exr", folder);
+  assert_int_equal(hl_image_write(context, image, path, NULL, NULL), HL_OK);
+  size_t length;
+  unsigned char *bytes = read_bytes(context, path, &length);
+  static const char *const channels[] = {"A", "B", "G", "R", "key.R", "key.G", "key.B", "depth_mean.Z"};
+  for (size_t i = 0; i < 8; i++) assert_true(holds_text(bytes, length, channels[i]));
+  assert_false(holds_text(bytes, length, "depth_mean.R"));
+  hl_release(context, bytes);
+  assert_int_equal(hl_image_read(context, path, &back, NULL), HL_OK);
+  assert_memory_equal(back->pixels, image->pixels, W * H * 16);
+  hl_image_destroy(back);
+  snprintf(path, sizeof path, "%s/a.npy", folder);
+  assert_int_equal(hl_image_write(context, image, path, NULL, NULL), HL_OK);
+  assert_int_equal(count_files(folder), 4);
+  snprintf(path, sizeof path, "%s/a-key.npy", folder);
+  assert_int_equal(hl_image_read(context, path, &back, NULL), HL_OK);
+  for (int i = 0; i < W * H; i++) assert_memory_equal(back->pixels + 4 * i, key + 3 * i, 12);
+  hl_image_destroy(back);
+  snprintf(path, sizeof path, "%s/a-depth_mean.npy", folder);
+  assert_int_equal(hl_image_read(context, path, &back, NULL), HL_OK);
+  for (int i = 0; i < W * H; i++) assert_true(back->pixels[4 * i] == depth[i]);
+  hl_image_destroy(back);
+  hl_image_destroy(image);
+  remove_folder(folder);
+  end_context(context);
+}
+
 /* ---- OpenEXR files of other programs: built by hand from the format's description ---- */
 
 typedef struct bytes {
@@ -359,6 +408,7 @@ int main(void) {
                                      cmocka_unit_test(memory_limit_is_kept),
                                      cmocka_unit_test(exr_and_npy_keep_every_bit),
                                      cmocka_unit_test(exr_takes_layers),
+                                     cmocka_unit_test(pictures_hold_layers),
                                      cmocka_unit_test(exr_halves_and_offsets_are_read),
                                      cmocka_unit_test(exr_grey_and_integers_are_read),
                                      cmocka_unit_test(exr_of_other_kinds_is_refused),

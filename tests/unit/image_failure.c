@@ -35,6 +35,28 @@ static void arguments_are_checked(void **state) {
   end_context(context);
 }
 
+static void layers_are_checked(void **state) {
+  (void)state;
+  static const char *const names[] = {"", "a b", "a.b", "a/b", "far_more_letters_than_channels_may_have"};
+  static const char *const channels[] = {"", "r", "RR", "R G", "RGBAZ"};
+  hl_context *context = make_context();
+  hl_image *image = make_image(context, 2, 2);
+  hl_error error = {0};
+  float *values = NULL;
+  for (int i = 0; i < 5; i++) {
+    assert_int_equal(hl_image_add_layer(image, names[i], "RGB", &values, &error), HL_ERROR_ARGUMENT);
+    assert_int_equal(hl_image_add_layer(image, "key", channels[i], &values, &error), HL_ERROR_ARGUMENT);
+  }
+  assert_int_equal(hl_image_add_layer(NULL, "key", "RGB", &values, &error), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_image_add_layer(image, "key", "RGB", &values, &error), HL_OK);
+  assert_int_equal(hl_image_add_layer(image, "key", "Z", &values, &error), HL_ERROR_ARGUMENT);
+  assert_null(values);
+  assert_int_equal(hl_image_write(context, image, "/tmp/x.png", NULL, &error), HL_ERROR_UNSUPPORTED);
+  assert_non_null(strstr(error.message, ".exr or .npy"));
+  hl_image_destroy(image);
+  end_context(context);
+}
+
 static void reading_goes_by_content(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -266,7 +288,7 @@ static void comparing_may_run_out_of_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(arguments_are_checked),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(arguments_are_checked), cmocka_unit_test(layers_are_checked),
                                      cmocka_unit_test(reading_goes_by_content),
                                      cmocka_unit_test(bad_places_are_named),
                                      cmocka_unit_test(full_device_is_reported),

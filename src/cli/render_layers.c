@@ -1,0 +1,44 @@
+/* cli/render_layers.c - `halflight render --layers`: the layers of a picture, in buffers of the picture's own. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "output.h"
+#include "render.h"
+
+static hl_status add_light(hl_image *image, size_t index, hl_light_layers *light, hl_error *error) {
+  char name[40];
+  snprintf(name, sizeof name, "light%zu", index);
+  hl_status status = hl_image_add_layer(image, name, "RGB", &light->picture, error);
+  snprintf(name, sizeof name, "light%zu_shadow", index);
+  return status == HL_OK ? hl_image_add_layer(image, name, "RGB", &light->shadow, error) : status;
+}
+
+hl_status render_layers_create(hl_image *image, size_t light_count, render_layers *layers, hl_error *error) {
+  *layers = (render_layers){.all = {.struct_size = sizeof layers->all}};
+  layers->lights = calloc(light_count + 1, sizeof *layers->lights);
+  if (layers->lights == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory");
+    return HL_ERROR_MEMORY;
+  }
+  layers->all.lights = layers->lights;
+  layers->all.light_count = light_count;
+  hl_status status = hl_image_add_layer(image, "ambient", "RGB", &layers->all.ambient, error);
+  for (size_t i = 0; i < light_count && status == HL_OK; i++)
+    status = add_light(image, i, &layers->lights[i], error);
+  if (status == HL_OK) status = hl_image_add_layer(image, "depth_first", "Z", &layers->all.depth_first, error);
+  if (status == HL_OK) status = hl_image_add_layer(image, "depth_mean", "Z", &layers->all.depth_mean, error);
+  if (status == HL_OK) status = hl_image_add_layer(image, "normal", "XYZ", &layers->all.normal, error);
+  return status;
+}
+
+void render_layers_release(render_layers *layers) { free(layers->lights); }
+
+int render_layers_check(const cli_value *values) {
+  if (!values[RENDER_LAYERS].given) return EXIT_CODE_OK;
+  const cli_value *output = &values[RENDER_OUTPUT];
+  if (output->given && (has_extension(output->text, ".exr") || has_extension(output->text, ".npy")))
+    return EXIT_CODE_OK;
+  if (output->given)
+    return fail(EXIT_CODE_USAGE, "--layers: '%s' cannot hold layers: end OUT in .exr or .npy", output->text);
+  return fail(EXIT_CODE_USAGE, "--layers needs a file that holds them: add -o NAME.exr or -o NAME.npy");
+}

@@ -1,0 +1,234 @@
+/* render/layers.c - see layers.h: the layers' pixels, their passes in a sweep, and the caller's buffers. */
+#include "render/layers.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "render/sweep.h"
+
+enum { COLORS = 4 }; /* R G B A */
+
+bool hl_layers_measure(const hl_layers *wanted) {
+  return wanted != NULL && (wanted->depth_first != NULL || wanted->depth_mean != NULL || wanted->normal != NULL);
+}
+
+/* ---- pixels ---- */
+
+static float *allocate_pixels(hl_context *context, size_t tiles, size_t floats, hl_status *status, hl_error *error) {
+  if (*status != HL_OK) return NULL;
+  float *pixels = hl_allocate_zeroed(context, tiles * TILE_PIXELS, floats * sizeof *pixels);
+  if (pixels == NULL) *status = hl_fail_memory(error, tiles * TILE_PIXELS * floats * sizeof *pixels, "a layer");
+  return pixels;
+}
+
+/* No ray has met anything yet. */
+static void clear_first_depth(float *measures, size_t tiles) {
+  for (size_t block = 0; block < tiles * TILE_BLOCKS; block++)
+    for (int lane = 0; lane < BLOCK_PIXELS; lane++)
+      measures[(block * MEASURES + MEASURE_DEPTH_FIRST) * BLOCK_PIXELS + (size_t)lane] = INFINITY;
+}
+
+hl_status hl_layer_pixels_create(hl_context *context, const hl_layers *wanted, size_t light_count, size_t tiles,
+                                 layer_pixels *pixels, hl_error *error) {
+  *pixels = (layer_pixels){.wanted = wanted, .light_count = light_count};
+  if (wanted == NULL) return HL_OK;
+  hl_status status = HL_OK;
+  pixels->lights = hl_allocate_zeroed(context, light_count, sizeof *pixels->lights);
+  if (pixels->lights == NULL) return hl_fail_memory(error, light_count * sizeof *pixels->lights, "the lights' layers");
+  if (wanted->ambient != NULL) pixels->ambient = allocate_pixels(context, tiles, COLORS, &status, error);
+  if (hl_layers_measure(wanted)) pixels->measures = allocate_pixels(context, tiles, MEASURES, &status, error);
+  for (size_t i = 0; i < wanted->light_count; i++) {
+    if (wanted->lights[i].picture != NULL)
+      pixels->lights[i].picture = allocate_pixels(context, tiles, COLORS, &status, error);
+    if (wanted->lights[i].shadow != NULL)
+      pixels->lights[i].shadow = allocate_pixels(context, tiles, COLORS, &status, error);
+  }
+  if (pixels->measures != NULL) clear_first_depth(pixels->measures, tiles);
+  return status;
+}
+
+void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
+  for (size_t i = 0; pixels->lights != NULL && i < pixels->light_count; i++) {
+    hl_release(context, pixels->lights[i].picture);
+    hl_release(context, pixels->lights[i].shadow);
+  }
+  hl_release(context, pixels->lights);
+  hl_release(context, pixels->ambient);
+  hl_release(context, pixels->measures);
+}
+
+/* ---- passes ---- */
+
+/* Volumes of white without surfaces, whose samples send on what arrives. */
+static void set_up_white_volumes(sweep *sweep) {
+  sweep_layers *layers = &sweep->layers;
+  for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++) layers->ones[i][0] = layers->ones[i][1] = layers->ones[i][2] = 1;
+  for (int g = 0; g < sweep->volume_count; g++) {
+    layers->white[g] = sweep->volumes[g].classifier;
+    layers->white[g].color = layers->ones;
+    layers->white_volumes[g] = sweep->shade_volumes[g];
+    layers->white_volumes[g].classifier = &layers->white[g];
+    layers->white_volumes[g].phong = 0;
+  }
+}
+
+static void set_up_white_light(const shade_light *from, shade_light *white) {
+  *white = *from;
+  white->inverse_square = 0;
+  white->screen = (light_screen){0};
+  white->cone = (light_cone){.scale = 0};
+  for (int c = 0; c < 3; c++) white->color[c] = 1;
+}
+
+static hl_status allocate_passes(sweep *sweep, hl_error *error) {
+  hl_context *context = sweep->context;
+  sweep_layers *layers = &sweep->layers;
+  size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->volume_count;
+  layers->passes = hl_allocate_zeroed(context, 2 * lights + 2, sizeof *layers->passes);
+  layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
+  layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
+  layers->white_patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->pool), sizeof *layers->white_patches);
+  layers->white = hl_allocate_zeroed(context, volumes, sizeof *layers->white);
+  layers->ones = hl_allocate(context, CLASSIFIER_ENTRIES + 2, sizeof *layers->ones);
+  if (layers->passes == NULL || layers->white_lights == NULL || layers->white_volumes == NULL ||
+      layers->white_patches == NULL || layers->white == NULL || layers->ones == NULL)
+    return hl_fail_memory(error, (CLASSIFIER_ENTRIES + 2) * sizeof *layers->ones, "the layers");
+  return HL_OK;
+}
+
+/* The sweep's shading of given lights, without ambient light. Null where the layer is not wanted. */
+static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
+  if (pixels == NULL) return NULL;
+  layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
+  *pass = (layer_pass){sweep->hot->shade_tile, sweep->shade, false, pixels, COLORS * TILE_PIXELS};
+  pass->job.lights = lights;
+  pass->job.light_count = light_count;
+  for (int c = 0; c < 3; c++) pass->job.ambient[c] = 0;
+  return pass;
+}
+
+hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
+  const layer_pixels *pixels = sweep->layer_pixels;
+  if (pixels == NULL || pixels->wanted == NULL) return HL_OK;
+  hl_status status = allocate_passes(sweep, error);
+  if (status != HL_OK) return status;
+  set_up_white_volumes(sweep);
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    const light_pixels *to = &pixels->lights[sweep->geometry->light[i]];
+    shade_light *white = &sweep->layers.white_lights[i];
+    (void)add_pass(sweep, to->picture, &sweep->shade_lights[i], 1);
+    set_up_white_light(&sweep->shade_lights[i], white);
+    layer_pass *shadow = add_pass(sweep, to->shadow, white, 1);
+    if (shadow != NULL) shadow->white = true;
+  }
+  layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
+  for (int c = 0; c < 3 && ambient != NULL; c++) ambient->job.ambient[c] = sweep->shade.ambient[c];
+  layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
+  if (measures != NULL) {
+    measures->shade = sweep->hot->measure_tile;
+    measures->tile_floats = MEASURES * TILE_PIXELS;
+  }
+  return HL_OK;
+}
+
+void hl_sweep_layers_end(sweep *sweep) {
+  sweep_layers *layers = &sweep->layers;
+  void *owned[] = {layers->passes, layers->white_lights, layers->white_volumes, layers->white_patches, layers->white,
+                   layers->ones};
+  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
+}
+
+void hl_sweep_layers_sheet(sweep *sweep) {
+  sweep_layers *layers = &sweep->layers;
+  for (int i = 0; i < layers->pass_count; i++) {
+    layers->passes[i].job.rays = sweep->shade.rays;
+    layers->passes[i].job.height = sweep->shade.height;
+  }
+}
+
+/* The tile's patches, of the white volumes. */
+static const shade_patch *white_patches(const sweep *sweep, const shade_patch *patches, int patch_count, int worker) {
+  shade_patch *white = sweep->layers.white_patches + (size_t)worker * (size_t)sweep->volume_count;
+  for (int i = 0; i < patch_count; i++) {
+    white[i] = patches[i];
+    white[i].volume = &sweep->layers.white_volumes[patches[i].volume - sweep->shade_volumes];
+  }
+  return white;
+}
+
+void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks,
+                          int worker, void *scratch) {
+  int tile_x = (int)(tile % (size_t)sweep->tiles_x), tile_y = (int)(tile / (size_t)sweep->tiles_x);
+  if (sweep->layers.pass_count == 0) return;
+  const shade_patch *white = white_patches(sweep, patches, patch_count, worker);
+  for (int i = 0; i < sweep->layers.pass_count; i++) {
+    const layer_pass *pass = &sweep->layers.passes[i];
+    uint64_t samples = 0; /* the picture's own are the ones that count */
+    (void)pass->shade(&pass->job, pass->white ? white : patches, patch_count, tile_x, tile_y, blocks, scratch,
+                      pass->pixels + tile * pass->tile_floats, &samples);
+  }
+}
+
+/* ---- the caller's buffers ---- */
+
+/* Where one value of a pixel of the frame is. */
+static const float *value_at(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value) {
+  size_t tile = (size_t)(row / TILE) * grid->tiles_x + (size_t)(column / TILE);
+  size_t block = (size_t)(row % TILE / BLOCK * 4 + column % TILE / BLOCK);
+  size_t lane = (size_t)(row % BLOCK * 4 + column % BLOCK);
+  return pixels + ((tile * TILE_BLOCKS + block) * (size_t)floats + (size_t)value) * BLOCK_PIXELS + lane;
+}
+
+/* One of the picture's pixels: sum of a value over its pixels in the frame, those where it is infinite left out; how many
+ * were added, if asked. */
+static float sum_of(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value, int *count) {
+  int side = grid->oversampling;
+  float sum = 0;
+  for (int y = row * side; y < (row + 1) * side; y++)
+    for (int x = column * side; x < (column + 1) * side; x++) {
+      float one = *value_at(grid, pixels, floats, x, y, value);
+      if (!(one < INFINITY)) continue;
+      sum += one;
+      if (count != NULL) ++*count;
+    }
+  return sum;
+}
+
+/* Three channels, premultiplied as they are; or divided by alpha, 0 where that is 0. */
+static void write_colors(const layer_grid *grid, const float *pixels, bool divide, float *to) {
+  float area = (float)(grid->oversampling * grid->oversampling);
+  for (int row = 0; row < grid->height; row++)
+    for (int column = 0; column < grid->width; column++) {
+      float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3, NULL) : area;
+      for (int c = 0; c < 3; c++)
+        *to++ = alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0;
+    }
+}
+
+static void write_measures(const layer_grid *grid, const float *pixels, const hl_layers *to) {
+  for (int row = 0; row < grid->height; row++)
+    for (int column = 0; column < grid->width; column++) {
+      size_t at = (size_t)row * (size_t)grid->width + (size_t)column;
+      int hits = 0;
+      float first = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH_FIRST, &hits);
+      float alpha = sum_of(grid, pixels, MEASURES, column, row, MEASURE_ALPHA, NULL);
+      float depth = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH, NULL);
+      if (to->depth_first != NULL) to->depth_first[at] = hits > 0 ? first / (float)hits : INFINITY;
+      if (to->depth_mean != NULL) to->depth_mean[at] = alpha > 0 ? depth / alpha : INFINITY;
+      for (int c = 0; c < 3 && to->normal != NULL; c++) {
+        float normal = sum_of(grid, pixels, MEASURES, column, row, MEASURE_NORMAL + c, NULL);
+        to->normal[3 * at + (size_t)c] = alpha > 0 ? normal / alpha : 0;
+      }
+    }
+}
+
+void hl_layer_pixels_write(const layer_pixels *pixels, const layer_grid *grid) {
+  const hl_layers *to = pixels->wanted;
+  if (to == NULL) return;
+  if (to->ambient != NULL) write_colors(grid, pixels->ambient, false, to->ambient);
+  if (hl_layers_measure(to)) write_measures(grid, pixels->measures, to);
+  for (size_t i = 0; i < to->light_count; i++) {
+    if (to->lights[i].picture != NULL) write_colors(grid, pixels->lights[i].picture, false, to->lights[i].picture);
+    if (to->lights[i].shadow != NULL) write_colors(grid, pixels->lights[i].shadow, true, to->lights[i].shadow);
+  }
+}

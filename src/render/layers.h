@@ -1,0 +1,65 @@
+/* render/layers.h - layers: the sweep's own shading, asked once more for each of them.
+ *
+ * A light's picture is what the sweep would show with this light alone and no ambient light; its shadow is the picture
+ * of white volumes without surfaces under that light in white. Both are made by the same function from the same
+ * sheets, tile by tile after the picture's own; without layers nothing of this runs. Depth and normals are measured
+ * from a sweep that goes front to back for the eye. */
+#ifndef HL_RENDER_LAYERS_H
+#define HL_RENDER_LAYERS_H
+
+#include <halflight/layers.h>
+
+#include "render/frame.h"
+#include "simd/hot.h"
+
+/* Pixels of the frame's layers, in blocks as the picture's: [tiles][16][floats a pixel][16]. Null: not wanted. */
+typedef struct light_pixels {
+  float *picture, *shadow; /* R G B A */
+} light_pixels;
+
+typedef struct layer_pixels {
+  const hl_layers *wanted; /* the caller's; null: none */
+  float *ambient;          /* R G B A */
+  float *measures;         /* MEASURES */
+  light_pixels *lights;    /* owned; [light_count] */
+  size_t light_count;
+} layer_pixels;
+
+/* One more shading of the sweep's tiles. */
+typedef struct layer_pass {
+  shade_tile_function *shade;
+  shade_job job;           /* the sweep's, but for lights and ambient light */
+  bool white;              /* of white volumes */
+  float *pixels;
+  size_t tile_floats;
+} layer_pass;
+
+typedef struct sweep_layers {
+  layer_pass *passes;          /* owned; [pass_count] */
+  int pass_count;
+  shade_light *white_lights;   /* owned; [light_count of the sweep] */
+  shade_volume *white_volumes; /* owned; [volume_count] */
+  shade_patch *white_patches;  /* owned; [threads][volume_count] */
+  classifier *white;           /* owned; [volume_count]; borrowed tables but for the colours */
+  float (*ones)[4];            /* owned; a colour table */
+} sweep_layers;
+
+/* Allocates what is wanted of a frame of so many tiles. */
+hl_status hl_layer_pixels_create(hl_context *context, const hl_layers *wanted, size_t light_count, size_t tiles,
+                                 layer_pixels *pixels, hl_error *error);
+void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
+
+/* True where depth or normals are wanted: some sweep must then go front to back. */
+bool hl_layers_measure(const hl_layers *wanted);
+
+/* Which pixels of the frame are averaged for one of the picture's. */
+typedef struct layer_grid {
+  int width, height;   /* of the picture */
+  int oversampling;
+  size_t tiles_x;
+} layer_grid;
+
+/* Fills the caller's buffers. */
+void hl_layer_pixels_write(const layer_pixels *pixels, const layer_grid *grid);
+
+#endif

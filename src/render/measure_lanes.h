@@ -1,0 +1,71 @@
+/* render/measure_lanes.h - depth and normals of what the eye sees, a 4x4 block at a time. */
+#ifndef HL_RENDER_MEASURE_LANES_H
+#define HL_RENDER_MEASURE_LANES_H
+
+#include "render/shade_lanes.h"
+
+/* Alpha from which on a ray has met something (halflight/layers.h). */
+static const float FIRST_OPACITY = 0.01f;
+
+/* Mean of the volumes' normals, weighted by extinction and by how much of a surface they are. */
+LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities, uint32_t seen) {
+  lanes inverse = 1.0f / lanes_max(slab->total, lanes_set(1e-30f));
+  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int i = 0; i < slab->count; i++) {
+    const block_density *d = &densities[i];
+    const shade_volume *volume = d->patch->volume;
+    if (!volume->visible || !volume->phong) continue;
+    lanes surface;
+    lanes3 normal = normal_of(volume, slope_of_block(&slab->geometry, d, seen), d->middle, &surface);
+    sum = add3(sum, scale3(normal, d->extinction * inverse * surface));
+  }
+  return sum;
+}
+
+/* Distance along the eye's rays. */
+LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3 position) {
+  lanes3 way = add3(position, scale3(set3(job->eye), lanes_set(-1.0f)));
+  return -dot3(way, slab->geometry.towards_eye);
+}
+
+/* Where alpha reaches FIRST_OPACITY, in the lanes in which it does so in this slab (derived): the part u of the slab's
+ * optical depth e at which (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
+LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities, lanes before,
+                             lanes after, float *first) {
+  lanes_int crossed = (before < FIRST_OPACITY) & (after >= FIRST_OPACITY);
+  if (lanes_bits(crossed) == 0) return;
+  lanes missing = lanes_log2((1.0f - before) * (1.0f / (1.0f - FIRST_OPACITY))) * 0.69314718056f;
+  lanes u = lanes_clamp(missing / lanes_max(slab->depth, lanes_set(1e-30f)), 0, 1);
+  lanes place = place_of_part(densities, slab->count, slab->total, u);
+  lanes3 position = add3(slab->geometry.start, scale3(slab->geometry.step_sheet, place));
+  lanes_store(first, lanes_select(crossed, depth_of(job, slab, position), lanes_load(first)));
+}
+
+static void measure_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
+                          int block, block_density *densities, float *pixels) {
+  block_slab slab;
+  float *alpha = pixels + MEASURE_ALPHA * BLOCK_PIXELS;
+  uint32_t seen = slab_of_block(job, patches, patch_count, tile_x, tile_y, block, alpha, densities, &slab);
+  if (seen == 0) return;
+  lanes before = lanes_load(alpha), weight = slab.opacity * (1.0f - before), after = before + weight;
+  lanes3 normal = normal_of_block(&slab, densities, seen);
+  const lanes sums[4] = {depth_of(job, &slab, slab.geometry.position), normal.x, normal.y, normal.z};
+  for (int i = 0; i < 4; i++) {
+    float *sum = pixels + (MEASURE_DEPTH + i) * BLOCK_PIXELS;
+    lanes_store(sum, lanes_load(sum) + lanes_keep(slab.seen, sums[i] * weight));
+  }
+  lanes_store(alpha, after);
+  mark_first(job, &slab, densities, before, after, pixels + MEASURE_DEPTH_FIRST * BLOCK_PIXELS);
+}
+
+static uint32_t measure_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
+                             uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
+  (void)samples;
+  for (uint32_t left = blocks; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    measure_block(job, patches, patch_count, tile_x, tile_y, block, scratch, pixels + block * MEASURES * BLOCK_PIXELS);
+  }
+  return blocks;
+}
+
+#endif

@@ -1,1 +1,0 @@
-halflight render --layers x.nrrd
