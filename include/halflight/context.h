@@ -73,6 +73,7 @@ typedef struct hl_context_options {
   int (*cancelled)(void *user_data);
   uint64_t memory_limit;                /* bytes held through this context at once; 0: no limit */
   hl_instruction_set instruction_set;   /* an unsupported choice is refused */
+  const char *data_folder;              /* where "data:" in a scene's file names leads; copied; null: nowhere */
 } hl_context_options;
 
 typedef struct hl_context hl_context; /* usable from several threads at once */

@@ -88,6 +88,12 @@ static uint64_t physical_memory(void) {
   return pages > 0 && page_bytes > 0 ? (uint64_t)pages * (uint64_t)page_bytes : 0;
 }
 
+/* Where the files are that scenes call "data:...". */
+static const char *choose_data_folder(const char *asked) {
+  const char *named = getenv("HALFLIGHT_DATA");
+  return asked != NULL ? asked : named != NULL && named[0] != '\0' ? named : "../shared/data";
+}
+
 int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
@@ -105,6 +111,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.cancelled = on_cancelled;
   context_options.memory_limit = options->memory_limit > 0 ? options->memory_limit : physical_memory();
   context_options.instruction_set = options->instruction_set;
+  context_options.data_folder = choose_data_folder(options->data_folder);
   hl_error error = {0};
   hl_status status = hl_context_create(&context_options, &host->context, &error);
   return status == HL_OK ? EXIT_CODE_OK : fail_with(PHASE_SETUP, status, &error);

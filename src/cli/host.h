@@ -22,6 +22,7 @@ typedef struct cli_host_options {
   const char *subject;
   uint64_t memory_limit; /* bytes; 0: the machine's memory */
   hl_instruction_set instruction_set;
+  const char *data_folder; /* null: HALFLIGHT_DATA, or ../shared/data */
 } cli_host_options;
 
 /* Makes the context and starts listening to SIGINT and SIGTERM. Returns the exit code. `host` must

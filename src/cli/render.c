@@ -37,6 +37,7 @@ static int job_open(render_job *job) {
                               .progress = true,
                               .subject = input_base_name(job->input),
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
+                              .data_folder = values[RENDER_DATA].text,
                               .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
   return host_open(&options, &job->host);
 }

@@ -49,9 +49,11 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   if (chosen.instruction_set > best)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "instruction set %s: this processor or build has at most %s",
                    hl_instruction_set_name(chosen.instruction_set), hl_instruction_set_name(best));
-  hl_context *made = chosen.allocate(chosen.user_data, sizeof *made, 64);
+  size_t folder_bytes = chosen.data_folder != NULL ? strlen(chosen.data_folder) + 1 : 0;
+  hl_context *made = chosen.allocate(chosen.user_data, sizeof *made + folder_bytes, 64);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a context");
   made->options = chosen;
+  if (folder_bytes > 0) made->options.data_folder = memcpy(made + 1, chosen.data_folder, folder_bytes);
   atomic_init(&made->held, 0);
   atomic_init(&made->peak, 0);
   *context = made;

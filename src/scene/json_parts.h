@@ -24,6 +24,7 @@ typedef struct hl_volume_shelf {
   hl_loaded_volume *loaded; /* owned; [count], with room for one more whenever a volume is read */
   size_t count;
   const json_t *groups;     /* of shapes; may be null */
+  json_t *stood_in;         /* owned; the volumes that were read with their stand-in's keys; null: none */
   int threads;              /* to sample shapes with; 0: one per processor */
 } hl_volume_shelf;
 

@@ -1,12 +1,25 @@
 /* scene/json_volume.c - one volume of a scene from JSON: its file, place, material and transfer function. */
 #include <string.h>
+#include <unistd.h>
 
+#include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/automatic.h"
 #include "scene/json_parts.h"
 #include "scene/json_shapes.h"
 #include "scene/scene.h"
+
+#define DATA_PREFIX "data:" /* of files that are in the context's data folder */
+
+static const char *const volume_keys[] = {"name",       "stand_in",
+                                          "file",       "shapes",
+                                          "voxel_size", "transform",
+                                          "shading",    "transfer_function",
+                                          "material",   "attenuation_color",
+                                          "visible",    "casts_shadow",
+                                          "clip",       "receives_shadow",
+                                          NULL};
 
 static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   static const char *const keys[] = {"axis", "angle_deg", NULL};
@@ -71,9 +84,20 @@ static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source
   return &shelf->loaded[shelf->count++];
 }
 
+static bool is_data(const char *file) { return strncmp(file, DATA_PREFIX, strlen(DATA_PREFIX)) == 0; }
+
+/* Where a file name leads: "data:" to the data folder, the rest from the scene's. Null without memory. */
+static char *path_of(const hl_json_reader *reader, const char *file) {
+  bool data = is_data(file);
+  return hl_path_join(reader->context, data ? reader->context->options.data_folder : reader->folder,
+                      data ? file + strlen(DATA_PREFIX) : file);
+}
+
 /* The volume of a file, loaded now or earlier. */
 static hl_status load(hl_json_reader *reader, const char *file, hl_volume_shelf *shelf, hl_scene_volume *volume) {
-  char *path = hl_path_join(reader->context, reader->folder, file);
+  if (is_data(file) && reader->context->options.data_folder == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "\"%.200s\": no data folder is known: name one", file);
+  char *path = path_of(reader, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
   const hl_loaded_volume *loaded = find_loaded(shelf, path);
   if (loaded != NULL) {
@@ -158,24 +182,46 @@ static hl_status read_shading(hl_json_reader *reader, const json_t *value, hl_sc
   return status;
 }
 
+static bool is_there(const hl_json_reader *reader, const char *file) {
+  if (is_data(file) && reader->context->options.data_folder == NULL) return false;
+  char *path = path_of(reader, file);
+  bool there = path == NULL || access(path, F_OK) == 0; /* without memory, loading tells */
+  hl_release(reader->context, path);
+  return there;
+}
+
+/* Where the volume's file is absent, *value becomes the volume with the keys of its stand-in, kept on the shelf. */
+static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
+  const json_t *stand_in = json_object_get(*value, "stand_in");
+  const char *file = NULL;
+  if (stand_in == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "stand_in");
+  hl_status status = hl_json_object(reader, stand_in, volume_keys + 2); /* it has no name and no stand-in */
+  if (status != HL_OK) return status;
+  hl_json_leave(reader, mark);
+  if ((status = hl_json_text(reader, *value, "file", &file)) != HL_OK) return status;
+  if (file == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "stand_in", "is for a file that may be absent: name one, or remove it");
+  if (is_there(reader, file)) return HL_OK;
+  json_t *merged = json_copy((json_t *)*value);
+  json_object_del(merged, "stand_in");
+  json_object_del(merged, "file");
+  if (shelf->stood_in == NULL) shelf->stood_in = json_array();
+  bool failed = json_object_update(merged, (json_t *)stand_in) != 0;
+  if (json_array_append_new(shelf->stood_in, merged) != 0 || failed)
+    return hl_fail_memory(reader->error, 1000, "a stand-in");
+  const char *folder = reader->context->options.data_folder;
+  hl_log(reader->context, HL_LOG_WARNING, "%s: %s/file: %s is not there%s%s: its stand-in is shown", reader->name,
+         reader->place, file, folder != NULL ? ", the data folder is " : "", folder != NULL ? folder : "");
+  *value = merged;
+  return HL_OK;
+}
+
 hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
                               hl_scene_volume *volume) {
-  static const char *const keys[] = {"name",
-                                     "file",
-                                     "shapes",
-                                     "voxel_size",
-                                     "transform",
-                                     "transfer_function",
-                                     "shading",
-                                     "material",
-                                     "attenuation_color",
-                                     "visible",
-                                     "casts_shadow",
-                                     "receives_shadow",
-                                     "clip",
-                                     NULL};
   hl_scene_volume_defaults(volume);
-  hl_status status = hl_json_object(reader, value, keys);
+  hl_status status = hl_json_object(reader, value, volume_keys);
+  if (status == HL_OK) status = choose_stand_in(reader, &value, shelf);
   if (status == HL_OK) status = hl_json_text(reader, value, "name", &volume->name);
   if (status == HL_OK) status = read_transform(reader, json_object_get(value, "transform"), volume);
   if (status == HL_OK) status = read_material(reader, json_object_get(value, "material"), &volume->material);

@@ -30,6 +30,7 @@ static void release(hl_context *context, gathered *g) {
     hl_release(context, g->shelf.loaded[v].source);
   }
   hl_release(context, g->shelf.loaded);
+  json_decref(g->shelf.stood_in);
   hl_release(context, g->volumes);
   for (size_t l = 0; g->lights != NULL && l < g->description.light_count; l++) {
     hl_release(context, (void *)g->lights[l].vertices);
