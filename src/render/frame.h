@@ -27,6 +27,7 @@ typedef struct frame {
   vec3 middle;             /* of the content */
   double pixel;            /* edge of an image pixel where the content is nearest, frame units */
   double middle_pixel;     /* the same at the content's middle */
+  double voxel;            /* the smallest edge of a voxel, world units */
   double spacing;          /* ds, world units */
   vec3 *points;            /* corners of the content of all grids; owned by the caller; [8 * grids] */
   int point_count;

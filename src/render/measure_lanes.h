@@ -8,7 +8,7 @@
 static const float FIRST_OPACITY = 0.01f;
 
 /* Mean of the volumes' normals, weighted by extinction and by how much of a surface they are. */
-LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities, uint32_t seen) {
+LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities) {
   lanes inverse = 1.0f / lanes_max(slab->total, lanes_set(1e-30f));
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int i = 0; i < slab->count; i++) {
@@ -16,7 +16,7 @@ LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density 
     const shade_volume *volume = d->patch->volume;
     if (!volume->visible || !volume->phong) continue;
     lanes surface;
-    lanes3 normal = normal_of(volume, slope_of_block(&slab->geometry, d, seen), d->middle, &surface);
+    lanes3 normal = normal_of(volume, slope_of_block(d), d->middle, &surface);
     sum = add3(sum, scale3(normal, d->extinction * inverse * surface));
   }
   return sum;
@@ -45,10 +45,9 @@ static void measure_block(const shade_job *job, const shade_patch *patches, int 
                           int block, block_density *densities, float *pixels) {
   block_slab slab;
   float *alpha = pixels + MEASURE_ALPHA * BLOCK_PIXELS;
-  uint32_t seen = slab_of_block(job, patches, patch_count, tile_x, tile_y, block, alpha, densities, &slab);
-  if (seen == 0) return;
+  if (slab_of_block(job, patches, patch_count, tile_x, tile_y, block, alpha, densities, &slab) == 0) return;
   lanes before = lanes_load(alpha), weight = slab.opacity * (1.0f - before), after = before + weight;
-  lanes3 normal = normal_of_block(&slab, densities, seen);
+  lanes3 normal = normal_of_block(&slab, densities);
   const lanes sums[4] = {depth_of(job, &slab, slab.geometry.position), normal.x, normal.y, normal.z};
   for (int i = 0; i < 4; i++) {
     float *sum = pixels + (MEASURE_DEPTH + i) * BLOCK_PIXELS;

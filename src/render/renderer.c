@@ -222,7 +222,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   if (status != HL_OK) return status;
   for (size_t i = 0; i < scene->volume_count; i++)
     if (frame->eye.perspective && inside_box(&work->grids[i], frame->eye.origin)) work->grids[i].cut = true;
-  frame->spacing = scene->render.sheet_spacing * smallest_edge(renderer);
+  frame->voxel = smallest_edge(renderer);
+  frame->spacing = scene->render.sheet_spacing * frame->voxel;
   frame->light_count = (int)scene->light_count;
   for (size_t i = 0; i < scene->light_count; i++) {
     frame->lights[i] = hl_light_source(&scene->lights[i], &scene->render, frame->centre, frame->middle);

@@ -65,7 +65,7 @@ typedef struct shade_job {
 /* Shades the tile's blocks that are open and have density. patches: of the volumes with density in the tile. pixels:
  * [16 blocks][R G B A][16]. Returns the blocks that are still open: some pixel not yet opaque. samples is raised by
  * the pixels composited. scratch: SHADE_SCRATCH_BYTES a patch, aligned to 64. */
-enum { SHADE_SCRATCH_BYTES = 1024 };
+enum { SHADE_SCRATCH_BYTES = 1536 };
 typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
                                      int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples);
 

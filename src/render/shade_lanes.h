@@ -104,7 +104,13 @@ typedef struct block_density {
   way_sums sums; /* between the two */
   covered_part part;
   lanes seen; /* the part of the way from before to after at which its matter is seen */
+  lanes evenly; /* the part at which it would be seen if its extinction were even */
+  int sloped; /* whether the gradient is known, where the matter is seen */
+  lanes3 slope;
 } block_density;
+
+/* In thinner slabs the gradient makes no difference to the light lost within. */
+static const float THIN_DEPTH = 1.0f / 64;
 
 _Static_assert(sizeof(block_density) <= SHADE_SCRATCH_BYTES, "a volume's scratch holds its block");
 
@@ -133,6 +139,21 @@ LANES_INLINE lanes way_in_box(const shade_volume *volume, lanes3 point, lanes3 t
  * way is what lies both in the slab and in the box. */
 typedef struct light_depths { lanes before[HL_CHANNELS], within[HL_CHANNELS]; } light_depths;
 
+/* Even extinction of the light's way through the slab that has the right optical depth down to what is seen of a volume
+ * (derived). The eye's ray may run along a surface that the light's crosses: a way s before the point seen, the
+ * density is f - s g.l to first order, g the gradient, which gives the mean extinction up to there; and where
+ * extinction were even, the eye would see another place of the slab: the depths there must agree. */
+LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, lanes way) {
+  const classifier *classifier = d->patch->volume->classifier;
+  if (!d->sloped) return d->undivided;
+  lanes late = lanes_min(d->seen / lanes_max(d->evenly, lanes_set(1e-3f)), lanes_set(4.0f));
+  lanes seen = d->before.x + (d->after.x - d->before.x) * d->seen;
+  lanes start = seen + dot3(d->slope, towards) * (way * classifier->scale);
+  way_sums sums = sums_of_way(classifier, place_of_coordinate(lanes_clamp(start, 0, CLASSIFIER_ENTRIES)),
+                              place_of_coordinate(seen));
+  return late * sums.extinction;
+}
+
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geometry *g, const block_density *densities,
                                           int count, lanes3 towards, lanes path) {
   light_depths depths;
@@ -147,9 +168,10 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geom
       first = lanes_min(first, way_in_box(volume, start, towards));
       last = lanes_max(lanes_min(last, way_in_box(volume, end, towards)), first);
     }
+    lanes extinction = extinction_towards(d, towards, first + (last - first) * d->seen);
     for (int c = 0; c < job->channels; c++) {
-      depths.before[c] = depths.before[c] + d->undivided * volume->cast[c] * first;
-      depths.within[c] = depths.within[c] + d->undivided * volume->cast[c] * (last - first);
+      depths.before[c] = depths.before[c] + extinction * volume->cast[c] * first;
+      depths.within[c] = depths.within[c] + extinction * volume->cast[c] * (last - first);
     }
   }
   return depths;
@@ -292,6 +314,7 @@ LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes tota
     block_density *d = &densities[i];
     const shade_volume *volume = d->patch->volume;
     d->seen = lanes_set(0.5f);
+    d->evenly = u;
     if (!volume->visible) continue;
     lanes m = part_of_way(d->before, d->after, mean_place(d->before, d->after, &d->sums));
     lanes_int rising = m >= 0.5f;
@@ -304,15 +327,30 @@ LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes tota
 }
 
 /* A volume's gradient where its matter is seen; 0 for a medium. */
-LANES_INLINE lanes3 slope_of_block(const block_geometry *g, const block_density *d, uint32_t seen) {
-  uint32_t here = seen & lanes_bits(d->extinction > 0.0f);
-  if (!d->patch->volume->phong || here == 0) return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
-  return gradient(d->patch->volume, add3(g->start, scale3(g->step_sheet, d->part.begin + d->part.length * d->seen)), here);
+LANES_INLINE lanes3 slope_of_block(const block_density *d) {
+  if (d->patch->volume->phong && d->sloped) return d->slope;
+  return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
+}
+
+/* Step 12 where shading asks for it: surfaces, and dense slabs whose light must be told from the eye's way. */
+LANES_INLINE void find_slopes(const shade_job *job, const block_geometry *g, block_density *densities, int count,
+                              uint32_t seen) {
+  int shadowed = 0;
+  for (int i = 0; i < job->light_count; i++) shadowed |= job->lights[i].shadowed;
+  for (int i = 0; i < count; i++) {
+    block_density *d = &densities[i];
+    const shade_volume *volume = d->patch->volume;
+    uint32_t active = volume->visible ? seen & lanes_bits(d->extinction > 0.0f) : 0;
+    uint32_t dense = shadowed ? active & lanes_bits(d->extinction * g->path > THIN_DEPTH) : 0;
+    d->sloped = (volume->phong ? active : dense) != 0;
+    if (d->sloped)
+      d->slope = gradient(volume, add3(g->start, scale3(g->step_sheet, d->part.begin + d->part.length * d->seen)), active);
+  }
 }
 
 /* Colours of the volumes, lit and averaged weighted by extinction. */
 static color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
-                                  const block_density *densities, int count, lanes total, uint32_t seen) {
+                                  const block_density *densities, int count, lanes total) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
   for (int i = 0; i < count; i++) {
@@ -322,7 +360,7 @@ static color_lanes color_of_block(const shade_job *job, const block_geometry *g,
     table_place place = place_of_coordinate(d.before.x + (d.after.x - d.before.x) * d.seen);
     color_lanes color;
     table_values(volume->classifier->color, place, color.c);
-    color_lanes lit = illuminate(job, volume, g, lights, color, slope_of_block(g, &d, seen), d.middle);
+    color_lanes lit = illuminate(job, volume, g, lights, color, slope_of_block(&d), d.middle);
     lanes weight = count == 1 ? lanes_set(1.0f) : d.extinction * inverse;
     for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
   }
@@ -365,6 +403,7 @@ LANES_INLINE uint32_t slab_of_block(const shade_job *job, const shade_patch *pat
   lanes seen_at = place_of_part(densities, count, total, u);
   g->start = add3(g->position, scale3(g->step_sheet, lanes_set(-0.5f)));
   g->position = add3(g->start, scale3(g->step_sheet, seen_at));
+  find_slopes(job, g, densities, count, bits);
   return bits;
 }
 
@@ -378,7 +417,7 @@ static int shade_block(const shade_job *job, const shade_patch *patches, int pat
   arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
   for (int i = 0; i < job->light_count; i++)
     lights[i] = light_at(job, &job->lights[i], &slab.geometry, slab.depth, densities, slab.count);
-  color_lanes lit = color_of_block(job, &slab.geometry, lights, densities, slab.count, slab.total, bits);
+  color_lanes lit = color_of_block(job, &slab.geometry, lights, densities, slab.count, slab.total);
   for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(slab.seen, lit.c[c]);
   lanes alpha = composite(job->back_to_front, slab.opacity, lit, pixels);
   *samples += (uint64_t)__builtin_popcount(bits);

@@ -2,6 +2,8 @@
 #include "core/memory.h"
 #include "render/sweep.h"
 
+/* Surfaces along the light are resolved by pixels of half a voxel: coarser pixels show as stripes on them. */
+static const double GREATEST_SHADOW_PIXEL = 0.5;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
@@ -45,7 +47,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   vec3 plane_normal = soft ? sweep->geometry->sheets.normal : source->direction;
   size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
   /* hard edges must hold at the nearest matter; soft ones are wider than a pixel where it matters */
-  double pixel = soft ? sweep->frame->middle_pixel : sweep->frame->pixel;
+  double pixel = fmin(soft ? sweep->frame->middle_pixel : sweep->frame->pixel, GREATEST_SHADOW_PIXEL * sweep->frame->voxel);
   shadow_extent extent = {points, hl_frame_visible_points(sweep->frame, points), pixel,
                           sweep->scene->render.shadow_resolution,
                           greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
