@@ -52,20 +52,21 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
 }
 
 static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_functions *hot,
-                                const hl_scene_volume *scene, affine3 index_to_frame, prepared_volume *prepared,
-                                hl_error *error) {
+                                const hl_scene_volume *scene, hl_kernel kernel, affine3 index_to_frame,
+                                prepared_volume *prepared, hl_error *error) {
   hl_status status = HL_OK;
   double empty = hl_scene_volume_empty_value(scene);
-  bool same_voxels = prepared->volume == scene->volume && prepared->empty == empty && same_clip(prepared, scene);
+  bool same_voxels = prepared->volume == scene->volume && prepared->kernel == kernel && prepared->empty == empty && same_clip(prepared, scene);
   bool same = same_voxels && same_function(&prepared->function, &scene->transfer_function);
   if (!same_voxels) {
     hl_prepared_release(context, prepared);
-    status = hl_grid_create(context, pool, hot->bound_rows[scene->volume->storage], scene, index_to_frame, empty,
+    status = hl_grid_create(context, pool, &hot->bound, hl_kernel_get(kernel), scene, index_to_frame, empty,
                             &prepared->grid, error);
     if (status != HL_OK) return status;
     hl_volume_retain(scene->volume);
     prepared->volume = scene->volume;
     prepared->empty = empty;
+    prepared->kernel = kernel;
   }
   prepared->scene = scene;
   prepared->grid.index_to_frame = index_to_frame;
@@ -85,7 +86,7 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
   for (size_t i = 0; i < scene->volume_count; i++) {
     affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
     placement.offset = vec3_subtract(placement.offset, centre);
-    hl_status status = prepare_volume(context, pool, hot, &scene->volumes[i], placement, &prepared[i], error);
+    hl_status status = prepare_volume(context, pool, hot, &scene->volumes[i], scene->render.kernel, placement, &prepared[i], error);
     if (status != HL_OK) {
       hl_prepared_release(context, &prepared[i]);
       return status;

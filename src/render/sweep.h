@@ -18,6 +18,7 @@ typedef struct prepared_volume {
   grid grid;
   classifier classifier;
   double empty;                   /* data value */
+  hl_kernel kernel;               /* that the grid's cells are bounded for */
   hl_transfer_function function;  /* points owned; what the classifier was made of */
   double clip[6];
   int clipped;

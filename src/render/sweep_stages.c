@@ -175,7 +175,7 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
     int count = 0;
     if (sweep->lights[i].buffer != NULL) {
       count = list_tiles(&sweep->lights[i].sheets.occupancy, sheet, sweep->tasks + sweep->task_start[i]);
-      if (count > 0) reach_sheet(sweep, i, sheet);
+      reach_sheet(sweep, i, sheet);
     }
     sweep->task_start[i + 1] = sweep->task_start[i] + count;
   }

@@ -1,7 +1,5 @@
 /* render/view_sheets.c - what one view, the eye's or a light's, sees of the last sheets: where, in what order, and the
  * densities of patches, filled when they are asked for and kept for the next slab. */
-#include <string.h>
-
 #include "core/memory.h"
 #include "render/sweep.h"
 #include "splat/voxel_sort.h"
@@ -106,22 +104,18 @@ static kept_patch *patch_on_sheet(const sweep *sweep, view_sheets *sheets, size_
   return kept;
 }
 
-/* Fills what is missing of the wanted blocks; returns the pixels filled. Blocks that do not matter are empty. */
+/* Fills what is missing of the wanted blocks; returns the pixels filled. A slab next to what matters runs from it to the
+ * density on its other sheet: so that is filled too. */
 static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, kept_patch *kept,
                            uint32_t wanted) {
   const occupancy *o = &sheets->occupancy;
-  uint32_t missing = wanted & ~(uint32_t)kept->need, filled = 0;
+  uint32_t missing = wanted & ~(uint32_t)kept->need;
   if (missing == 0) return 0;
   int slot = kept->sheet % RING;
-  float *density = sheets->density + (patch * RING + (size_t)slot) * TILE_PIXELS;
-  for (uint32_t left = missing & ~(uint32_t)kept->relevant; left != 0; left &= left - 1)
-    memset(density + __builtin_ctz(left) * BLOCK_PIXELS, 0, BLOCK_PIXELS * sizeof(float));
-  if ((missing & kept->relevant) != 0) {
-    const fill_source *source = &sheets->sources[slot * sweep->volume_count + (int)o->patch_grid[patch]];
-    fill_tile_function *fill = sweep->splat ? sweep->hot->splat_tile : sweep->hot->gather_tile;
-    filled = fill(source, (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x), missing & kept->relevant,
-                  density);
-  }
+  const fill_source *source = &sheets->sources[slot * sweep->volume_count + (int)o->patch_grid[patch]];
+  fill_tile_function *fill = sweep->splat ? sweep->hot->splat_tile : sweep->hot->gather_tile;
+  uint32_t filled = fill(source, (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x), missing,
+                         sheets->density + (patch * RING + (size_t)slot) * TILE_PIXELS);
   kept->need = (uint16_t)(kept->need | missing);
   kept->blocks = (uint16_t)(kept->blocks | filled);
   return (uint64_t)__builtin_popcount(filled) * BLOCK_PIXELS;

@@ -6,11 +6,12 @@
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
+#include "splat/cell_bounds_lanes.h"
 #include "splat/relevant_lanes.h"
 #include "splat/splat_lanes.h"
 
 const hot_functions HL_HOT_TABLE = {
-    .bound_rows = {bound_rows_u8, bound_rows_u16, bound_rows_f32},
+    .bound = {{bound_rows_u8, bound_rows_u16, bound_rows_f32}, bound_along, bound_across},
     .relevant_blocks_tile = relevant_blocks_tile,
     .splat_tile = splat_tile,
     .gather_tile = gather_tile,

@@ -14,7 +14,7 @@
 #include "splat/fill.h"
 
 typedef struct hot_functions {
-  bound_rows_function *bound_rows[3]; /* by hl_storage */
+  bound_functions bound;
   relevant_blocks_function *relevant_blocks_tile;
   fill_tile_function *splat_tile, *gather_tile;
   coverage_tile_function *coverage_tile;

@@ -89,16 +89,9 @@ static hl_status bound_bricks(hl_context *context, hl_pool *pool, bound_rows_fun
   grid->brick_maximum = hl_allocate(context, bricks, sizeof(float));
   grid->relevant = hl_allocate_zeroed(context, bricks + 4, 1); /* read four bytes at a time */
   grid->relevant_list = hl_allocate(context, bricks, sizeof(uint32_t));
-  size_t near = 1;
-  for (int axis = 0; axis < 3; axis++) {
-    grid->near_count[axis] = grid->dimension[axis] / HL_NEAR_CELLS + 1;
-    near *= (size_t)grid->near_count[axis];
-  }
-  bool numbered = near < INT32_MAX;
-  if (numbered) grid->near = hl_allocate(context, near + 4, 1);
   float *columns = hl_allocate(context, column_count, sizeof(float));
   if (grid->brick_minimum == NULL || grid->brick_maximum == NULL || grid->relevant == NULL ||
-      grid->relevant_list == NULL || columns == NULL || (numbered && grid->near == NULL)) {
+      grid->relevant_list == NULL || columns == NULL) {
     hl_release(context, columns);
     return hl_fail_memory(error, bricks * 9 + column_count * sizeof(float), "the bricks of a volume");
   }
@@ -108,7 +101,16 @@ static hl_status bound_bricks(hl_context *context, hl_pool *pool, bound_rows_fun
   return HL_OK;
 }
 
-hl_status hl_grid_create(hl_context *context, hl_pool *pool, bound_rows_function *bound_rows,
+/* The range that cells' bounds are steps of: of all stored values, empty included. */
+static void set_cell_range(const hl_volume *volume, grid *grid) {
+  float a = (float)((volume->minimum - volume->value_offset) / volume->value_scale);
+  float b = (float)((volume->maximum - volume->value_offset) / volume->value_scale);
+  float low = fminf(fminf(a, b), grid->empty), high = fmaxf(fmaxf(a, b), grid->empty);
+  grid->cell_base = grid->storage == HL_STORAGE_U8 ? 0 : low;
+  grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? (high - low) / 255 : 1;
+}
+
+hl_status hl_grid_create(hl_context *context, hl_pool *pool, const bound_functions *functions, const kernel *kernel,
                          const hl_scene_volume *scene_volume, affine3 index_to_frame, double empty, grid *grid,
                          hl_error *error) {
   const hl_volume *volume = scene_volume->volume;
@@ -128,7 +130,10 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, bound_rows_function
   }
   hl_status status = HL_OK;
   if (volume->nonfinite_count > 0) status = replace_nonfinite(context, volume, grid, error);
-  if (status == HL_OK) status = bound_bricks(context, pool, bound_rows, grid, error);
+  if (status == HL_OK) status = bound_bricks(context, pool, functions->rows[grid->storage], grid, error);
+  set_cell_range(volume, grid);
+  if (status == HL_OK)
+    status = hl_cell_bounds_build(context, pool, functions->along, functions->across, kernel->degree == 3, grid, error);
   if (status != HL_OK) hl_grid_release(context, grid);
   return status;
 }
@@ -137,6 +142,9 @@ void hl_grid_release(hl_context *context, grid *grid) {
   hl_release(context, grid->brick_minimum);
   hl_release(context, grid->brick_maximum);
   hl_release(context, grid->relevant);
+  hl_release(context, grid->cell_low);
+  hl_release(context, grid->cell_high);
+  hl_release(context, grid->visible);
   hl_release(context, grid->near);
   hl_release(context, grid->relevant_list);
   hl_release(context, grid->finite_voxels);
@@ -170,55 +178,6 @@ static void mark_slab(void *data, size_t index, int worker) {
                                                                               grid->brick_maximum[at]);
 }
 
-/* Bricks that reach within margin cells of the near cells' place f, along an axis. */
-static void bricks_about(int32_t f, int32_t margin, int32_t count, int32_t *first, int32_t *last) {
-  int32_t low = f * HL_NEAR_CELLS - margin, high = (f + 1) * HL_NEAR_CELLS - 1 + margin;
-  *first = low < 0 ? 0 : low / HL_BRICK_CELLS;
-  *last = high / HL_BRICK_CELLS < count ? high / HL_BRICK_CELLS : count - 1;
-}
-
-enum { ROWS_ABOUT = 9 }; /* at most three bricks along two axes */
-
-/* The rows of bricks about a row of near cells that hold something. */
-static int rows_about(const grid *grid, const int32_t f[3], int32_t margin, const unsigned char *rows[ROWS_ABOUT]) {
-  int32_t first[3], last[3];
-  int count = 0;
-  size_t width = (size_t)grid->brick_count[0];
-  for (int axis = 1; axis < 3; axis++) bricks_about(f[axis], margin, grid->brick_count[axis], &first[axis], &last[axis]);
-  for (int32_t z = first[2]; z <= last[2]; z++)
-    for (int32_t y = first[1]; y <= last[1]; y++) {
-      const unsigned char *row = grid->relevant + ((size_t)z * (size_t)grid->brick_count[1] + (size_t)y) * width;
-      if (memchr(row, 1, width) != NULL) rows[count++] = row;
-    }
-  return count;
-}
-
-/* One row of near cells at one distance, into its bit. */
-static void mark_near_row(const grid *grid, const int32_t f[3], int32_t margin, unsigned char bit, unsigned char *to) {
-  const unsigned char *rows[ROWS_ABOUT];
-  int count = rows_about(grid, f, margin, rows);
-  for (int32_t x = 0; count > 0 && x < grid->near_count[0]; x++) {
-    int32_t first, last;
-    unsigned char any = 0;
-    bricks_about(x, margin, grid->brick_count[0], &first, &last);
-    for (int row = 0; row < count; row++) any |= rows[row][first] | rows[row][(first + last) / 2] | rows[row][last];
-    if (any) to[x] |= bit;
-  }
-}
-
-static void mark_near_slab(void *data, size_t index, int worker) {
-  (void)worker;
-  const grid *grid = data;
-  int32_t f[3] = {0, 0, (int32_t)index};
-  size_t width = (size_t)grid->near_count[0];
-  for (f[1] = 0; f[1] < grid->near_count[1]; f[1]++) {
-    unsigned char *to = grid->near + (index * (size_t)grid->near_count[1] + (size_t)f[1]) * width;
-    memset(to, 0, width);
-    mark_near_row(grid, f, HL_NEAR_CELLS, NEAR_CLOSE, to);
-    mark_near_row(grid, f, 2 * HL_NEAR_CELLS, NEAR_FAR, to);
-  }
-}
-
 /* Voxels of the volume that brick b owns along one axis, so that every voxel has one owner. */
 static int voxels_along(int32_t b, int32_t count) {
   int32_t first = b * HL_BRICK_CELLS, last = first + HL_BRICK_CELLS;
@@ -238,7 +197,7 @@ static bool brick_reaches_faces(const grid *grid, const int32_t b[3]) {
 void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *pool) {
   mark_job job = {grid, classifier};
   hl_pool_run(pool, (size_t)grid->brick_count[2], mark_slab, &job);
-  if (grid->near != NULL) hl_pool_run(pool, (size_t)grid->near_count[2], mark_near_slab, grid);
+  hl_cells_mark_near(grid, classifier, pool);
   grid->kept_voxels = 0;
   grid->relevant_count = 0;
   grid->cut = false;

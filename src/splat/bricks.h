@@ -2,14 +2,20 @@
 #ifndef HL_SPLAT_BRICKS_H
 #define HL_SPLAT_BRICKS_H
 
-#include "splat/classify.h"
+#include "splat/cell_bounds.h"
 
 /* Rows of stored values reduced to their elementwise bounds; count values. One per storage type, chosen
  * per instruction set (see simd/hot.h). rows: row_count pointers. */
 typedef void bound_rows_function(const void *const *rows, int row_count, size_t count, float *least, float *greatest);
 
-/* volume: kept alive by the caller. to_frame: index space to frame space. empty: data value. */
-hl_status hl_grid_create(hl_context *context, hl_pool *pool, bound_rows_function *bound_rows,
+typedef struct bound_functions {
+  bound_rows_function *rows[3]; /* by hl_storage */
+  bound_along_function *along;
+  bound_across_function *across;
+} bound_functions;
+
+/* volume: kept alive by the caller. kernel: cells are bounded for it. to_frame: index space to frame space. empty: data value. */
+hl_status hl_grid_create(hl_context *context, hl_pool *pool, const bound_functions *functions, const kernel *kernel,
                          const hl_scene_volume *volume, affine3 index_to_frame, double empty, grid *grid,
                          hl_error *error);
 void hl_grid_release(hl_context *context, grid *grid);

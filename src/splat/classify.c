@@ -96,11 +96,15 @@ void hl_classifier_release(hl_context *context, classifier *classifier) {
   *classifier = (struct classifier){0};
 }
 
-bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high) {
-  float a = (fminf(low, grid->empty) - grid->empty) * classifier->scale + classifier->offset;
-  float b = (fmaxf(high, grid->empty) - grid->empty) * classifier->scale + classifier->offset;
+bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high) {
+  float a = (low - grid->empty) * classifier->scale + classifier->offset;
+  float b = (high - grid->empty) * classifier->scale + classifier->offset;
   float least = fminf(a, b), greatest = fmaxf(a, b);
-  int32_t first = least <= 0 ? 0 : (int32_t)least;
-  int32_t last = greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1 : (int32_t)greatest + 1;
-  return classifier->next_visible[first > CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : first] <= last;
+  int32_t first = least <= 0 ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
+  int32_t last = greatest <= 0 ? 1 : greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1 : (int32_t)greatest + 1;
+  return classifier->next_visible[first] <= last;
+}
+
+bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high) {
+  return hl_classifier_span_visible(classifier, grid, fminf(low, grid->empty), fmaxf(high, grid->empty));
 }

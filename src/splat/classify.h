@@ -25,6 +25,8 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
                                classifier *classifier, hl_error *error);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
+/* True if some stored value in [low, high] is visible. */
+bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high);
 /* True if some stored value in [low, high], or between them and empty, is visible. */
 bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high);
 

@@ -20,7 +20,7 @@ enum {
   GRID_MARGIN = 4 /* voxels outside its box that a grid still continues, for slabs across its faces */
 };
 
-/* How far a relevant brick is from some cells: within as many more cells on every side. */
+/* How far something visible is from some cells: within as many more cells on every side. */
 enum { NEAR_CLOSE = 1 /* HL_NEAR_CELLS */, NEAR_FAR = 2 /* twice as far */ };
 
 typedef struct grid {
@@ -35,8 +35,11 @@ typedef struct grid {
   float *brick_minimum, *brick_maximum; /* owned; [bricks z][y][x]; stored units, over the voxels that the
                                            brick's cells and their neighbours depend on */
   unsigned char *relevant;     /* owned; [bricks z][y][x]; 1 where the volume can matter */
-  unsigned char *near;         /* owned; [near_count z][y][x], of 2x2x2 cells each; NEAR_ bits; null where 32 bits cannot
-                                  number them */
+  unsigned char *cell_low, *cell_high; /* owned; [near_count z][y][x]; bounds in every 2x2x2 cells: cell_base +
+                                          cell_step * value; null where 32 bits cannot number them */
+  float cell_base, cell_step;  /* stored units */
+  unsigned char *visible;      /* owned; [same]; 1 where the transfer function shows something */
+  unsigned char *near;         /* owned; [same]; NEAR_ bits */
   int32_t near_count[3];
   uint32_t *relevant_list;     /* owned; [relevant_count]; indices of the relevant bricks, rising */
   uint32_t relevant_count;

@@ -52,7 +52,7 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
   bench->color = (hl_color_point){0, {1, 1, 1}};
   bench->scene.transfer_function = (hl_transfer_function){1, &bench->opacity, 1, &bench->color, 1};
   affine3 placement = {axes, vec3_scale(middle, -1)};
-  require(hl_grid_create(bench->context, bench->pool, hl_hot_scalar.bound_rows[storage], &bench->scene, placement,
+  require(hl_grid_create(bench->context, bench->pool, &hl_hot_scalar.bound, hl_kernel_get(HL_KERNEL_BSPLINE), &bench->scene, placement,
                          hl_scene_volume_empty_value(&bench->scene), &bench->grid, &error), &error);
   require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error), &error);
   hl_grid_mark_relevant(&bench->grid, &bench->classifier, bench->pool);

@@ -110,7 +110,7 @@ typedef struct bound_state {
 
 static void call_bound_rows(const hot_functions *hot, void *state) {
   bound_state *s = state;
-  hot->bound_rows[s->storage](s->rows, s->row_count, s->count, s->out[0], s->out[1]);
+  hot->bound.rows[s->storage](s->rows, s->row_count, s->count, s->out[0], s->out[1]);
 }
 
 static void test_bound_rows(void **unused) {
@@ -129,18 +129,50 @@ static void test_bound_rows(void **unused) {
     }
 }
 
+typedef struct cells_state {
+  hl_storage storage;
+  float row[600], padded[606];
+  const float *low[CELL_TAPS], *high[CELL_TAPS];
+  int count, smooth;
+  float out[4][304];
+} cells_state;
+
+static void call_bound_cells(const hot_functions *hot, void *state) {
+  cells_state *s = state;
+  hot->bound.along(s->storage, s->row, s->count, s->smooth, s->padded, s->out[0], s->out[1]);
+  hot->bound.across(s->low, s->high, (size_t)s->count / 2, s->smooth, s->out[2], s->out[3]);
+}
+
+static void test_bound_cells(void **unused) {
+  (void)unused;
+  static float data[CELL_TAPS][600];
+  static cells_state state;
+  uint32_t seed = 4;
+  for (int round = 0; round < 3 * ROUNDS; round++) {
+    state.storage = (hl_storage)(round % 3);
+    state.count = round < 3 ? 600 : 1 + (int)(599 * bench_random(&seed));
+    state.smooth = round / 3 % 2 == 0;
+    fill_salted(state.row, 600, &seed, -5, 5);
+    fill_salted(&data[0][0], CELL_TAPS * 600, &seed, -5, 5);
+    for (int tap = 0; tap < CELL_TAPS; tap++) state.low[tap] = state.high[tap] = data[tap];
+    trial trial = {call_bound_cells, &state, state.out, sizeof state.out};
+    try_it("bound_cells", &trial, round);
+  }
+}
+
 /* ---- filling ---- */
 
 typedef struct fill_state {
   fill_source source;
   int gather, tile_x, tile_y;
   uint32_t need;
-  struct { float density[TILE_PIXELS]; uint32_t filled; } out;
+  struct { float density[TILE_PIXELS]; uint32_t filled, relevant; } out;
 } fill_state;
 
 static void call_fill(const hot_functions *hot, void *state) {
   fill_state *s = state;
   fill_tile_function *fill = s->gather ? hot->gather_tile : hot->splat_tile;
+  s->out.relevant = hot->relevant_blocks_tile(&s->source, s->tile_x, s->tile_y);
   s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->out.density);
 }
 
@@ -446,7 +478,7 @@ int main(int argc, char **argv) {
     return 0;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_bound_cells), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
       cmocka_unit_test(test_light),      cmocka_unit_test(test_fields), cmocka_unit_test(test_shade),
   };
   return cmocka_run_group_tests_name("simd_equal", tests, open_classifier, close_classifier);

@@ -157,6 +157,89 @@ static void test_other_blocks_are_left_alone(void **state) {
   bench_close(&bench);
 }
 
+/* ---- what cells can reach, and which blocks matter ---- */
+
+enum { NOISE_SIDE = 14 };
+
+static void fill_noise(uint8_t *voxels, uint32_t seed) {
+  for (int i = 0; i < NOISE_SIDE * NOISE_SIDE * NOISE_SIDE; i++) voxels[i] = (uint8_t)(256 * bench_random(&seed));
+}
+
+static int32_t cell_pair(const grid *grid, double at, int axis) {
+  double held = fmax(-1, fmin(at, grid->dimension[axis] * (1 - 1e-6)));
+  return ((int32_t)floor(held) + 1) / HL_NEAR_CELLS;
+}
+
+/* Every density lies between its cell's bounds, and these are far tighter than the range of the voxels. */
+static void test_cells_bound_the_reconstruction(void **state) {
+  (void)state;
+  static uint8_t voxels[NOISE_SIDE * NOISE_SIDE * NOISE_SIDE];
+  static float sheet[SIDE][SIDE];
+  fill_noise(voxels, 71);
+  bench bench;
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, oblique_axes());
+  const grid *grid = &bench.grid;
+  uint32_t seed = 5;
+  double width = 0;
+  long checked = 0;
+  for (int round = 0; round < ORIENTATIONS; round++) {
+    look_at_random(&bench, &seed, round, 0.3, HL_KERNEL_BSPLINE);
+    fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, round % bench.sheets.count);
+    fill_sheet(&source, hl_hot_scalar.gather_tile, sheet);
+    for (int y = 0; y < SIDE; y++)
+      for (int x = 0; x < SIDE; x++) {
+        vec3 p = bench_position(&bench, round % bench.sheets.count, x, y);
+        if (!inside(&bench, p, 0.001)) continue;
+        size_t at = ((size_t)cell_pair(grid, p.z, 2) * (size_t)grid->near_count[1] + (size_t)cell_pair(grid, p.y, 1)) *
+                        (size_t)grid->near_count[0] + (size_t)cell_pair(grid, p.x, 0);
+        double value = (double)sheet[y][x] + (double)grid->empty;
+        assert_true(value >= grid->cell_low[at] - 1e-3 && value <= grid->cell_high[at] + 1e-3);
+        width += grid->cell_high[at] - grid->cell_low[at];
+        checked++;
+      }
+  }
+  assert_true(checked > 10000);
+  if (!(width / (double)checked < 180)) fail_msg("bounds are %g apart", width / (double)checked);
+  bench_close(&bench);
+}
+
+/* No pixel that shows something lies outside the blocks that are said to matter. */
+static void test_relevant_blocks_miss_nothing(void **state) {
+  (void)state;
+  static const hl_opacity_point ramp[] = {{168, 0}, {170, 0.9}};
+  static uint8_t voxels[NOISE_SIDE * NOISE_SIDE * NOISE_SIDE];
+  static float sheet[SIDE][SIDE];
+  fill_noise(voxels, 72);
+  bench bench;
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, oblique_axes());
+  hl_classifier_release(bench.context, &bench.classifier);
+  bench.scene.transfer_function.opacity = ramp;
+  bench.scene.transfer_function.opacity_count = 2;
+  assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL), HL_OK);
+  hl_grid_mark_relevant(&bench.grid, &bench.classifier, bench.pool);
+  uint32_t seed = 6;
+  long shown = 0, left_out = 0;
+  static const double pixels[] = {0.05, 0.2, 0.45, 1};
+  for (int round = 0; round < 2 * ORIENTATIONS; round++) {
+    look_at_random(&bench, &seed, round, pixels[round % 4], HL_KERNEL_BSPLINE);
+    fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, round % bench.sheets.count);
+    fill_sheet(&source, hl_hot_scalar.gather_tile, sheet);
+    for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
+      uint32_t relevant = hl_hot_scalar.relevant_blocks_tile(&source, tile % SIDE_TILES, tile / SIDE_TILES);
+      left_out += 16 - __builtin_popcount(relevant);
+      for (int i = 0; i < TILE_PIXELS; i++) {
+        int x = tile % SIDE_TILES * TILE + i % TILE, y = tile / SIDE_TILES * TILE + i / TILE;
+        vec3 p = bench_position(&bench, round % bench.sheets.count, x, y);
+        if (!inside(&bench, p, 0.001) || sheet[y][x] + bench.grid.empty < 168.1f) continue;
+        shown++;
+        assert_true(relevant >> (y % TILE / BLOCK * 4 + x % TILE / BLOCK) & 1);
+      }
+    }
+  }
+  assert_true(shown > 1000 && left_out > 1000);
+  bench_close(&bench);
+}
+
 /* ---- kernels and views ---- */
 
 static void test_kernels_sum_to_one(void **state) {
@@ -209,6 +292,8 @@ int main(void) {
       cmocka_unit_test(test_ramp_is_exact),
       cmocka_unit_test(test_splat_equals_gather),
       cmocka_unit_test(test_other_blocks_are_left_alone),
+      cmocka_unit_test(test_cells_bound_the_reconstruction),
+      cmocka_unit_test(test_relevant_blocks_miss_nothing),
       cmocka_unit_test(test_kernels_sum_to_one),
       cmocka_unit_test(test_projection_inverts_rays),
   };
