@@ -27,8 +27,6 @@ typedef struct attenuate_job {
   int channels;                  /* 1: attenuation is grey; 3 */
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
   size_t stride;
-  float *also[HL_CHANNELS];      /* a second place that is multiplied by the same; null: none */
-  size_t also_stride;
 } attenuate_job;
 
 /* Multiplies the tile's transmittance by exp(-sum of extinction * path) where volumes have density; returns which of

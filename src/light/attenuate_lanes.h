@@ -72,9 +72,6 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;
     lanes passing = lanes_exp_negative(depth[c] * path);
     lanes_store_block(at, job->stride, lanes_load_block(at, job->stride) * passing);
-    if (job->also[c] == NULL) continue;
-    at = job->also[c] + (size_t)y * job->also_stride + x;
-    lanes_store_block(at, job->also_stride, lanes_load_block(at, job->also_stride) * passing);
   }
 }
 

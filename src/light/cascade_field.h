@@ -1,35 +1,36 @@
-/* light/cascade_field.h - tile operations on the fields of a cascade: products, halving, doubling. */
+/* light/cascade_field.h - tile operations on the fields of a cascade: sums, halving, doubling. */
 #ifndef HL_LIGHT_CASCADE_FIELD_H
 #define HL_LIGHT_CASCADE_FIELD_H
 
 #include "light/blur.h"
 
-/* A field's pixels: pixel (0,0); rows stride apart; ones all around it. */
+/* A field's pixels: pixel (0,0); rows stride apart; zeros all around it. */
 typedef struct field_job {
   const float *a, *b; /* inputs; b may be coarser or finer, as the function says */
   float *to;
   size_t stride_in, stride; /* of b and of the rest where they differ */
 } field_job;
 
-/* to = a * b, all of one resolution (stride). */
 typedef void field_tile_function(const field_job *job, int tile_x, int tile_y);
 
-/* to = a * (from blurred along rows, then along columns), in one pass over memory; a null: 1. */
-typedef struct blur_multiply_job {
+/* to = a + (from blurred along rows, then along columns), in one pass over memory; a null: 0. */
+typedef struct blur_add_job {
   const float *from, *a; /* pixel (0,0); rows stride apart */
-  float *to;             /* rows stride_to apart */
-  size_t stride, stride_to;
+  float *to;
+  size_t stride;
   blur_box u, v;         /* reach below BLUR_GREATEST_REACH */
-} blur_multiply_job;
+} blur_add_job;
 enum { BLUR_GREATEST_REACH = 46 };
-typedef void blur_multiply_tile_function(const blur_multiply_job *job, int tile_x, int tile_y);
+typedef void blur_add_tile_function(const blur_add_job *job, int tile_x, int tile_y);
 
 typedef struct cascade_functions {
   lit_blocks_function *lit_blocks;
-  blur_multiply_tile_function *blur_multiply;
-  field_tile_function *multiply;       /* to = a * b */
-  field_tile_function *multiply_half;  /* to (stride) = mean over 2x2 pixels of a * b (stride_in) */
-  field_tile_function *multiply_double; /* to = a * (b of half the resolution, stride_in, bilinear) */
+  blur_add_tile_function *blur_add;
+  field_tile_function *add;        /* to = a + b */
+  field_tile_function *add_half;   /* to (stride) = mean over 2x2 pixels of a + b (stride_in) */
+  field_tile_function *add_double; /* to = a + (b of half the resolution, stride_in, bilinear) */
+  field_tile_function *left;       /* to = 1 - a, from 0 to 1; rows of to stride_in apart */
+  field_tile_function *absorbed;   /* to = what left has of a - b, at least 0; rows of b stride_in apart */
 } cascade_functions;
 
 #endif

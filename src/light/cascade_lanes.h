@@ -5,38 +5,37 @@
 #include "light/blur_lanes.h"
 #include "light/cascade_field.h"
 
-static void blur_multiply_tile(const blur_multiply_job *job, int tile_x, int tile_y) {
+static void blur_add_tile(const blur_add_job *job, int tile_x, int tile_y) {
   _Alignas(64) float rows[(TILE + 2 * BLUR_GREATEST_REACH) * TILE];
   int apron = job->v.reach + 1;
   const float *from = job->from + (ptrdiff_t)(tile_y * TILE - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
   for (int row = 0; row < TILE + 2 * apron; row++, from += job->stride)
     lanes_store(rows + row * TILE, blur_sixteen(from, 1, &job->u));
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
-  float *to = job->to + (size_t)tile_y * TILE * job->stride_to + (size_t)tile_x * TILE;
-  for (int row = 0; row < TILE; row++, at += job->stride, to += job->stride_to) {
+  for (int row = 0; row < TILE; row++, at += job->stride) {
     lanes blurred = blur_sixteen(rows + (row + apron) * TILE, TILE, &job->v);
-    lanes_store(to, job->a == NULL ? blurred : blurred * lanes_load(job->a + at));
+    lanes_store(job->to + at, job->a == NULL ? blurred : blurred + lanes_load(job->a + at));
   }
 }
 
-static void multiply_tile(const field_job *job, int tile_x, int tile_y) {
+static void add_tile(const field_job *job, int tile_x, int tile_y) {
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
   for (int row = 0; row < TILE; row++, at += job->stride)
-    lanes_store(job->to + at, lanes_load(job->a + at) * lanes_load(job->b + at));
+    lanes_store(job->to + at, lanes_load(job->a + at) + lanes_load(job->b + at));
 }
 
-static void multiply_half_tile(const field_job *job, int tile_x, int tile_y) {
+static void add_half_tile(const field_job *job, int tile_x, int tile_y) {
   for (int row = 0; row < TILE; row++) {
     size_t from = (size_t)(tile_y * TILE + row) * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
     float *to = job->to + (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
     const float *a = job->a + from, *b = job->b + from, *c = a + job->stride_in, *d = b + job->stride_in;
     for (int i = 0; i < TILE; i++)
-      to[i] = 0.25f * ((a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1]) + (c[2 * i] * d[2 * i] + c[2 * i + 1] * d[2 * i + 1]));
+      to[i] = 0.25f * (((a[2 * i] + b[2 * i]) + (a[2 * i + 1] + b[2 * i + 1])) + ((c[2 * i] + d[2 * i]) + (c[2 * i + 1] + d[2 * i + 1])));
   }
 }
 
 /* Pixel 2i lies a quarter of a coarse pixel before coarse pixel i's centre, pixel 2i+1 a quarter after. */
-static void multiply_double_tile(const field_job *job, int tile_x, int tile_y) {
+static void add_double_tile(const field_job *job, int tile_x, int tile_y) {
   for (int row = 0; row < TILE; row++) {
     int y = tile_y * TILE + row;
     const float *near = job->b + (ptrdiff_t)(y / 2) * (ptrdiff_t)job->stride_in + tile_x * TILE / 2;
@@ -45,9 +44,24 @@ static void multiply_double_tile(const field_job *job, int tile_x, int tile_y) {
     float coarse[TILE / 2 + 2];
     for (int i = 0; i < TILE / 2 + 2; i++) coarse[i] = 0.75f * near[i - 1] + 0.25f * far[i - 1];
     for (int i = 0; i < TILE / 2; i++) {
-      job->to[at + 2 * (size_t)i] = job->a[at + 2 * (size_t)i] * (0.75f * coarse[i + 1] + 0.25f * coarse[i]);
-      job->to[at + 2 * (size_t)i + 1] = job->a[at + 2 * (size_t)i + 1] * (0.75f * coarse[i + 1] + 0.25f * coarse[i + 2]);
+      job->to[at + 2 * (size_t)i] = job->a[at + 2 * (size_t)i] + (0.75f * coarse[i + 1] + 0.25f * coarse[i]);
+      job->to[at + 2 * (size_t)i + 1] = job->a[at + 2 * (size_t)i + 1] + (0.75f * coarse[i + 1] + 0.25f * coarse[i + 2]);
     }
+  }
+}
+
+static void left_tile(const field_job *job, int tile_x, int tile_y) {
+  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++)
+    lanes_store(job->to + (size_t)row * job->stride_in + (size_t)tile_x * TILE,
+                lanes_clamp(1.0f - lanes_load(job->a + (size_t)row * job->stride + (size_t)tile_x * TILE), 0, 1.0f));
+}
+
+static void absorbed_tile(const field_job *job, int tile_x, int tile_y) {
+  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
+    size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
+    lanes left = lanes_clamp(1.0f - lanes_load(job->a + at), 0, 1.0f);
+    lanes now = lanes_load(job->b + (size_t)row * job->stride_in + (size_t)tile_x * TILE);
+    lanes_store(job->to + at, lanes_max(left - now, lanes_set(0)));
   }
 }
 

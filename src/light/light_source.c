@@ -3,8 +3,10 @@
 
 #include "scene/light_shape.h"
 
+static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }
+
 light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 centre, vec3 content) {
-  light_source source = {.parallel = light->type == HL_LIGHT_DIRECTIONAL, .light = light};
+  light_source source = {.parallel = light->type == HL_LIGHT_DIRECTIONAL, .content = content, .light = light};
   source.shadows = light->shadows == HL_SHADOWS_DEFAULT ? settings->shadows : light->shadows;
   source.soft_method = settings->soft_method;
   source.screen_center = vec3_subtract(vec3_of(light->texture.screen_center), centre);
@@ -12,16 +14,13 @@ light_source hl_light_source(const hl_light *light, const hl_render_settings *se
   source.screen_up = vec3_of(light->texture.screen_up);
   if (source.parallel) {
     source.direction = vec3_normalise(vec3_of(light->direction));
-    source.size = 2 * tan(light->angular_diameter_deg * HL_PI / 360);
   } else {
     source.position = vec3_subtract(hl_light_centre(light), centre);
     vec3 way = vec3_subtract(light->texture.pixels != NULL ? source.screen_center : content, source.position);
     if (light->type == HL_LIGHT_SPOT) way = vec3_of(light->direction);
     source.direction = vec3_length(way) > 0 ? vec3_normalise(way) : (vec3){0, 0, 1};
-    mat3 spread = hl_light_spread(light, vec3_scale(source.direction, -1));
-    /* a disk of diameter D spreads D^2 / 16 along both its axes: the one that spreads as much in all */
-    source.size = 4 * sqrt((spread.row[0].x + spread.row[1].y + spread.row[2].z) / 2);
   }
-  if (source.shadows == HL_SHADOWS_SOFT && !(source.size > 0)) source.shadows = HL_SHADOWS_HARD;
+  source.spread = hl_light_spread(light, source.direction);
+  if (source.shadows == HL_SHADOWS_SOFT && !(trace(source.spread) > 0)) source.shadows = HL_SHADOWS_HARD;
   return source;
 }

@@ -11,7 +11,8 @@ typedef struct light_source {
   vec3 direction;  /* unit, the way light travels: parallel, a spot light's axis, or from the
                       light's centre to its screen's or the content's */
   vec3 position;   /* of the light's centre, unless parallel; frame space */
-  double size;     /* parallel: diameter of the disk of directions, 2 tan(angle / 2); else the light's diameter */
+  vec3 content;    /* the middle of what is lit; frame space */
+  mat3 spread;     /* mean of x x' over the light, from its centre; parallel: over the directions, at distance 1 */
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
   const hl_light *light;

@@ -10,13 +10,13 @@
 static const double WIDEST = 6;
 enum { GREATEST_SIDE = 8192, BORDER_PIXELS = 2 };
 
-static void bound_points(const view *unit, const light_source *source, const shadow_extent *extent, double low[2],
+static void bound_points(const view *unit, const light_source *source, const vec3 *points, int count, double low[2],
                          double high[2]) {
   low[0] = low[1] = INFINITY;
   high[0] = high[1] = -INFINITY;
-  for (int i = 0; i < extent->point_count; i++) {
+  for (int i = 0; i < count; i++) {
     double uv[2];
-    bool in_front = hl_view_project(unit, extent->points[i], uv);
+    bool in_front = hl_view_project(unit, points[i], uv);
     for (int axis = 0; axis < 2; axis++) {
       if (!in_front) { /* beside or behind a light near the volume: as wide as the buffer goes */
         low[axis] = -WIDEST;
@@ -32,6 +32,19 @@ static void bound_points(const view *unit, const light_source *source, const sha
     low[axis] = fmax(low[axis], -WIDEST);
     high[axis] = fmin(high[axis], WIDEST);
     if (!(high[axis] > low[axis])) high[axis] = low[axis] + 1e-3;
+  }
+}
+
+/* What is to be lit, and around it what casts penumbrae onto it, as far as there is anything. */
+static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent, double low[2],
+                         double high[2]) {
+  double content_low[2], content_high[2];
+  bound_points(unit, source, extent->points, extent->point_count, low, high);
+  if (!(extent->margin > 0)) return;
+  bound_points(unit, source, extent->content, extent->content_count, content_low, content_high);
+  for (int axis = 0; axis < 2; axis++) {
+    low[axis] = fmin(low[axis], fmax(low[axis] - extent->margin, content_low[axis]));
+    high[axis] = fmax(high[axis], fmin(high[axis] + extent->margin, content_high[axis]));
   }
 }
 
@@ -53,9 +66,9 @@ static double pixel_edge(const light_source *source, vec3 normal, const shadow_e
 
 void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view) {
   double low[2], high[2], size[2];
-  /* u runs along the light's tilt against the plane, where penumbrae are longer */
   vec3 tilt = vec3_subtract(source->direction, vec3_scale(plane_normal, vec3_dot(source->direction, plane_normal)));
   vec3 u = vec3_length(tilt) > 1e-3 ? vec3_normalise(tilt) : vec3_perpendicular(plane_normal);
+  if (vec3_length(extent->u) > 0) u = extent->u;
   vec3 v = vec3_cross(plane_normal, u), zero = {0, 0, 0};
   view->perspective = !source->parallel;
   view->origin = source->position;
@@ -64,11 +77,11 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
   view->du = u;
   view->dv = v;
   hl_view_finish(view);
-  bound_points(view, source, extent, low, high);
+  bound_buffer(view, source, extent, low, high);
   hl_lit_region(view, source, low, high);
   for (int axis = 0; axis < 2; axis++) size[axis] = fmax(high[axis] - low[axis], 1e-9);
   double pixel = pixel_edge(source, plane_normal, extent, size);
-  double margin = BORDER_PIXELS * pixel + extent->margin;
+  double margin = BORDER_PIXELS * pixel;
   view->width = (int)ceil((size[0] + 2 * margin) / pixel);
   view->height = (int)ceil((size[1] + 2 * margin) / pixel);
   if (view->width > GREATEST_SIDE) view->width = GREATEST_SIDE;

@@ -34,7 +34,10 @@ typedef struct shadow_extent {
   double pixel;                 /* wanted edge of a pixel at the volume, frame units */
   int resolution;               /* pixels along the longer side; 0: by pixel */
   size_t greatest_pixels;       /* limit of width * height */
-  double margin;                /* frame units around the points, for penumbrae; parallel lights */
+  double margin;                /* around the points, for penumbrae: frame units; at distance 1 where not parallel */
+  const vec3 *content;          /* corners of all there is: the margin ends there; frame space */
+  int content_count;
+  vec3 u;                       /* unit: along the buffer's rows; zero: along the light's tilt */
 } shadow_extent;
 
 /* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */

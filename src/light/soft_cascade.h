@@ -1,36 +1,43 @@
 /* light/soft_cascade.h - soft shadows whose penumbrae have the right width (beyond the paper).
  *
  * Seen from the light's centre on a plane parallel to the sheets, an occluder at o and a receiver at r blur each other
- * by a width that is a difference, w = omega(r) - omega(o): these widths add from sheet to sheet, but under
- * convolution variances do. So the occluding slabs are kept in groups of doubling thickness, the nearest thin, the
- * farthest thick. The light that passes is found from the farthest group on: multiply, blur by the variance
- * (w(o -> r)^2 - w(o' -> r)^2) / 12 on the way to the next group o', and so on; the variances telescope, and every
- * group ends with the variance of its own penumbra. Far groups are kept coarser (what passed them is blurred wide) and
- * renewed more rarely (their widths change slowly).
+ * by a width that is a difference, w = omega(r) - omega(o). What a receiver lacks is what every slab before it took of the
+ * light that reached that slab: T(r) = 1 - sum over o of T(o) (1 - t(o)), blurred by w. Each slab's share is counted where
+ * light first meets it, so that thick occluders darken once, and sums may be blurred together: the slabs are kept in
+ * groups of doubling thickness, the nearest thin, the farthest thick, and from the farthest group o on the sum is blurred
+ * by the variance (w(o)^2 - w(o')^2) / 12 on the way to the next group o'. The variances telescope, and every group ends
+ * with the variance of its own penumbra. Far groups are kept coarser (what is left of them is blurred wide) and renewed
+ * more rarely (their widths change slowly).
  *
- * omega: parallel light  (L / D) z / cos(t), the disk of directions on the sheets' plane; point light -L / Z.
- * Along the light's tilt t the disk is 1 / cos(t) longer. */
+ * omega: parallel light  (L / D) z, the disk of directions on a plane parallel to the sheets; else -L / Z. The buffer's
+ * axes are those of the light as the sheets see it, and each has its own part of the width. */
 #ifndef HL_LIGHT_SOFT_CASCADE_H
 #define HL_LIGHT_SOFT_CASCADE_H
 
 #include "core/pool.h"
 #include "light/cascade_field.h"
+#include "light/light_extent.h"
 #include "light/shadow_buffer.h"
 
-enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_MARGIN = 48 };
+/* CASCADE_REACH: pixels beyond a tile that the buffer must hold, so that its rows are as long as level 0's. */
+enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_MARGIN = 48, CASCADE_REACH = CASCADE_MARGIN - TILE - 1 };
 
-/* Transmittance over the pixels of a level, ones around them. */
+/* Absorbed light over the pixels of a level, zeros around them. */
 typedef struct cascade_field {
   float *pixels;       /* pixel (0,0); in the level's memory */
-  unsigned char *ones; /* [tiles]; 1 where the tile is all ones: work skips it; in the level's flags */
+  unsigned char *zeros; /* [tiles]; 1 where the tile is all zeros: work skips it; in the level's flags */
 } cascade_field;
 
-/* The product of some neighbouring slabs. */
+/* What some neighbouring slabs absorbed. */
 typedef struct cascade_group {
-  cascade_field transmittance[HL_CHANNELS];
-  double omega;                      /* mean over its slabs, pixels of the buffer */
-  double weight;                     /* slabs */
+  cascade_field absorbed[HL_CHANNELS];
+  double omega;                      /* mean over its matter, pixels of the buffer */
+  double weight;                     /* of matter */
+  bool empty;                        /* all zeros */
 } cascade_group;
+
+/* A column or row of tiles: the part of the greatest variance that it has, and the box of the blur now done. */
+typedef struct cascade_box { double part; blur_box box; } cascade_box;
 
 typedef struct cascade_level {
   int scale;                         /* buffer pixels a pixel of this level */
@@ -38,10 +45,13 @@ typedef struct cascade_level {
   size_t stride, plane, origin;
   cascade_group group[CASCADE_GROUPS]; /* oldest first */
   int count;
-  cascade_field passed[2][HL_CHANNELS]; /* what passed all groups up to one of this level, for a recent receiver */
-  int newest;                        /* which of passed is the newest group's */
-  bool renewed;                      /* passed is to be found anew */
+  cascade_field sum[2][HL_CHANNELS]; /* of all groups up to one of this level, for a recent receiver */
+  int newest;                        /* which of sum is the newest group's */
+  bool filled;                       /* some group of this level is in sum; else see the next farther level */
+  double sum_omega;               /* of the newest group in sum */
+  bool renewed;                      /* sum is to be found anew */
   cascade_field scratch;
+  cascade_box *boxes;                /* owned; [tiles_x], then [tiles_y] */
   float *memory;                     /* owned */
   unsigned char *flags;              /* owned */
 } cascade_level;
@@ -50,24 +60,27 @@ typedef struct soft_cascade {
   bool parallel;
   double rate;          /* parallel: omega per height; else L in units of a pixel at distance 1 */
   double light_height;
-  double stretch;       /* of the penumbra along the buffer's u axis */
+  double widest;        /* of the light's widths along the buffer's axes */
+  double least_part;    /* the other of them, as a part of it */
   double chunk;         /* omega of a chunk of slabs, pixels */
   double chunk_start;   /* omega */
-  double chunk_weight, chunk_sum; /* slabs in it; sum of their omega */
+  double chunk_weight, chunk_sum; /* its matter; sum of that times omega */
   uint64_t chunks;      /* finished */
   int channels;
   int level_count;      /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
-  cascade_field current[HL_CHANNELS]; /* the chunk's transmittance, on level 0; who multiplies a tile clears its ones */
+  cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0 */
+  unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs met light */
 } soft_cascade;
 
 /* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. */
-hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, const light_source *source, vec3 normal,
+hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, const sheet_light *light, vec3 normal,
                                 double first, double last, double pixel, shadow_buffer *buffer, hl_error *error);
 void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade);
 
-/* After the slab between these heights was composited into the buffer and into current. */
-void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, double from, double to, hl_pool *pool,
-                             const cascade_functions *functions);
+/* After the slab between these heights was composited into the buffer. matter: how much there was, say
+ * blocks of pixels. */
+void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, double from, double to, double matter,
+                             hl_pool *pool, const cascade_functions *functions);
 
 #endif

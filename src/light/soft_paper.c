@@ -1,16 +1,18 @@
 /* light/soft_paper.c - the convolution of the accumulated shadow buffer. */
 #include "light/soft_paper.h"
 
+#include "light/light_extent.h"
+
 #include <string.h>
 
 /* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets (section 5.2,
- * (1)); a disk of diameter L tilted by t becomes an ellipse with axes L and L cos t, whose average size (section 5.2,
- * (3)) we take as their mean. Z is measured along the sheets' normal; for parallel light L / Z then is (L / D) / cos t
- * with L / D = 2 tan(angle / 2) along the ray (derived). */
+ * (1)), of average size (section 5.2, (3)): a disk of diameter L tilted by t becomes an ellipse with axes L and L cos t.
+ * Z is measured along the sheets' normal; for parallel light L / Z then is (L / D) / cos t with L / D = 2 tan(angle / 2)
+ * along the ray (derived). */
 void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first, double pixel) {
   double tilt = fmax(vec3_dot(source->direction, normal), 1e-3);
   soft->parallel = source->parallel;
-  soft->size = source->size * (1 + tilt) / 2;
+  soft->size = hl_light_average_size(source, normal);
   if (source->parallel) soft->size /= tilt;
   soft->light_height = vec3_dot(source->position, normal);
   soft->pixel = pixel;

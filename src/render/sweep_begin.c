@@ -1,5 +1,6 @@
 /* render/sweep_begin.c - steps 1 to 4: views, sorting, memory, full light. */
 #include "core/memory.h"
+#include "light/light_extent.h"
 #include "render/sweep.h"
 
 /* Surfaces along the light are resolved by pixels of half a voxel: coarser pixels show as stripes on them. */
@@ -28,12 +29,42 @@ static void open_blocks(sweep *sweep) {
   }
 }
 
-/* Penumbrae reach beyond what casts them: the greatest width a parallel light can give in this sweep. */
-static double penumbra_margin(const sweep *sweep, const light_source *source) {
-  if (source->shadows != HL_SHADOWS_SOFT || !source->parallel) return 0;
-  double tilt = fmax(vec3_dot(source->direction, sweep->geometry->sheets.normal), 0.1);
-  double depth = sweep->geometry->sheets.spacing * sweep->geometry->sheets.count;
-  return 0.5 * source->size * depth / (tilt * tilt);
+/* Penumbrae reach beyond what casts them by half their width, blurs in several steps further: the widest of this sweep, in
+ * the soft buffer's units. */
+static double penumbra_margin(const sweep *sweep, const light_source *source, const sheet_light *seen) {
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  double width = fmax(seen->width_u, seen->width_v), depth = sheets->spacing * sheets->count;
+  if (source->parallel) return width * depth;
+  double nearest = fmax(sheets->first - vec3_dot(source->position, sheets->normal), 0);
+  return width * (1 / nearest - 1 / (nearest + depth));
+}
+
+/* Places the buffer: perpendicular to the light for hard shadows; parallel to the sheets for soft ones, around the middle
+ * and along the axes of the light as they see it. False where nothing of the content is in the picture. */
+static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *points, sheet_light *seen, view *view) {
+  size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
+  double finest = GREATEST_SHADOW_PIXEL * sweep->frame->voxel;
+  shadow_extent extent = {.points = points, .point_count = hl_frame_visible_points(sweep->frame, points),
+                          .pixel = fmin(sweep->frame->pixel, finest), .resolution = sweep->scene->render.shadow_resolution,
+                          .greatest_pixels = greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
+                          .content = sweep->frame->points, .content_count = sweep->frame->point_count};
+  if (extent.point_count == 0) return false;
+  if (source->shadows != HL_SHADOWS_SOFT) {
+    hl_shadow_view(source, source->direction, &extent, view);
+    return true;
+  }
+  light_source middle = *source;
+  *seen = hl_light_on_sheets(source, sweep->geometry->sheets.normal);
+  /* hard edges must hold at the nearest matter; soft ones are wider than a pixel where it matters */
+  extent.pixel = fmin(sweep->frame->middle_pixel, finest);
+  extent.margin = penumbra_margin(sweep, source, seen);
+  if (source->soft_method != HL_SOFT_PAPER) {
+    extent.u = seen->u;
+    if (source->parallel) middle.direction = vec3_normalise(seen->middle);
+    else middle.position = seen->middle;
+  }
+  hl_shadow_view(&middle, sweep->geometry->sheets.normal, &extent, view);
+  return true;
 }
 
 static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source, shadow_buffer *buffer,
@@ -41,26 +72,14 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   light->source = source;
   hl_status status = hl_light_screen_create(sweep->context, source, sweep->frame->middle, sweep->frame->middle_pixel,
                                             &light->screen, &light->screen_pixels, error);
-  if (status != HL_OK || source->shadows == HL_SHADOWS_OFF) return status;
-  light->buffer = buffer;
-  bool soft = source->shadows == HL_SHADOWS_SOFT;
-  vec3 plane_normal = soft ? sweep->geometry->sheets.normal : source->direction;
-  size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
-  /* hard edges must hold at the nearest matter; soft ones are wider than a pixel where it matters */
-  double pixel = fmin(soft ? sweep->frame->middle_pixel : sweep->frame->pixel, GREATEST_SHADOW_PIXEL * sweep->frame->voxel);
-  shadow_extent extent = {points, hl_frame_visible_points(sweep->frame, points), pixel,
-                          sweep->scene->render.shadow_resolution,
-                          greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
-                          penumbra_margin(sweep, source)};
-  if (extent.point_count == 0) { /* nothing of the content is in the picture */
-    light->buffer = NULL;
-    return HL_OK;
-  }
   view view;
-  hl_shadow_view(source, plane_normal, &extent, &view);
+  sheet_light seen = {0};
+  if (status != HL_OK || source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, points, &seen, &view))
+    return status;
+  light->buffer = buffer;
   double edge = vec3_length(view.du);
-  bool paper = soft && source->soft_method == HL_SOFT_PAPER;
-  int reach = 0;
+  bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
+  int reach = soft ? CASCADE_REACH : 0;
   const sheet_stack *sheets = &sweep->geometry->sheets;
   if (paper) {
     hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, edge);
@@ -68,7 +87,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   }
   status = hl_shadow_buffer_reset(sweep->context, buffer, &view, sweep->channels, paper, reach, error);
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_CASCADE)
-    status = hl_soft_cascade_begin(sweep->context, &light->cascade, source, sheets->normal, sheets->first,
+    status = hl_soft_cascade_begin(sweep->context, &light->cascade, &seen, sheets->normal, sheets->first,
                                    sheets->first + (sheets->count - 1) * sheets->spacing, edge, buffer, error);
   if (status == HL_OK) status = hl_view_sheets_begin(sweep, &view, &light->sheets, error);
   return status;

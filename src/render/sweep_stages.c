@@ -119,11 +119,7 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   job.volume_count = count;
   for (int c = 0; c < job.channels; c++)
     job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
-  for (int c = 0; c < job.channels && light->cascade.level_count > 0; c++) {
-    job.also_stride = light->cascade.level[0].stride;
-    job.also[c] = light->cascade.current[c].pixels + (size_t)tile_y * TILE * job.also_stride + (size_t)tile_x * TILE;
-    light->cascade.current[c].ones[tile] = 0;
-  }
+  if (light->cascade.level_count > 0) light->cascade.touched[tile] = 1;
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
   buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | sweep->hot->attenuate_tile(&job, tile_x, tile_y));
@@ -142,6 +138,7 @@ static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker
   double start = hl_clock_seconds();
   int count = fill_light_tile(sweep, &sweep->lights[light_index], tile, worker, need, volumes);
   double filled = hl_clock_seconds();
+  for (int i = 0; i < count; i++) counts->attenuated[light_index] += (uint64_t)__builtin_popcount(volumes[i].blocks);
   if (count > 0) composite_light_tile(sweep, light_index, tile, need, volumes, count);
   double end = hl_clock_seconds();
   counts->filled_light++;
@@ -185,12 +182,22 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
   sweep->seconds_light += hl_clock_seconds() - start;
 }
 
+/* How much matter a light met in the last slab. */
+static double take_attenuated(sweep *sweep, int light) {
+  uint64_t blocks = 0;
+  for (int worker = 0; worker < hl_pool_threads(sweep->pool); worker++) {
+    blocks += sweep->counts[worker].attenuated[light];
+    sweep->counts[worker].attenuated[light] = 0;
+  }
+  return (double)blocks;
+}
+
 void hl_sweep_soften(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
   const hot_functions *hot = sweep->hot;
   const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile};
-  const cascade_functions cascade = {hot->lit_blocks_tile, hot->blur_multiply_tile, hot->multiply_tile,
-                                     hot->multiply_half_tile, hot->multiply_double_tile};
+  const cascade_functions cascade = {hot->lit_blocks_tile, hot->blur_add_tile, hot->add_tile,
+                                     hot->add_half_tile, hot->add_double_tile, hot->left_tile, hot->absorbed_tile};
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
@@ -198,7 +205,7 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
       hl_soft_paper_convolve(&light->paper, light->buffer, hl_sheet_height(&sweep->geometry->sheets, sheet + 1), sweep->pool, &blur);
     else if (sheet > 0)
       hl_soft_cascade_advance(&light->cascade, light->buffer, hl_sheet_height(&sweep->geometry->sheets, sheet - 1), hl_sheet_height(&sweep->geometry->sheets, sheet),
-                              sweep->pool, &cascade);
+                              take_attenuated(sweep, i), sweep->pool, &cascade);
   }
   sweep->seconds_soften += hl_clock_seconds() - start;
 }

@@ -81,13 +81,15 @@ vec3 hl_light_centre(const hl_light *light) {
 }
 
 /* Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12; the mean of x^2 over a disk of radius r is r^2/4. */
-mat3 hl_light_spread(const hl_light *light, vec3 towards) {
+mat3 hl_light_spread(const hl_light *light, vec3 facing) {
   mat3 spread = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   if (light->type == HL_LIGHT_POLYGON) return hl_polygon_shape(light->vertices, light->vertex_count).spread;
   if (light->type == HL_LIGHT_RECT) {
     vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
     return add(add(spread, outer(edge1, edge1), 1.0 / 12), outer(edge2, edge2), 1.0 / 12);
   }
-  vec3 normal = light->type == HL_LIGHT_DISK ? vec3_normalise(vec3_of(light->normal)) : towards;
-  return add(spread, add(unit, outer(normal, normal), -1), light->radius * light->radius / 4);
+  bool parallel = light->type == HL_LIGHT_DIRECTIONAL;
+  vec3 normal = light->type == HL_LIGHT_DISK ? vec3_normalise(vec3_of(light->normal)) : facing;
+  double radius = parallel ? tan(light->angular_diameter_deg * HL_PI / 360) : light->radius;
+  return add(spread, add(unit, outer(normal, normal), -1), radius * radius / 4);
 }

@@ -26,8 +26,8 @@ bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertic
 /* The light's centre, world; not for directional lights. */
 vec3 hl_light_centre(const hl_light *light);
 
-/* Mean of (x - centre)(x - centre)' over the light: a rect has (e1 e1' + e2 e2') / 12, a disk r^2/4 (1 - n n'); a
- * sphere counts as its disk that faces `towards` (unit). */
-mat3 hl_light_spread(const hl_light *light, vec3 towards);
+/* Mean of (x - centre)(x - centre)' over the light: a rect has (e1 e1' + e2 e2') / 12, a disk r^2/4 (1 - n n'). Spheres,
+ * and the directions of parallel light at distance 1, count as the disk perpendicular to `facing` (unit). */
+mat3 hl_light_spread(const hl_light *light, vec3 facing);
 
 #endif

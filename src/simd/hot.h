@@ -22,8 +22,8 @@ typedef struct hot_functions {
   lit_blocks_function *lit_blocks_tile;
   shade_tile_function *shade_tile, *measure_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
-  blur_multiply_tile_function *blur_multiply_tile;
-  field_tile_function *multiply_tile, *multiply_half_tile, *multiply_double_tile;
+  blur_add_tile_function *blur_add_tile;
+  field_tile_function *add_tile, *add_half_tile, *add_double_tile, *left_tile, *absorbed_tile;
 } hot_functions;
 
 const hot_functions *hl_hot_functions(hl_instruction_set set);

@@ -8,7 +8,7 @@
 
 #include "reference_stage.h"
 
-enum { WIDE = 160, ROWS = 6, MOST = 96 * 96 };
+enum { WIDE = 160, WIDEST = 320, ROWS = 6, MOST = 96 * 96 };
 
 static void assert_near(double value, double expected, double tolerance) {
   if (!(fabs(value - expected) <= tolerance))
@@ -157,6 +157,57 @@ static void test_penumbra_of_paper(void **state) {
   }
 }
 
+/* A rect light above the plate's edge, and how wide its penumbra is in pixels. */
+typedef struct rect_case {
+  double across, along;  /* the light's sides against and along the edge */
+  double light, plate;   /* heights */
+  int width;             /* pixels, for 16 units */
+  double spacing;
+} rect_case;
+
+static const rect_case rect_cases[] = {
+    {1.6, 4, 24, 8, 160, 0.5}, {1.6, 0, 24, 8, 160, 1},  {6, 1, 18, 6, 160, 1},   {6, 6, 18, 6, 320, 0.5},
+    {6, 12, 18, 6, 160, 0.5},  {10, 3, 20, 10, 320, 1}, {10, 20, 20, 10, 320, 1},
+};
+
+/* The 10 to 90 % width of the edge's penumbra as a part of eq. (5)'s: a rect's profile is linear, so 0.8 L dZ / Z. */
+static double rect_penumbra(const rect_case *c, hl_soft_method method, int samples) {
+  static float pixels[WIDEST * ROWS * 4];
+  stage set;
+  stage_open(&set);
+  stage_plate(&set, (vec3){-20, -20, c->plate - 0.25}, 20, 40);
+  /* as far to the right as the plate goes to the left: the light is above the middle of all, or nearly */
+  hl_scene_volume *balance = stage_add_box(&set, (vec3){19, -20, c->plate - 0.25}, (vec3){20, 20, c->plate + 0.25});
+  balance->visible = balance->casts_shadow = 0;
+  set.scene.render.shadows = HL_SHADOWS_SOFT;
+  set.scene.render.soft_method = method;
+  set.scene.render.light_samples = samples;
+  set.scene.render.sheet_spacing = c->spacing;
+  hl_light *light = stage_add_point(&set, (vec3){0, 0, c->light});
+  light->type = HL_LIGHT_RECT;
+  light->edge1[0] = c->across;
+  light->edge2[1] = c->along;
+  light->edge1[1] = light->edge1[2] = light->edge2[0] = light->edge2[2] = 0;
+  set.scene.width = c->width;
+  set.scene.height = ROWS;
+  set.scene.camera.height = 16.0 * ROWS / c->width;
+  stage_look(&set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  stage_render_sheets(&set, pixels);
+  const float *row = &pixels[(size_t)4 * (size_t)c->width * (ROWS / 2)];
+  double pitch = 16.0 / c->width, low = crossing(row, c->width, -8, pitch, 0.1, -8, 8);
+  double high = crossing(row, c->width, -8, pitch, 0.9, -8, 8), expected = c->across * c->plate / (c->light - c->plate);
+  stage_close(&set);
+  print_message("# rect, method %d: %5.1f pixels, spacing %g: %.3f of eq. (5), from %.3f to %.3f\n", (int)method,
+                expected / pitch, c->spacing, (high - low) / (0.8 * expected), low, high);
+  return (high - low) / (0.8 * expected);
+}
+
+static void test_penumbra_of_rect_by_cascade(void **state) {
+  (void)state;
+  for (size_t i = 0; i < sizeof rect_cases / sizeof *rect_cases; i++)
+    (void)rect_penumbra(&rect_cases[i], HL_SOFT_CASCADE, 1);
+}
+
 /* ---- the two slicing directions ---- */
 
 static hl_scene_volume *add_blob(stage *set) {
@@ -257,6 +308,7 @@ int main(void) {
       cmocka_unit_test(test_offset_of_directional_light),
       cmocka_unit_test(test_penumbra_of_cascade),
       cmocka_unit_test(test_penumbra_of_paper),
+      cmocka_unit_test(test_penumbra_of_rect_by_cascade),
       cmocka_unit_test(test_no_jump_where_the_axis_turns),
   };
   return cmocka_run_group_tests_name("sheets_shadow", tests, NULL, NULL);

@@ -1,6 +1,8 @@
 /* tests/unit/scene_create.c - the immutable scene: deep copies, and every refusal with its exact line. */
 #include "scene_parts.h"
 
+#include "scene/light_shape.h"
+
 static void copies_everything(void **state) {
   (void)state;
   parts p;
@@ -297,6 +299,38 @@ static void refuses_with_the_place_and_the_mend(void **state) {
   }
 }
 
+/* A rect's moments are known, a polygon of the same outline has the same; so has one with a corner cut in and out again. */
+static void shapes_have_their_moments(void **state) {
+  (void)state;
+  static const double outline[][3] = {{-1, -3, 5}, {3, -3, 5}, {3, 1, 5}, {3, 3, 5}, {-1, 3, 5}};
+  static const double notched[][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}};
+  hl_light rect, polygon;
+  hl_light_defaults(&rect);
+  rect.type = HL_LIGHT_RECT;
+  memcpy(rect.position, (double[3]){1, 0, 5}, sizeof rect.position);
+  memcpy(rect.edge1, (double[3]){4, 0, 0}, sizeof rect.edge1);
+  memcpy(rect.edge2, (double[3]){0, 6, 0}, sizeof rect.edge2);
+  hl_light_defaults(&polygon);
+  polygon.type = HL_LIGHT_POLYGON;
+  polygon.vertices = outline;
+  polygon.vertex_count = 5;
+  mat3 a = hl_light_spread(&rect, (vec3){0, 0, 1}), b = hl_light_spread(&polygon, (vec3){0, 0, 1});
+  vec3 centre = hl_light_centre(&polygon);
+  assert_near(vec3_length(vec3_subtract(centre, (vec3){1, 0, 5})), 0, 1e-12);
+  assert_near(a.row[0].x, 16.0 / 12, 1e-12);
+  assert_near(a.row[1].y, 36.0 / 12, 1e-12);
+  for (int row = 0; row < 3; row++) assert_near(vec3_length(vec3_subtract(a.row[row], b.row[row])), 0, 1e-12);
+  /* three unit squares: the mean of x is 7/6; of x^2 (1/3 + 7/3 + 7/3) / 3; of x y (1/4 + 3/4 + 9/4) / 3 */
+  polygon.vertices = notched;
+  polygon.vertex_count = 6;
+  centre = hl_light_centre(&polygon);
+  b = hl_light_spread(&polygon, (vec3){0, 0, 1});
+  assert_near(centre.x, 7.0 / 6, 1e-12);
+  assert_near(centre.y, 5.0 / 6, 1e-12);
+  assert_near(b.row[0].x, 5.0 / 3 - 49.0 / 36, 1e-12);
+  assert_near(b.row[0].y, 13.0 / 12 - 35.0 / 36, 1e-12);
+}
+
 /* Two points at one value are a step, and the second holds at the value itself. */
 static void transfer_function_closed_forms(void **state) {
   (void)state;
@@ -413,6 +447,7 @@ int main(void) {
       cmocka_unit_test(copies_everything),
       cmocka_unit_test(survives_any_memory_limit),
       cmocka_unit_test(refuses_with_the_place_and_the_mend),
+      cmocka_unit_test(shapes_have_their_moments),
       cmocka_unit_test(transfer_function_closed_forms),
       cmocka_unit_test(visible_agrees_with_sampling),
       cmocka_unit_test(empty_value_is_the_commonest_transparent_one),

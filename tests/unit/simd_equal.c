@@ -315,10 +315,9 @@ static void call_lit_blocks(const hot_functions *hot, void *state) {
 static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
   memset(s, 0, sizeof *s);
   s->job = (attenuate_job){.rays = random_rays(seed, round), .path = 1, .height = 1, .spacing = 0.5f, .volumes = s->volumes,
-                           .volume_count = 1 + round % 2, .channels = round % 3 ? 3 : 1, .stride = TILE, .also_stride = TILE};
+                           .volume_count = 1 + round % 2, .channels = round % 3 ? 3 : 1, .stride = TILE};
   for (int c = 0; c < HL_CHANNELS; c++) {
     s->job.transmittance[c] = &s->out.field[c][0][0];
-    s->job.also[c] = round % 4 == 1 ? &s->out.field[HL_CHANNELS + c][0][0] : NULL;
   }
   for (int v = 0; v < 2; v++) {
     fill_salted(s->density[v][0], 2 * TILE_PIXELS, seed, -0.1, 1.1);
@@ -353,7 +352,7 @@ typedef struct field_state {
   int which;
   blur_job blur;
   field_job field;
-  blur_multiply_job blur_multiply;
+  blur_add_job blur_add;
   float a[FIELD][FIELD], b[FIELD][FIELD], out[FIELD][FIELD];
 } field_state;
 
@@ -361,15 +360,17 @@ static void call_field(const hot_functions *hot, void *state) {
   field_state *s = state;
   if (s->which == 0) hot->blur_rows_tile(&s->blur, 1, 1);
   if (s->which == 1) hot->blur_columns_tile(&s->blur, 1, 1);
-  if (s->which == 2) hot->multiply_tile(&s->field, 1, 1);
-  if (s->which == 3) hot->multiply_half_tile(&s->field, 1, 1);
-  if (s->which == 4) hot->multiply_double_tile(&s->field, 1, 1);
-  if (s->which == 5) hot->blur_multiply_tile(&s->blur_multiply, 1, 1);
+  if (s->which == 2) hot->add_tile(&s->field, 1, 1);
+  if (s->which == 3) hot->add_half_tile(&s->field, 1, 1);
+  if (s->which == 4) hot->add_double_tile(&s->field, 1, 1);
+  if (s->which == 5) hot->blur_add_tile(&s->blur_add, 1, 1);
+  if (s->which == 6) hot->left_tile(&s->field, 1, 1);
+  if (s->which == 7) hot->absorbed_tile(&s->field, 1, 1);
 }
 
 static void test_fields(void **unused) {
   (void)unused;
-  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "multiply_tile", "multiply_half_tile", "multiply_double_tile", "blur_multiply_tile"};
+  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "blur_add_tile", "left_tile", "absorbed_tile"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -379,10 +380,10 @@ static void test_fields(void **unused) {
     s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD,
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
     s.field = (field_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD};
-    s.blur_multiply = (blur_multiply_job){&s.b[MARGIN][MARGIN], round % 3 ? &s.a[MARGIN][MARGIN] : NULL, &s.out[MARGIN][MARGIN],
-                                          FIELD, FIELD, hl_blur_box(random_between(&seed, 1, 90)),
+    s.blur_add = (blur_add_job){&s.b[MARGIN][MARGIN], round % 3 ? &s.a[MARGIN][MARGIN] : NULL, &s.out[MARGIN][MARGIN],
+                                          FIELD, hl_blur_box(random_between(&seed, 1, 90)),
                                           hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
-    for (s.which = 0; s.which < 6; s.which++) {
+    for (s.which = 0; s.which < 8; s.which++) {
       trial trial = {call_field, &s, s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
