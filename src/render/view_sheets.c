@@ -67,6 +67,7 @@ void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_
   for (int g = 0; g < sweep->volume_count; g++) {
     fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + g];
     *source = (fill_source){.grid = &sweep->grids[g], .kernel = sweep->kernel, .sheet = sheet,
+                            .classifier = &sweep->volumes[g].classifier,
                             .lists = sheets->lists == NULL ? NULL : &sheets->lists[g]};
     hl_view_sheet_rays(view, sweep->geometry->sheets.normal, hl_sheet_height(&sweep->geometry->sheets, sheet),
                        sweep->grids[g].frame_to_index, &source->rays);
@@ -118,7 +119,7 @@ static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t
                          sheets->density + (patch * RING + (size_t)slot) * TILE_PIXELS);
   kept->need = (uint16_t)(kept->need | missing);
   kept->blocks = (uint16_t)(kept->blocks | filled);
-  return (uint64_t)__builtin_popcount(filled) * BLOCK_PIXELS;
+  return (uint64_t)__builtin_popcount(missing) * BLOCK_PIXELS;
 }
 
 patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,

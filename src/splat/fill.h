@@ -28,13 +28,14 @@ typedef struct voxel_lists {
 typedef struct fill_source {
   const grid *grid;
   const kernel *kernel;
+  const struct classifier *classifier; /* blocks below all that it shows are not returned; null: all may show */
   sheet_rays rays;          /* pixels -> index space */
   const voxel_lists *lists; /* splat only */
   int sheet;
 } fill_source;
 
 /* Fills density[16][16] (block, lane) for the blocks in need (one bit each); others are left alone.
- * Returns the blocks in which some pixel holds density; blocks of need that are not returned were set to zero. */
+ * Returns the blocks in which some pixel may show something, alone or on the way to another density above it. */
 typedef uint32_t fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density);
 
 /* The blocks of a tile outside of which a sheet holds nothing that matters. */

@@ -189,7 +189,7 @@ static uint32_t gather_tile(const fill_source *source, int tile_x, int tile_y, u
       sum = source->kernel->degree <= 3 ? gather_block(source, &place, active, 3)
                                         : gather_block(source, &place, active, HL_KERNEL_DEGREE);
       sum = lanes_keep(place.inside, sum - source->grid->empty);
-      filled |= 1u << block;
+      if (lanes_bits(place.inside & may_show(source, sum)) != 0) filled |= 1u << block;
     }
     lanes_store(density + block * BLOCK_PIXELS, sum);
   }

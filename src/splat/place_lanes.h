@@ -2,6 +2,7 @@
 #ifndef HL_SPLAT_PLACE_LANES_H
 #define HL_SPLAT_PLACE_LANES_H
 
+#include "splat/classify.h"
 #include "splat/fill.h"
 #include "splat/rays_lanes.h"
 
@@ -17,6 +18,13 @@ typedef struct block_place {
   lanes_int cell[3]; /* floor(point): -1 .. n-1 */
   lanes_int inside; /* within the grid or a little outside */
 } block_place;
+
+/* Lanes whose density is not below all that is shown. */
+LANES_INLINE lanes_int may_show(const fill_source *source, lanes density) {
+  const classifier *classifier = source->classifier;
+  if (classifier == NULL) return lanes_set_int(-1);
+  return density * classifier->scale + classifier->offset > classifier->first_visible;
+}
 
 LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
   const grid *grid = source->grid;

@@ -6,19 +6,19 @@
 #include "splat/gather_lanes.h"
 
 /* d/dt of a piece. */
-LANES_INLINE lanes kernel_piece_slope(const float *piece, lanes a) {
-  lanes sum = lanes_set(piece[HL_KERNEL_DEGREE] * HL_KERNEL_DEGREE);
-  for (int power = HL_KERNEL_DEGREE - 1; power >= 1; power--) sum = sum * a + piece[power] * (float)power;
+LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
+  lanes sum = lanes_set(piece[degree] * (float)degree);
+  for (int power = degree - 1; power >= 1; power--) sum = sum * a + piece[power] * (float)power;
   return sum;
 }
 
 /* Derivatives of the four taps' weights; the two on the far side see their distance shrink. */
-LANES_INLINE void tap_slopes(const kernel *kernel, lanes t, lanes slope[4]) {
+LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes slope[4]) {
   lanes s = 1.0f - t;
-  slope[0] = kernel_piece_slope(kernel->outer, t);
-  slope[1] = kernel_piece_slope(kernel->inner, t);
-  slope[2] = -kernel_piece_slope(kernel->inner, s);
-  slope[3] = -kernel_piece_slope(kernel->outer, s);
+  slope[0] = kernel_piece_slope(kernel->outer, degree, t);
+  slope[1] = kernel_piece_slope(kernel->inner, degree, t);
+  slope[2] = -kernel_piece_slope(kernel->inner, degree, s);
+  slope[3] = -kernel_piece_slope(kernel->outer, degree, s);
 }
 
 typedef struct tap_slope_weights { lanes weight[3][4], slope[3][4]; } tap_slope_weights;
@@ -93,15 +93,15 @@ static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uin
 }
 
 /* Derivatives along the index axes, stored units a voxel, for the active lanes, of which there is one at least. */
-static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active) {
+LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point, uint32_t active) {
   tap_slope_weights w;
   lanes_int cell[3];
   lanes at[3] = {point.x, point.y, point.z};
   for (int a = 0; a < 3; a++) {
     at[a] = lanes_clamp(at[a], -1.0f, (float)grid->dimension[a] * (1 - 1e-6f));
     cell[a] = lanes_floor(at[a]);
-    tap_weights(kernel, HL_KERNEL_DEGREE, at[a] - lanes_from_int(cell[a]), w.weight[a]);
-    tap_slopes(kernel, at[a] - lanes_from_int(cell[a]), w.slope[a]);
+    tap_weights(kernel, degree, at[a] - lanes_from_int(cell[a]), w.weight[a]);
+    tap_slopes(kernel, degree, at[a] - lanes_from_int(cell[a]), w.slope[a]);
   }
   if ((lanes_bits(taps_inside(grid, cell)) & active) != active) {
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
@@ -119,6 +119,11 @@ static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, ui
   if (grid->storage == HL_STORAGE_U8) return slopes_u8(grid, &window, &w);
   if (grid->storage == HL_STORAGE_U16) return slopes_u16(grid, &window, &w);
   return slopes_f32(grid, &window, &w);
+}
+
+static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active) {
+  return kernel->degree <= 3 ? slopes_of_degree(grid, kernel, 3, point, active)
+                             : slopes_of_degree(grid, kernel, HL_KERNEL_DEGREE, point, active);
 }
 
 #endif

@@ -87,8 +87,10 @@ static uint32_t splat_tile(const fill_source *source, int tile_x, int tile_y, ui
   for (uint32_t left = need; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
     float *to = density + block * BLOCK_PIXELS;
-    lanes_store(to, lanes_keep(tile.block[block].inside, lanes_load(to)));
-    if (lanes_bits(tile.block[block].inside) != 0) filled |= 1u << block;
+    lanes_int inside = tile.block[block].inside;
+    lanes kept = lanes_keep(inside, lanes_load(to));
+    lanes_store(to, kept);
+    if (lanes_bits(inside & may_show(source, kept)) != 0) filled |= 1u << block;
   }
   return filled;
 }
