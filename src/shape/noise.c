@@ -28,11 +28,11 @@ static double mix(double t, double a, double b) { return a + t * (b - a); }
 
 /* The product of an offset with the hash's gradient; four of the sixteen codes repeat an edge. */
 static double slope(int hash, double x, double y, double z) {
-  static const signed char gradient[16][3] = {{1, 1, 0},  {-1, 1, 0},  {1, -1, 0}, {-1, -1, 0},
+  static const double gradient[16][3] = {{1, 1, 0},  {-1, 1, 0},  {1, -1, 0}, {-1, -1, 0},
                                               {1, 0, 1},  {-1, 0, 1},  {1, 0, -1}, {-1, 0, -1},
                                               {0, 1, 1},  {0, -1, 1},  {0, 1, -1}, {0, -1, -1},
                                               {1, 1, 0},  {0, -1, 1},  {-1, 1, 0}, {0, -1, -1}};
-  const signed char *g = gradient[hash & 15];
+  const double *g = gradient[hash & 15];
   return g[0] * x + g[1] * y + g[2] * z;
 }
 
