@@ -24,3 +24,14 @@ light_source hl_light_source(const hl_light *light, const hl_render_settings *se
   if (source.shadows == HL_SHADOWS_SOFT && !(trace(source.spread) > 0)) source.shadows = HL_SHADOWS_HARD;
   return source;
 }
+
+light_source hl_light_in_sector(const light_source *whole, const light_sectors *sectors, int sector) {
+  light_source source = *whole;
+  source.sectors = sectors;
+  source.sector = sector;
+  source.direction = sectors->axis[sector];
+  double distance = vec3_length(vec3_subtract(whole->content, whole->position));
+  source.content = vec3_add(whole->position, vec3_scale(source.direction, distance > 0 ? distance : 1));
+  source.spread = hl_light_spread(whole->light, source.direction);
+  return source;
+}

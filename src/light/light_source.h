@@ -4,7 +4,7 @@
 
 #include <halflight/scene.h>
 
-#include "core/vector.h"
+#include "light/light_sector.h"
 
 typedef struct light_source {
   bool parallel;
@@ -16,10 +16,16 @@ typedef struct light_source {
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
   const hl_light *light;
+  int light_index;    /* in the scene */
+  const light_sectors *sectors; /* the frame's, where this is one sector of a light; else null */
+  int sector;
   vec3 screen_center, screen_right, screen_up; /* of a light with a texture: the light screen; frame space */
 } light_source;
 
 /* content: the middle of what is lit; frame space. centre: world position of frame space's origin. */
 light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 centre, vec3 content);
+
+/* One sector of a light that is no parallel one. */
+light_source hl_light_in_sector(const light_source *whole, const light_sectors *sectors, int sector);
 
 #endif

@@ -1,4 +1,4 @@
-/* light/lit_region.c - bounds of a light screen and of a spot light's cone, seen from the light. */
+/* light/lit_region.c - bounds of a light screen, of a spot light's cone and of a light's sector, seen from the light. */
 #include "light/lit_region.h"
 
 static bool bound_screen(const view *view, const light_source *source, double low[2], double high[2]) {
@@ -43,6 +43,10 @@ static void cut(const double by_low[2], const double by_high[2], double low[2], 
 
 void hl_lit_region(const view *view, const light_source *source, double low[2], double high[2]) {
   double lit_low[2], lit_high[2];
+  if (source->sectors != NULL) {
+    double reach = tan(acos(source->sectors->least));
+    cut((double[2]){-reach, -reach}, (double[2]){reach, reach}, low, high);
+  }
   if (source->shadows != HL_SHADOWS_HARD) return; /* penumbrae come from beside what is lit */
   if (source->light->texture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);

@@ -1,4 +1,4 @@
-/* light/lit_region.h - the part of a light's view that its screen or its cone lets light through. */
+/* light/lit_region.h - the part of a light's view that its screen, its cone or its sector lets light through. */
 #ifndef HL_LIGHT_LIT_REGION_H
 #define HL_LIGHT_LIT_REGION_H
 

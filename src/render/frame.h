@@ -14,6 +14,7 @@ enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
 typedef struct frame_sweep {
   sheet_stack sheets;
   bool back_to_front;      /* for the eye; light always travels with rising sheets */
+  bool of_sectors;           /* the lights are sectors of lights, and the slicing direction is theirs */
   int light[FRAME_LIGHTS]; /* indices into frame lights */
   int light_count;
 } frame_sweep;
@@ -31,7 +32,8 @@ typedef struct frame {
   double spacing;          /* ds, world units */
   vec3 *points;            /* corners of the content of all grids; owned by the caller; [8 * grids] */
   int point_count;
-  light_source *lights;    /* [light_count]; owned by the caller */
+  light_sectors sectors;   /* of lights within the content */
+  light_source *lights;    /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
 } frame;
 
@@ -47,6 +49,9 @@ int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, fram
 
 /* One more sweep, without lights, image-aligned: front to back for the eye. */
 void hl_frame_add_eye_sweep(const frame *frame, frame_sweep *sweeps, int *count);
+
+/* False where the light's rays do not cross the sheets that would serve it and the eye: it must be cut into sectors. */
+bool hl_frame_serves(const frame *frame, const hl_render_settings *settings, const light_source *source);
 
 /* Refuses a sweep whose sheets a shadowing light does not cross (image-aligned slicing). */
 hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error);

@@ -28,20 +28,21 @@ static void clear_first_depth(float *measures, size_t tiles) {
       measures[(block * MEASURES + MEASURE_DEPTH_FIRST) * BLOCK_PIXELS + (size_t)lane] = INFINITY;
 }
 
-hl_status hl_layer_pixels_create(hl_context *context, const hl_layers *wanted, size_t light_count, size_t tiles,
+hl_status hl_layer_pixels_create(hl_context *context, const hl_layers *wanted, const frame *frame, size_t tiles,
                                  layer_pixels *pixels, hl_error *error) {
-  *pixels = (layer_pixels){.wanted = wanted, .light_count = light_count};
+  *pixels = (layer_pixels){.wanted = wanted, .light_count = (size_t)frame->light_count};
   if (wanted == NULL) return HL_OK;
   hl_status status = HL_OK;
-  pixels->lights = hl_allocate_zeroed(context, light_count, sizeof *pixels->lights);
-  if (pixels->lights == NULL) return hl_fail_memory(error, light_count * sizeof *pixels->lights, "the lights' layers");
+  pixels->lights = hl_allocate_zeroed(context, pixels->light_count, sizeof *pixels->lights);
+  if (pixels->lights == NULL)
+    return hl_fail_memory(error, pixels->light_count * sizeof *pixels->lights, "the lights' layers");
   if (wanted->ambient != NULL) pixels->ambient = allocate_pixels(context, tiles, COLORS, &status, error);
   if (hl_layers_measure(wanted)) pixels->measures = allocate_pixels(context, tiles, MEASURES, &status, error);
-  for (size_t i = 0; i < wanted->light_count; i++) {
-    if (wanted->lights[i].picture != NULL)
-      pixels->lights[i].picture = allocate_pixels(context, tiles, COLORS, &status, error);
-    if (wanted->lights[i].shadow != NULL)
-      pixels->lights[i].shadow = allocate_pixels(context, tiles, COLORS, &status, error);
+  for (size_t i = 0; i < pixels->light_count && wanted->light_count > 0; i++) {
+    const hl_light_layers *asked = &wanted->lights[frame->lights[i].light_index];
+    pixels->lights[i].light_index = (size_t)frame->lights[i].light_index;
+    if (asked->picture != NULL) pixels->lights[i].picture = allocate_pixels(context, tiles, COLORS, &status, error);
+    if (asked->shadow != NULL) pixels->lights[i].shadow = allocate_pixels(context, tiles, COLORS, &status, error);
   }
   if (pixels->measures != NULL) clear_first_depth(pixels->measures, tiles);
   return status;
@@ -194,14 +195,16 @@ static float sum_of(const layer_grid *grid, const float *pixels, int floats, int
   return sum;
 }
 
-/* Three channels, premultiplied as they are; or divided by alpha, 0 where that is 0. */
-static void write_colors(const layer_grid *grid, const float *pixels, bool divide, float *to) {
+/* Three channels, premultiplied as they are; or divided by alpha, 0 where that is 0. add: to what is there. */
+static void write_colors(const layer_grid *grid, const float *pixels, bool divide, bool add, float *to) {
   float area = (float)(grid->oversampling * grid->oversampling);
   for (int row = 0; row < grid->height; row++)
     for (int column = 0; column < grid->width; column++) {
       float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3, NULL) : area;
-      for (int c = 0; c < 3; c++)
-        *to++ = alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0;
+      for (int c = 0; c < 3; c++, to++) {
+        *to = (add ? *to : 0) + (alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0);
+        if (divide && *to > 1) *to = 1; /* sectors of a light, each divided by its own sweep's alpha */
+      }
     }
 }
 
@@ -225,10 +228,13 @@ static void write_measures(const layer_grid *grid, const float *pixels, const hl
 void hl_layer_pixels_write(const layer_pixels *pixels, const layer_grid *grid) {
   const hl_layers *to = pixels->wanted;
   if (to == NULL) return;
-  if (to->ambient != NULL) write_colors(grid, pixels->ambient, false, to->ambient);
+  if (to->ambient != NULL) write_colors(grid, pixels->ambient, false, false, to->ambient);
   if (hl_layers_measure(to)) write_measures(grid, pixels->measures, to);
-  for (size_t i = 0; i < to->light_count; i++) {
-    if (to->lights[i].picture != NULL) write_colors(grid, pixels->lights[i].picture, false, to->lights[i].picture);
-    if (to->lights[i].shadow != NULL) write_colors(grid, pixels->lights[i].shadow, true, to->lights[i].shadow);
+  for (size_t i = 0; i < pixels->light_count && to->light_count > 0; i++) {
+    const light_pixels *from = &pixels->lights[i];
+    const hl_light_layers *asked = &to->lights[from->light_index];
+    bool add = i > 0 && from[-1].light_index == from->light_index; /* sectors of a light follow each other */
+    if (asked->picture != NULL) write_colors(grid, from->picture, false, add, asked->picture);
+    if (asked->shadow != NULL) write_colors(grid, from->shadow, true, add, asked->shadow);
   }
 }

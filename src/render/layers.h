@@ -15,6 +15,7 @@
 /* Pixels of the frame's layers, in blocks as the picture's: [tiles][16][floats a pixel][16]. Null: not wanted. */
 typedef struct light_pixels {
   float *picture, *shadow; /* R G B A */
+  size_t light_index;      /* in the scene: one light or its sectors */
 } light_pixels;
 
 typedef struct layer_pixels {
@@ -22,7 +23,7 @@ typedef struct layer_pixels {
   float *ambient;          /* R G B A */
   float *measures;         /* MEASURES */
   light_pixels *lights;    /* owned; [light_count] */
-  size_t light_count;
+  size_t light_count;      /* of the frame */
 } layer_pixels;
 
 /* One more shading of the sweep's tiles. */
@@ -45,7 +46,7 @@ typedef struct sweep_layers {
 } sweep_layers;
 
 /* Allocates what is wanted of a frame of so many tiles. */
-hl_status hl_layer_pixels_create(hl_context *context, const hl_layers *wanted, size_t light_count, size_t tiles,
+hl_status hl_layer_pixels_create(hl_context *context, const hl_layers *wanted, const frame *frame, size_t tiles,
                                  layer_pixels *pixels, hl_error *error);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 

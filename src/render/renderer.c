@@ -15,7 +15,7 @@ struct hl_renderer {
   int threads;                 /* as asked for: 0 is one per processor */
   prepared_volume *prepared;   /* owned; [prepared_count] */
   size_t prepared_count;
-  shadow_buffer *buffers;      /* owned; [buffer_count]; one per light of the scene */
+  shadow_buffer *buffers;      /* owned; [buffer_count]; one per light of a frame, of which a scene's light is some */
   size_t buffer_count;
 };
 
@@ -67,11 +67,11 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
     if (renderer->prepared == NULL) return hl_fail_memory(error, sizeof *renderer->prepared, "the volumes");
     renderer->prepared_count = scene->volume_count;
   }
-  if (renderer->buffer_count != scene->light_count) {
+  if (renderer->buffer_count != LIGHT_SECTORS * scene->light_count) {
     release_buffers(renderer);
-    renderer->buffers = hl_allocate_zeroed(context, scene->light_count, sizeof *renderer->buffers);
+    renderer->buffers = hl_allocate_zeroed(context, LIGHT_SECTORS * scene->light_count, sizeof *renderer->buffers);
     if (renderer->buffers == NULL) return hl_fail_memory(error, sizeof *renderer->buffers, "the lights");
-    renderer->buffer_count = scene->light_count;
+    renderer->buffer_count = LIGHT_SECTORS * scene->light_count;
   }
   return HL_OK;
 }
@@ -103,7 +103,7 @@ static double smallest_edge(const hl_renderer *renderer) {
 typedef struct frame_work {
   frame frame;
   grid *grids;            /* [volumes] */
-  frame_sweep *sweeps;    /* [lights + 1] */
+  frame_sweep *sweeps;    /* [LIGHT_SECTORS * lights + 1] */
   int sweep_count;
   float *pixels;          /* [sweeps][tiles][16][4][16] */
   size_t tiles_x, tiles;
@@ -201,14 +201,40 @@ static void choose_measuring_sweep(frame_work *work) {
   if (work->measuring_sweep == work->sweep_count) hl_frame_add_eye_sweep(&work->frame, work->sweeps, &work->sweep_count);
 }
 
+/* The angle of the eye's outermost ray to its direction. */
+static double widest_ray(const frame *frame) {
+  double least = 1;
+  for (int corner = 0; corner < 4; corner++) {
+    vec3 start, way;
+    hl_view_ray(&frame->eye, corner & 1 ? frame->eye.width : 0, corner & 2 ? frame->eye.height : 0, &start, &way);
+    least = fmin(least, vec3_dot(vec3_normalise(way), frame->eye_direction));
+  }
+  return acos(fmax(least, -1));
+}
+
+/* Lights in frame space; those that no sheets serve in sectors. A narrow spot light and a screen leave one direction. */
+static void set_up_lights(const hl_scene_description *scene, frame *frame) {
+  frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
+  frame->light_count = 0;
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const hl_light *light = &scene->lights[i];
+    light_source source = hl_light_source(light, &scene->render, frame->centre, frame->middle);
+    source.light_index = (int)i;
+    bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) || light->texture.pixels != NULL;
+    bool whole = source.shadows == HL_SHADOWS_OFF || narrow || hl_frame_serves(frame, &scene->render, &source);
+    for (int sector = 0; sector < (whole ? 1 : LIGHT_SECTORS); sector++)
+      frame->lights[frame->light_count++] = whole ? source : hl_light_in_sector(&source, &frame->sectors, sector);
+  }
+}
+
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers,
                               frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   frame *frame = &work->frame;
   frame->points = hl_allocate(context, scene->volume_count * 8 + 1, sizeof(vec3));
-  frame->lights = hl_allocate(context, scene->light_count, sizeof(light_source));
+  frame->lights = hl_allocate(context, LIGHT_SECTORS * scene->light_count, sizeof(light_source));
   work->grids = hl_allocate(context, scene->volume_count, sizeof(grid));
-  work->sweeps = hl_allocate_zeroed(context, scene->light_count + 1, sizeof(frame_sweep));
+  work->sweeps = hl_allocate_zeroed(context, LIGHT_SECTORS * scene->light_count + 1, sizeof(frame_sweep));
   if (frame->points == NULL || frame->lights == NULL || work->grids == NULL || work->sweeps == NULL)
     return hl_fail_memory(error, scene->light_count * sizeof(frame_sweep), "the frame");
   for (size_t i = 0; i < scene->volume_count; i++) {
@@ -224,9 +250,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
     if (frame->eye.perspective && inside_box(&work->grids[i], frame->eye.origin)) work->grids[i].cut = true;
   frame->voxel = smallest_edge(renderer);
   frame->spacing = scene->render.sheet_spacing * frame->voxel;
-  frame->light_count = (int)scene->light_count;
-  for (size_t i = 0; i < scene->light_count; i++) {
-    frame->lights[i] = hl_light_source(&scene->lights[i], &scene->render, frame->centre, frame->middle);
+  set_up_lights(scene, frame);
+  for (int i = 0; i < frame->light_count; i++) {
     if (frame->lights[i].shadows == HL_SHADOWS_SOFT && frame->lights[i].soft_method == HL_SOFT_SUBLIGHTS)
       return hl_fail(error, HL_ERROR_UNSUPPORTED, "/render/soft_method: sublights is not in this version: use cascade or paper");
   }
@@ -238,7 +263,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
   work->pixels = hl_allocate_zeroed(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
   if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
-  return hl_layer_pixels_create(context, layers, scene->light_count, work->tiles, &work->layers, error);
+  return hl_layer_pixels_create(context, layers, frame, work->tiles, &work->layers, error);
 }
 
 static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {

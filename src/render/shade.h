@@ -8,6 +8,7 @@
 
 #include "light/attenuate.h"
 #include "light/light_cone.h"
+#include "light/light_sector.h"
 #include "light/light_screen.h"
 
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
@@ -44,6 +45,7 @@ typedef struct shade_light {
   int width, height, channels;
   light_screen screen;            /* the image that the light projects */
   light_cone cone;                /* of a spot light */
+  light_share share;              /* of a light within the content */
   int nearest;                    /* lookup: nearest pixel instead of bilinear */
 } shade_light;
 

@@ -183,6 +183,17 @@ LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
   return x * x * (3.0f - 2.0f * x);
 }
 
+/* The share of a light's sector (light_sector.h). */
+LANES_INLINE lanes share_of_sector(const light_share *share, lanes3 towards) {
+  lanes own = lanes_set(0), sum = lanes_set(1e-30f);
+  for (int i = 0; i < share->count; i++) {
+    lanes above = lanes_max(-dot3(towards, set3(share->axis[i])) - share->least, lanes_set(0));
+    sum = sum + above * above;
+    if (i == share->sector) own = above * above;
+  }
+  return own / sum;
+}
+
 LANES_INLINE int is_dark(const color_lanes *light) {
   return lanes_bits((light->c[0] > 0.0f) | (light->c[1] > 0.0f) | (light->c[2] > 0.0f)) == 0;
 }
@@ -199,8 +210,9 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
     lanes squared = lanes_max(dot3(way, way), lanes_set(1e-20f)), distance = lanes_sqrt(squared);
     arriving.towards = scale3(way, 1.0f / distance);
     lanes climb = lanes_abs(dot3(arriving.towards, set3(job->normal)));
-    path = light->path / lanes_max(climb, lanes_set(1e-3f));
+    path = lanes_min(light->path / lanes_max(climb, lanes_set(1e-3f)), distance);
     if (light->inverse_square) strength = 1.0f / squared;
+    if (light->share.count > 0) strength = strength * share_of_sector(&light->share, arriving.towards);
     if (light->cone.scale > 0) strength = strength * within_cone(&light->cone, arriving.towards);
   }
   for (int c = 0; c < 3; c++) arriving.full.c[c] = strength * light->color[c];

@@ -33,11 +33,30 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   return h;
 }
 
+/* Flattest crossing of a sheet by a light's ray to the content. */
+static const double FLATTEST = 0.2;
+
+static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
+  for (int i = 0; i < frame->point_count && !source->parallel; i++) {
+    vec3 way = vec3_subtract(frame->points[i], source->position);
+    if (vec3_dot(way, h) <= FLATTEST * vec3_length(way)) return false;
+  }
+  return true;
+}
+
+bool hl_frame_serves(const frame *frame, const hl_render_settings *settings, const light_source *source) {
+  bool back_to_front;
+  if (settings->slicing == HL_SLICING_IMAGE_ALIGNED) return true; /* as asked */
+  return rays_cross(frame, source, slicing_axis(frame, settings, source->direction, &back_to_front));
+}
+
 static bool axis_serves(const frame *frame, const frame_sweep *sweep, vec3 h, bool back_to_front) {
   double e = vec3_dot(frame->eye_direction, h) * (back_to_front ? -1 : 1);
   if (e < STEEPEST) return false;
-  for (int i = 0; i < sweep->light_count; i++)
-    if (vec3_dot(frame->lights[sweep->light[i]].direction, h) < STEEPEST) return false;
+  for (int i = 0; i < sweep->light_count; i++) {
+    const light_source *source = &frame->lights[sweep->light[i]];
+    if (vec3_dot(source->direction, h) < STEEPEST || !rays_cross(frame, source, h)) return false;
+  }
   return true;
 }
 
@@ -49,7 +68,7 @@ static vec3 sum_of_directions(const frame *frame, const frame_sweep *sweep) {
 
 /* Takes the light into the sweep if one axis serves all. */
 static bool try_light(const frame *frame, const hl_render_settings *settings, frame_sweep *sweep, int light) {
-  if (sweep->light_count == FRAME_LIGHTS) return false;
+  if (sweep->light_count == FRAME_LIGHTS || sweep->of_sectors) return false;
   sweep->light[sweep->light_count++] = light;
   bool back_to_front;
   vec3 h = slicing_axis(frame, settings, sum_of_directions(frame, sweep), &back_to_front);
@@ -75,8 +94,25 @@ static void place_sheets(const frame *frame, sheet_stack *sheets) {
   sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
 }
 
+/* A sector goes with the same sectors of other lights. */
+static void add_sector(const frame *frame, int light, frame_sweep *sweeps, int *count) {
+  vec3 axis = frame->lights[light].direction;
+  int s = 0;
+  while (s < *count && !(sweeps[s].of_sectors && sweeps[s].light_count < FRAME_LIGHTS &&
+                         frame->lights[sweeps[s].light[0]].sector == frame->lights[light].sector))
+    s++;
+  if (s == *count)
+    sweeps[(*count)++] = (frame_sweep){.sheets = {.normal = axis}, .of_sectors = true,
+                                       .back_to_front = vec3_dot(frame->eye_direction, axis) < 0};
+  sweeps[s].light[sweeps[s].light_count++] = light;
+}
+
 static void add_shadowing_light(const frame *frame, const hl_render_settings *settings, int light,
                                 frame_sweep *sweeps, int *count) {
+  if (frame->lights[light].sectors != NULL) {
+    add_sector(frame, light, sweeps, count);
+    return;
+  }
   for (int s = 0; s < *count; s++)
     if (try_light(frame, settings, &sweeps[s], light)) return;
   sweeps[*count] = (frame_sweep){0};
@@ -117,7 +153,7 @@ hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, i
       if (vec3_dot(frame->lights[light].direction, sweeps[s].sheets.normal) < 0.17)
         return hl_fail(error, HL_ERROR_UNSUPPORTED,
                        "/render/slicing: image-aligned sheets cannot carry the shadows of /lights/%d, which comes from the "
-                       "side: use half-vector", light);
+                       "side: use half-vector", frame->lights[light].light_index);
     }
   return HL_OK;
 }

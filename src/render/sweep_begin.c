@@ -143,6 +143,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   double spacing = sweep->geometry->sheets.spacing;
   *light = (shade_light){.parallel = from->source->parallel, .shadowed = from->buffer != NULL,
                          .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE, .screen = from->screen,
+                         .share = hl_light_share(from->source->sectors, from->source->sector),
                          .cone = hl_light_cone(from->source, sweep->frame->middle, sweep->frame->middle_pixel),
                          .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST};
   vec3_store(light->towards, vec3_scale(from->source->direction, -1));

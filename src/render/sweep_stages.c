@@ -162,6 +162,12 @@ static void attenuate_task(void *data, size_t index, int worker) {
   }
 }
 
+/* A point light within the content sees the slabs that begin beyond it. */
+static bool is_beyond(const sweep *sweep, const light_source *source, int sheet) {
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
+}
+
 static void reach_sheet(sweep *sweep, int light_index, int sheet) {
   sweep_light *light = &sweep->lights[light_index];
   attenuate_job *job = &sweep->attenuate[light_index];
@@ -177,8 +183,9 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     int count = 0;
     if (sweep->lights[i].buffer != NULL) {
-      count = list_tiles(&sweep->lights[i].sheets.occupancy, sheet, sweep->tasks + sweep->task_start[i]);
       reach_sheet(sweep, i, sheet);
+      if (is_beyond(sweep, sweep->lights[i].source, sheet))
+        count = list_tiles(&sweep->lights[i].sheets.occupancy, sheet, sweep->tasks + sweep->task_start[i]);
     }
     sweep->task_start[i + 1] = sweep->task_start[i] + count;
   }
@@ -207,6 +214,7 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
+    if (!is_beyond(sweep, light->source, sheet)) continue;
     if (light->source->soft_method == HL_SOFT_PAPER)
       hl_soft_paper_convolve(&light->paper, light->buffer, hl_sheet_height(&sweep->geometry->sheets, sheet + 1), sweep->pool, &blur);
     else if (sheet > 0)

@@ -334,9 +334,9 @@ static void make_spot_in_smoke(stage *set) { /* a sharp cone across the view; wi
   stage_set_texture(light, 12, 9, slide(), (vec3){-15, -8, 6}, (vec3){3, -3, 0}, (vec3){1, 0, 3});
 }
 
-/* Walls lit at a grazing angle want shadow pixels well below a voxel (at 0.3 voxels both are within 0.006 and
- * 0.02); what lies behind a lamp, seen along its sheets, is not shadowed yet; the borders of holes lie half
- * way between empty and the least value in the reference, nearer to the least in the sheets. */
+/* A step of opacity on a wall lit at a grazing angle wants shadow pixels well below a voxel (half a voxel is what there
+ * is); the borders of holes lie half way between empty and the least value in the reference, nearer to the least in the
+ * sheets. */
 static const scenario SCENARIOS[] = {
     {"balls", make_balls, 0.006},
     {"balls-medium", make_balls_medium, 0.006},
@@ -350,8 +350,8 @@ static const scenario SCENARIOS[] = {
     {"balls-two-lights", make_balls_two_lights, 0.006},
     {"plate", make_plate, 0.006},
     {"wall", make_wall, 0.006},
-    {"wall-medium", make_wall_medium, 0.012},
-    {"wall-sharp", make_wall_sharp, 0.03},
+    {"wall-medium", make_wall_medium, 0.006},
+    {"wall-sharp", make_wall_sharp, 0.017},
     {"smoke", make_smoke, 0.006},
     {"smoke-backlit", make_smoke_backlit, 0.006},
     {"smoke-silhouette", make_smoke_silhouette, 0.006},
@@ -363,7 +363,7 @@ static const scenario SCENARIOS[] = {
     {"clipped", make_clipped, 0.006},
     {"clipped-perspective", make_clipped_perspective, 0.006},
     {"eye-inside", make_eye_inside, 0.006},
-    {"lamp-inside", make_lamp_inside, 0},
+    {"lamp-inside", make_lamp_inside, 0.006},
     {"single-layer", make_single_layer, 0.006},
     {"holes", make_holes, 0.009},
     {"constant", make_constant, 0.006},
