@@ -78,7 +78,9 @@ hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, cons
                             .widest = widest, .least_part = fmin(light->width_u, light->width_v) / widest,
                             .light_height = vec3_dot(light->middle, normal)};
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
-  cascade->touched = hl_allocate_zeroed(context, tiles, 1);
+  cascade->touched = hl_allocate_zeroed(context, tiles * (1 + CASCADE_MASKS), 1);
+  for (int i = 0; i < CASCADE_MASKS && cascade->touched != NULL; i++)
+    cascade->wanted[i] = cascade->touched + tiles * (size_t)(1 + i);
   if (cascade->touched == NULL) return hl_fail_memory(error, tiles, "a cascade of shadows");
   double start = omega_at(cascade, first), end = omega_at(cascade, last);
   if (!isfinite(start)) start = end - 1e4; /* the light lies within the sheets: its nearest ones have no end of width */
@@ -121,6 +123,7 @@ typedef struct add_task {
   const cascade_field *a, *b, *to;
   field_job job;
   field_tile_function *function;
+  const unsigned char *wanted; /* [tiles]; null: all */
 } add_task;
 
 static bool sum_is_zeros(const add_task *task, int x, int y) {
@@ -139,6 +142,7 @@ static void add_row(void *data, size_t index, int worker) {
   (void)worker;
   const add_task *task = data;
   for (int x = 0; x < task->level->tiles_x; x++) {
+    if (task->wanted != NULL && !task->wanted[index * (size_t)task->level->tiles_x + (size_t)x]) continue;
     unsigned char *zeros = &task->to->zeros[index * (size_t)task->level->tiles_x + (size_t)x];
     bool skip = sum_is_zeros(task, x, (int)index);
     if (!skip) task->function(&task->job, x, (int)index);
@@ -150,12 +154,12 @@ static void add_row(void *data, size_t index, int worker) {
 /* to = a + b, each on its level, which may be twice as fine (both) or, for b, twice as coarse. */
 static void add(hl_pool *pool, const cascade_functions *functions, const cascade_level *level_a,
                      const cascade_field *a, const cascade_level *level_b, const cascade_field *b,
-                     const cascade_level *level, const cascade_field *to) {
+                     const cascade_level *level, const cascade_field *to, const unsigned char *wanted) {
   field_tile_function *function = level_a->scale < level->scale   ? functions->add_half
                                   : level_b->scale > level->scale ? functions->add_double
                                                                   : functions->add;
   add_task task = {level, level_a, level_b, a, b, to, {a->pixels, b->pixels, to->pixels, level_b->stride, level->stride},
-                        function};
+                        function, wanted};
   hl_pool_run(pool, (size_t)level->tiles_y, add_row, &task);
 }
 
@@ -165,6 +169,7 @@ typedef struct blur_task {
   blur_add_job job;
   blur_add_tile_function *function;
   int reach_x, reach_y; /* tiles */
+  const unsigned char *wanted; /* [tiles]; null: all */
 } blur_task;
 
 static void blur_row(void *data, size_t index, int worker) {
@@ -173,6 +178,7 @@ static void blur_row(void *data, size_t index, int worker) {
   int y = (int)index;
   for (int x = 0; x < task->level->tiles_x; x++) {
     size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
+    if (task->wanted != NULL && !task->wanted[tile]) continue;
     bool skip = (task->a == NULL || task->a->zeros[tile]) &&
                 all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
     blur_add_job job = task->job;
@@ -206,8 +212,9 @@ static int fill_boxes(cascade_box *boxes, int count, double variance) {
 
 /* to = a + blurred from, all on one level. */
 static void blur_add(hl_pool *pool, const cascade_functions *functions, const cascade_level *level,
-                          const cascade_field *from, const cascade_field *a, const cascade_field *to, double variance) {
-  blur_task task = {.level = level, .from = from, .a = a, .to = to, .function = functions->blur_add};
+                          const cascade_field *from, const cascade_field *a, const cascade_field *to, double variance,
+                          const unsigned char *wanted) {
+  blur_task task = {.level = level, .from = from, .a = a, .to = to, .function = functions->blur_add, .wanted = wanted};
   task.job = (blur_add_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
                                  .stride = level->stride};
   task.reach_x = fill_boxes(level->boxes, level->tiles_x, variance);
@@ -227,7 +234,7 @@ static void merge_up(soft_cascade *cascade, int index, hl_pool *pool, const casc
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
   cascade_group a = level->group[0], b = level->group[1], *to = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++)
-    add(pool, functions, level, &a.absorbed[c], level, &b.absorbed[c], next, &to->absorbed[c]);
+    add(pool, functions, level, &a.absorbed[c], level, &b.absorbed[c], next, &to->absorbed[c], NULL);
   to->empty = a.empty && b.empty;
   to->weight = a.weight + b.weight;
   if (to->weight > 0) to->omega = (a.omega * a.weight + b.omega * b.weight) / to->weight;
@@ -283,30 +290,30 @@ static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, hl_po
 /* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level and added to own there (null:
  * zeros). Blurs are done at the farther level, where they are cheap. Levels between have empty groups only: zeros to add. */
 static void bring(cascade_level *from, const cascade_field *sum, double variance, cascade_level *to_level,
-                  const cascade_field *own, const cascade_field *to, int channel, hl_pool *pool,
+                  const cascade_field *own, const cascade_field *to, int channel, const unsigned char *wanted, hl_pool *pool,
                   const cascade_functions *functions) {
   if (from->scale == to_level->scale) {
-    blur_add(pool, functions, from, sum, own, to, variance);
+    blur_add(pool, functions, from, sum, own, to, variance, wanted);
     return;
   }
-  blur_add(pool, functions, from, sum, NULL, &from->scratch, variance);
+  blur_add(pool, functions, from, sum, NULL, &from->scratch, variance, NULL);
   while (from->scale > 2 * to_level->scale) {
     cascade_level *next = from - 1;
-    add(pool, functions, next, &next->group[0].absorbed[channel], from, &from->scratch, next, &next->scratch);
+    add(pool, functions, next, &next->group[0].absorbed[channel], from, &from->scratch, next, &next->scratch, NULL);
     from = next;
   }
   add(pool, functions, to_level, own == NULL ? &to_level->group[0].absorbed[channel] : own, from, &from->scratch,
-           to_level, to);
+           to_level, to, wanted);
 }
 
 /* What the groups before absorbed, blurred for this group, and what this group did. */
 static void pass_group(int channels, cascade_level *from, cascade_level *level, const cascade_group *group,
-                       double receiver, hl_pool *pool, const cascade_functions *functions) {
+                       double receiver, const unsigned char *wanted, hl_pool *pool, const cascade_functions *functions) {
   double variance = variance_between(receiver - from->sum_omega, receiver - group->omega, from->scale);
   const cascade_field *sum = from->sum[from->newest];
   level->newest = !level->newest;
   for (int c = 0; c < channels; c++)
-    bring(from, &sum[c], variance, level, &group->absorbed[c], &level->sum[level->newest][c], c, pool, functions);
+    bring(from, &sum[c], variance, level, &group->absorbed[c], &level->sum[level->newest][c], c, wanted, pool, functions);
 }
 
 /* Nothing lies before the farthest group. */
@@ -316,6 +323,66 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
     memcpy(to->pixels - level->origin, from->pixels - level->origin, level->plane * sizeof(float));
     memcpy(to->zeros, from->zeros, (size_t)level->tiles_x * (size_t)level->tiles_y);
   }
+}
+
+/* ---- which tiles of the finest level the next slabs read ---- */
+
+static void grow_by_a_tile(const cascade_level *level, const unsigned char *from, unsigned char *to) {
+  int width = level->tiles_x, height = level->tiles_y;
+  memset(to, 0, (size_t)width * (size_t)height);
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++) {
+      if (!from[y * width + x]) continue;
+      int x0 = x > 0 ? x - 1 : 0, x1 = x + 1 < width ? x + 1 : x, y1 = y + 1 < height ? y + 1 : y;
+      for (int j = y > 0 ? y - 1 : 0; j <= y1; j++) memset(to + j * width + x0, 1, (size_t)(x1 - x0 + 1));
+    }
+}
+
+/* Tiles that the sheets up to the next chunk's end can touch, in the first mask, a tile to spare: a slab is lit up to a
+ * sheet away from where it was found. Each further mask is a tile wider. */
+static void find_wanted(soft_cascade *cascade, const occupancy *occupancy, const sheet_stack *sheets, int sheet) {
+  const cascade_level *level = &cascade->level[0];
+  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
+  unsigned char *touched = cascade->wanted[CASCADE_MASKS - 1];
+  memset(touched, 0, tiles);
+  for (bool last = false; sheet < sheets->count && !last; sheet++) {
+    const uint64_t *bits = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
+    for (int word = 0; word < occupancy->tile_words; word++)
+      for (uint64_t left = bits[word]; left != 0; left &= left - 1)
+        touched[(size_t)word * 64 + (size_t)__builtin_ctzll(left)] = 1;
+    last = omega_at(cascade, hl_sheet_height(sheets, sheet)) - cascade->chunk_start >= cascade->chunk;
+  }
+  grow_by_a_tile(level, touched, cascade->wanted[0]);
+  for (int i = 1; i < CASCADE_MASKS; i++) grow_by_a_tile(level, cascade->wanted[i - 1], cascade->wanted[i]);
+}
+
+/* The mask that is wider by so many pixels; null where none is: then all tiles are wanted. */
+static const unsigned char *wanted_within(const soft_cascade *cascade, int pixels) {
+  int wider = (pixels + TILE - 1) / TILE;
+  return wider < CASCADE_MASKS ? cascade->wanted[wider] : NULL;
+}
+
+/* How far the boxes of a variance reach on the finest level, pixels. */
+static int reach_of(const cascade_level *level, double variance) {
+  int reach = 0;
+  for (int i = 0; i < level->tiles_x + level->tiles_y; i++) {
+    int own = box_of_variance(variance * level->boxes[i].part).reach + 1;
+    if (own > reach) reach = own;
+  }
+  return reach;
+}
+
+/* How far what passed group g of the finest level is still blurred there, pixels. */
+static int reach_behind(const soft_cascade *cascade, int g, double receiver) {
+  const cascade_level *level = &cascade->level[0];
+  double omega = level->group[g].omega;
+  int reach = 0;
+  for (int later = g + 1; later < level->count; later++) {
+    if (level->group[later].empty) continue;
+    reach += reach_of(level, variance_between(receiver - omega, receiver - level->group[later].omega, 1));
+    omega = level->group[later].omega;
+  }
+  return reach + reach_of(level, variance_between(receiver - omega, 0, 1));
 }
 
 /* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. Empty groups are left
@@ -332,7 +399,10 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, hl_pool *
       const cascade_group *group = &level->group[g];
       if (group->empty) continue;
       if (sum == NULL) pass_first(cascade, level, group);
-      else pass_group(cascade->channels, sum, level, group, receiver, pool, functions);
+      else {
+        const unsigned char *wanted = i == 0 ? wanted_within(cascade, reach_behind(cascade, g, receiver)) : NULL;
+        pass_group(cascade->channels, sum, level, group, receiver, wanted, pool, functions);
+      }
       level->filled = true;
       level->sum_omega = group->omega;
       sum = level;
@@ -356,6 +426,7 @@ static void light_row(void *data, size_t index, int worker) {
   shadow_buffer *buffer = task->buffer;
   for (size_t tile_x = 0; tile_x < (size_t)level->tiles_x; tile_x++) {
     size_t tile = index * (size_t)level->tiles_x + tile_x;
+    if (!task->cascade->wanted[0][tile]) continue;
     bool shaded = false;
     for (int c = 0; c < buffer->channels; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
@@ -373,14 +444,16 @@ static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double r
   if (level == NULL) return; /* the buffer is all ones */
   double variance = variance_between(receiver - level->sum_omega, 0, level->scale);
   for (int c = 0; c < cascade->channels; c++)
-    bring(level, &level->sum[level->newest][c], variance, &cascade->level[0], NULL, &cascade->shade[c], c, pool, functions);
+    bring(level, &level->sum[level->newest][c], variance, &cascade->level[0], NULL, &cascade->shade[c], c, cascade->wanted[0], pool, functions);
   light_task task = {cascade, buffer, functions->left};
   hl_pool_run(pool, (size_t)cascade->level[0].tiles_y, light_row, &task);
-  hl_shadow_buffer_find_lit(buffer, NULL, pool, functions->lit_blocks);
+  hl_shadow_buffer_find_lit(buffer, cascade->wanted[0], pool, functions->lit_blocks);
 }
 
-void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, double from, double to, double matter,
-                             hl_pool *pool, const cascade_functions *functions) {
+void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
+                             const sheet_stack *sheets, int sheet, double matter, hl_pool *pool,
+                             const cascade_functions *functions) {
+  double from = hl_sheet_height(sheets, sheet - 1), to = hl_sheet_height(sheets, sheet);
   double omega = omega_at(cascade, to), middle = omega_at(cascade, (from + to) / 2);
   if (!isfinite(middle)) return;
   cascade->chunk_weight += matter;
@@ -388,5 +461,6 @@ void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, doubl
   if (omega - cascade->chunk_start < cascade->chunk) return;
   push_chunk(cascade, buffer, pool, functions);
   cascade->chunk_start = omega;
+  find_wanted(cascade, occupancy, sheets, sheet);
   refill_buffer(cascade, buffer, omega + cascade->chunk / 2, pool, functions);
 }

@@ -20,7 +20,8 @@
 #include "light/shadow_buffer.h"
 
 /* CASCADE_REACH: pixels beyond a tile that the buffer must hold, so that its rows are as long as level 0's. */
-enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_MARGIN = 48, CASCADE_REACH = CASCADE_MARGIN - TILE - 1 };
+enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_MARGIN = 48, CASCADE_REACH = CASCADE_MARGIN - TILE - 1,
+       CASCADE_MASKS = 6 };
 
 /* Absorbed light over the pixels of a level, zeros around them. */
 typedef struct cascade_field {
@@ -71,6 +72,7 @@ typedef struct soft_cascade {
   cascade_level level[CASCADE_LEVELS];
   cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0 */
   unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs met light */
+  unsigned char *wanted[CASCADE_MASKS]; /* owned with touched; [tiles]; what the next chunk's slabs read; a tile wider each */
 } soft_cascade;
 
 /* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. */
@@ -78,9 +80,10 @@ hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, cons
                                 double first, double last, double pixel, shadow_buffer *buffer, hl_error *error);
 void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade);
 
-/* After the slab between these heights was composited into the buffer. matter: how much there was, say
- * blocks of pixels. */
-void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, double from, double to, double matter,
-                             hl_pool *pool, const cascade_functions *functions);
+/* After the slab before the sheet was composited into the buffer. occupancy: what the light sees; the buffer is
+ * found anew only where the next slabs lie. matter: how much there was, say blocks of pixels. */
+void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
+                             const sheet_stack *sheets, int sheet, double matter, hl_pool *pool,
+                             const cascade_functions *functions);
 
 #endif

@@ -218,7 +218,7 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
     if (light->source->soft_method == HL_SOFT_PAPER)
       hl_soft_paper_convolve(&light->paper, light->buffer, hl_sheet_height(&sweep->geometry->sheets, sheet + 1), sweep->pool, &blur);
     else if (sheet > 0)
-      hl_soft_cascade_advance(&light->cascade, light->buffer, hl_sheet_height(&sweep->geometry->sheets, sheet - 1), hl_sheet_height(&sweep->geometry->sheets, sheet),
+      hl_soft_cascade_advance(&light->cascade, light->buffer, &light->sheets.occupancy, &sweep->geometry->sheets, sheet,
                               take_attenuated(sweep, i), sweep->pool, &cascade);
   }
   sweep->seconds_soften += hl_clock_seconds() - start;
