@@ -194,6 +194,18 @@ static bool brick_reaches_faces(const grid *grid, const int32_t b[3]) {
   return false;
 }
 
+/* Whether a brick has a cell that shows something. */
+static bool brick_is_visible(const grid *grid, const int32_t b[3]) {
+  enum { PAIRS = HL_BRICK_CELLS / HL_NEAR_CELLS };
+  if (grid->near == NULL) return true;
+  for (int32_t z = PAIRS * b[2]; z < PAIRS * b[2] + PAIRS && z < grid->near_count[2]; z++)
+    for (int32_t y = PAIRS * b[1]; y < PAIRS * b[1] + PAIRS && y < grid->near_count[1]; y++)
+      for (int32_t x = PAIRS * b[0]; x < PAIRS * b[0] + PAIRS && x < grid->near_count[0]; x++)
+        if (grid->visible[((size_t)z * (size_t)grid->near_count[1] + (size_t)y) * (size_t)grid->near_count[0] + (size_t)x])
+          return true;
+  return false;
+}
+
 void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *pool) {
   mark_job job = {grid, classifier};
   hl_pool_run(pool, (size_t)grid->brick_count[2], mark_slab, &job);
@@ -201,16 +213,17 @@ void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *po
   grid->kept_voxels = 0;
   grid->relevant_count = 0;
   grid->cut = false;
+  bool first = true;
   for (size_t at = 0; at < hl_grid_bricks(grid); at++) {
     if (!grid->relevant[at]) continue;
     int32_t b[3];
     hl_grid_brick_place(grid, (uint32_t)at, b);
     for (int axis = 0; axis < 3; axis++) {
-      bool first = grid->relevant_count == 0;
       if (first || b[axis] < grid->relevant_low[axis]) grid->relevant_low[axis] = b[axis];
       if (first || b[axis] > grid->relevant_high[axis]) grid->relevant_high[axis] = b[axis];
     }
-    grid->relevant_list[grid->relevant_count++] = (uint32_t)at;
+    first = false;
+    if (brick_is_visible(grid, b)) grid->relevant_list[grid->relevant_count++] = (uint32_t)at;
     grid->cut = grid->cut || brick_reaches_faces(grid, b);
     grid->kept_voxels += (uint64_t)voxels_along(b[0], grid->dimension[0]) *
                          (uint64_t)voxels_along(b[1], grid->dimension[1]) *

@@ -41,7 +41,7 @@ typedef struct grid {
   unsigned char *visible;      /* owned; [same]; 1 where the transfer function shows something */
   unsigned char *near;         /* owned; [same]; NEAR_ bits */
   int32_t near_count[3];
-  uint32_t *relevant_list;     /* owned; [relevant_count]; indices of the relevant bricks, rising */
+  uint32_t *relevant_list;     /* owned; [relevant_count]; relevant bricks with a visible cell, rising */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest place of a relevant brick along each axis */
   bool cut;                    /* some relevant brick reaches the box's faces: rays need their entry and exit */
