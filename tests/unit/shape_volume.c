@@ -127,11 +127,11 @@ static void the_grid_is_empty_at_its_faces(void **state) {
   for (size_t p = 0; hl_shape_preset_name(p) != NULL; p++) {
     const char *name = hl_shape_preset_name(p);
     assert_non_null(hl_shape_preset_summary(p));
-    hl_volume *volume = make(context, hl_shape_preset_text(name), 48, 2);
+    hl_volume *volume = make(context, hl_shape_preset_text(name), 64, 2);
     const size_t *n = volume->dimension;
     size_t longest = n[0] > n[1] ? n[0] : n[1];
     longest = n[2] > longest ? n[2] : longest;
-    if (longest < 46 || longest > 48) fail_msg("%s: %zu voxels along the longest side", name, longest);
+    if (longest < 62 || longest > 64) fail_msg("%s: %zu voxels along the longest side", name, longest);
     for (size_t k = 0; k < n[2]; k++)
       for (size_t j = 0; j < n[1]; j++)
         for (size_t i = 0; i < n[0]; i++)
