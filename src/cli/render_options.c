@@ -10,7 +10,7 @@ static const cli_choice shadings[] = {{"phong", HL_SHADING_PHONG}, {"none", HL_S
 static const cli_choice shadow_kinds[] = {
     {"off", HL_SHADOWS_OFF}, {"hard", HL_SHADOWS_HARD}, {"soft", HL_SHADOWS_SOFT}, {NULL, 0}};
 static const cli_choice soft_methods[] = {
-    {"cascade", HL_SOFT_CASCADE}, {"paper", HL_SOFT_PAPER}, {"sublights", CHOICE_RESERVED}, {NULL, 0}};
+    {"cascade", HL_SOFT_CASCADE}, {"paper", HL_SOFT_PAPER}, {"sublights", HL_SOFT_SUBLIGHTS}, {NULL, 0}};
 static const cli_choice resolutions[] = {{"auto", 0}, {NULL, 0}};
 static const cli_choice lookups[] = {
     {"bilinear", HL_LOOKUP_BILINEAR}, {"nearest", HL_LOOKUP_NEAREST}, {NULL, 0}};
@@ -140,7 +140,14 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                             .kind = OPTION_CHOICE,
                             .choices = soft_methods,
                             .help = "how soft shadows are made"},
-    [RENDER_LIGHT_SAMPLES] = {.name = "light-samples", .kind = OPTION_TEXT, .help = "", .reserved = true},
+    [RENDER_LIGHT_SAMPLES] = {.name = "light-samples",
+                              .kind = OPTION_NUMBERS,
+                              .argument = "M",
+                              .help = "sublights: M x M parts of each light (default 4)",
+                              .count = 1,
+                              .whole = true,
+                              .low = 1,
+                              .high = 64},
     [RENDER_SHADOW_RESOLUTION] = {.name = "shadow-resolution",
                                   .kind = OPTION_NUMBERS,
                                   .argument = "N|auto",

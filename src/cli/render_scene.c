@@ -216,6 +216,7 @@ static void change_settings(const cli_value *values, hl_scene_description *descr
   hl_render_settings *settings = &description->render;
   if (values[RENDER_SOFT_METHOD].given)
     settings->soft_method = (hl_soft_method)values[RENDER_SOFT_METHOD].choice;
+  if (values[RENDER_LIGHT_SAMPLES].given) settings->light_samples = (int)values[RENDER_LIGHT_SAMPLES].number[0];
   if (values[RENDER_SHADOW_RESOLUTION].given) /* 0 for "auto" */
     settings->shadow_resolution = (int)values[RENDER_SHADOW_RESOLUTION].number[0];
   if (values[RENDER_SHADOW_LOOKUP].given)
@@ -241,6 +242,8 @@ static void warn_of_idle_options(const scene_change *change) {
   bool soft = settings->shadows == HL_SHADOWS_SOFT;
   for (size_t i = 0; i < change->description.light_count; i++)
     soft |= change->description.lights[i].shadows == HL_SHADOWS_SOFT;
+  if (values[RENDER_LIGHT_SAMPLES].given && (!soft || settings->soft_method != HL_SOFT_SUBLIGHTS))
+    warn("--light-samples changes nothing without --shadows soft and --soft-method sublights");
   if (values[RENDER_SOFT_METHOD].given && !soft) warn("--soft-method changes nothing without --shadows soft");
   if (values[RENDER_LIGHT_SIZE].given && values[RENDER_LIGHT_SIZE].number[0] > 0 && !soft)
     warn("--light-size changes nothing without --shadows soft");

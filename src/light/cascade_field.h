@@ -21,6 +21,10 @@ typedef struct blur_add_job {
   blur_box u, v;         /* reach below BLUR_GREATEST_REACH */
 } blur_add_job;
 enum { BLUR_GREATEST_REACH = 46 };
+
+/* As far as BLUR_GREATEST_REACH allows. */
+blur_box hl_blur_box_of_variance(double variance);
+
 typedef void blur_add_tile_function(const blur_add_job *job, int tile_x, int tile_y);
 
 typedef struct cascade_functions {

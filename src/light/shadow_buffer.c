@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "light/lit_region.h"
+#include "light/shadow_lookup.h"
 
 /* Tangent of the widest angle that a point light's buffer covers. */
 static const double WIDEST = 6;
@@ -159,6 +160,15 @@ void hl_shadow_buffer_find_lit(shadow_buffer *buffer, const unsigned char *wante
                                lit_blocks_function *lit_blocks) {
   lit_task task = {buffer, wanted, lit_blocks};
   hl_pool_run(pool, (size_t)buffer->tiles_y, find_lit_row, &task);
+}
+
+shadow_lookup hl_lookup_of_view(const view *view) {
+  shadow_lookup lookup = {.width = view->width, .height = view->height};
+  double rows[3][4];
+  hl_view_homogeneous(view, affine3_identity(), rows);
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 4; column++) lookup.map[row][column] = (float)rows[row][column];
+  return lookup;
 }
 
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer) {

@@ -190,21 +190,11 @@ static void blur_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Whole weights out to r have the variance r (r + 1) / 3; with weight e one further, n = 2 r + 1 and v the variance,
- * v (n + 2 e) = n r (r + 1) / 3 + 2 e (r + 1)^2 gives e (derived). */
-static blur_box box_of_variance(double variance) {
-  int most = BLUR_GREATEST_REACH - 2, reach = (int)fmin(sqrt(3 * variance + 0.25) - 0.5, most);
-  double whole = reach * (reach + 1) / 3.0, width = 2 * reach + 1;
-  double edge = 0.5 * width * (variance - whole) / ((reach + 1.0) * (reach + 1) - variance);
-  if (reach == most || !(edge < 1)) edge = reach == most ? 0 : 1;
-  return (blur_box){reach, (float)edge, (float)(1 / (width + 2 * edge))};
-}
-
 /* Boxes of a variance in pixels of the level, times each column's or row's part; returns the greatest reach in tiles. */
 static int fill_boxes(cascade_box *boxes, int count, double variance) {
   int reach = 0;
   for (int i = 0; i < count; i++) {
-    boxes[i].box = box_of_variance(variance * boxes[i].part);
+    boxes[i].box = hl_blur_box_of_variance(variance * boxes[i].part);
     if (boxes[i].box.reach > reach) reach = boxes[i].box.reach;
   }
   return (reach + TILE) / TILE;
@@ -366,7 +356,7 @@ static const unsigned char *wanted_within(const soft_cascade *cascade, int pixel
 static int reach_of(const cascade_level *level, double variance) {
   int reach = 0;
   for (int i = 0; i < level->tiles_x + level->tiles_y; i++) {
-    int own = box_of_variance(variance * level->boxes[i].part).reach + 1;
+    int own = hl_blur_box_of_variance(variance * level->boxes[i].part).reach + 1;
     if (own > reach) reach = own;
   }
   return reach;

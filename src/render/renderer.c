@@ -251,10 +251,6 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   frame->voxel = smallest_edge(renderer);
   frame->spacing = scene->render.sheet_spacing * frame->voxel;
   set_up_lights(scene, frame);
-  for (int i = 0; i < frame->light_count; i++) {
-    if (frame->lights[i].shadows == HL_SHADOWS_SOFT && frame->lights[i].soft_method == HL_SOFT_SUBLIGHTS)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED, "/render/soft_method: sublights is not in this version: use cascade or paper");
-  }
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
   status = hl_frame_check_sweeps(frame, work->sweeps, work->sweep_count, error);
   if (status != HL_OK) return status;

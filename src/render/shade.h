@@ -10,6 +10,7 @@
 #include "light/light_cone.h"
 #include "light/light_sector.h"
 #include "light/light_screen.h"
+#include "light/shadow_lookup.h"
 
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
@@ -39,10 +40,8 @@ typedef struct shade_light {
   int inverse_square;
   int shadowed;
   float path;                     /* parallel: sheet spacing / |l.h|; else sheet spacing */
-  float map[3][4];                /* frame space -> (w, w u, w v) of the shadow buffer */
-  const float *transmittance[HL_CHANNELS]; /* pixel (0,0); rows stride apart */
-  size_t stride;
-  int width, height, channels;
+  const shadow_lookup *lookups;   /* [lookup_count]; where shadowed: the light that reaches a sample is their mean */
+  int lookup_count, channels;
   light_screen screen;            /* the image that the light projects */
   light_cone cone;                /* of a spot light */
   light_share share;              /* of a light within the content */

@@ -76,22 +76,41 @@ LANES_INLINE lanes own_transmittance(int back_to_front, lanes e, lanes l) {
   return lanes_min(seen / mean_transmittance(e), lanes_set(1.0f));
 }
 
-/* Light reaching the slab: the shadow buffer's transmittance at its first sheet, 1 outside it. */
-LANES_INLINE lanes look_up(const shade_light *light, const float *buffer, lanes u, lanes v) {
-  lanes_int inside = (u > 0.0f) & (v > 0.0f) & (u < (float)light->width) & (v < (float)light->height);
-  lanes x = lanes_clamp(u - 0.5f, 0, (float)(light->width - 1)), y = lanes_clamp(v - 0.5f, 0, (float)(light->height - 1));
-  if (light->nearest) {
+/* One channel of a shadow buffer at continuous pixel coordinates, 1 outside it. */
+LANES_INLINE lanes look_up(const shadow_lookup *lookup, int nearest, const float *buffer, lanes u, lanes v) {
+  lanes_int inside = (u > 0.0f) & (v > 0.0f) & (u < (float)lookup->width) & (v < (float)lookup->height);
+  lanes x = lanes_clamp(u - 0.5f, 0, (float)(lookup->width - 1)), y = lanes_clamp(v - 0.5f, 0, (float)(lookup->height - 1));
+  if (nearest) {
     x = lanes_from_int(lanes_truncate(x + 0.5f));
     y = lanes_from_int(lanes_truncate(y + 0.5f));
   }
   lanes_int column = lanes_truncate(x), row = lanes_truncate(y);
   lanes fx = x - lanes_from_int(column), fy = y - lanes_from_int(row);
-  lanes_int at = row * (int32_t)light->stride + column;
+  lanes_int at = row * (int32_t)lookup->stride + column;
   lanes a, b, c, d;
   lanes_gather_pairs(buffer, at, &a, &b);
-  lanes_gather_pairs(buffer + light->stride, at, &c, &d);
+  lanes_gather_pairs(buffer + lookup->stride, at, &c, &d);
   lanes top = a + (b - a) * fx, bottom = c + (d - c) * fx;
   return lanes_select(inside, top + (bottom - top) * fy, lanes_set(1.0f));
+}
+
+/* Light reaching the slab: the shadow buffers' transmittance at its first sheet. */
+LANES_INLINE color_lanes reaching(const shade_light *light, lanes3 position) {
+  color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  for (int i = 0; i < light->lookup_count; i++) {
+    const shadow_lookup *lookup = &light->lookups[i];
+    lanes place[3];
+    for (int row = 0; row < 3; row++)
+      place[row] = position.x * lookup->map[row][0] + position.y * lookup->map[row][1] +
+                   (position.z * lookup->map[row][2] + lookup->map[row][3]);
+    lanes_int ahead = place[0] > 0.0f;
+    lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
+    lanes u = lanes_select(ahead, place[1] / safe, outside), v = lanes_select(ahead, place[2] / safe, outside);
+    for (int c = 0; c < light->channels; c++)
+      sum.c[c] = sum.c[c] + look_up(lookup, light->nearest, lookup->transmittance[c], u, v);
+  }
+  for (int c = 0; c < light->channels && light->lookup_count > 1; c++) sum.c[c] = sum.c[c] / (float)light->lookup_count;
+  return sum;
 }
 
 /* One volume's way through the slab: where its covered part starts and ends in the tables, and its mean extinction, the
@@ -223,18 +242,12 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   }
   arriving.shadowed = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
-  lanes place[3];
-  for (int row = 0; row < 3; row++)
-    place[row] = g->position.x * light->map[row][0] + g->position.y * light->map[row][1] +
-                 (g->position.z * light->map[row][2] + light->map[row][3]);
-  lanes_int ahead = place[0] > 0.0f;
-  lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
-  lanes u = lanes_select(ahead, place[1] / safe, outside), v = lanes_select(ahead, place[2] / safe, outside);
   light_depths depths = depths_of_light(job, g, densities, count, arriving.towards, path);
+  color_lanes reached = reaching(light, g->position);
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     if (c < light->channels)
-      transmittance = look_up(light, light->transmittance[c], u, v) * lanes_exp_negative(depths.before[c]) *
+      transmittance = reached.c[c] * lanes_exp_negative(depths.before[c]) *
                       own_transmittance(job->back_to_front, depth, depths.within[c]);
     arriving.shadowed.c[c] = arriving.shadowed.c[c] * transmittance;
   }

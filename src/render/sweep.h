@@ -7,6 +7,7 @@
 
 #include "light/soft_cascade.h"
 #include "light/soft_paper.h"
+#include "light/sublights.h"
 #include "render/frame.h"
 #include "render/layers.h"
 #include "simd/hot.h"
@@ -52,6 +53,8 @@ typedef struct sweep_light {
   float *screen_pixels;           /* owned; the image averaged; null where it is used as it is */
   soft_paper paper;               /* by the source's soft method */
   soft_cascade cascade;
+  sublights sublights;            /* with these, buffer holds one slab at a time */
+  shadow_lookup lookup;           /* without: of buffer */
 } sweep_light;
 
 typedef struct sweep_counts {

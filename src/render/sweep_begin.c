@@ -41,29 +41,31 @@ static double penumbra_margin(const sweep *sweep, const light_source *source, co
 
 /* Places the buffer: perpendicular to the light for hard shadows; parallel to the sheets for soft ones, around the middle
  * and along the axes of the light as they see it. False where nothing of the content is in the picture. */
-static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *points, sheet_light *seen, view *view) {
+static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *points, shadow_extent *extent,
+                         sheet_light *seen, view *view) {
   size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
   double finest = GREATEST_SHADOW_PIXEL * sweep->frame->voxel;
-  shadow_extent extent = {.points = points, .point_count = hl_frame_visible_points(sweep->frame, points),
+  *extent = (shadow_extent){.points = points, .point_count = hl_frame_visible_points(sweep->frame, points),
                           .pixel = fmin(sweep->frame->pixel, finest), .resolution = sweep->scene->render.shadow_resolution,
                           .greatest_pixels = greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
                           .content = sweep->frame->points, .content_count = sweep->frame->point_count};
-  if (extent.point_count == 0) return false;
+  if (extent->point_count == 0) return false;
   if (source->shadows != HL_SHADOWS_SOFT) {
-    hl_shadow_view(source, source->direction, &extent, view);
+    hl_shadow_view(source, source->direction, extent, view);
     return true;
   }
   light_source middle = *source;
   *seen = hl_light_on_sheets(source, sweep->geometry->sheets.normal);
   /* hard edges must hold at the nearest matter; soft ones are wider than a pixel where it matters */
-  extent.pixel = fmin(sweep->frame->middle_pixel, finest);
-  extent.margin = penumbra_margin(sweep, source, seen);
-  if (source->soft_method != HL_SOFT_PAPER) {
-    extent.u = seen->u;
+  extent->pixel = fmin(sweep->frame->middle_pixel, finest);
+  extent->margin = penumbra_margin(sweep, source, seen);
+  if (source->soft_method == HL_SOFT_SUBLIGHTS) extent->u = seen->u;
+  if (source->soft_method == HL_SOFT_CASCADE) {
+    extent->u = seen->u;
     if (source->parallel) middle.direction = vec3_normalise(seen->middle);
     else middle.position = seen->middle;
   }
-  hl_shadow_view(&middle, sweep->geometry->sheets.normal, &extent, view);
+  hl_shadow_view(&middle, sweep->geometry->sheets.normal, extent, view);
   return true;
 }
 
@@ -73,8 +75,9 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   hl_status status = hl_light_screen_create(sweep->context, source, sweep->frame->middle, sweep->frame->middle_pixel,
                                             &light->screen, &light->screen_pixels, error);
   view view;
+  shadow_extent extent;
   sheet_light seen = {0};
-  if (status != HL_OK || source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, points, &seen, &view))
+  if (status != HL_OK || source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, points, &extent, &seen, &view))
     return status;
   light->buffer = buffer;
   double edge = vec3_length(view.du);
@@ -86,9 +89,16 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
     reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
   }
   status = hl_shadow_buffer_reset(sweep->context, buffer, &view, sweep->channels, paper, reach, error);
+  light->lookup = hl_lookup_of_view(&view);
+  light->lookup.stride = buffer->stride;
+  for (int c = 0; c < sweep->channels; c++) light->lookup.transmittance[c] = buffer->transmittance[c];
+  double last = sheets->first + (sheets->count - 1) * sheets->spacing;
+  if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
+    status = hl_sublights_begin(sweep->context, &light->sublights, source, sweep->scene->render.light_samples, &seen,
+                                sheets->normal, &extent, sweep->channels, sheets->first, last, error);
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_CASCADE)
-    status = hl_soft_cascade_begin(sweep->context, &light->cascade, &seen, sheets->normal, sheets->first,
-                                   sheets->first + (sheets->count - 1) * sheets->spacing, edge, buffer, error);
+    status = hl_soft_cascade_begin(sweep->context, &light->cascade, &seen, sheets->normal, sheets->first, last,
+                                   edge, buffer, error);
   if (status == HL_OK) status = hl_view_sheets_begin(sweep, &view, &light->sheets, error);
   return status;
 }
@@ -152,15 +162,9 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   light->path = (float)spacing;
   if (from->source->parallel) light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
   if (from->buffer == NULL) return;
-  double rows[3][4];
-  hl_view_homogeneous(&from->buffer->view, affine3_identity(), rows);
-  for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 4; column++) light->map[row][column] = (float)rows[row][column];
-  for (int c = 0; c < from->buffer->channels; c++) light->transmittance[c] = from->buffer->transmittance[c];
-  light->stride = from->buffer->stride;
-  light->width = from->buffer->view.width;
-  light->height = from->buffer->view.height;
   light->channels = from->buffer->channels;
+  light->lookups = from->sublights.count > 0 ? from->sublights.lookups : &from->lookup;
+  light->lookup_count = from->sublights.count > 0 ? from->sublights.count : 1;
 }
 
 static void set_up_jobs(sweep *sweep) {
@@ -214,6 +218,7 @@ void hl_sweep_end(sweep *sweep) {
     hl_view_sheets_end(sweep, &light->sheets);
     hl_release(context, light->screen_pixels);
     hl_soft_cascade_release(context, &light->cascade);
+    hl_sublights_release(context, &light->sublights);
   }
   hl_view_sheets_end(sweep, &sweep->image);
   void *owned[] = {sweep->open, sweep->tasks, sweep->shade_volumes, sweep->shade_patches,

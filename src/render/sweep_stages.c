@@ -113,6 +113,18 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
   return count;
 }
 
+/* Whether some light is missing in a tile: of sublights' slabs, which are composited many times, only those go on. */
+static bool holds_shade(const attenuate_job *job) {
+  float least = 1;
+  for (int c = 0; c < job->channels; c++)
+    for (size_t row = 0; row < TILE; row++)
+      for (size_t i = 0; i < TILE; i++) {
+        float left = job->transmittance[c][row * job->stride + i];
+        least = left < least ? left : least;
+      }
+  return least < 1;
+}
+
 /* Step 17 for one tile of a light's shadow buffer. */
 static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uint32_t need,
                                  const attenuate_volume *volumes, int count) {
@@ -128,7 +140,7 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
   buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | sweep->hot->attenuate_tile(&job, tile_x, tile_y));
-  buffer->tile_touched[tile] = 1;
+  buffer->tile_touched[tile] = light->sublights.count == 0 || holds_shade(&job);
 }
 
 static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker) {
@@ -211,12 +223,17 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
   const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile};
   const cascade_functions cascade = {hot->lit_blocks_tile, hot->blur_add_tile, hot->add_tile,
                                      hot->add_half_tile, hot->add_double_tile, hot->left_tile, hot->absorbed_tile};
+  const sublight_functions parts = {hot->sublight_tile, hot->blur_add_tile, hot->lit_blocks_tile};
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
     if (!is_beyond(sweep, light->source, sheet)) continue;
     if (light->source->soft_method == HL_SOFT_PAPER)
       hl_soft_paper_convolve(&light->paper, light->buffer, hl_sheet_height(&sweep->geometry->sheets, sheet + 1), sweep->pool, &blur);
+    else if (sheet > 0 && light->source->soft_method == HL_SOFT_SUBLIGHTS)
+      hl_sublights_advance(&light->sublights, light->buffer, sweep->geometry->sheets.normal,
+                           hl_sheet_height(&sweep->geometry->sheets, sheet - 1),
+                           hl_sheet_height(&sweep->geometry->sheets, sheet), sweep->pool, &parts);
     else if (sheet > 0)
       hl_soft_cascade_advance(&light->cascade, light->buffer, &light->sheets.occupancy, &sweep->geometry->sheets, sheet,
                               take_attenuated(sweep, i), sweep->pool, &cascade);

@@ -53,7 +53,7 @@ void hl_scene_description_defaults(hl_scene_description *description) {
       .ambient = {0.2, 0.2, 0.2},
       .render = {.shadows = HL_SHADOWS_SOFT,
                  .soft_method = HL_SOFT_CASCADE,
-                 .light_samples = 1,
+                 .light_samples = 4,
                  .sheet_spacing = 0.5,
                  .kernel = HL_KERNEL_BSPLINE},
   };

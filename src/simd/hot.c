@@ -3,6 +3,7 @@
 
 #include "light/blur_lanes.h"
 #include "light/cascade_lanes.h"
+#include "light/sublight_lanes.h"
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
@@ -26,6 +27,7 @@ const hot_functions HL_HOT_TABLE = {
     .add_tile = add_tile,
     .add_half_tile = add_half_tile,
     .add_double_tile = add_double_tile,
+    .sublight_tile = sublight_tile,
     .left_tile = left_tile,
     .absorbed_tile = absorbed_tile,
 };

@@ -8,6 +8,7 @@
 #include "light/attenuate.h"
 #include "light/blur.h"
 #include "light/cascade_field.h"
+#include "light/sublight_field.h"
 #include "render/shade.h"
 #include "splat/bricks.h"
 #include "splat/coverage.h"
@@ -21,6 +22,7 @@ typedef struct hot_functions {
   attenuate_tile_function *attenuate_tile;
   lit_blocks_function *lit_blocks_tile;
   shade_tile_function *shade_tile, *measure_tile;
+  sublight_tile_function *sublight_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
   blur_add_tile_function *blur_add_tile;
   field_tile_function *add_tile, *add_half_tile, *add_double_tile, *left_tile, *absorbed_tile;

@@ -166,8 +166,8 @@ typedef struct rect_case {
 } rect_case;
 
 static const rect_case rect_cases[] = {
-    {1.6, 4, 24, 8, 160, 0.5}, {1.6, 0, 24, 8, 160, 1},  {6, 1, 18, 6, 160, 1},   {6, 6, 18, 6, 320, 0.5},
-    {6, 12, 18, 6, 160, 0.5},  {10, 3, 20, 10, 320, 1}, {10, 20, 20, 10, 320, 1},
+    {1.6, 4, 24, 8, 160, 0.5}, {1.6, 0, 24, 8, 160, 1},    {6, 1, 24, 8, 160, 1},   {6, 6, 24, 8, 320, 0.5},
+    {6, 12, 24, 8, 160, 0.5},  {10, 3, 30, 15, 320, 0.5}, {10, 8, 30, 15, 320, 1},
 };
 
 /* The 10 to 90 % width of the edge's penumbra as a part of eq. (5)'s: a rect's profile is linear, so 0.8 L dZ / Z. */
@@ -205,7 +205,13 @@ static double rect_penumbra(const rect_case *c, hl_soft_method method, int sampl
 static void test_penumbra_of_rect_by_cascade(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof rect_cases / sizeof *rect_cases; i++)
-    (void)rect_penumbra(&rect_cases[i], HL_SOFT_CASCADE, 1);
+    assert_near(rect_penumbra(&rect_cases[i], HL_SOFT_CASCADE, 1), 1, 0.1);
+}
+
+static void test_penumbra_of_rect_by_sublights(void **state) {
+  (void)state;
+  for (size_t i = 0; i < sizeof rect_cases / sizeof *rect_cases; i++)
+    assert_near(rect_penumbra(&rect_cases[i], HL_SOFT_SUBLIGHTS, 4), 1, 0.05);
 }
 
 /* ---- the two slicing directions ---- */
@@ -309,6 +315,7 @@ int main(void) {
       cmocka_unit_test(test_penumbra_of_cascade),
       cmocka_unit_test(test_penumbra_of_paper),
       cmocka_unit_test(test_penumbra_of_rect_by_cascade),
+      cmocka_unit_test(test_penumbra_of_rect_by_sublights),
       cmocka_unit_test(test_no_jump_where_the_axis_turns),
   };
   return cmocka_run_group_tests_name("sheets_shadow", tests, NULL, NULL);

@@ -253,7 +253,7 @@ static void defaults_are_the_documented_ones(void **state) {
               d->lights[0].shadows == HL_SHADOWS_DEFAULT);
   assert_true(d->render.shadows == HL_SHADOWS_SOFT && d->render.soft_method == HL_SOFT_CASCADE);
   assert_true(d->render.sheet_spacing == 0.5 && d->render.shadow_resolution == 0 &&
-              d->render.light_samples == 1);
+              d->render.light_samples == 4);
   assert_ptr_equal(d->volumes[0].volume, d->volumes[1].volume); /* one file, loaded once */
   assert_true(d->volumes[0].transfer_function.opacity_count > 1); /* automatic */
   assert_true(d->volumes[1].transfer_function.opacity_count == 1 &&

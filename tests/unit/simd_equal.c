@@ -353,7 +353,9 @@ typedef struct field_state {
   blur_job blur;
   field_job field;
   blur_add_job blur_add;
+  sublight_job sublight;
   float a[FIELD][FIELD], b[FIELD][FIELD], out[FIELD][FIELD];
+  int lit;
 } field_state;
 
 static void call_field(const hot_functions *hot, void *state) {
@@ -366,11 +368,12 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 5) hot->blur_add_tile(&s->blur_add, 1, 1);
   if (s->which == 6) hot->left_tile(&s->field, 1, 1);
   if (s->which == 7) hot->absorbed_tile(&s->field, 1, 1);
+  if (s->which == 8) s->lit = hot->sublight_tile(&s->sublight, 1, 1);
 }
 
 static void test_fields(void **unused) {
   (void)unused;
-  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "blur_add_tile", "left_tile", "absorbed_tile"};
+  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "blur_add_tile", "left_tile", "absorbed_tile", "sublight_tile"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -383,7 +386,17 @@ static void test_fields(void **unused) {
     s.blur_add = (blur_add_job){&s.b[MARGIN][MARGIN], round % 3 ? &s.a[MARGIN][MARGIN] : NULL, &s.out[MARGIN][MARGIN],
                                           FIELD, hl_blur_box(random_between(&seed, 1, 90)),
                                           hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
-    for (s.which = 0; s.which < 8; s.which++) {
+    s.sublight = (sublight_job){.slab_stride = FIELD, .slab_width = 60, .slab_height = 50, .stride = FIELD,
+                                .channels = 1 + 2 * (round % 2)};
+    for (int axis = 0; axis < 2; axis++) {
+      s.sublight.scale[axis] = round % 3 == 0 ? 1 : random_between(&seed, round % 3 == 1 ? 0.8f : 0.3f, round % 3 == 1 ? 1.25f : 3);
+      s.sublight.shift[axis] = random_between(&seed, -20, 20);
+    }
+    for (int c = 0; c < HL_CHANNELS; c++) {
+      s.sublight.slab[c] = &s.a[MARGIN + c][MARGIN];
+      s.sublight.transmittance[c] = &s.out[MARGIN][MARGIN];
+    }
+    for (s.which = 0; s.which < 9; s.which++) {
       trial trial = {call_field, &s, s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
@@ -398,6 +411,7 @@ typedef struct shade_state {
   shade_patch patches[2];
   int patch_count;
   shade_light lights[3];
+  shadow_lookup lookups[3][3];
   uint32_t blocks;
   float density[4][TILE_PIXELS];
   float cut[2][TILE_PIXELS];
@@ -419,13 +433,17 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
     vec3 towards = bench_random_direction(seed);
     *light = (shade_light){.parallel = (round + i) % 2, .towards = {(float)towards.x, (float)towards.y, (float)towards.z},
                            .position = {3, -2, (float)i}, .color = {1, 0.5f, salted(seed, 0, 1)}, .inverse_square = i == 1,
-                           .shadowed = i < 2, .path = 0.7f, .stride = 64, .width = 60, .height = 50,
+                           .shadowed = i < 2, .path = 0.7f, .lookups = s->lookups[i], .lookup_count = 1 + round % 3,
                            .channels = s->job.channels, .nearest = round % 5 == 4};
-    for (int c = 0; c < HL_CHANNELS; c++) light->transmittance[c] = &s->buffer[c][2][2];
-    for (int row = 0; row < 3; row++)
-      for (int column = 0; column < 4; column++) light->map[row][column] = random_between(seed, -9, 9);
-    light->map[0][3] = 10;
-    light->map[1][3] = light->map[2][3] = 250;
+    for (int part = 0; part < 3; part++) {
+      shadow_lookup *lookup = &s->lookups[i][part];
+      *lookup = (shadow_lookup){.stride = 64, .width = 60, .height = 50};
+      for (int c = 0; c < HL_CHANNELS; c++) lookup->transmittance[c] = &s->buffer[c][2][2];
+      for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 4; column++) lookup->map[row][column] = random_between(seed, -9, 9);
+      lookup->map[0][3] = 10;
+      lookup->map[1][3] = lookup->map[2][3] = 250;
+    }
     if (round % 4 == 3) light->cone = (light_cone){{-light->towards[0], 0.6f, -light->towards[2]}, 0.3f, 4};
     if ((round + i) % 3 == 0) {
       light->screen = (light_screen){.pixels = &s->buffer[0][0][0], .width = 1 + round % 30, .height = 20, .sharpness = {1, 2.5f}};

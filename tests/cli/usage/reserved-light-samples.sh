@@ -1,1 +1,0 @@
-halflight render --light-samples 3 x.nrrd

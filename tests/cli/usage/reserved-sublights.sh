@@ -1,1 +1,0 @@
-halflight render --soft-method sublights x.nrrd
