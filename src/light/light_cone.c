@@ -10,7 +10,7 @@ light_cone hl_light_cone(const light_source *source, vec3 content, double pixel)
   double sharpest = distance > pixel ? pixel / distance : 1, middle = opening - edge / 2;
   edge = fmax(edge, sharpest);
   double outer = cos(fmin(middle + edge / 2, HL_PI)), full = cos(fmax(middle - edge / 2, 0));
-  vec3_store(cone.axis, source->direction);
+  vec3_store(cone.axis, vec3_normalise(vec3_of(light->direction)));
   cone.outer = (float)outer;
   cone.scale = (float)(1 / (full - outer));
   return cone;

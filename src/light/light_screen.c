@@ -1,7 +1,8 @@
-/* light/light_screen.c - where a light's image stands, and the image averaged to the picture's pixels. */
+/* light/light_screen.c - where a light's image stands, averaged to the picture's pixels and blurred by the light's shape. */
 #include "light/light_screen.h"
 
 #include "core/memory.h"
+#include "scene/light_shape.h"
 #include "splat/view.h"
 
 /* The image as a picture plane that the light looks through: its pixels are the view's. Derived: a sample x lies on the
@@ -17,46 +18,194 @@ static view view_of_screen(const light_source *source, int width, int height) {
   return view;
 }
 
-/* Length of a vector of the screen where its shadow falls on the content, across the light's rays; where the content lies
- * before the screen, its own. */
-static double length_at_content(const light_source *source, vec3 step, vec3 content) {
-  vec3 way = source->parallel ? source->direction
-                              : vec3_normalise(vec3_subtract(source->screen_center, source->position));
-  vec3 across = vec3_subtract(step, vec3_scale(way, vec3_dot(step, way)));
-  double length = vec3_length(across);
-  if (source->parallel) return length;
-  double to_screen = vec3_dot(way, vec3_subtract(source->screen_center, source->position));
-  return length * fmax(vec3_dot(way, vec3_subtract(content, source->position)) / to_screen, 1);
+/* Length of a vector of the screen where its shadow falls on the content's middle, across the light's ray there; where the
+ * content lies before the screen, its own. */
+static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
+  vec3 way = source->direction;
+  double magnified = 1;
+  if (!source->parallel) {
+    vec3 offset = vec3_subtract(content, source->position);
+    magnified = fmax(mat3_apply(view->inverse, offset).x, 1);
+    if (vec3_length(offset) > 0) way = vec3_normalise(offset);
+  }
+  return magnified * vec3_length(vec3_subtract(step, vec3_scale(way, vec3_dot(step, way))));
 }
 
-/* count pixels of three channels, from_step floats apart, averaged to to_count: each is the mean over its part of the
- * row. */
-static void average_row(const float *from, size_t from_step, int count, float *to, size_t to_step, int to_count) {
-  double part = (double)count / to_count;
-  for (int i = 0; i < to_count; i++) {
-    double start = i * part, end = (i + 1) * part, sum[3] = {0, 0, 0};
-    for (int at = (int)start; at < count && at < end; at++) {
-      double share = fmin(end, at + 1) - fmax(start, at);
-      for (int c = 0; c < 3; c++) sum[c] += share * (double)from[(size_t)at * from_step + (size_t)c];
-    }
-    for (int c = 0; c < 3; c++) to[(size_t)i * to_step + (size_t)c] = (float)(sum[c] / part);
+/* ---- convolution along one axis ---- */
+
+/* Weights of neighbouring pixels for each pixel of a result. */
+typedef struct axis_weights {
+  int count, taps;
+  int *first;      /* owned; [count]; the first pixel that is weighed; may be outside the image, where it is dark */
+  float *weights;  /* owned; [count][taps] */
+} axis_weights;
+
+/* The part of a kernel below x, its half width being 1. */
+typedef double kernel_part(double x);
+
+static double part_of_box(double x) { return fmin(fmax((x + 1) / 2, 0), 1); }
+
+/* A disk of radius 1 has the area x sqrt(1 - x^2) + asin x + pi / 2 below x. */
+static double part_of_disk(double x) {
+  if (x <= -1) return 0;
+  if (x >= 1) return 1;
+  return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
+}
+
+/* Result pixel i is the kernel's mean around start + (i + 1/2) step, in pixels of the image. */
+static hl_status weigh_axis(hl_context *context, kernel_part *part, double half_width, double start, double step, int count,
+                            axis_weights *axis, hl_error *error) {
+  axis->count = count;
+  axis->taps = (int)ceil(2 * half_width) + 2;
+  axis->first = hl_allocate(context, (size_t)count, sizeof *axis->first);
+  axis->weights = hl_allocate(context, (size_t)count * (size_t)axis->taps, sizeof *axis->weights);
+  if (axis->first == NULL || axis->weights == NULL)
+    return hl_fail_memory(error, (size_t)count * (size_t)axis->taps * sizeof(float), "a light's texture");
+  for (int i = 0; i < count; i++) {
+    double middle = start + (i + 0.5) * step;
+    int first = (int)floor(middle - half_width);
+    axis->first[i] = first;
+    for (int tap = 0; tap < axis->taps; tap++)
+      axis->weights[i * axis->taps + tap] =
+          (float)(part((first + tap + 1 - middle) / half_width) - part((first + tap - middle) / half_width));
+  }
+  return HL_OK;
+}
+
+static void release_axis(hl_context *context, axis_weights *axis) {
+  hl_release(context, axis->first);
+  hl_release(context, axis->weights);
+}
+
+/* One line of pixels of three channels, from_step and to_step floats apart. */
+static void convolve_line(const float *from, size_t from_step, int count, const axis_weights *axis, float *to, size_t to_step) {
+  for (int i = 0; i < axis->count; i++) {
+    const float *weights = axis->weights + i * axis->taps;
+    int first = axis->first[i], begin = first < 0 ? -first : 0, end = count - first < axis->taps ? count - first : axis->taps;
+    float sum[3] = {0, 0, 0};
+    for (int tap = begin; tap < end; tap++)
+      for (size_t c = 0; c < 3; c++) sum[c] += weights[tap] * from[(size_t)(first + tap) * from_step + c];
+    for (size_t c = 0; c < 3; c++) to[(size_t)i * to_step + c] = sum[c];
   }
 }
 
-static hl_status average_image(hl_context *context, const hl_light_texture *texture, light_screen *screen,
-                               float **averaged, hl_error *error) {
-  size_t width = (size_t)screen->width, from_width = (size_t)texture->width, from_height = (size_t)texture->height;
-  float *narrow = hl_allocate(context, width * from_height, 3 * sizeof *narrow);
-  float *small = hl_allocate(context, width * (size_t)screen->height, 3 * sizeof *small);
-  for (size_t y = 0; y < from_height && narrow != NULL && small != NULL; y++)
-    average_row(texture->pixels + 3 * y * from_width, 3, texture->width, narrow + 3 * y * width, 3, screen->width);
-  for (size_t x = 0; x < width && narrow != NULL && small != NULL; x++)
-    average_row(narrow + 3 * x, 3 * width, texture->height, small + 3 * x, 3 * width, screen->height);
+/* Rows, then columns. */
+static hl_status convolve(hl_context *context, const float *from, int width, int height, const axis_weights *u,
+                          const axis_weights *v, float *to, hl_error *error) {
+  size_t narrow_width = (size_t)u->count * 3;
+  float *narrow = hl_allocate(context, narrow_width, (size_t)height * sizeof *narrow);
+  if (narrow == NULL) return hl_fail_memory(error, narrow_width * (size_t)height * sizeof *narrow, "a light's texture");
+  for (int y = 0; y < height; y++)
+    convolve_line(from + 3 * (size_t)y * (size_t)width, 3, width, u, narrow + (size_t)y * narrow_width, 3);
+  for (int x = 0; x < u->count; x++)
+    convolve_line(narrow + 3 * (size_t)x, narrow_width, height, v, to + 3 * (size_t)x, narrow_width);
   hl_release(context, narrow);
-  *averaged = small;
-  screen->pixels = small;
-  return narrow != NULL && small != NULL ? HL_OK : hl_fail_memory(error, width * from_height * 12, "a light's texture");
+  return HL_OK;
 }
+
+/* One level's two passes. */
+typedef struct level_plan {
+  int width, height;
+  double start[2], step[2], half_width[2]; /* pixels of the image that is convolved */
+} level_plan;
+
+static hl_status make_level(hl_context *context, kernel_part *part, const float *from, int width, int height,
+                            const level_plan *plan, float *to, hl_error *error) {
+  axis_weights u = {0}, v = {0};
+  hl_status status = weigh_axis(context, part, plan->half_width[0], plan->start[0], plan->step[0], plan->width, &u, error);
+  if (status == HL_OK)
+    status = weigh_axis(context, part, plan->half_width[1], plan->start[1], plan->step[1], plan->height, &v, error);
+  if (status == HL_OK) status = convolve(context, from, width, height, &u, &v, to, error);
+  release_axis(context, &u);
+  release_axis(context, &v);
+  return status;
+}
+
+/* ---- how much the light's extent blurs ---- */
+
+/* Standard deviations in pixels of the image, along u and v, of what a point of the screen casts at distance 1 behind it
+ * (point light: at an infinite one): the light's spread, moved onto the screen along the ray to the content's middle. */
+static void spread_on_screen(const light_source *source, const view *view, vec3 content, double deviation[2]) {
+  vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
+  mat3 inverse, spread = source->spread;
+  if (source->light->type == HL_LIGHT_POINT || source->light->type == HL_LIGHT_SPOT) /* the disk that faces the content */
+    spread = hl_light_spread(source->light, vec3_scale(ray, -1));
+  deviation[0] = deviation[1] = 0;
+  if (source->shadows != HL_SHADOWS_SOFT || !mat3_invert(mat3_from_columns(ray, view->du, view->dv), &inverse)) return;
+  for (int axis = 0; axis < 2; axis++) {
+    vec3 row = inverse.row[1 + axis];
+    deviation[axis] = sqrt(fmax(vec3_dot(row, mat3_apply(spread, row)), 0));
+  }
+}
+
+/* Distance behind the screen, or the part of 1 - Zs / Z, of one point; without a sign. */
+static double blur_at(const light_source *source, const view *view, vec3 point) {
+  if (source->parallel) return fabs(mat3_apply(view->inverse, vec3_subtract(point, view->corner)).x);
+  double w = mat3_apply(view->inverse, vec3_subtract(point, view->origin)).x;
+  return fabs(1 - 1 / fmax(w, 0.05));
+}
+
+/* Level 0 blurs by 1.4 pixels of the picture, every other by the root of 2 more; pixels of a level are half as large as
+ * its blur, no smaller than 0.7 of the picture's. */
+static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
+
+static level_plan plan_level(const light_screen *screen, const double deviation[2], double half_widths, double blur) {
+  level_plan plan;
+  int size[2];
+  const int image[2] = {screen->width, screen->height};
+  for (int axis = 0; axis < 2; axis++) {
+    double sigma = deviation[axis] * blur, least = LEAST_PIXEL / (double)screen->sharpness[axis];
+    plan.half_width[axis] = fmax(half_widths * sigma, 0.5 / (double)screen->sharpness[axis]);
+    plan.step[axis] = fmax(sigma * LEVEL_PIXEL, least);
+    double margin = plan.half_width[axis] + 2 * plan.step[axis];
+    size[axis] = (int)ceil((image[axis] + 2 * margin) / plan.step[axis]);
+    plan.start[axis] = (image[axis] - size[axis] * plan.step[axis]) / 2;
+  }
+  plan.width = size[0];
+  plan.height = size[1];
+  return plan;
+}
+
+static hl_status make_levels(hl_context *context, const light_source *source, const view *view, const vec3 *points,
+                             int point_count, vec3 content, light_screen *screen, size_t averaged, hl_error *error) {
+  double deviation[2], widest = 0, reach = 0;
+  level_plan plans[SCREEN_LEVELS];
+  kernel_part *part = source->light->type == HL_LIGHT_RECT ? part_of_box : part_of_disk;
+  double half_widths = source->light->type == HL_LIGHT_RECT ? sqrt(3) : 2; /* in standard deviations */
+  spread_on_screen(source, view, content, deviation);
+  for (int axis = 0; axis < 2; axis++) widest = fmax(widest, deviation[axis] * (double)screen->sharpness[axis]);
+  for (int i = 0; i < point_count; i++) reach = fmax(reach, blur_at(source, view, points[i]));
+  if (!(widest * reach > 0.25)) return HL_OK; /* a quarter of the picture's pixel */
+  double first = FIRST_BLUR / widest;
+  size_t floats = 0;
+  while (screen->level_count < SCREEN_LEVELS) {
+    int l = screen->level_count++;
+    plans[l] = plan_level(screen, deviation, half_widths, first * pow(2, 0.5 * l));
+    floats += (size_t)plans[l].width * (size_t)plans[l].height * 3;
+    if (first * pow(2, 0.5 * l) >= reach) break;
+  }
+  screen->first = (float)(1 / (first * first));
+  for (int axis = 0; axis < 2; axis++) screen->edge[axis] = (float)(sqrt(12) * deviation[axis]);
+  float *memory = hl_reallocate(context, screen->memory, averaged + floats, sizeof *memory);
+  if (memory == NULL) return hl_fail_memory(error, floats * sizeof *memory, "a light's texture");
+  screen->memory = memory;
+  if (averaged > 0) screen->pixels = memory;
+  float *to = memory + averaged;
+  for (int l = 0; l < screen->level_count; l++) {
+    screen_level *level = &screen->level[l];
+    *level = (screen_level){.pixels = to, .width = plans[l].width, .height = plans[l].height};
+    for (int axis = 0; axis < 2; axis++) {
+      level->scale[axis] = (float)(1 / plans[l].step[axis]);
+      level->shift[axis] = (float)(-plans[l].start[axis] / plans[l].step[axis]);
+    }
+    hl_status status = make_level(context, part, screen->pixels, screen->width, screen->height, &plans[l], to, error);
+    if (status != HL_OK) return status;
+    to += (size_t)level->width * (size_t)level->height * 3;
+  }
+  return HL_OK;
+}
+
+/* ---- the screen ---- */
 
 /* As many pixels as the picture has where the image falls, at most the image's own. */
 static int resolution(double length, int count, double pixel, float *sharpness) {
@@ -66,21 +215,46 @@ static int resolution(double length, int count, double pixel, float *sharpness) 
   return chosen;
 }
 
-hl_status hl_light_screen_create(hl_context *context, const light_source *source, vec3 content, double pixel,
-                                 light_screen *screen, float **averaged, hl_error *error) {
+static hl_status average_image(hl_context *context, const hl_light_texture *texture, light_screen *screen, hl_error *error) {
+  level_plan plan = {screen->width, screen->height, {0, 0}, {0, 0}, {0, 0}};
+  plan.step[0] = (double)texture->width / screen->width;
+  plan.step[1] = (double)texture->height / screen->height;
+  for (int axis = 0; axis < 2; axis++) plan.half_width[axis] = plan.step[axis] / 2;
+  screen->memory = hl_allocate(context, (size_t)screen->width * (size_t)screen->height, 3 * sizeof *screen->memory);
+  if (screen->memory == NULL)
+    return hl_fail_memory(error, (size_t)screen->width * (size_t)screen->height * 12, "a light's texture");
+  screen->pixels = screen->memory;
+  return make_level(context, part_of_box, texture->pixels, texture->width, texture->height, &plan, screen->memory,
+                    error);
+}
+
+static void store_row(float to[4], const double from[4]) {
+  for (int column = 0; column < 4; column++) to[column] = (float)from[column];
+}
+
+hl_status hl_light_screen_create(hl_context *context, const light_source *source, const vec3 *points, int point_count,
+                                 vec3 content, double pixel, light_screen *screen, hl_error *error) {
   const hl_light_texture *texture = &source->light->texture;
-  *screen = (light_screen){.pixels = texture->pixels};
-  *averaged = NULL;
+  *screen = (light_screen){.pixels = texture->pixels, .parallel = source->parallel};
   if (texture->pixels == NULL) return HL_OK;
-  double right = 2 * length_at_content(source, source->screen_right, content);
-  double up = 2 * length_at_content(source, source->screen_up, content);
+  view whole = view_of_screen(source, 1, 1);
+  double right = 2 * length_at_content(source, &whole, source->screen_right, content);
+  double up = 2 * length_at_content(source, &whole, source->screen_up, content);
   screen->width = resolution(right, texture->width, pixel, &screen->sharpness[0]);
   screen->height = resolution(up, texture->height, pixel, &screen->sharpness[1]);
   view view = view_of_screen(source, screen->width, screen->height);
   double rows[3][4];
   hl_view_homogeneous(&view, affine3_identity(), rows);
-  for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 4; column++) screen->map[row][column] = (float)rows[row][column];
-  if (screen->width == texture->width && screen->height == texture->height) return HL_OK;
-  return average_image(context, texture, screen, averaged, error);
+  for (int row = 0; row < 3; row++) store_row(screen->map[row], rows[row]);
+  vec3 along = view.inverse.row[0];
+  store_row(screen->beyond, (double[4]){along.x, along.y, along.z, -vec3_dot(along, view.corner)});
+  size_t averaged = 0;
+  hl_status status = HL_OK;
+  if (screen->width != texture->width || screen->height != texture->height) {
+    status = average_image(context, texture, screen, error);
+    averaged = (size_t)screen->width * (size_t)screen->height * 3;
+  }
+  return status == HL_OK ? make_levels(context, source, &view, points, point_count, content, screen, averaged, error) : status;
 }
+
+void hl_light_screen_release(hl_context *context, light_screen *screen) { hl_release(context, screen->memory); }

@@ -5,8 +5,8 @@
 #include "light/light_screen.h"
 #include "splat/rays_lanes.h"
 
-/* How far within the screen's two edges of one axis a place is: 0 to 1 over one pixel of the picture. */
-LANES_INLINE lanes within_edges(lanes u, float size, float sharpness) {
+/* How far within the screen's two edges of one axis a place is: 0 to 1 over one pixel of the picture, or over more. */
+LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
   return lanes_clamp(u * sharpness + 0.5f, 0, 1) * lanes_clamp((size - u) * sharpness + 0.5f, 0, 1);
 }
 
@@ -22,30 +22,72 @@ LANES_INLINE screen_taps taps_at(lanes u, int size) {
   return taps;
 }
 
+/* Bilinear in an image of width x height pixels, held at its borders. */
+LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u, lanes v, lanes color[3]) {
+  screen_taps x = taps_at(u, width), y = taps_at(v, height);
+  lanes_int top = y.first * (int32_t)width, bottom = y.second * (int32_t)width;
+  lanes_int at[4] = {(top + x.first) * 3, (top + x.second) * 3, (bottom + x.first) * 3, (bottom + x.second) * 3};
+  for (int c = 0; c < 3; c++) {
+    lanes a = lanes_gather(pixels + c, at[0]), b = lanes_gather(pixels + c, at[1]);
+    lanes d = lanes_gather(pixels + c, at[2]), e = lanes_gather(pixels + c, at[3]);
+    lanes upper = a + (b - a) * x.part, lower = d + (e - d) * x.part;
+    color[c] = upper + (lower - upper) * y.part;
+  }
+}
+
+/* The image itself, its screen's edges as wide as a box of the blur. */
+LANES_INLINE void sharp_pattern(const light_screen *screen, lanes blur, lanes u, lanes v, lanes weight, lanes pattern[3]) {
+  lanes sharp_u = lanes_set(screen->sharpness[0]), sharp_v = lanes_set(screen->sharpness[1]);
+  lanes edge_u = sharp_u / lanes_max(blur * screen->edge[0] * sharp_u, lanes_set(1.0f));
+  lanes edge_v = sharp_v / lanes_max(blur * screen->edge[1] * sharp_v, lanes_set(1.0f));
+  lanes inside = within_edges(u, (float)screen->width, edge_u) * within_edges(v, (float)screen->height, edge_v) * weight;
+  if (lanes_bits(inside > 0.0f) == 0) return;
+  lanes color[3];
+  read_image(screen->pixels, screen->width, screen->height, u, v, color);
+  for (int c = 0; c < 3; c++) pattern[c] = pattern[c] + color[c] * inside;
+}
+
+/* The mean of the two levels whose variances are around the sample's, variance being linear in their weights. Below the
+ * first level the image itself, whose edges are then the sharpest thing in it and made wide by themselves, stays as long as
+ * it can: by the square. */
+LANES_INLINE void soft_pattern(const light_screen *screen, lanes blur, lanes u, lanes v, lanes ahead, lanes pattern[3]) {
+  lanes variance = lanes_min(blur * blur * screen->first, lanes_set(1e30f));
+  lanes_int above = variance >= 1.0f, last = lanes_set_int(screen->level_count - 1);
+  lanes_int bits = (lanes_int)lanes_max(variance, lanes_set(1.0f)), level = (bits >> 23) - 127;
+  lanes part = (lanes)((bits & 0x007fffff) | 0x3f800000) - 1.0f;
+  part = lanes_keep(level < last, part);
+  level = lanes_select_int(level < last, level, last);
+  lanes first = variance * variance;
+  sharp_pattern(screen, blur, u, v, lanes_keep(~above, 1.0f - first) * ahead, pattern);
+  for (int l = 0; l < screen->level_count; l++) {
+    lanes weight = lanes_keep(level == l, 1.0f - part) + lanes_keep(level == l - 1, part);
+    weight = lanes_select(above, weight, l == 0 ? first : lanes_set(0)) * ahead;
+    if (lanes_bits(weight > 0.0f) == 0) continue;
+    const screen_level *at = &screen->level[l];
+    lanes color[3];
+    read_image(at->pixels, at->width, at->height, u * at->scale[0] + at->shift[0], v * at->scale[1] + at->shift[1], color);
+    for (int c = 0; c < 3; c++) pattern[c] = pattern[c] + color[c] * weight;
+  }
+}
+
 /* light_color(x) of eq. (2) at samples of frame space. */
 LANES_INLINE void screen_pattern(const light_screen *screen, lanes3 position, lanes pattern[3]) {
   lanes place[3];
   for (int row = 0; row < 3; row++)
     place[row] = position.x * screen->map[row][0] + position.y * screen->map[row][1] +
                  (position.z * screen->map[row][2] + screen->map[row][3]);
-  lanes_int ahead = place[0] > 0.0f;
-  lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), u = place[1] / safe, v = place[2] / safe;
-  lanes inside = within_edges(u, (float)screen->width, screen->sharpness[0]) *
-                 within_edges(v, (float)screen->height, screen->sharpness[1]);
-  inside = lanes_keep(ahead, inside);
-  if (lanes_bits(inside > 0.0f) == 0) {
-    pattern[0] = pattern[1] = pattern[2] = lanes_set(0);
+  lanes_int in_front = place[0] > 0.0f;
+  lanes safe = lanes_select(in_front, place[0], lanes_set(1.0f)), u = place[1] / safe, v = place[2] / safe;
+  lanes ahead = lanes_keep(in_front, lanes_set(1.0f));
+  pattern[0] = pattern[1] = pattern[2] = lanes_set(0);
+  if (screen->level_count == 0) {
+    sharp_pattern(screen, lanes_set(0), u, v, ahead, pattern);
     return;
   }
-  screen_taps x = taps_at(u, screen->width), y = taps_at(v, screen->height);
-  lanes_int top = y.first * (int32_t)screen->width, bottom = y.second * (int32_t)screen->width;
-  lanes_int at[4] = {(top + x.first) * 3, (top + x.second) * 3, (bottom + x.first) * 3, (bottom + x.second) * 3};
-  for (int c = 0; c < 3; c++) {
-    lanes a = lanes_gather(screen->pixels + c, at[0]), b = lanes_gather(screen->pixels + c, at[1]);
-    lanes d = lanes_gather(screen->pixels + c, at[2]), e = lanes_gather(screen->pixels + c, at[3]);
-    lanes upper = a + (b - a) * x.part, lower = d + (e - d) * x.part;
-    pattern[c] = (upper + (lower - upper) * y.part) * inside;
-  }
+  lanes beyond = position.x * screen->beyond[0] + position.y * screen->beyond[1] +
+                 (position.z * screen->beyond[2] + screen->beyond[3]);
+  lanes blur = screen->parallel ? lanes_abs(beyond) : lanes_abs(1.0f - 1.0f / lanes_max(safe, lanes_set(0.05f)));
+  soft_pattern(screen, blur, u, v, ahead, pattern);
 }
 
 #endif

@@ -21,9 +21,10 @@ static bool bound_screen(const view *view, const light_source *source, double lo
  * the plane of n and this axis. corner, du and dv of the view are n and its axes, unit and perpendicular. */
 static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
   const vec3 axes[2] = {view->du, view->dv};
+  vec3 cone = vec3_normalise(vec3_of(source->light->direction));
   double sine = sin(source->light->opening_angle_deg * HL_PI / 360);
   for (int i = 0; i < 2; i++) {
-    double along = vec3_dot(source->direction, axes[i]), ahead = vec3_dot(source->direction, view->corner);
+    double along = vec3_dot(cone, axes[i]), ahead = vec3_dot(cone, view->corner);
     double r = hypot(along, ahead), psi = atan2(along, ahead);
     if (!(r > sine)) return false;
     double reach = asin(sine / r);

@@ -50,7 +50,6 @@ typedef struct sweep_light {
   shadow_buffer *buffer;          /* null: no shadows */
   view_sheets sheets;
   light_screen screen;            /* the image that the light projects */
-  float *screen_pixels;           /* owned; the image averaged; null where it is used as it is */
   soft_paper paper;               /* by the source's soft method */
   soft_cascade cascade;
   sublights sublights;            /* with these, buffer holds one slab at a time */

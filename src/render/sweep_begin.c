@@ -72,8 +72,8 @@ static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *p
 static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source, shadow_buffer *buffer,
                              vec3 *points, hl_error *error) {
   light->source = source;
-  hl_status status = hl_light_screen_create(sweep->context, source, sweep->frame->middle, sweep->frame->middle_pixel,
-                                            &light->screen, &light->screen_pixels, error);
+  hl_status status = hl_light_screen_create(sweep->context, source, sweep->frame->points, sweep->frame->point_count,
+                                            sweep->frame->middle, sweep->frame->middle_pixel, &light->screen, error);
   view view;
   shadow_extent extent;
   sheet_light seen = {0};
@@ -216,7 +216,7 @@ void hl_sweep_end(sweep *sweep) {
   for (int i = 0; i < FRAME_LIGHTS; i++) {
     sweep_light *light = &sweep->lights[i];
     hl_view_sheets_end(sweep, &light->sheets);
-    hl_release(context, light->screen_pixels);
+    hl_light_screen_release(context, &light->screen);
     hl_soft_cascade_release(context, &light->cascade);
     hl_sublights_release(context, &light->sublights);
   }

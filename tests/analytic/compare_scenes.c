@@ -315,6 +315,14 @@ static void make_projector_behind(stage *set) { /* the screen on the far side; i
   set->lights[0].intensity = 1000;
   stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){-14, 8, -30}, (vec3){20, 3, -10}, (vec3){2, 20, 4});
 }
+static void make_projector_soft(stage *set) {
+  make_projector(set);
+  set->lights[0].radius = 3;
+}
+static void make_slide_soft(stage *set) {
+  make_slide(set);
+  set->lights[0].angular_diameter_deg = 16;
+}
 static void make_window_in_haze(stage *set) { /* beams towards the eye through a smoke, one part unshadowed */
   make_smoke_backlit(set);
   set->volumes[0].attenuation_color[0] = set->volumes[0].attenuation_color[1] = 1;
@@ -326,6 +334,11 @@ static void make_spot(stage *set) {
   make_balls_medium(set);
   set->scene.light_count = 0;
   stage_add_spot(set, (vec3){17, -8, 32}, (vec3){-16, 5, -30}, 32, 9)->radius = 3;
+}
+static void make_spot_inside(stage *set) { /* within the smoke: sectors share one cone */
+  make_smoke(set);
+  set->scene.light_count = 0;
+  stage_add_spot(set, (vec3){3, -2, 3.5}, (vec3){-0.6, 0.9, -0.5}, 70, 20);
 }
 static void make_spot_in_smoke(stage *set) { /* a sharp cone across the view; with a slide in it */
   make_smoke(set);
@@ -377,8 +390,11 @@ static const scenario SCENARIOS[] = {
     {"slide", make_slide, 0.006},
     {"projector", make_projector, 0.006},
     {"projector-behind", make_projector_behind, 0.006},
+    {"projector-soft", make_projector_soft, 0.006},
+    {"slide-soft", make_slide_soft, 0.006},
     {"window-in-haze", make_window_in_haze, 0.006},
     {"spot", make_spot, 0.006},
+    {"spot-inside", make_spot_inside, 0.006},
     {"spot-in-smoke", make_spot_in_smoke, 0.006},
 };
 

@@ -193,6 +193,56 @@ static void test_spot_light(void **state) {
   stage_close(&set);
 }
 
+/* ---- extended lights ---- */
+
+/* Part of a disk of radius 1 on the side u < s. */
+static double disk_below(double s) {
+  if (s <= -1) return 0;
+  if (s >= 1) return 1;
+  return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
+}
+
+/* Brightness along the floor's middle row is the part of the light's disk that is seen past the screen's edge at `edge`,
+ * where the disk is 2 radius wide on the floor. */
+static void check_screen_edge(stage *set, double edge, double radius) {
+  static float pixels[SIDE * SIDE * 4];
+  double worst = 0;
+  stage_render_sheets(set, pixels);
+  for (int x = 0; x < SIDE; x++) {
+    double at = -12 + (x + 0.5) * 0.25;
+    if (at > 0) worst = fmax(worst, fabs((double)pixels[4 * (SIDE * 48 + x)] - disk_below((at - edge) / radius)));
+  }
+  print_message("# screen's edge, penumbra %.2f: at most %.4f off the disk's\n", 2 * radius, worst);
+  /* narrow edges are a box's of the disk's variance: 0.5 + (0.866 / 2 + asin 0.866) / pi - 1 = 0.029 off at most; no edge is
+   * sharper than a pixel, 0.25 wide */
+  if (2 * radius > 0.3) assert_near(worst, 0, 0.029);
+}
+
+/* The screen as an occluder: its penumbra is the light's disk, scaled by eq. (5), for parallel and near lights. */
+static void test_screen_edge_of_extended_lights(void **state) {
+  (void)state;
+  const float white[3] = {1, 1, 1};
+  stage set;
+  stage_open(&set);
+  stage_floor(&set);
+  set.scene.render.shadows = HL_SHADOWS_SOFT;
+  hl_light *light = stage_add_directional(&set, (vec3){0, 0, -1});
+  for (double angle = 1; angle <= 16; angle *= 2) {
+    light->angular_diameter_deg = angle;
+    stage_set_texture(light, 1, 1, white, (vec3){25, 0, 10}, (vec3){20, 0, 0}, (vec3){0, 40, 0});
+    check_screen_edge(&set, 5, 10 * tan(angle * HL_PI / 360));
+  }
+  set.scene.light_count = 0;
+  light = stage_add_point(&set, (vec3){0, 0, 30});
+  light->radius = 2;
+  for (double height = 2; height <= 20; height += 6) {
+    double magnified = 30 / (30 - height);
+    stage_set_texture(light, 1, 1, white, (vec3){20 + 5 / magnified, 0, height}, (vec3){20, 0, 0}, (vec3){0, 40, 0});
+    check_screen_edge(&set, 5, 2 * height / (30 - height));
+  }
+  stage_close(&set);
+}
+
 /* ---- what is not lit costs nothing ---- */
 
 static uint64_t tiles_filled_for_light(stage *set) {
@@ -240,6 +290,7 @@ int main(void) {
       cmocka_unit_test(test_fine_images_are_averaged),
       cmocka_unit_test(test_beams_through_a_cube),
       cmocka_unit_test(test_spot_light),
+      cmocka_unit_test(test_screen_edge_of_extended_lights),
       cmocka_unit_test(test_the_shadow_buffer_follows_what_is_lit),
   };
   return cmocka_run_group_tests_name("sheets_texture", tests, NULL, NULL);

@@ -449,6 +449,13 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
       light->screen = (light_screen){.pixels = &s->buffer[0][0][0], .width = 1 + round % 30, .height = 20, .sharpness = {1, 2.5f}};
       for (int row = 0; row < 3; row++)
         for (int column = 0; column < 4; column++) light->screen.map[row][column] = random_between(seed, -1, 9);
+      light->screen.level_count = round % 4;
+      light->screen.first = 0.05f;
+      light->screen.edge[0] = 0.3f;
+      light->screen.parallel = round % 2;
+      light->screen.beyond[i] = 1;
+      for (int l = 0; l < light->screen.level_count; l++)
+        light->screen.level[l] = (screen_level){&s->buffer[0][0][0] + 99 * l, 20 + l, 15, {0.7f, 1}, {2.5f, 3}};
     }
   }
 }
