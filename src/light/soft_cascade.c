@@ -41,9 +41,9 @@ static void set_parts(const soft_cascade *cascade, const sheet_light *light, con
   }
 }
 
-static hl_status open_level(hl_context *context, soft_cascade *cascade, int index, const sheet_light *light,
-                            const shadow_buffer *buffer, hl_error *error) {
+static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer *buffer) {
   cascade_level *level = &cascade->level[index];
+  size_t channels = (size_t)cascade->channels;
   level->scale = level_scale(cascade, index);
   if (index > 0 && level->scale > 2 * cascade->level[index - 1].scale) level->scale = 2 * cascade->level[index - 1].scale;
   level->tiles_x = (buffer->tiles_x + level->scale - 1) / level->scale;
@@ -51,14 +51,43 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   level->stride = (size_t)level->tiles_x * TILE + 2 * CASCADE_MARGIN;
   level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
+  level->planes = channels * (CASCADE_GROUPS + 2) + 1 + (index == 0 ? channels : 0);
+}
+
+enum { FLOATS_A_TASK = 1 << 16 };
+
+static void clear_floats(void *data, size_t index, int worker) {
+  (void)worker;
+  memset((float *)data + index * FLOATS_A_TASK, 0, FLOATS_A_TASK * sizeof(float));
+}
+
+/* Zeros for all levels, handed out to them. */
+static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade, hl_error *error) {
+  size_t floats = 0;
+  for (int i = 0; i < cascade->level_count; i++) floats += cascade->level[i].planes * cascade->level[i].plane;
+  floats = (floats + FLOATS_A_TASK - 1) / FLOATS_A_TASK * FLOATS_A_TASK;
+  if (memory->capacity < floats) {
+    hl_release(context, memory->floats);
+    memory->floats = hl_allocate(context, floats, sizeof(float));
+    memory->capacity = memory->floats == NULL ? 0 : floats;
+    if (memory->floats == NULL) return hl_fail_memory(error, floats * sizeof(float), "a cascade of shadows");
+  }
+  hl_pool_run(pool, floats / FLOATS_A_TASK, clear_floats, memory->floats);
+  float *next = memory->floats;
+  for (int i = 0; i < cascade->level_count; next += cascade->level[i].planes * cascade->level[i].plane, i++)
+    cascade->level[i].memory = next;
+  return HL_OK;
+}
+
+static hl_status open_level(hl_context *context, soft_cascade *cascade, int index, const sheet_light *light,
+                            const shadow_buffer *buffer, hl_error *error) {
+  cascade_level *level = &cascade->level[index];
   size_t channels = (size_t)cascade->channels, used = 0, tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  size_t planes = channels * (CASCADE_GROUPS + 2) + 1 + (index == 0 ? channels : 0);
-  level->memory = hl_allocate_zeroed(context, planes * level->plane, sizeof(float));
-  level->flags = hl_allocate(context, planes, tiles);
+  level->flags = hl_allocate(context, level->planes, tiles);
   level->boxes = hl_allocate(context, (size_t)(level->tiles_x + level->tiles_y), sizeof *level->boxes);
-  if (level->memory == NULL || level->flags == NULL || level->boxes == NULL)
-    return hl_fail_memory(error, planes * level->plane * sizeof(float), "a cascade of shadows");
-  memset(level->flags, 1, planes * tiles);
+  if (level->flags == NULL || level->boxes == NULL)
+    return hl_fail_memory(error, level->planes * tiles, "a cascade of shadows");
+  memset(level->flags, 1, level->planes * tiles);
   set_parts(cascade, light, buffer, 0, level->tiles_x, level->scale, level->boxes);
   set_parts(cascade, light, buffer, 1, level->tiles_y, level->scale, level->boxes + level->tiles_x);
   for (size_t c = 0; c < channels; c++) {
@@ -67,12 +96,12 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   }
   level->scratch = next_field(level, &used);
   for (size_t c = 0; c < channels && index == 0; c++) cascade->shade[c] = next_field(level, &used);
-  cascade->level_count = index + 1;
   return HL_OK;
 }
 
-hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, const sheet_light *light, vec3 normal,
-                                double first, double last, double pixel, shadow_buffer *buffer, hl_error *error) {
+hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
+                                const sheet_light *light, vec3 normal, double first, double last, double pixel,
+                                shadow_buffer *buffer, hl_error *error) {
   double widest = fmax(light->width_u, light->width_v);
   *cascade = (soft_cascade){.parallel = light->parallel, .channels = buffer->channels, .rate = widest / pixel,
                             .widest = widest, .least_part = fmin(light->width_u, light->width_v) / widest,
@@ -88,15 +117,16 @@ hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, cons
   cascade->chunk_start = start;
   /* level j is first used after 6 * 2^j - 5 chunks (derived: a level keeps five of its seven groups) */
   int levels = 1 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 6) / 6));
-  hl_status status = HL_OK;
-  for (int i = 0; i < levels && i < CASCADE_LEVELS && status == HL_OK; i++)
+  cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
+  for (int i = 0; i < cascade->level_count; i++) lay_out_level(cascade, i, buffer);
+  hl_status status = open_memory(context, pool, memory, cascade, error);
+  for (int i = 0; i < cascade->level_count && status == HL_OK; i++)
     status = open_level(context, cascade, i, light, buffer, error);
   return status;
 }
 
 void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade) {
   for (int i = 0; i < CASCADE_LEVELS; i++) {
-    hl_release(context, cascade->level[i].memory);
     hl_release(context, cascade->level[i].flags);
     hl_release(context, cascade->level[i].boxes);
   }

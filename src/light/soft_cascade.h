@@ -53,9 +53,16 @@ typedef struct cascade_level {
   bool renewed;                      /* sum is to be found anew */
   cascade_field scratch;
   cascade_box *boxes;                /* owned; [tiles_x], then [tiles_y] */
-  float *memory;                     /* owned */
+  float *memory;                     /* the cascade_memory's */
+  size_t planes;
   unsigned char *flags;              /* owned */
 } cascade_level;
+
+/* Pixels of all levels; a caller may keep them from frame to frame: fresh memory costs more than clearing it. */
+typedef struct cascade_memory {
+  float *floats;        /* owned; [capacity] */
+  size_t capacity;
+} cascade_memory;
 
 typedef struct soft_cascade {
   bool parallel;
@@ -76,8 +83,9 @@ typedef struct soft_cascade {
 } soft_cascade;
 
 /* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. */
-hl_status hl_soft_cascade_begin(hl_context *context, soft_cascade *cascade, const sheet_light *light, vec3 normal,
-                                double first, double last, double pixel, shadow_buffer *buffer, hl_error *error);
+hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
+                                const sheet_light *light, vec3 normal, double first, double last, double pixel,
+                                shadow_buffer *buffer, hl_error *error);
 void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade);
 
 /* After the slab before the sheet was composited into the buffer. occupancy: what the light sees; the buffer is

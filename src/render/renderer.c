@@ -17,6 +17,7 @@ struct hl_renderer {
   size_t prepared_count;
   shadow_buffer *buffers;      /* owned; [buffer_count]; one per light of a frame, of which a scene's light is some */
   size_t buffer_count;
+  cascade_memory cascades[FRAME_LIGHTS]; /* owned; of a sweep's lights */
 };
 
 hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_error *error) {
@@ -39,6 +40,10 @@ static void release_buffers(hl_renderer *renderer) {
   for (size_t i = 0; i < renderer->buffer_count; i++)
     hl_shadow_buffer_release(renderer->context, &renderer->buffers[i]);
   hl_release(renderer->context, renderer->buffers);
+  for (int i = 0; i < FRAME_LIGHTS; i++) {
+    hl_release(renderer->context, renderer->cascades[i].floats);
+    renderer->cascades[i] = (cascade_memory){0};
+  }
   renderer->buffers = NULL;
   renderer->buffer_count = 0;
 }
@@ -308,7 +313,7 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
                  .channels = attenuation_channels(scene),
                  .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};
   double start = hl_clock_seconds();
-  hl_status status = hl_sweep_begin(&sweep, renderer->buffers, error);
+  hl_status status = hl_sweep_begin(&sweep, renderer->buffers, renderer->cascades, error);
   sweep.seconds_sort = hl_clock_seconds() - start;
   if (status == HL_OK) status = hl_sweep_run(&sweep, error);
   if (status == HL_OK) add_counts(&sweep, statistics);

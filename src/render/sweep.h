@@ -104,8 +104,9 @@ typedef struct sweep {
   double seconds_sort, seconds_image, seconds_light, seconds_soften;
 } sweep;
 
-/* Steps 1 and 2, and memory. buffers: one per light of the sweep, kept by the caller between frames. */
-hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, hl_error *error);
+/* Steps 1 and 2, and memory. buffers: one per light of the sweep, kept by the caller between frames; so is memory,
+ * [FRAME_LIGHTS], which sweeps share in turn. */
+hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error);
 void hl_sweep_end(sweep *sweep);
 
 /* The sheet loop: steps 3 to 18. */

@@ -70,7 +70,7 @@ static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *p
 }
 
 static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source, shadow_buffer *buffer,
-                             vec3 *points, hl_error *error) {
+                             cascade_memory *memory, vec3 *points, hl_error *error) {
   light->source = source;
   hl_status status = hl_light_screen_create(sweep->context, source, sweep->frame->points, sweep->frame->point_count,
                                             sweep->frame->middle, sweep->frame->middle_pixel, &light->screen, error);
@@ -97,8 +97,8 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
     status = hl_sublights_begin(sweep->context, &light->sublights, source, sweep->scene->render.light_samples, &seen,
                                 sheets->normal, &extent, sweep->channels, sheets->first, last, error);
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_CASCADE)
-    status = hl_soft_cascade_begin(sweep->context, &light->cascade, &seen, sheets->normal, sheets->first, last,
-                                   edge, buffer, error);
+    status = hl_soft_cascade_begin(sweep->context, sweep->pool, memory, &light->cascade, &seen, sheets->normal,
+                                   sheets->first, last, edge, buffer, error);
   if (status == HL_OK) status = hl_view_sheets_begin(sweep, &view, &light->sheets, error);
   return status;
 }
@@ -192,7 +192,7 @@ static void set_up_jobs(sweep *sweep) {
   }
 }
 
-hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, hl_error *error) {
+hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error) {
   hl_status status = hl_view_sheets_begin(sweep, &sweep->frame->eye, &sweep->image, error);
   if (status == HL_OK) status = allocate_image(sweep, error);
   if (status != HL_OK) return status;
@@ -201,7 +201,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, hl_error *error) 
   if (points == NULL) return hl_fail_memory(error, sizeof *points, "the content's corners");
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
     status = begin_light(sweep, &sweep->lights[i], &sweep->frame->lights[sweep->geometry->light[i]],
-                         &buffers[sweep->geometry->light[i]], points, error);
+                         &buffers[sweep->geometry->light[i]], &memory[i], points, error);
   hl_release(sweep->context, points);
   if (status == HL_OK) status = allocate_stages(sweep, error);
   if (status != HL_OK) return status;
