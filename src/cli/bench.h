@@ -40,7 +40,7 @@ enum bench_stage {
 };
 
 typedef struct bench_sample {
-  double frame, stage[STAGE_COUNT]; /* seconds */
+  double frame, processor, stage[STAGE_COUNT]; /* seconds; processor: of all threads together */
 } bench_sample;
 
 typedef struct bench_run {

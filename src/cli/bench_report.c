@@ -17,11 +17,17 @@ static int compare(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Milliseconds; stage -1: the whole frame. NAN where the setting is not supported. */
+enum { WHOLE_FRAME = -1, PROCESSOR = -2 };
+
+static double seconds_of(const bench_sample *sample, int stage) {
+  return stage == WHOLE_FRAME ? sample->frame : stage == PROCESSOR ? sample->processor : sample->stage[stage];
+}
+
+/* Milliseconds; stage: also WHOLE_FRAME or PROCESSOR. NAN where the setting is not supported. */
 static double median_ms(const bench_run *run, int frames, int stage) {
   double *values = run->supported ? malloc((size_t)frames * sizeof *values) : NULL;
   if (values == NULL) return NAN;
-  for (int i = 0; i < frames; i++) values[i] = 1e3 * (stage < 0 ? run->samples[i].frame : run->samples[i].stage[stage]);
+  for (int i = 0; i < frames; i++) values[i] = 1e3 * seconds_of(&run->samples[i], stage);
   qsort(values, (size_t)frames, sizeof *values, compare);
   double median = (values[(frames - 1) / 2] + values[frames / 2]) / 2;
   free(values);
@@ -65,7 +71,11 @@ static void print_result(json_writer *json, const bench_result *result) {
   json_text(json, "instruction_set", hl_instruction_set_name(statistics->instruction_set));
   json_integer(json, "voxels_total", statistics->voxels_total);
   json_open_object(json, "frame_ms");
-  for (int i = 0; i < SETTING_COUNT; i++) json_number(json, setting_names[i], median_ms(&result->run[i], result->frames, -1));
+  for (int i = 0; i < SETTING_COUNT; i++) json_number(json, setting_names[i], median_ms(&result->run[i], result->frames, WHOLE_FRAME));
+  json_close(json);
+  json_open_object(json, "processor_ms");
+  for (int i = 0; i < SETTING_COUNT; i++)
+    json_number(json, setting_names[i], median_ms(&result->run[i], result->frames, PROCESSOR));
   json_close(json);
   json_number(json, "first_prepare_ms", 1e3 * result->run[SETTING_OFF].first.stage[STAGE_PREPARE]);
   json_open_object(json, "stage_ms");
@@ -118,7 +128,8 @@ void bench_print_text(const bench_result *result) {
   for (int i = 0; i < SETTING_COUNT; i++)
     if (result->run[i].supported) printf(" %15s", setting_names[i]);
   putchar('\n');
-  print_row("frame", result, -1);
+  print_row("frame", result, WHOLE_FRAME);
+  print_row("processor", result, PROCESSOR);
   for (int stage = 0; stage < STAGE_COUNT; stage++) print_row(stage_names[stage], result, stage);
   print_count("image pixels", result, pixels_image);
   print_count("  skipped", result, skipped_image);
