@@ -8,8 +8,8 @@
 #include "reference/reference.h"
 #include "scene/light_shape.h"
 
-/* Optical depth in every channel beyond which nothing is seen of a light: exp(-30) is 1e-13. */
-static const double DARK_DEPTH = 30;
+/* Optical depth in every channel beyond which nothing is seen of a light: exp(-18) is 2e-8. */
+static const double DARK_DEPTH = 18;
 
 /* Part of 1 that is left of i steps of `step` from the middle of the first: a golden section spreads any number of
  * them evenly. */

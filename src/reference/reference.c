@@ -19,9 +19,9 @@ static const double OPAQUE = 1 - 1e-5;
 /* Alpha from which on a ray has met something (halflight/layers.h). */
 static const double FIRST_OPACITY = 0.01;
 
-/* What one sample may add to a pixel: light that grazes a dense volume fades within a small part of a step.
- */
-static const double MOST_OPACITY = 0.02;
+/* What one sample may add to a pixel: light that grazes a dense volume fades within a small part of a step. Its error is
+ * linear and that of the step quadratic: coarser steps than the usual allow as much more. */
+static const double MOST_OPACITY = 0.02, USUAL_STEP = 0.25, COARSEST_OPACITY = 0.1;
 
 enum { RUN_PIXELS = 16 };
 
@@ -114,7 +114,7 @@ static double first_within(double before, double extinction, double start) {
 }
 
 /* A perspective eye sees what is before it; an orthographic one has no place along its rays, and sees all.
- * Every step of the march is cut so finely that no part adds more than MOST_OPACITY, judged by the extinction
+ * Every step of the march is cut so finely that no part adds more than most_opacity, judged by the extinction
  * of the part before. The ray's parts are left in the worker; returns the first depth. */
 static double trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker) {
   march walk;
@@ -127,7 +127,7 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
     if (extinction <= 0) continue;
     while (at < end && ray->weight < OPAQUE) {
       double length = end - at, before = ray->weight;
-      if (extinction > 0) length = fmin(length, MOST_OPACITY / (extinction * (1 - before)));
+      if (extinction > 0) length = fmin(length, all->most_opacity / (extinction * (1 - before)));
       hl_reference_march_place(&walk, at + length / 2);
       extinction = composite(all, &walk, length, origin, direction, worker);
       if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY) first = first_within(before, extinction, at);
@@ -188,6 +188,8 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
     edge = fmin(edge, all->volumes[v].smallest_edge);
   }
   all->step = options->step * edge;
+  double coarser = fmax(options->step / USUAL_STEP, 1);
+  all->most_opacity = fmin(MOST_OPACITY * coarser * coarser, COARSEST_OPACITY);
   for (size_t l = 0; l < scene->light_count; l++) {
     hl_status status =
         hl_reference_light_create(all, &scene->lights[l], options->light_points, &all->lights[l], error);
@@ -253,7 +255,7 @@ static hl_status render(const reference *all, hl_pool *pool, float *pixels, size
 
 void hl_reference_options_defaults(hl_reference_options *options) {
   if (options == NULL) return;
-  *options = (hl_reference_options){.struct_size = sizeof *options, .light_points = 1024, .step = 0.25};
+  *options = (hl_reference_options){.struct_size = sizeof *options, .light_points = 1024, .step = USUAL_STEP};
 }
 
 static hl_status check(const hl_reference_options *options, const hl_scene_description *scene,

@@ -61,6 +61,7 @@ typedef struct reference {
   reference_volume *volumes;  /* owned; [scene->volume_count] */
   reference_light *lights;    /* owned; [scene->light_count] */
   double step;                /* world units */
+  double most_opacity;        /* that one sample may add to a pixel */
   bool all_shadows;           /* the transmittance of every light is wanted at every sample */
 } reference;
 

@@ -1,0 +1,69 @@
+"""Errors of one scene's pictures, and what they cost."""
+import numpy
+
+import scenes
+
+METHODS = {  # title: settings
+    "hard": {"shadows": "hard"},
+    "paper": {"shadows": "soft", "soft_method": "paper"},
+    "cascade": {"shadows": "soft", "soft_method": "cascade"},
+    "sublights 2": {"shadows": "soft", "soft_method": "sublights", "light_samples": 2},
+    "sublights 4": {"shadows": "soft", "soft_method": "sublights", "light_samples": 4},
+    "sublights 8": {"shadows": "soft", "soft_method": "sublights", "light_samples": 8},
+}
+SPACINGS = [2, 1.5, 1, 0.75, 0.5, 0.35, 0.25]
+COST_SIZE, COST_ROUNDS = "512x512", 2
+
+
+class Errors:
+    """Root mean squares and 99.9 percentiles of differences. Pixels of the shadow factor count with their alpha: where
+    next to nothing is seen, its shadow is nothing that shows."""
+
+    def __init__(self, made, truth):
+        alpha = truth.picture[:, :, 3]
+        self.difference = made.shadow - truth.shadow
+        self.shadow = numpy.sqrt((alpha * self.difference ** 2).sum() / alpha.sum())
+        self.shadow_worst = numpy.quantile(abs(self.difference[alpha > 0.5]), 0.999) if (alpha > 0.5).any() else 0.0
+        if not (alpha > 0.5).any():
+            self.shadow_worst = numpy.quantile((abs(self.difference) * alpha) / alpha.max(), 0.999)
+        colors = made.picture - truth.picture
+        self.picture = numpy.sqrt((colors ** 2).mean())
+        self.picture_worst = numpy.quantile(abs(colors).max(2), 0.999)
+
+
+class Result:
+    """Of one scene: errors and costs by method, hard shadows against hard ones by sheet spacing."""
+
+    def __init__(self, name, text, truth):
+        self.name, self.text, self.truth = name, text, truth
+        self.errors, self.costs, self.spacing = {}, {}, {}
+
+
+def scene(name, described, with_costs):
+    truth, sharp = (scenes.reference(name, described, shadows) for shadows in ("soft", "hard"))
+    result = Result(name, described["description"], truth)
+    for method, settings in METHODS.items():
+        made = scenes.sheets(name, described, method.replace(" ", "-"), **settings)
+        if made is None:
+            print(f"  {method}: not in this version, skipped")
+            continue
+        result.errors[method] = Errors(made, truth)
+    for spacing in SPACINGS:
+        made = scenes.sheets(name, described, f"spacing-{spacing}", "hard", sheet_spacing=spacing)
+        result.spacing[spacing] = Errors(made, sharp)
+    if with_costs:
+        costs(name, described, result)
+    return result
+
+
+def costs(name, described, result):
+    """Processor seconds of rendering by one thread, the least of several rounds in turn. What loading takes, the same for
+    all, is known from a picture of next to no pixels and taken off. Other work on the machine only adds."""
+    seconds = {method: [] for method in ["load", *result.errors]}
+    for _ in range(COST_ROUNDS):
+        for method in seconds:
+            settings, size = (METHODS["hard"], "2x2") if method == "load" else (METHODS[method], COST_SIZE)
+            seconds[method].append(scenes.processor_seconds(scenes.changed(described, **settings), f"{name}-cost",
+                                                            "--threads", "1", "--size", size))
+    least = {method: min(times) for method, times in seconds.items()}
+    result.costs = {method: (least[method] - least["load"]) / (least["hard"] - least["load"]) for method in result.errors}
