@@ -9,13 +9,15 @@ typedef struct field_job {
   const float *a, *b; /* inputs; b may be coarser or finer, as the function says */
   float *to;
   size_t stride_in, stride; /* of b and of the rest where they differ */
+  const float *thin;  /* beside a: the part of b that a's matter takes; null: none */
 } field_job;
 
 typedef void field_tile_function(const field_job *job, int tile_x, int tile_y);
 
-/* to = a + (from blurred along rows, then along columns), in one pass over memory; a null: 0. */
+/* to = a + (1 - thin) (from blurred along rows, then along columns), in one pass over memory; a and thin null: 0. */
 typedef struct blur_add_job {
   const float *from, *a; /* pixel (0,0); rows stride apart */
+  const float *thin;
   float *to;
   size_t stride;
   blur_box u, v;         /* reach below BLUR_GREATEST_REACH */
@@ -27,14 +29,23 @@ blur_box hl_blur_box_of_variance(double variance);
 
 typedef void blur_add_tile_function(const blur_add_job *job, int tile_x, int tile_y);
 
+/* What a chunk's slabs took of the light before it: (1 - lacking) - now, and the part of it that thin matter took. */
+typedef struct absorbed_job {
+  const float *lacking;  /* rows stride apart */
+  const float *now;      /* rows stride_now apart */
+  float *absorbed, *thin; /* rows stride apart */
+  size_t stride, stride_now;
+} absorbed_job;
+typedef void absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
+
 typedef struct cascade_functions {
   lit_blocks_function *lit_blocks;
   blur_add_tile_function *blur_add;
-  field_tile_function *add;        /* to = a + b */
-  field_tile_function *add_half;   /* to (stride) = mean over 2x2 pixels of a + b (stride_in) */
-  field_tile_function *add_double; /* to = a + (b of half the resolution, stride_in, bilinear) */
+  field_tile_function *add;        /* to = a + (1 - thin) b */
+  field_tile_function *add_half;   /* to (stride) = mean over 2x2 pixels of a + (1 - thin) b (stride_in) */
+  field_tile_function *add_double; /* to = a + (1 - thin) (b of half the resolution, stride_in, bilinear) */
   field_tile_function *left;       /* to = 1 - a, from 0 to 1; rows of to stride_in apart */
-  field_tile_function *absorbed;   /* to = what left has of a - b, at least 0; rows of b stride_in apart */
+  absorbed_tile_function *absorbed;
 } cascade_functions;
 
 #endif

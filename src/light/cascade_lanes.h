@@ -14,23 +14,32 @@ static void blur_add_tile(const blur_add_job *job, int tile_x, int tile_y) {
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
   for (int row = 0; row < TILE; row++, at += job->stride) {
     lanes blurred = blur_sixteen(rows + (row + apron) * TILE, TILE, &job->v);
+    if (job->thin != NULL) blurred = blurred * (1.0f - lanes_load(job->thin + at));
     lanes_store(job->to + at, job->a == NULL ? blurred : blurred + lanes_load(job->a + at));
   }
 }
 
 static void add_tile(const field_job *job, int tile_x, int tile_y) {
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
-  for (int row = 0; row < TILE; row++, at += job->stride)
-    lanes_store(job->to + at, lanes_load(job->a + at) + lanes_load(job->b + at));
+  for (int row = 0; row < TILE; row++, at += job->stride) {
+    lanes b = lanes_load(job->b + at);
+    if (job->thin != NULL) b = b * (1.0f - lanes_load(job->thin + at));
+    lanes_store(job->to + at, lanes_load(job->a + at) + b);
+  }
 }
 
 static void add_half_tile(const field_job *job, int tile_x, int tile_y) {
   for (int row = 0; row < TILE; row++) {
     size_t from = (size_t)(tile_y * TILE + row) * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
     float *to = job->to + (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
-    const float *a = job->a + from, *b = job->b + from, *c = a + job->stride_in, *d = b + job->stride_in;
+    float sum[2][2 * TILE];
+    for (size_t half = 0; half < 2; half++) {
+      const float *a = job->a + from + half * job->stride_in, *b = job->b + from + half * job->stride_in;
+      const float *thin = job->thin == NULL ? NULL : job->thin + from + half * job->stride_in;
+      for (int i = 0; i < 2 * TILE; i++) sum[half][i] = a[i] + (thin == NULL ? b[i] : b[i] * (1.0f - thin[i]));
+    }
     for (int i = 0; i < TILE; i++)
-      to[i] = 0.25f * (((a[2 * i] + b[2 * i]) + (a[2 * i + 1] + b[2 * i + 1])) + ((c[2 * i] + d[2 * i]) + (c[2 * i + 1] + d[2 * i + 1])));
+      to[i] = 0.25f * ((sum[0][2 * i] + sum[0][2 * i + 1]) + (sum[1][2 * i] + sum[1][2 * i + 1]));
   }
 }
 
@@ -43,10 +52,13 @@ static void add_double_tile(const field_job *job, int tile_x, int tile_y) {
     size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
     float coarse[TILE / 2 + 2];
     for (int i = 0; i < TILE / 2 + 2; i++) coarse[i] = 0.75f * near[i - 1] + 0.25f * far[i - 1];
+    float fine[TILE];
     for (int i = 0; i < TILE / 2; i++) {
-      job->to[at + 2 * (size_t)i] = job->a[at + 2 * (size_t)i] + (0.75f * coarse[i + 1] + 0.25f * coarse[i]);
-      job->to[at + 2 * (size_t)i + 1] = job->a[at + 2 * (size_t)i + 1] + (0.75f * coarse[i + 1] + 0.25f * coarse[i + 2]);
+      fine[2 * i] = 0.75f * coarse[i + 1] + 0.25f * coarse[i];
+      fine[2 * i + 1] = 0.75f * coarse[i + 1] + 0.25f * coarse[i + 2];
     }
+    for (size_t i = 0; i < TILE; i++)
+      job->to[at + i] = job->a[at + i] + (job->thin == NULL ? fine[i] : fine[i] * (1.0f - job->thin[at + i]));
   }
 }
 
@@ -56,12 +68,19 @@ static void left_tile(const field_job *job, int tile_x, int tile_y) {
                 lanes_clamp(1.0f - lanes_load(job->a + (size_t)row * job->stride + (size_t)tile_x * TILE), 0, 1.0f));
 }
 
-static void absorbed_tile(const field_job *job, int tile_x, int tile_y) {
+/* Where a chunk takes less than the first part of its light it counts as thin, from the second on as solid. */
+static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
+
+static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
-    lanes left = lanes_clamp(1.0f - lanes_load(job->a + at), 0, 1.0f);
-    lanes now = lanes_load(job->b + (size_t)row * job->stride_in + (size_t)tile_x * TILE);
-    lanes_store(job->to + at, lanes_max(left - now, lanes_set(0)));
+    lanes before = lanes_clamp(1.0f - lanes_load(job->lacking + at), 0, 1.0f);
+    lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
+    lanes taken = lanes_max(before - now, lanes_set(0)), part = taken / lanes_max(before, lanes_set(1e-3f));
+    lanes solid = lanes_clamp((part - THIN_MATTER) * (1.0f / (SOLID_MATTER - THIN_MATTER)), 0, 1.0f);
+    lanes thin = part * (1.0f - solid);
+    lanes_store(job->thin + at, thin);
+    lanes_store(job->absorbed + at, taken * solid + thin);
   }
 }
 

@@ -51,7 +51,7 @@ static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer 
   level->stride = (size_t)level->tiles_x * TILE + 2 * CASCADE_MARGIN;
   level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
-  level->planes = channels * (CASCADE_GROUPS + 2) + 1 + (index == 0 ? channels : 0);
+  level->planes = channels * (2 * CASCADE_GROUPS + 2) + 1 + (index == 0 ? channels : 0);
 }
 
 enum { FLOATS_A_TASK = 1 << 16 };
@@ -91,7 +91,10 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   set_parts(cascade, light, buffer, 0, level->tiles_x, level->scale, level->boxes);
   set_parts(cascade, light, buffer, 1, level->tiles_y, level->scale, level->boxes + level->tiles_x);
   for (size_t c = 0; c < channels; c++) {
-    for (int g = 0; g < CASCADE_GROUPS; g++) level->group[g].absorbed[c] = next_field(level, &used);
+    for (int g = 0; g < CASCADE_GROUPS; g++) {
+      level->group[g].absorbed[c] = next_field(level, &used);
+      level->group[g].thin[c] = next_field(level, &used);
+    }
     for (int i = 0; i < 2; i++) level->sum[i][c] = next_field(level, &used);
   }
   level->scratch = next_field(level, &used);
@@ -181,14 +184,17 @@ static void add_row(void *data, size_t index, int worker) {
   }
 }
 
-/* to = a + b, each on its level, which may be twice as fine (both) or, for b, twice as coarse. */
+/* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse; thin, on a's
+ * level, may be null. */
 static void add(hl_pool *pool, const cascade_functions *functions, const cascade_level *level_a,
-                     const cascade_field *a, const cascade_level *level_b, const cascade_field *b,
-                     const cascade_level *level, const cascade_field *to, const unsigned char *wanted) {
+                     const cascade_field *a, const cascade_field *thin, const cascade_level *level_b,
+                     const cascade_field *b, const cascade_level *level, const cascade_field *to,
+                     const unsigned char *wanted) {
   field_tile_function *function = level_a->scale < level->scale   ? functions->add_half
                                   : level_b->scale > level->scale ? functions->add_double
                                                                   : functions->add;
-  add_task task = {level, level_a, level_b, a, b, to, {a->pixels, b->pixels, to->pixels, level_b->stride, level->stride},
+  add_task task = {level, level_a, level_b, a, b, to, {a->pixels, b->pixels, to->pixels, level_b->stride, level->stride,
+                        thin == NULL ? NULL : thin->pixels},
                         function, wanted};
   hl_pool_run(pool, (size_t)level->tiles_y, add_row, &task);
 }
@@ -232,11 +238,12 @@ static int fill_boxes(cascade_box *boxes, int count, double variance) {
 
 /* to = a + blurred from, all on one level. */
 static void blur_add(hl_pool *pool, const cascade_functions *functions, const cascade_level *level,
-                          const cascade_field *from, const cascade_field *a, const cascade_field *to, double variance,
+                          const cascade_field *from, const cascade_field *a, const cascade_field *thin,
+                          const cascade_field *to, double variance,
                           const unsigned char *wanted) {
   blur_task task = {.level = level, .from = from, .a = a, .to = to, .function = functions->blur_add, .wanted = wanted};
   task.job = (blur_add_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
-                                 .stride = level->stride};
+                                 .thin = thin == NULL ? NULL : thin->pixels, .stride = level->stride};
   task.reach_x = fill_boxes(level->boxes, level->tiles_x, variance);
   task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, variance);
   hl_pool_run(pool, (size_t)level->tiles_y, blur_row, &task);
@@ -253,8 +260,10 @@ static double variance_between(double wide, double narrow, int scale) {
 static void merge_up(soft_cascade *cascade, int index, hl_pool *pool, const cascade_functions *functions) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
   cascade_group a = level->group[0], b = level->group[1], *to = &next->group[next->count++];
-  for (int c = 0; c < cascade->channels; c++)
-    add(pool, functions, level, &a.absorbed[c], level, &b.absorbed[c], next, &to->absorbed[c], NULL);
+  for (int c = 0; c < cascade->channels; c++) {
+    add(pool, functions, level, &b.absorbed[c], &b.thin[c], level, &a.absorbed[c], next, &to->absorbed[c], NULL);
+    add(pool, functions, level, &b.thin[c], &b.thin[c], level, &a.thin[c], next, &to->thin[c], NULL);
+  }
   to->empty = a.empty && b.empty;
   to->weight = a.weight + b.weight;
   if (to->weight > 0) to->omega = (a.omega * a.weight + b.omega * b.weight) / to->weight;
@@ -269,7 +278,7 @@ typedef struct absorb_task {
   const soft_cascade *cascade;
   const shadow_buffer *buffer;
   cascade_group *group;
-  field_tile_function *absorbed;
+  absorbed_tile_function *absorbed;
 } absorb_task;
 
 /* Tiles of the new group: what the chunk's slabs took of the light that reached the chunk. */
@@ -280,12 +289,14 @@ static void absorb_row(void *data, size_t index, int worker) {
   for (size_t tile_x = 0; tile_x < (size_t)level->tiles_x; tile_x++) {
     size_t tile = index * (size_t)level->tiles_x + tile_x;
     for (int c = 0; c < task->cascade->channels; c++) {
-      const cascade_field *to = &task->group->absorbed[c];
-      field_job job = {task->cascade->shade[c].pixels, task->buffer->transmittance[c], to->pixels, task->buffer->stride,
-                       level->stride};
+      const cascade_field *to[2] = {&task->group->absorbed[c], &task->group->thin[c]};
+      absorbed_job job = {task->cascade->shade[c].pixels, task->buffer->transmittance[c], to[0]->pixels, to[1]->pixels,
+                          level->stride, task->buffer->stride};
       if (task->cascade->touched[tile]) task->absorbed(&job, (int)tile_x, (int)index);
-      else if (!to->zeros[tile]) store_zeros(to->pixels, level->stride, tile_x, index);
-      to->zeros[tile] = !task->cascade->touched[tile];
+      for (int i = 0; i < 2; i++) {
+        if (!task->cascade->touched[tile] && !to[i]->zeros[tile]) store_zeros(to[i]->pixels, level->stride, tile_x, index);
+        to[i]->zeros[tile] = !task->cascade->touched[tile];
+      }
     }
     task->cascade->touched[tile] = 0;
   }
@@ -307,23 +318,23 @@ static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, hl_po
     merge_up(cascade, i, pool, functions);
 }
 
-/* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level and added to own there (null:
- * zeros). Blurs are done at the farther level, where they are cheap. Levels between have empty groups only: zeros to add. */
+/* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's thin matter
+ * and added to own there (null: zeros). Blurs are done at the farther level, where they are cheap. Levels between have empty groups only: zeros to add. */
 static void bring(cascade_level *from, const cascade_field *sum, double variance, cascade_level *to_level,
-                  const cascade_field *own, const cascade_field *to, int channel, const unsigned char *wanted, hl_pool *pool,
+                  const cascade_field *own, const cascade_field *thin, const cascade_field *to, int channel, const unsigned char *wanted, hl_pool *pool,
                   const cascade_functions *functions) {
   if (from->scale == to_level->scale) {
-    blur_add(pool, functions, from, sum, own, to, variance, wanted);
+    blur_add(pool, functions, from, sum, own, thin, to, variance, wanted);
     return;
   }
-  blur_add(pool, functions, from, sum, NULL, &from->scratch, variance, NULL);
+  blur_add(pool, functions, from, sum, NULL, NULL, &from->scratch, variance, NULL);
   while (from->scale > 2 * to_level->scale) {
     cascade_level *next = from - 1;
-    add(pool, functions, next, &next->group[0].absorbed[channel], from, &from->scratch, next, &next->scratch, NULL);
+    add(pool, functions, next, &next->group[0].absorbed[channel], NULL, from, &from->scratch, next, &next->scratch, NULL);
     from = next;
   }
-  add(pool, functions, to_level, own == NULL ? &to_level->group[0].absorbed[channel] : own, from, &from->scratch,
-           to_level, to, wanted);
+  add(pool, functions, to_level, own == NULL ? &to_level->group[0].absorbed[channel] : own, thin, from, &from->scratch,
+      to_level, to, wanted);
 }
 
 /* What the groups before absorbed, blurred for this group, and what this group did. */
@@ -333,7 +344,8 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
   const cascade_field *sum = from->sum[from->newest];
   level->newest = !level->newest;
   for (int c = 0; c < channels; c++)
-    bring(from, &sum[c], variance, level, &group->absorbed[c], &level->sum[level->newest][c], c, wanted, pool, functions);
+    bring(from, &sum[c], variance, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], c, wanted,
+          pool, functions);
 }
 
 /* Nothing lies before the farthest group. */
@@ -450,7 +462,7 @@ static void light_row(void *data, size_t index, int worker) {
     bool shaded = false;
     for (int c = 0; c < buffer->channels; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
-      field_job job = {task->cascade->shade[c].pixels, NULL, buffer->transmittance[c], buffer->stride, level->stride};
+      field_job job = {task->cascade->shade[c].pixels, NULL, buffer->transmittance[c], buffer->stride, level->stride, NULL};
       task->left(&job, (int)tile_x, (int)index);
     }
     buffer->tile_touched[tile] = shaded;
@@ -464,7 +476,8 @@ static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double r
   if (level == NULL) return; /* the buffer is all ones */
   double variance = variance_between(receiver - level->sum_omega, 0, level->scale);
   for (int c = 0; c < cascade->channels; c++)
-    bring(level, &level->sum[level->newest][c], variance, &cascade->level[0], NULL, &cascade->shade[c], c, cascade->wanted[0], pool, functions);
+    bring(level, &level->sum[level->newest][c], variance, &cascade->level[0], NULL, NULL, &cascade->shade[c], c,
+          cascade->wanted[0], pool, functions);
   light_task task = {cascade, buffer, functions->left};
   hl_pool_run(pool, (size_t)cascade->level[0].tiles_y, light_row, &task);
   hl_shadow_buffer_find_lit(buffer, cascade->wanted[0], pool, functions->lit_blocks);

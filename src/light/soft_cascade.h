@@ -9,6 +9,11 @@
  * with the variance of its own penumbra. Far groups are kept coarser (what is left of them is blurred wide) and renewed
  * more rarely (their widths change slowly).
  *
+ * So solid matter is counted, which light meets at its edges. Haze takes a part F of every ray that comes through it, and rays
+ * towards r keep their directions: of the light on its way to r, the sum s so far blurred for o and r, it takes F (1 - s),
+ * not F times what reaches o from all the light. With G = T(o) (1 - t(o)) of the solid part and F of the thin one, a group
+ * makes of s: G + F + (1 - F) s (derived); two of them are one with 1 - F = (1 - F1) (1 - F2) and G + F likewise.
+ *
  * omega: parallel light  (L / D) z, the disk of directions on a plane parallel to the sheets; else -L / Z. The buffer's
  * axes are those of the light as the sheets see it, and each has its own part of the width. */
 #ifndef HL_LIGHT_SOFT_CASCADE_H
@@ -31,7 +36,8 @@ typedef struct cascade_field {
 
 /* What some neighbouring slabs absorbed. */
 typedef struct cascade_group {
-  cascade_field absorbed[HL_CHANNELS];
+  cascade_field absorbed[HL_CHANNELS]; /* G + F */
+  cascade_field thin[HL_CHANNELS];     /* F */
   double omega;                      /* mean over its matter, pixels of the buffer */
   double weight;                     /* of matter */
   bool empty;                        /* all zeros */

@@ -3,8 +3,9 @@
 #include "light/light_extent.h"
 #include "render/sweep.h"
 
-/* Surfaces along the light are resolved by pixels of half a voxel: coarser pixels show as stripes on them. */
-static const double GREATEST_SHADOW_PIXEL = 0.5;
+/* Surfaces along the light are resolved by pixels of half a voxel: coarser pixels show as stripes on them.
+ * Penumbrae hide those of soft shadows. */
+static const double GREATEST_SHADOW_PIXEL = 0.5, GREATEST_SOFT_PIXEL = 1;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
@@ -57,7 +58,7 @@ static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *p
   light_source middle = *source;
   *seen = hl_light_on_sheets(source, sweep->geometry->sheets.normal);
   /* hard edges must hold at the nearest matter; soft ones are wider than a pixel where it matters */
-  extent->pixel = fmin(sweep->frame->middle_pixel, finest);
+  extent->pixel = fmin(sweep->frame->middle_pixel, GREATEST_SOFT_PIXEL * sweep->frame->voxel);
   extent->margin = penumbra_margin(sweep, source, seen);
   if (source->soft_method == HL_SOFT_SUBLIGHTS) extent->u = seen->u;
   if (source->soft_method == HL_SOFT_CASCADE) {

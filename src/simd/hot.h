@@ -25,7 +25,8 @@ typedef struct hot_functions {
   sublight_tile_function *sublight_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
   blur_add_tile_function *blur_add_tile;
-  field_tile_function *add_tile, *add_half_tile, *add_double_tile, *left_tile, *absorbed_tile;
+  field_tile_function *add_tile, *add_half_tile, *add_double_tile, *left_tile;
+  absorbed_tile_function *absorbed_tile;
 } hot_functions;
 
 const hot_functions *hl_hot_functions(hl_instruction_set set);

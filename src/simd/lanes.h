@@ -219,8 +219,10 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
   for (int j = 0; j < 2; j++) {
     __m128 part[4];
     for (int q = 0; q < 4; q++) {
-      part[q] = _mm_castpd_ps(_mm_load_sd((const double *)(const void *)(table + offsets.at[4 * q + 2 * j])));
-      part[q] = _mm_loadh_pi(part[q], (const __m64 *)(const void *)(table + offsets.at[4 * q + 2 * j + 1]));
+      double pair_of[2]; /* pairs of floats lie anywhere: memcpy, for a double's load would want eight bytes' alignment */
+      memcpy(&pair_of[0], table + offsets.at[4 * q + 2 * j], sizeof(double));
+      memcpy(&pair_of[1], table + offsets.at[4 * q + 2 * j + 1], sizeof(double));
+      part[q] = _mm_castpd_ps(_mm_set_pd(pair_of[1], pair_of[0]));
     }
     __m512 pair = _mm512_insertf32x4(_mm512_castps128_ps512(part[0]), part[1], 1);
     pairs[j] = _mm512_insertf32x4(_mm512_insertf32x4(pair, part[2], 2), part[3], 3);

@@ -385,7 +385,6 @@ static void test_beam_through_a_hole(void **state) {
   look_along(open, (vec3){0, 1, 0}, (vec3){0, 0, 0}, 150);
   hl_scene_volume volumes[2] = {open->scene.volumes[0], open->scene.volumes[1]};
   open->scene.volumes = volumes;
-  open->scene.render.light_samples = 4; /* of the scene's 8: the picture's smoothness, not the beam's width */
   double sum[2], variance[2], distance[2], grown[2];
   vec3 way = vec3_normalise(vec3_of(open->lights[0].direction));
   double sigma = -log(1 - 0.01), spread = 2 * tan(open->lights[0].angular_diameter_deg * HL_PI / 360);

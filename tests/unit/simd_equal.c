@@ -353,6 +353,7 @@ typedef struct field_state {
   blur_job blur;
   field_job field;
   blur_add_job blur_add;
+  absorbed_job absorbed;
   sublight_job sublight;
   float a[FIELD][FIELD], b[FIELD][FIELD], out[FIELD][FIELD];
   int lit;
@@ -367,7 +368,7 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 4) hot->add_double_tile(&s->field, 1, 1);
   if (s->which == 5) hot->blur_add_tile(&s->blur_add, 1, 1);
   if (s->which == 6) hot->left_tile(&s->field, 1, 1);
-  if (s->which == 7) hot->absorbed_tile(&s->field, 1, 1);
+  if (s->which == 7) hot->absorbed_tile(&s->absorbed, 1, 1);
   if (s->which == 8) s->lit = hot->sublight_tile(&s->sublight, 1, 1);
 }
 
@@ -382,8 +383,12 @@ static void test_fields(void **unused) {
     fill_salted(&s.b[0][0], FIELD * FIELD, &seed, 0, 1);
     s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD,
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
-    s.field = (field_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD};
-    s.blur_add = (blur_add_job){&s.b[MARGIN][MARGIN], round % 3 ? &s.a[MARGIN][MARGIN] : NULL, &s.out[MARGIN][MARGIN],
+    s.field = (field_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD,
+                          round % 2 ? &s.b[MARGIN + 3][MARGIN] : NULL};
+    s.absorbed = (absorbed_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], &s.out[2 * MARGIN][MARGIN],
+                                FIELD, FIELD};
+    s.blur_add = (blur_add_job){&s.b[MARGIN][MARGIN], round % 3 ? &s.a[MARGIN][MARGIN] : NULL,
+                                round % 2 ? &s.a[MARGIN + 3][MARGIN] : NULL, &s.out[MARGIN][MARGIN],
                                           FIELD, hl_blur_box(random_between(&seed, 1, 90)),
                                           hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
     s.sublight = (sublight_job){.slab_stride = FIELD, .slab_width = 60, .slab_height = 50, .stride = FIELD,
