@@ -4,8 +4,8 @@
 #include "render/sweep.h"
 
 /* Surfaces along the light are resolved by pixels of half a voxel: coarser pixels show as stripes on them.
- * Penumbrae hide those of soft shadows. */
-static const double GREATEST_SHADOW_PIXEL = 0.5, GREATEST_SOFT_PIXEL = 1;
+ * Soft shadows bear little more. */
+static const double GREATEST_SHADOW_PIXEL = 0.5, GREATEST_SOFT_PIXEL = 0.6;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
