@@ -11,17 +11,6 @@
 #include "render.h"
 
 static const cli_choice moves[] = {{"camera", MOVE_CAMERA}, {"light", MOVE_LIGHT}, {"tf", MOVE_TF}, {NULL, 0}};
-static const cli_choice kernels[] = {
-    {"bspline", HL_KERNEL_BSPLINE}, {"gaussian", HL_KERNEL_GAUSSIAN}, {"linear", HL_KERNEL_LINEAR}, {NULL, 0}};
-static const cli_choice reconstructions[] = {{"auto", HL_RECONSTRUCTION_AUTO},
-                                             {"splat", HL_RECONSTRUCTION_SPLAT},
-                                             {"gather", HL_RECONSTRUCTION_GATHER},
-                                             {NULL, 0}};
-static const cli_choice instruction_sets[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
-                                              {"scalar", HL_INSTRUCTION_SET_SCALAR},
-                                              {"avx2", HL_INSTRUCTION_SET_AVX2},
-                                              {"avx512", HL_INSTRUCTION_SET_AVX512},
-                                              {NULL, 0}};
 
 static const cli_option bench_options[BENCH_OPTION_COUNT] = {
     [BENCH_FRAMES] = {.name = "frames",
@@ -57,10 +46,10 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                              .count = 1,
                              .low = 0.01,
                              .high = 100},
-    [BENCH_KERNEL] = {.name = "kernel", .kind = OPTION_CHOICE, .choices = kernels, .help = "of each voxel"},
+    [BENCH_KERNEL] = {.name = "kernel", .kind = OPTION_CHOICE, .choices = kernel_choices, .help = "of each voxel"},
     [BENCH_RECONSTRUCTION] = {.name = "reconstruction",
                               .kind = OPTION_CHOICE,
-                              .choices = reconstructions,
+                              .choices = reconstruction_choices,
                               .help = "push footprints, or pull samples"},
     [BENCH_THREADS] = {.name = "threads",
                        .kind = OPTION_NUMBERS,
@@ -72,7 +61,7 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                        .high = 1024},
     [BENCH_INSTRUCTION_SET] = {.name = "instruction-set",
                                .kind = OPTION_CHOICE,
-                               .choices = instruction_sets,
+                               .choices = instruction_set_choices,
                                .help = "the best there is, unless given"},
     [BENCH_MAX_MEMORY] = {.name = "max-memory",
                           .kind = OPTION_BYTES,

@@ -42,6 +42,9 @@ enum render_option {
   RENDER_OPTION_COUNT
 };
 
+/* Choices that other commands have too. */
+extern const cli_choice kernel_choices[], reconstruction_choices[], instruction_set_choices[];
+
 extern const cli_option render_options[RENDER_OPTION_COUNT];
 
 /* Refuses options that contradict each other. */

@@ -14,17 +14,17 @@ static const cli_choice soft_methods[] = {
 static const cli_choice resolutions[] = {{"auto", 0}, {NULL, 0}};
 static const cli_choice lookups[] = {
     {"bilinear", HL_LOOKUP_BILINEAR}, {"nearest", HL_LOOKUP_NEAREST}, {NULL, 0}};
-static const cli_choice kernels[] = {{"bspline", HL_KERNEL_BSPLINE},
+const cli_choice kernel_choices[] = {{"bspline", HL_KERNEL_BSPLINE},
                                      {"gaussian", HL_KERNEL_GAUSSIAN},
                                      {"linear", HL_KERNEL_LINEAR},
                                      {NULL, 0}};
-static const cli_choice reconstructions[] = {{"auto", HL_RECONSTRUCTION_AUTO},
+const cli_choice reconstruction_choices[] = {{"auto", HL_RECONSTRUCTION_AUTO},
                                              {"splat", HL_RECONSTRUCTION_SPLAT},
                                              {"gather", HL_RECONSTRUCTION_GATHER},
                                              {NULL, 0}};
 static const cli_choice slicings[] = {
     {"half-vector", HL_SLICING_HALF_VECTOR}, {"image-aligned", HL_SLICING_IMAGE_ALIGNED}, {NULL, 0}};
-static const cli_choice instruction_sets[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
+const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"scalar", HL_INSTRUCTION_SET_SCALAR},
                                               {"avx2", HL_INSTRUCTION_SET_AVX2},
                                               {"avx512", HL_INSTRUCTION_SET_AVX512},
@@ -170,10 +170,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                               .count = 1,
                               .low = 0.01,
                               .high = 100},
-    [RENDER_KERNEL] = {.name = "kernel", .kind = OPTION_CHOICE, .choices = kernels, .help = "of each voxel"},
+    [RENDER_KERNEL] = {.name = "kernel", .kind = OPTION_CHOICE, .choices = kernel_choices, .help = "of each voxel"},
     [RENDER_RECONSTRUCTION] = {.name = "reconstruction",
                                .kind = OPTION_CHOICE,
-                               .choices = reconstructions,
+                               .choices = reconstruction_choices,
                                .help = "push footprints, or pull samples: the same\npicture to rounding"},
     [RENDER_SLICING] = {.name = "slicing",
                         .kind = OPTION_CHOICE,
@@ -215,7 +215,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .high = 1024},
     [RENDER_INSTRUCTION_SET] = {.name = "instruction-set",
                                 .kind = OPTION_CHOICE,
-                                .choices = instruction_sets,
+                                .choices = instruction_set_choices,
                                 .help = "any gives the same picture"},
     [RENDER_MAX_MEMORY] = {.name = "max-memory",
                            .kind = OPTION_BYTES,
