@@ -53,7 +53,6 @@ static inline mat3 mat3_multiply(mat3 a, mat3 b) {
   return mat3_from_columns(mat3_apply(a, mat3_column(b, 0)), mat3_apply(a, mat3_column(b, 1)),
                            mat3_apply(a, mat3_column(b, 2)));
 }
-static inline double mat3_determinant(mat3 m) { return vec3_dot(m.row[0], vec3_cross(m.row[1], m.row[2])); }
 /* False if m is singular to working precision. */
 static inline bool mat3_invert(mat3 m, mat3 *inverse) {
   vec3 c0 = vec3_cross(m.row[1], m.row[2]), c1 = vec3_cross(m.row[2], m.row[0]), c2 = vec3_cross(m.row[0], m.row[1]);

@@ -134,6 +134,7 @@ void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_
  * the slab before, or filled now. */
 typedef struct patch_slab {
   const float *before, *current; /* valid in blocks */
+  const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible */
   uint32_t blocks;
 } patch_slab;
 /* pixels: is raised by the pixels filled. */

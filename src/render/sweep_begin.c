@@ -45,9 +45,9 @@ static double penumbra_margin(const sweep *sweep, const light_source *source, co
 static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *points, shadow_extent *extent,
                          sheet_light *seen, view *view) {
   size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
-  double finest = GREATEST_SHADOW_PIXEL * sweep->frame->voxel;
   *extent = (shadow_extent){.points = points, .point_count = hl_frame_visible_points(sweep->frame, points),
-                          .pixel = fmin(sweep->frame->pixel, finest), .resolution = sweep->scene->render.shadow_resolution,
+                          .pixel = fmin(sweep->frame->pixel, GREATEST_SHADOW_PIXEL * sweep->frame->voxel),
+                          .resolution = sweep->scene->render.shadow_resolution,
                           .greatest_pixels = greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
                           .content = sweep->frame->points, .content_count = sweep->frame->point_count};
   if (extent->point_count == 0) return false;
@@ -116,7 +116,8 @@ static hl_status allocate_stages(sweep *sweep, hl_error *error) {
   sweep->scratch = hl_allocate(context, threads * grids, SHADE_SCRATCH_BYTES);
   sweep->scratch_volumes = hl_allocate(context, threads * grids, sizeof *sweep->scratch_volumes);
   sweep->counts = hl_allocate_zeroed(context, threads, sizeof *sweep->counts);
-  if (sweep->tasks == NULL || sweep->shade_volumes == NULL || sweep->shade_patches == NULL || sweep->scratch == NULL || sweep->scratch_volumes == NULL || sweep->counts == NULL)
+  if (sweep->tasks == NULL || sweep->shade_volumes == NULL || sweep->shade_patches == NULL || sweep->scratch == NULL ||
+      sweep->scratch_volumes == NULL || sweep->counts == NULL)
     return hl_fail_memory(error, sweep->task_capacity * sizeof *sweep->tasks, "the sheet loop");
   return HL_OK;
 }

@@ -34,10 +34,8 @@ static int fill_image_tile(sweep *sweep, size_t tile, int worker, shade_patch *p
     patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, &counts->pixels_image);
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
-    bool cut = sweep->grids[g].cut;
-    patches[count++] = (shade_patch){&sweep->shade_volumes[g], slab.before, slab.current, slab.blocks,
-                                     cut ? sheets->enter + p * TILE_PIXELS : NULL,
-                                     cut ? sheets->leave + p * TILE_PIXELS : NULL};
+    patches[count++] = (shade_patch){&sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter,
+                                     slab.leave};
   }
   return count;
 }
@@ -102,11 +100,9 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
     if (!scene->casts_shadow) continue;
     patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, pixels);
     if (slab.blocks == 0) continue;
-    bool cut = sweep->grids[g].cut;
     volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = slab.blocks,
                                         .before = slab.before, .density = slab.current,
-                                        .enter = cut ? sheets->enter + p * TILE_PIXELS : NULL,
-                                        .leave = cut ? sheets->leave + p * TILE_PIXELS : NULL};
+                                        .enter = slab.enter, .leave = slab.leave};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
     count++;
   }

@@ -127,10 +127,13 @@ patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, s
   kept_patch *before = patch_on_sheet(sweep, sheets, tile, patch, sheet - 1);
   kept_patch *current = patch_on_sheet(sweep, sheets, tile, patch, sheet);
   uint32_t wanted = need & ((uint32_t)before->relevant | current->relevant);
-  if (wanted == 0) return (patch_slab){NULL, NULL, 0};
+  if (wanted == 0) return (patch_slab){.blocks = 0};
   *pixels += fill_patch(sweep, sheets, tile, patch, before, wanted);
   *pixels += fill_patch(sweep, sheets, tile, patch, current, wanted);
   const float *density = sheets->density + patch * RING * TILE_PIXELS;
-  return (patch_slab){density + (sheet - 1) % RING * TILE_PIXELS, density + sheet % RING * TILE_PIXELS,
-                      wanted & ((uint32_t)before->blocks | current->blocks)};
+  bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
+  return (patch_slab){.before = density + (sheet - 1) % RING * TILE_PIXELS, .current = density + sheet % RING * TILE_PIXELS,
+                      .enter = cut ? sheets->enter + patch * TILE_PIXELS : NULL,
+                      .leave = cut ? sheets->leave + patch * TILE_PIXELS : NULL,
+                      .blocks = wanted & ((uint32_t)before->blocks | current->blocks)};
 }
