@@ -53,11 +53,14 @@ static inline mat3 mat3_multiply(mat3 a, mat3 b) {
   return mat3_from_columns(mat3_apply(a, mat3_column(b, 0)), mat3_apply(a, mat3_column(b, 1)),
                            mat3_apply(a, mat3_column(b, 2)));
 }
-/* False if m is singular to working precision. */
+static inline mat3 mat3_transpose(mat3 m) { return mat3_from_columns(m.row[0], m.row[1], m.row[2]); }
+/* The greatest determinant that rows of these lengths can have. */
+static inline double mat3_row_sizes(mat3 m) { return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]); }
+/* False if m is singular to working precision, whatever the scales of its rows or of its columns. */
 static inline bool mat3_invert(mat3 m, mat3 *inverse) {
   vec3 c0 = vec3_cross(m.row[1], m.row[2]), c1 = vec3_cross(m.row[2], m.row[0]), c2 = vec3_cross(m.row[0], m.row[1]);
   double determinant = vec3_dot(m.row[0], c0);
-  double size = vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]);
+  double size = fmin(mat3_row_sizes(m), mat3_row_sizes(mat3_transpose(m)));
   if (!(fabs(determinant) > 1e-12 * size) || !isfinite(determinant)) return false;
   *inverse = mat3_from_columns(vec3_scale(c0, 1 / determinant), vec3_scale(c1, 1 / determinant),
                                vec3_scale(c2, 1 / determinant));

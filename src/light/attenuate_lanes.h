@@ -13,7 +13,7 @@ static const float DARK = 1.0f / 1024;
  * sheet lies behind the view's origin get 0. */
 LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
   if (!rays->perspective) return lanes_set(path);
-  lanes3 w = rays_linear(rays, u, v);
+  lanes3 w = rays_directions(rays, u, v);
   lanes climb = u * rays->hu + (v * rays->hv + rays->h0);
   lanes length = lanes_sqrt(w.x * w.x + w.y * w.y + w.z * w.z) / lanes_abs(climb) * path;
   return lanes_keep(climb * rays->step > 0.0f, length);

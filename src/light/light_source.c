@@ -1,21 +1,21 @@
-/* light/light_source.c - lights from the scene's words into frame space. */
+/* light/light_source.c - lights as the sheets need them. */
 #include "light/light_source.h"
 
 #include "scene/light_shape.h"
 
 static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }
 
-light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 centre, vec3 content) {
+light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 content) {
   light_source source = {.parallel = light->type == HL_LIGHT_DIRECTIONAL, .content = content, .light = light};
   source.shadows = light->shadows == HL_SHADOWS_DEFAULT ? settings->shadows : light->shadows;
   source.soft_method = settings->soft_method;
-  source.screen_center = vec3_subtract(vec3_of(light->texture.screen_center), centre);
+  source.screen_center = vec3_of(light->texture.screen_center);
   source.screen_right = vec3_of(light->texture.screen_right);
   source.screen_up = vec3_of(light->texture.screen_up);
   if (source.parallel) {
     source.direction = vec3_normalise(vec3_of(light->direction));
   } else {
-    source.position = vec3_subtract(hl_light_centre(light), centre);
+    source.position = hl_light_centre(light);
     vec3 way = vec3_subtract(light->texture.pixels != NULL ? source.screen_center : content, source.position);
     if (light->type == HL_LIGHT_SPOT) way = vec3_of(light->direction);
     source.direction = vec3_length(way) > 0 ? vec3_normalise(way) : (vec3){0, 0, 1};

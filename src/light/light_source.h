@@ -22,8 +22,8 @@ typedef struct light_source {
   vec3 screen_center, screen_right, screen_up; /* of a light with a texture: the light screen; frame space */
 } light_source;
 
-/* content: the middle of what is lit; frame space. centre: world position of frame space's origin. */
-light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 centre, vec3 content);
+/* light: in frame space. content: the middle of what is lit. */
+light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 content);
 
 /* One sector of a light that is no parallel one. */
 light_source hl_light_in_sector(const light_source *whole, const light_sectors *sectors, int sector);

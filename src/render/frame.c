@@ -7,9 +7,9 @@ static vec3 camera_up(const hl_camera *camera, vec3 forward) {
   return fabs(forward.z) < 0.9 ? (vec3){0, 0, 1} : (vec3){0, 1, 0};
 }
 
-hl_status hl_frame_eye(const hl_camera *camera, int width, int height, vec3 centre, view *eye, hl_error *error) {
-  vec3 position = vec3_subtract(vec3_of(camera->position), centre);
-  vec3 forward = vec3_normalise(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
+hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye, hl_error *error) {
+  vec3 position = vec3_of(camera->position);
+  vec3 forward = vec3_normalise(vec3_subtract(vec3_of(camera->target), position));
   vec3 right = vec3_normalise(vec3_cross(forward, camera_up(camera, forward)));
   vec3 up = vec3_cross(right, forward);
   eye->perspective = camera->type == HL_CAMERA_PERSPECTIVE;

@@ -1,6 +1,7 @@
 /* render/frame.h - the geometry of one frame: where the eye, the lights and the sheets are.
  *
- * Frame space is the world moved so that the content's centre is the origin. */
+ * Frame space is the world moved to the middle of the volumes and measured in units of about their smallest voxel edge
+ * (framed_scene.h). */
 #ifndef HL_RENDER_FRAME_H
 #define HL_RENDER_FRAME_H
 
@@ -20,7 +21,6 @@ typedef struct frame_sweep {
 } frame_sweep;
 
 typedef struct frame {
-  vec3 centre;             /* world position of frame space's origin */
   int width, height;       /* pixels: the picture's, times oversampling */
   int oversampling;        /* pixels a side of which the mean is one of the picture's */
   view eye;
@@ -28,8 +28,8 @@ typedef struct frame {
   vec3 middle;             /* of the content */
   double pixel;            /* edge of an image pixel where the content is nearest, frame units */
   double middle_pixel;     /* the same at the content's middle */
-  double voxel;            /* the smallest edge of a voxel, world units */
-  double spacing;          /* ds, world units */
+  double voxel;            /* the smallest edge of a voxel, frame units */
+  double spacing;          /* ds, frame units */
   vec3 *points;            /* corners of the content of all grids; owned by the caller; [8 * grids] */
   int point_count;
   light_sectors sectors;   /* of lights within the content */
@@ -37,8 +37,8 @@ typedef struct frame {
   int light_count;
 } frame;
 
-/* The eye's view of a scene in width x height pixels. */
-hl_status hl_frame_eye(const hl_camera *camera, int width, int height, vec3 centre, view *eye, hl_error *error);
+/* The eye's view in width x height pixels. */
+hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye, hl_error *error);
 
 /* Corners of the box around a grid's relevant bricks, of which there is one at least. */
 void hl_frame_content(const grid *grid, vec3 corners[8]);

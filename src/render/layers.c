@@ -216,8 +216,8 @@ static void write_measures(const layer_grid *grid, const float *pixels, const hl
       float first = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH_FIRST, &hits);
       float alpha = sum_of(grid, pixels, MEASURES, column, row, MEASURE_ALPHA, NULL);
       float depth = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH, NULL);
-      if (to->depth_first != NULL) to->depth_first[at] = hits > 0 ? first / (float)hits : INFINITY;
-      if (to->depth_mean != NULL) to->depth_mean[at] = alpha > 0 ? depth / alpha : INFINITY;
+      if (to->depth_first != NULL) to->depth_first[at] = hits > 0 ? first / (float)hits * grid->unit : INFINITY;
+      if (to->depth_mean != NULL) to->depth_mean[at] = alpha > 0 ? depth / alpha * grid->unit : INFINITY;
       for (int c = 0; c < 3 && to->normal != NULL; c++) {
         float normal = sum_of(grid, pixels, MEASURES, column, row, MEASURE_NORMAL + c, NULL);
         to->normal[3 * at + (size_t)c] = alpha > 0 ? normal / alpha : 0;

@@ -58,6 +58,7 @@ typedef struct layer_grid {
   int width, height;   /* of the picture */
   int oversampling;
   size_t tiles_x;
+  float unit;          /* world length of 1 in frame space */
 } layer_grid;
 
 /* Fills the caller's buffers. */

@@ -81,11 +81,9 @@ static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_fu
 }
 
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
-                             const hl_scene_description *scene, vec3 centre, prepared_volume *prepared,
-                             hl_error *error) {
+                             const hl_scene_description *scene, prepared_volume *prepared, hl_error *error) {
   for (size_t i = 0; i < scene->volume_count; i++) {
     affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
-    placement.offset = vec3_subtract(placement.offset, centre);
     hl_status status = prepare_volume(context, pool, hot, &scene->volumes[i], scene->render.kernel, placement, &prepared[i], error);
     if (status != HL_OK) {
       hl_prepared_release(context, &prepared[i]);

@@ -6,6 +6,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "render/clock.h"
+#include "render/framed_scene.h"
 #include "render/prepare.h"
 #include "scene/layers.h"
 
@@ -81,22 +82,6 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
   return HL_OK;
 }
 
-/* The middle of all volumes' boxes: frame space's origin. */
-static vec3 scene_centre(const hl_scene_description *scene) {
-  vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t i = 0; i < scene->volume_count; i++) {
-    affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
-    double box[2][3];
-    hl_scene_volume_box(&scene->volumes[i], box[0], box[1]);
-    for (int corner = 0; corner < 8; corner++) {
-      vec3 p = affine3_apply(placement, (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]});
-      low = (vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
-      high = (vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
-    }
-  }
-  return scene->volume_count == 0 ? (vec3){0, 0, 0} : vec3_scale(vec3_add(low, high), 0.5);
-}
-
 static double smallest_edge(const hl_renderer *renderer) {
   double edge = INFINITY;
   for (size_t i = 0; i < renderer->prepared_count; i++)
@@ -106,6 +91,7 @@ static double smallest_edge(const hl_renderer *renderer) {
 
 /* What a frame needs beyond the renderer; released after it. */
 typedef struct frame_work {
+  framed_scene framed;
   frame frame;
   grid *grids;            /* [volumes] */
   frame_sweep *sweeps;    /* [LIGHT_SECTORS * lights + 1] */
@@ -117,6 +103,7 @@ typedef struct frame_work {
 } frame_work;
 
 static void release_work(hl_context *context, frame_work *work) {
+  hl_framed_scene_release(context, &work->framed);
   hl_release(context, work->frame.points);
   hl_release(context, work->frame.lights);
   hl_release(context, work->grids);
@@ -190,7 +177,7 @@ static hl_status set_up_eye(const hl_renderer *renderer, const hl_scene_descript
   for (frame->oversampling = 1;;) {
     frame->width = scene->width * frame->oversampling;
     frame->height = scene->height * frame->oversampling;
-    hl_status status = hl_frame_eye(&scene->camera, frame->width, frame->height, frame->centre, &frame->eye, error);
+    hl_status status = hl_frame_eye(&scene->camera, frame->width, frame->height, &frame->eye, error);
     if (status != HL_OK) return status;
     look(frame);
     int wanted = frame->oversampling > 1 || frame->point_count == 0 ? 1 : oversampling(frame, scene, smallest_edge(renderer));
@@ -223,7 +210,7 @@ static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   frame->light_count = 0;
   for (size_t i = 0; i < scene->light_count; i++) {
     const hl_light *light = &scene->lights[i];
-    light_source source = hl_light_source(light, &scene->render, frame->centre, frame->middle);
+    light_source source = hl_light_source(light, &scene->render, frame->middle);
     source.light_index = (int)i;
     bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) || light->texture.pixels != NULL;
     bool whole = source.shadows == HL_SHADOWS_OFF || narrow || hl_frame_serves(frame, &scene->render, &source);
@@ -345,20 +332,21 @@ static void write_pixels(const frame_work *work, const hl_scene_description *sce
 }
 
 static void write_layers(const frame_work *work, const hl_scene_description *scene) {
-  const layer_grid grid = {scene->width, scene->height, work->frame.oversampling, work->tiles_x};
+  const layer_grid grid = {scene->width, scene->height, work->frame.oversampling, work->tiles_x, (float)work->framed.unit};
   hl_layer_pixels_write(&work->layers, &grid);
 }
 
-static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers,
+static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *world, const hl_layers *layers,
                               frame_work *work, float *pixels, size_t row_stride, hl_render_statistics *statistics,
                               hl_error *error) {
   double start = hl_clock_seconds();
-  hl_status status = make_room(renderer, scene, error);
-  work->frame.centre = scene_centre(scene);
+  const hl_scene_description *scene = &work->framed.scene;
+  hl_status status = hl_framed_scene_create(renderer->context, world, &work->framed, error);
+  if (status == HL_OK) status = make_room(renderer, scene, error);
   if (status == HL_OK)
     status = hl_prepare_volumes(renderer->context, renderer->pool,
-                                hl_hot_functions(renderer->context->options.instruction_set), scene,
-                                work->frame.centre, renderer->prepared, error);
+                                hl_hot_functions(renderer->context->options.instruction_set), scene, renderer->prepared,
+                                error);
   if (status == HL_OK) status = set_up_frame(renderer, scene, layers, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();

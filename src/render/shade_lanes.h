@@ -37,7 +37,7 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
     g.towards_eye = set3(job->towards_eye);
     return g;
   }
-  lanes3 w = rays_linear(rays, u, v);
+  lanes3 w = rays_directions(rays, u, v);
   lanes inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
   g.step_sheet = scale3(w, inverse * job->spacing);
   g.towards_eye = scale3(w, -1.0f / lanes_sqrt(dot3(w, w)));

@@ -77,3 +77,27 @@ double hl_scene_volume_empty_value(const hl_scene_volume *volume) {
   double range = v->maximum - v->minimum;
   return v->minimum - (range > 0 ? range : 1);
 }
+
+static vec3 middle_of_volumes(const hl_scene_description *scene) {
+  vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
+    double box[2][3];
+    hl_scene_volume_box(&scene->volumes[i], box[0], box[1]);
+    for (int corner = 0; corner < 8; corner++) {
+      vec3 p = affine3_apply(placement, (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]});
+      low = (vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
+      high = (vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
+    }
+  }
+  return vec3_scale(vec3_add(low, high), 0.5);
+}
+
+hl_frame_space hl_scene_frame_space(const hl_scene_description *scene) {
+  double edge = INFINITY;
+  int exponent;
+  for (size_t i = 0; i < scene->volume_count; i++)
+    edge = fmin(edge, mat3_shortest_column(hl_scene_volume_index_to_world(&scene->volumes[i]).linear));
+  (void)frexp(edge, &exponent);
+  return (hl_frame_space){middle_of_volumes(scene), ldexp(1, exponent - 1)};
+}

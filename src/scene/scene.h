@@ -21,6 +21,15 @@ affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);
  * (clip is a box in the file's own world; where the grid is oblique to it, its bounds in index space). */
 void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]);
 
+/* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of all volumes' boxes, unit the
+ * power of two that the smallest voxel edge is 1 to 2 times as long as. */
+typedef struct hl_frame_space {
+  vec3 centre;
+  double unit;
+} hl_frame_space;
+
+hl_frame_space hl_scene_frame_space(const hl_scene_description *scene); /* of one volume at least */
+
 /* opacity (per unit_distance) and linear colour of a data value: piecewise linear, ends held. */
 double hl_transfer_function_opacity(const hl_transfer_function *function, double value);
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]);

@@ -1,13 +1,23 @@
 /* splat/coverage.c - sets up the rays of a view against a volume's box. */
 #include "splat/coverage.h"
 
+/* s of the rays at which the middle one is nearest to frame space's origin: counted from there, numbers are as small as
+ * what is seen, however far the eye is. */
+static double way_to_middle(const view *view) {
+  vec3 start, way;
+  hl_view_ray(view, view->width / 2.0, view->height / 2.0, &start, &way);
+  return -vec3_dot(start, way) / vec3_dot(way, way);
+}
+
 void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 frame_to_index, const double low[3],
                  const double high[3], box_rays *rays) {
   vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5));
-  vec3 zero = {0, 0, 0}, start = view->perspective ? view->origin : first;
-  vec3 start_u = view->perspective ? zero : view->du, start_v = view->perspective ? zero : view->dv;
-  vec3 direction = view->perspective ? first : view->direction;
+  vec3 zero = {0, 0, 0}, direction = view->perspective ? first : view->direction;
   vec3 direction_u = view->perspective ? view->du : zero, direction_v = view->perspective ? view->dv : zero;
+  double ahead = view->perspective ? fmax(way_to_middle(view), 0) : way_to_middle(view);
+  vec3 start = vec3_add(view->perspective ? view->origin : first, vec3_scale(direction, ahead));
+  vec3 start_u = view->perspective ? vec3_scale(view->du, ahead) : view->du;
+  vec3 start_v = view->perspective ? vec3_scale(view->dv, ahead) : view->dv;
   vec3_store(rays->start, affine3_apply(frame_to_index, start));
   vec3_store(rays->start_u, mat3_apply(frame_to_index.linear, start_u));
   vec3_store(rays->start_v, mat3_apply(frame_to_index.linear, start_v));
@@ -24,5 +34,5 @@ void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 fra
     rays->low[axis] = (float)low[axis];
     rays->high[axis] = (float)high[axis];
   }
-  rays->perspective = view->perspective;
+  rays->least = view->perspective ? -(float)ahead : -1e30f;
 }

@@ -8,7 +8,7 @@
 
 #include "splat/view.h"
 
-/* Rays of a view in one grid's index space: start + s * direction, s > 0, both linear in the pixel, and
+/* Rays of a view in one grid's index space: start + s * direction, s > least, both linear in the pixel, and
  * heights above the first sheet: start_height + s * climb. */
 typedef struct box_rays {
   float start[3], start_u[3], start_v[3];
@@ -16,7 +16,7 @@ typedef struct box_rays {
   float start_height, start_height_u, start_height_v;
   float climb, climb_u, climb_v;
   float low[3], high[3]; /* the box, index space */
-  int perspective;
+  float least;           /* of s: the eye of a perspective view */
 } box_rays;
 
 /* enter, leave: [256], block-major, one tile; heights above the first sheet. A ray that misses

@@ -9,7 +9,7 @@
 static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave) {
   for (int block = 0; block < TILE_BLOCKS; block++) {
     lanes u = block_u(tile_x * TILE + block % 4 * BLOCK), v = block_v(tile_y * TILE + block / 4 * BLOCK);
-    lanes first = lanes_set(rays->perspective ? 0.0f : -1e30f), last = lanes_set(1e30f);
+    lanes first = lanes_set(rays->least), last = lanes_set(1e30f);
     for (int axis = 0; axis < 3; axis++) {
       lanes start = u * rays->start_u[axis] + (v * rays->start_v[axis] + rays->start[axis]);
       lanes direction = u * rays->direction_u[axis] + (v * rays->direction_v[axis] + rays->direction[axis]);

@@ -14,17 +14,21 @@ static const float block_row[LANES] __attribute__((unused)) = {0, 0, 0, 0, 1, 1,
 LANES_INLINE lanes block_u(int x) { return lanes_load(block_column) + (float)x; }
 LANES_INLINE lanes block_v(int y) { return lanes_load(block_row) + (float)y; }
 
-/* Directions W = w0 + u wu + v wv of the rays (perspective), or positions (parallel). */
-LANES_INLINE lanes3 rays_linear(const sheet_rays *rays, lanes u, lanes v) {
-  return (lanes3){u * rays->wu[0] + (v * rays->wv[0] + rays->w0[0]), u * rays->wu[1] + (v * rays->wv[1] + rays->w0[1]),
-                  u * rays->wu[2] + (v * rays->wv[2] + rays->w0[2])};
+LANES_INLINE lanes3 rays_linear(const float at[3], const float by_u[3], const float by_v[3], lanes u, lanes v) {
+  return (lanes3){u * by_u[0] + (v * by_v[0] + at[0]), u * by_u[1] + (v * by_v[1] + at[1]),
+                  u * by_u[2] + (v * by_v[2] + at[2])};
+}
+
+/* W of a perspective view's rays, not normalised. */
+LANES_INLINE lanes3 rays_directions(const sheet_rays *rays, lanes u, lanes v) {
+  return rays_linear(rays->w0, rays->wu, rays->wv, u, v);
 }
 
 LANES_INLINE lanes3 rays_positions(const sheet_rays *rays, lanes u, lanes v) {
-  lanes3 p = rays_linear(rays, u, v);
+  lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
   if (!rays->perspective) return p;
-  lanes s = rays->step / (u * rays->hu + (v * rays->hv + rays->h0));
-  return (lanes3){p.x * s + rays->origin[0], p.y * s + rays->origin[1], p.z * s + rays->origin[2]};
+  lanes s = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
+  return (lanes3){p.x * s + rays->base[0], p.y * s + rays->base[1], p.z * s + rays->base[2]};
 }
 
 #endif

@@ -6,8 +6,8 @@
 #include "splat/fill.h"
 #include "splat/rays_lanes.h"
 
-/* Derived: on the ray E + s W with s = step / H, H = h.W, a pixel further is s (Wu - (Hu / H) W) further along the sheet;
- * from a block's middle to its pixels' centres it is at most 3/2 pixels either way (a little more is allowed for: s
+/* Derived: on the sheet at base + P / H, a pixel further is (Pu - (Hu / H) P) / H further along it;
+ * from a block's middle to its pixels' centres it is at most 3/2 pixels either way (a little more is allowed for: H
  * changes within the block). */
 static uint32_t relevant_blocks_tile(const fill_source *source, int tile_x, int tile_y) {
   const grid *grid = source->grid;
@@ -15,17 +15,14 @@ static uint32_t relevant_blocks_tile(const fill_source *source, int tile_x, int 
   const float reach = 1.5f * 1.02f;
   lanes u = lanes_load(block_column) * (float)BLOCK + ((float)(tile_x * TILE) + 1.5f);
   lanes v = lanes_load(block_row) * (float)BLOCK + ((float)(tile_y * TILE) + 1.5f);
-  lanes3 w = rays_linear(rays, u, v);
-  lanes linear[3] = {w.x, w.y, w.z}, inverse = lanes_set(0), s = lanes_set(1.0f);
-  if (rays->perspective) {
-    inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
-    s = inverse * rays->step;
-  }
+  lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
+  lanes linear[3] = {p.x, p.y, p.z}, inverse = lanes_set(1.0f);
+  if (rays->perspective) inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
   lanes_int inside = lanes_set_int(-1), close = inside, near = inside, cell = lanes_set_int(0);
   for (int a = 2; a >= 0; a--) {
-    lanes at = rays->perspective ? linear[a] * s + rays->origin[a] : linear[a];
-    lanes along_u = (rays->wu[a] - linear[a] * (inverse * rays->hu)) * s;
-    lanes along_v = (rays->wv[a] - linear[a] * (inverse * rays->hv)) * s;
+    lanes at = rays->perspective ? linear[a] * inverse + rays->base[a] : linear[a];
+    lanes along_u = (rays->pu[a] - linear[a] * (inverse * rays->hu)) * inverse;
+    lanes along_v = (rays->pv[a] - linear[a] * (inverse * rays->hv)) * inverse;
     lanes half = (lanes_abs(along_u) + lanes_abs(along_v)) * reach;
     float count = (float)grid->dimension[a];
     inside &= (at + half > -0.5f - GRID_MARGIN) & (at - half < count - 0.5f + GRID_MARGIN);

@@ -45,28 +45,40 @@ static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
                   vec3_scale(direction, (height - vec3_dot(normal, start)) / vec3_dot(normal, direction)));
 }
 
-void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays) {
-  vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5));
-  rays->perspective = view->perspective;
-  if (view->perspective) {
-    vec3_store(rays->origin, affine3_apply(from_frame, view->origin));
-    vec3_store(rays->w0, mat3_apply(from_frame.linear, first));
-    vec3_store(rays->wu, mat3_apply(from_frame.linear, view->du));
-    vec3_store(rays->wv, mat3_apply(from_frame.linear, view->dv));
-    rays->h0 = (float)vec3_dot(normal, first);
-    rays->hu = (float)vec3_dot(normal, view->du);
-    rays->hv = (float)vec3_dot(normal, view->dv);
-    rays->step = (float)(height - vec3_dot(normal, view->origin));
-    return;
+/* A middle ray that runs along the sheet meets it nowhere near: then base is the eye. */
+static const double FLATTEST_MIDDLE = 0.01;
+
+static void perspective_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays) {
+  vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5)), middle, start;
+  hl_view_ray(view, view->width / 2.0, view->height / 2.0, &start, &middle);
+  const vec3 w[3] = {first, view->du, view->dv};
+  double step = height - vec3_dot(normal, view->origin), climb = vec3_dot(normal, middle);
+  double t = fabs(climb) > FLATTEST_MIDDLE * vec3_length(middle) ? step / climb : 0;
+  float *p[3] = {rays->p0, rays->pu, rays->pv}, *directions[3] = {rays->w0, rays->wu, rays->wv};
+  float *climbs[3] = {&rays->h0, &rays->hu, &rays->hv};
+  for (int i = 0; i < 3; i++) {
+    double h = vec3_dot(normal, w[i]);
+    vec3 place = vec3_subtract(vec3_scale(w[i], step), vec3_scale(middle, t * h));
+    vec3_store(p[i], mat3_apply(from_frame.linear, place));
+    vec3_store(directions[i], mat3_apply(from_frame.linear, w[i]));
+    *climbs[i] = (float)h;
   }
-  vec3 base = on_sheet(first, view->direction, normal, height);
-  vec3 along_u = vec3_subtract(on_sheet(vec3_add(first, view->du), view->direction, normal, height), base);
-  vec3 along_v = vec3_subtract(on_sheet(vec3_add(first, view->dv), view->direction, normal, height), base);
-  vec3_store(rays->origin, (vec3){0, 0, 0});
-  vec3_store(rays->w0, affine3_apply(from_frame, base));
-  vec3_store(rays->wu, mat3_apply(from_frame.linear, along_u));
-  vec3_store(rays->wv, mat3_apply(from_frame.linear, along_v));
-  rays->h0 = 1;
-  rays->hu = rays->hv = 0;
-  rays->step = 1;
+  vec3_store(rays->base, affine3_apply(from_frame, vec3_add(view->origin, vec3_scale(middle, t))));
+  rays->step = (float)step;
+}
+
+static void parallel_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays) {
+  vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5));
+  vec3 start = on_sheet(first, view->direction, normal, height);
+  vec3 along_u = vec3_subtract(on_sheet(vec3_add(first, view->du), view->direction, normal, height), start);
+  vec3 along_v = vec3_subtract(on_sheet(vec3_add(first, view->dv), view->direction, normal, height), start);
+  vec3_store(rays->p0, affine3_apply(from_frame, start));
+  vec3_store(rays->pu, mat3_apply(from_frame.linear, along_u));
+  vec3_store(rays->pv, mat3_apply(from_frame.linear, along_v));
+}
+
+void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays) {
+  *rays = (sheet_rays){.perspective = view->perspective, .h0 = 1, .step = 1};
+  if (view->perspective) perspective_rays(view, normal, height, from_frame, rays);
+  else parallel_rays(view, normal, height, from_frame, rays);
 }

@@ -237,7 +237,7 @@ static void test_coverage(void **unused) {
   uint32_t seed = 5;
   for (int round = 0; round < 4 * ROUNDS; round++) {
     static coverage_state state;
-    state.rays.perspective = round % 2;
+    state.rays.least = round % 2 ? 0.0f : -1e30f;
     for (float *at = state.rays.start; at < state.rays.low; at++) *at = salted(&seed, -2, 2);
     for (int a = 0; a < 3; a++) {
       state.rays.low[a] = random_between(&seed, -9, 0);
@@ -290,7 +290,7 @@ static int close_classifier(void **unused) {
 
 static sheet_rays random_rays(uint32_t *seed, int round) {
   sheet_rays rays = {.perspective = round % 2};
-  for (float *at = rays.origin; at <= &rays.step; at++) *at = random_between(seed, -2, 2);
+  for (float *at = rays.base; at <= &rays.step; at++) *at = random_between(seed, -2, 2);
   spoil_rays(&rays, round);
   return rays;
 }
