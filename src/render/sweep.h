@@ -30,7 +30,6 @@ enum { RING = 2 }; /* sheets k-1 and k */
 /* A patch of one sheet, kept for the next slab. */
 typedef struct kept_patch {
   int32_t sheet;                  /* -1: none */
-  uint16_t relevant;              /* blocks that can hold density */
   uint16_t need, blocks;          /* blocks that were filled; those of them with density */
 } kept_patch;
 

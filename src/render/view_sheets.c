@@ -92,28 +92,34 @@ void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
   hl_occupancy_release(sweep->context, &sheets->occupancy);
 }
 
-/* What is kept of a patch on a sheet; which of its blocks matter is found when it is first asked for. */
-static kept_patch *patch_on_sheet(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet) {
-  const occupancy *o = &sheets->occupancy;
+/* What is kept of a patch on a sheet. */
+static kept_patch *patch_on_sheet(view_sheets *sheets, size_t patch, int sheet) {
   kept_patch *kept = &sheets->kept[patch * RING + (size_t)(sheet % RING)];
-  if (kept->sheet == sheet) return kept;
-  *kept = (kept_patch){.sheet = sheet};
-  if (!hl_occupancy_has(o, patch, sheet)) return kept;
-  const fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + (int)o->patch_grid[patch]];
-  kept->relevant = (uint16_t)sweep->hot->relevant_blocks_tile(source, (int)(tile % (size_t)o->tiles_x),
-                                                              (int)(tile / (size_t)o->tiles_x));
+  if (kept->sheet != sheet) *kept = (kept_patch){.sheet = sheet};
   return kept;
 }
 
-/* Fills what is missing of the wanted blocks; returns the pixels filled. A slab next to what matters runs from it to the
- * density on its other sheet: so that is filled too. */
+static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets *sheets, size_t patch, int sheet) {
+  return &sheets->sources[sheet % RING * sweep->volume_count + (int)sheets->occupancy.patch_grid[patch]];
+}
+
+/* The blocks of a patch in which the slab before a sheet may hold something. */
+static uint32_t relevant_blocks(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet) {
+  const occupancy *o = &sheets->occupancy;
+  if (!hl_occupancy_has(o, patch, sheet) && !hl_occupancy_has(o, patch, sheet - 1)) return 0;
+  return sweep->hot->relevant_blocks_tile(source_on_sheet(sweep, sheets, patch, sheet - 1),
+                                          source_on_sheet(sweep, sheets, patch, sheet),
+                                          (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x));
+}
+
+/* Fills what is missing of the wanted blocks; returns the pixels filled. */
 static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, kept_patch *kept,
                            uint32_t wanted) {
   const occupancy *o = &sheets->occupancy;
   uint32_t missing = wanted & ~(uint32_t)kept->need;
   if (missing == 0) return 0;
   int slot = kept->sheet % RING;
-  const fill_source *source = &sheets->sources[slot * sweep->volume_count + (int)o->patch_grid[patch]];
+  const fill_source *source = source_on_sheet(sweep, sheets, patch, kept->sheet);
   fill_tile_function *fill = sweep->splat ? sweep->hot->splat_tile : sweep->hot->gather_tile;
   uint32_t filled = fill(source, (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x), missing,
                          sheets->density + (patch * RING + (size_t)slot) * TILE_PIXELS);
@@ -124,10 +130,9 @@ static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t
 
 patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
                          uint64_t *pixels) {
-  kept_patch *before = patch_on_sheet(sweep, sheets, tile, patch, sheet - 1);
-  kept_patch *current = patch_on_sheet(sweep, sheets, tile, patch, sheet);
-  uint32_t wanted = need & ((uint32_t)before->relevant | current->relevant);
+  uint32_t wanted = need & relevant_blocks(sweep, sheets, tile, patch, sheet);
   if (wanted == 0) return (patch_slab){.blocks = 0};
+  kept_patch *before = patch_on_sheet(sheets, patch, sheet - 1), *current = patch_on_sheet(sheets, patch, sheet);
   *pixels += fill_patch(sweep, sheets, tile, patch, before, wanted);
   *pixels += fill_patch(sweep, sheets, tile, patch, current, wanted);
   const float *density = sheets->density + patch * RING * TILE_PIXELS;

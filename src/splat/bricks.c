@@ -144,8 +144,10 @@ void hl_grid_release(hl_context *context, grid *grid) {
   hl_release(context, grid->relevant);
   hl_release(context, grid->cell_low);
   hl_release(context, grid->cell_high);
-  hl_release(context, grid->visible);
-  hl_release(context, grid->near);
+  for (int i = 0; i < CELL_LEVELS; i++) {
+    hl_release(context, grid->level[i].visible);
+    hl_release(context, grid->level[i].near);
+  }
   hl_release(context, grid->relevant_list);
   hl_release(context, grid->finite_voxels);
   *grid = (struct grid){0};
@@ -197,11 +199,11 @@ static bool brick_reaches_faces(const grid *grid, const int32_t b[3]) {
 /* Whether a brick has a cell that shows something. */
 static bool brick_is_visible(const grid *grid, const int32_t b[3]) {
   enum { PAIRS = HL_BRICK_CELLS / HL_NEAR_CELLS };
-  if (grid->near == NULL) return true;
-  for (int32_t z = PAIRS * b[2]; z < PAIRS * b[2] + PAIRS && z < grid->near_count[2]; z++)
-    for (int32_t y = PAIRS * b[1]; y < PAIRS * b[1] + PAIRS && y < grid->near_count[1]; y++)
-      for (int32_t x = PAIRS * b[0]; x < PAIRS * b[0] + PAIRS && x < grid->near_count[0]; x++)
-        if (grid->visible[((size_t)z * (size_t)grid->near_count[1] + (size_t)y) * (size_t)grid->near_count[0] + (size_t)x])
+  if (grid->level[0].near == NULL) return true;
+  for (int32_t z = PAIRS * b[2]; z < PAIRS * b[2] + PAIRS && z < grid->level[0].count[2]; z++)
+    for (int32_t y = PAIRS * b[1]; y < PAIRS * b[1] + PAIRS && y < grid->level[0].count[1]; y++)
+      for (int32_t x = PAIRS * b[0]; x < PAIRS * b[0] + PAIRS && x < grid->level[0].count[0]; x++)
+        if (grid->level[0].visible[((size_t)z * (size_t)grid->level[0].count[1] + (size_t)y) * (size_t)grid->level[0].count[0] + (size_t)x])
           return true;
   return false;
 }

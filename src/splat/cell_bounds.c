@@ -20,7 +20,7 @@ typedef struct bound_job {
 /* Bounds of one slice of voxels along x and y: [2][near y][near x], low and high. */
 static void bound_slice(const bound_job *job, int32_t z, float *rows, float *padded, float *slice) {
   const grid *grid = job->grid;
-  size_t width = (size_t)grid->near_count[0], bytes = hl_storage_bytes(grid->storage);
+  size_t width = (size_t)grid->level[0].count[0], bytes = hl_storage_bytes(grid->storage);
   int32_t height = grid->dimension[1];
   for (int32_t y = 0; y < height; y++) {
     const unsigned char *row = (const unsigned char *)grid->voxels +
@@ -28,7 +28,7 @@ static void bound_slice(const bound_job *job, int32_t z, float *rows, float *pad
     job->along(grid->storage, row, grid->dimension[0], job->smooth, padded, rows + 2 * (size_t)y * width,
                rows + (2 * (size_t)y + 1) * width);
   }
-  for (int32_t f = 0; f < grid->near_count[1]; f++) {
+  for (int32_t f = 0; f < grid->level[0].count[1]; f++) {
     const float *low[CELL_TAPS], *high[CELL_TAPS];
     for (int32_t tap = 0; tap < CELL_TAPS; tap++) {
       int32_t y = 2 * f - 2 + tap;
@@ -55,9 +55,9 @@ static void bound_slabs(void *data, size_t index, int worker) {
   const bound_job *job = data;
   const grid *grid = job->grid;
   float *slices = job->scratch + (size_t)worker * job->scratch_floats, *out = slices + CELL_TAPS * 2 * job->plane;
-  float *rows = out + 2 * job->plane, *padded = rows + 2 * (size_t)grid->dimension[1] * (size_t)grid->near_count[0];
+  float *rows = out + 2 * job->plane, *padded = rows + 2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0];
   int32_t held[CELL_TAPS] = {-1, -1, -1, -1, -1}, end = ((int32_t)index + 1) * SLABS_A_TASK;
-  if (end > grid->near_count[2]) end = grid->near_count[2];
+  if (end > grid->level[0].count[2]) end = grid->level[0].count[2];
   for (int32_t f = (int32_t)index * SLABS_A_TASK; f < end; f++) {
     const float *low[CELL_TAPS], *high[CELL_TAPS];
     for (int32_t tap = 0; tap < CELL_TAPS; tap++) {
@@ -74,28 +74,39 @@ static void bound_slabs(void *data, size_t index, int worker) {
   }
 }
 
+static hl_status allocate_levels(hl_context *context, grid *grid, hl_error *error) {
+  for (int i = 0; i < CELL_LEVELS; i++) {
+    cell_level *level = &grid->level[i];
+    for (int axis = 0; axis < 3 && i > 0; axis++) level->count[axis] = (grid->level[i - 1].count[axis] + 1) / 2;
+    size_t cells = (size_t)level->count[0] * (size_t)level->count[1] * (size_t)level->count[2];
+    level->visible = hl_allocate(context, cells, 1);
+    level->near = hl_allocate(context, cells + 4, 1); /* read four bytes at a time */
+    if (level->visible == NULL || level->near == NULL)
+      return hl_fail_memory(error, 2 * cells, "the look-up of a volume's cells");
+  }
+  return HL_OK;
+}
+
 hl_status hl_cell_bounds_build(hl_context *context, hl_pool *pool, bound_along_function *along,
                                bound_across_function *across, bool smooth, grid *grid, hl_error *error) {
   size_t cells = 1;
   for (int axis = 0; axis < 3; axis++) {
-    grid->near_count[axis] = grid->dimension[axis] / HL_NEAR_CELLS + 1;
-    cells *= (size_t)grid->near_count[axis];
+    grid->level[0].count[axis] = grid->dimension[axis] / HL_NEAR_CELLS + 1;
+    cells *= (size_t)grid->level[0].count[axis];
   }
   if (cells >= INT32_MAX) return HL_OK; /* more than 32 bits can number: bricks decide alone */
-  size_t plane = (size_t)grid->near_count[0] * (size_t)grid->near_count[1];
+  size_t plane = (size_t)grid->level[0].count[0] * (size_t)grid->level[0].count[1];
   bound_job job = {.grid = grid, .along = along, .across = across, .smooth = smooth, .plane = plane};
-  job.scratch_floats = (2 * CELL_TAPS + 2) * plane + 2 * (size_t)grid->dimension[1] * (size_t)grid->near_count[0] +
+  job.scratch_floats = (2 * CELL_TAPS + 2) * plane + 2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0] +
                        (size_t)grid->dimension[0] + 6;
   job.scratch = hl_allocate(context, (size_t)hl_pool_threads(pool) * job.scratch_floats, sizeof(float));
   grid->cell_low = hl_allocate(context, cells, 1);
   grid->cell_high = hl_allocate(context, cells, 1);
-  grid->visible = hl_allocate(context, cells, 1);
-  grid->near = hl_allocate(context, cells + 4, 1); /* read four bytes at a time */
-  hl_status status = HL_OK;
-  if (job.scratch == NULL || grid->cell_low == NULL || grid->cell_high == NULL || grid->visible == NULL || grid->near == NULL)
-    status = hl_fail_memory(error, 4 * cells, "the bounds of a volume's cells");
-  else
-    hl_pool_run(pool, ((size_t)grid->near_count[2] + SLABS_A_TASK - 1) / SLABS_A_TASK, bound_slabs, &job);
+  hl_status status = allocate_levels(context, grid, error);
+  if (job.scratch == NULL || grid->cell_low == NULL || grid->cell_high == NULL)
+    status = hl_fail_memory(error, 2 * cells, "the bounds of a volume's cells");
+  if (status == HL_OK)
+    hl_pool_run(pool, ((size_t)grid->level[0].count[2] + SLABS_A_TASK - 1) / SLABS_A_TASK, bound_slabs, &job);
   hl_release(context, job.scratch);
   return status;
 }
@@ -121,68 +132,90 @@ static void mark_visible(void *data, size_t index, int worker) {
   (void)worker;
   const mark_job *job = data;
   const grid *grid = job->grid;
-  size_t width = (size_t)grid->near_count[0];
-  for (int32_t y = 0; y < grid->near_count[1]; y++) {
-    size_t at = (index * (size_t)grid->near_count[1] + (size_t)y) * width;
+  size_t width = (size_t)grid->level[0].count[0];
+  for (int32_t y = 0; y < grid->level[0].count[1]; y++) {
+    size_t at = (index * (size_t)grid->level[0].count[1] + (size_t)y) * width;
     const unsigned char *bricks = grid->relevant + (index / 2 * (size_t)grid->brick_count[1] + (size_t)(y / 2)) *
                                                        (size_t)grid->brick_count[0];
-    memset(grid->visible + at, 0, width);
+    memset(grid->level[0].visible + at, 0, width);
     if (memchr(bricks, 1, (size_t)grid->brick_count[0]) == NULL) continue;
     for (size_t x = 0; x < width; x++)
-      grid->visible[at + x] = bricks[x / 2] && grid->cell_high[at + x] >= job->least_high[grid->cell_low[at + x]];
+      grid->level[0].visible[at + x] = bricks[x / 2] && grid->cell_high[at + x] >= job->least_high[grid->cell_low[at + x]];
   }
 }
 
-/* Whether any row within some rows of (y, z) shows something at x, in merged; false where none does. */
-static bool merge_rows(const grid *grid, int32_t y, int32_t z, int32_t reach, int32_t x0, int32_t x1, unsigned char *merged) {
-  bool any = false;
-  memset(merged, 0, (size_t)(x1 - x0));
-  for (int32_t j = z - reach; j <= z + reach; j++)
-    for (int32_t i = y - reach; i <= y + reach; i++) {
-      if (i < 0 || j < 0 || i >= grid->near_count[1] || j >= grid->near_count[2]) continue;
-      const unsigned char *row = grid->visible + ((size_t)j * (size_t)grid->near_count[1] + (size_t)i) * (size_t)grid->near_count[0];
-      if (memchr(row + x0, 1, (size_t)(x1 - x0)) == NULL) continue;
-      any = true;
-      for (int32_t x = x0; x < x1; x++) merged[x - x0] |= row[x];
+/* ---- which cells are near those ---- */
+
+typedef struct near_job {
+  const cell_level *fine; /* null for the finest level */
+  cell_level *level;
+} near_job;
+
+/* A cell of a coarser level shows something where one of the eight that it is made of does. */
+static void merge_cells(const cell_level *fine, const cell_level *level, int32_t z) {
+  unsigned char *to = level->visible + (size_t)z * (size_t)level->count[1] * (size_t)level->count[0];
+  memset(to, 0, (size_t)level->count[1] * (size_t)level->count[0]);
+  for (int32_t k = 2 * z; k < 2 * z + 2 && k < fine->count[2]; k++)
+    for (int32_t j = 0; j < fine->count[1]; j++) {
+      const unsigned char *from = fine->visible + ((size_t)k * (size_t)fine->count[1] + (size_t)j) * (size_t)fine->count[0];
+      unsigned char *row = to + (size_t)(j / 2) * (size_t)level->count[0];
+      for (int32_t i = 0; i < fine->count[0]; i++) row[i / 2] |= from[i];
     }
-  return any;
 }
 
-enum { NEAR_CHUNK = 512 };
+/* The bits of boxes three cells long along x, y, z (cell_level). */
+enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
 
-/* One distance of one row: cells are near what lies within reach rows of them along every axis. */
-static void mark_near_row(const grid *grid, int32_t y, int32_t z, int32_t reach, unsigned char bit, unsigned char *to) {
-  unsigned char merged[NEAR_CHUNK + 4];
-  int32_t width = grid->near_count[0];
-  for (int32_t start = 0; start < width; start += NEAR_CHUNK) {
-    int32_t end = start + NEAR_CHUNK < width ? start + NEAR_CHUNK : width;
-    int32_t x0 = start < reach ? 0 : start - reach, x1 = end + reach > width ? width : end + reach;
-    if (!merge_rows(grid, y, z, reach, x0, x1, merged)) continue;
-    for (int32_t x = start; x < end; x++) {
-      unsigned char any = 0;
-      for (int32_t i = x - reach < x0 ? x0 : x - reach; i <= x + reach && i < x1; i++) any |= merged[i - x0];
-      if (any) to[x] |= bit;
-    }
+/* A row's look-ups along x. */
+static void mark_row(const unsigned char *restrict visible, size_t width, unsigned char *restrict near) {
+  for (size_t x = 0; x + 2 < width; x++)
+    near[x] = (unsigned char)(-(visible[x] | visible[x + 1]) | (-visible[x + 2] & THREE_ALONG_X));
+  for (size_t x = width < 2 ? 0 : width - 2; x < width; x++)
+    near[x] = (unsigned char)-(visible[x] | visible[width - 1]);
+}
+
+/* The look-ups along y or z, in place, from the first cell on. step: from a cell to the next along the axis; there are
+ * `width` cells side by side. three: the bits of boxes three cells long along it. */
+static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t width, unsigned char three) {
+  for (int32_t i = 0; i + 2 < count; i++) {
+    unsigned char *cell = cells + (size_t)i * step;
+    for (size_t x = 0; x < width; x++)
+      cell[x] |= (unsigned char)(cell[x + step] | (cell[x + 2 * step] & three));
   }
+  if (count < 2) return;
+  unsigned char *cell = cells + (size_t)(count - 2) * step;
+  for (size_t x = 0; x < width; x++) cell[x] |= cell[x + step];
 }
 
-static void mark_near(void *data, size_t index, int worker) {
+/* A slice's look-ups along x and y. */
+static void mark_slice(void *data, size_t index, int worker) {
   (void)worker;
-  const mark_job *job = data;
-  const grid *grid = job->grid;
-  size_t width = (size_t)grid->near_count[0];
-  for (int32_t y = 0; y < grid->near_count[1]; y++) {
-    unsigned char *to = grid->near + (index * (size_t)grid->near_count[1] + (size_t)y) * width;
-    memset(to, 0, width);
-    mark_near_row(grid, y, (int32_t)index, 1, NEAR_CLOSE, to);
-    mark_near_row(grid, y, (int32_t)index, 2, NEAR_FAR, to);
-  }
+  const near_job *job = data;
+  const cell_level *level = job->level;
+  size_t width = (size_t)level->count[0], plane = width * (size_t)level->count[1];
+  if (job->fine != NULL) merge_cells(job->fine, level, (int32_t)index);
+  const unsigned char *visible = level->visible + index * plane;
+  unsigned char *near = level->near + index * plane;
+  for (int32_t y = 0; y < level->count[1]; y++) mark_row(visible + (size_t)y * width, width, near + (size_t)y * width);
+  join_axis(near, width, level->count[1], width, THREE_ALONG_Y);
+}
+
+/* A row's look-ups along z, in all slices. */
+static void mark_across(void *data, size_t index, int worker) {
+  (void)worker;
+  const cell_level *level = ((const near_job *)data)->level;
+  size_t width = (size_t)level->count[0];
+  join_axis(level->near + index * width, width * (size_t)level->count[1], level->count[2], width, THREE_ALONG_Z);
 }
 
 void hl_cells_mark_near(grid *grid, const classifier *classifier, hl_pool *pool) {
-  if (grid->near == NULL) return;
+  if (grid->level[0].near == NULL) return;
   mark_job job = {.grid = grid};
   find_least_high(classifier, grid, job.least_high);
-  hl_pool_run(pool, (size_t)grid->near_count[2], mark_visible, &job);
-  hl_pool_run(pool, (size_t)grid->near_count[2], mark_near, &job);
+  hl_pool_run(pool, (size_t)grid->level[0].count[2], mark_visible, &job);
+  for (int i = 0; i < CELL_LEVELS; i++) {
+    near_job near = {.fine = i > 0 ? &grid->level[i - 1] : NULL, .level = &grid->level[i]};
+    hl_pool_run(pool, (size_t)near.level->count[2], mark_slice, &near);
+    hl_pool_run(pool, (size_t)near.level->count[1], mark_across, &near);
+  }
 }

@@ -38,7 +38,7 @@ typedef struct fill_source {
  * Returns the blocks in which some pixel may show something, alone or on the way to another density above it. */
 typedef uint32_t fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density);
 
-/* The blocks of a tile outside of which a sheet holds nothing that matters. */
-typedef uint32_t relevant_blocks_function(const fill_source *source, int tile_x, int tile_y);
+/* The blocks of a tile outside of which the slab between two sheets of a grid holds nothing that matters. */
+typedef uint32_t relevant_blocks_function(const fill_source *before, const fill_source *after, int tile_x, int tile_y);
 
 #endif

@@ -20,8 +20,15 @@ enum {
   GRID_MARGIN = 4 /* voxels outside its box that a grid still continues, for slabs across its faces */
 };
 
-/* How far something visible is from some cells: within as many more cells on every side. */
-enum { NEAR_CLOSE = 1 /* HL_NEAR_CELLS */, NEAR_FAR = 2 /* twice as far */ };
+/* Cells, two or four along an axis together, that show something. A box of places is looked up by its first cell: of
+ * `near` there, bit i + 2 j + 4 k tells whether something shows in any of the 2 + i, 2 + j, 2 + k cells from there
+ * on along x, y, z. */
+enum { CELL_LEVELS = 2, CELL_REACH = 3 /* cells along an axis that one look takes in */ };
+typedef struct cell_level {
+  int32_t count[3];
+  unsigned char *visible; /* owned; [count z][y][x]; 1 where the transfer function shows something */
+  unsigned char *near;    /* owned; [same]; null where 32 bits cannot number the cells */
+} cell_level;
 
 typedef struct grid {
   const void *voxels;          /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's */
@@ -35,12 +42,10 @@ typedef struct grid {
   float *brick_minimum, *brick_maximum; /* owned; [bricks z][y][x]; stored units, over the voxels that the
                                            brick's cells and their neighbours depend on */
   unsigned char *relevant;     /* owned; [bricks z][y][x]; 1 where the volume can matter */
-  unsigned char *cell_low, *cell_high; /* owned; [near_count z][y][x]; bounds in every 2x2x2 cells: cell_base +
+  cell_level level[CELL_LEVELS];
+  unsigned char *cell_low, *cell_high; /* owned; [level[0].count z][y][x]; bounds in every 2x2x2 cells: cell_base +
                                           cell_step * value; null where 32 bits cannot number them */
   float cell_base, cell_step;  /* stored units */
-  unsigned char *visible;      /* owned; [same]; 1 where the transfer function shows something */
-  unsigned char *near;         /* owned; [same]; NEAR_ bits */
-  int32_t near_count[3];
   uint32_t *relevant_list;     /* owned; [relevant_count]; relevant bricks with a visible cell, rising */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest place of a relevant brick along each axis */

@@ -163,7 +163,7 @@ static void test_bound_cells(void **unused) {
 /* ---- filling ---- */
 
 typedef struct fill_state {
-  fill_source source;
+  fill_source source, before;
   int gather, tile_x, tile_y;
   uint32_t need;
   struct { float density[TILE_PIXELS]; uint32_t filled, relevant; } out;
@@ -172,7 +172,7 @@ typedef struct fill_state {
 static void call_fill(const hot_functions *hot, void *state) {
   fill_state *s = state;
   fill_tile_function *fill = s->gather ? hot->gather_tile : hot->splat_tile;
-  s->out.relevant = hot->relevant_blocks_tile(&s->source, s->tile_x, s->tile_y);
+  s->out.relevant = hot->relevant_blocks_tile(&s->before, &s->source, s->tile_x, s->tile_y);
   s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->out.density);
 }
 
@@ -200,7 +200,8 @@ static void check_fill(const size_t n[3], hl_storage storage, uint32_t seed) {
     bench_look(&bench, direction, normal, 0.3, round % 2 ? 12 : 0, which);
     for (int gather = 0; gather < 2; gather++) {
       static fill_state state;
-      state = (fill_state){.source = bench_source(&bench, which, round % 5), .gather = gather, .tile_x = round == 0 ? 1 : round % 3,
+      state = (fill_state){.source = bench_source(&bench, which, round % 5),
+                           .before = bench_source(&bench, which, round % 4), .gather = gather, .tile_x = round == 0 ? 1 : round % 3,
                            .tile_y = round == 0 ? 1 : round / 3 % 3, .need = round % 4 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(&seed))};
       if (round == 0) state.need = ALL_BLOCKS;
       spoil_rays(&state.source.rays, round);

@@ -190,8 +190,8 @@ static void test_cells_bound_the_reconstruction(void **state) {
       for (int x = 0; x < SIDE; x++) {
         vec3 p = bench_position(&bench, round % bench.sheets.count, x, y);
         if (!inside(&bench, p, 0.001)) continue;
-        size_t at = ((size_t)cell_pair(grid, p.z, 2) * (size_t)grid->near_count[1] + (size_t)cell_pair(grid, p.y, 1)) *
-                        (size_t)grid->near_count[0] + (size_t)cell_pair(grid, p.x, 0);
+        size_t at = ((size_t)cell_pair(grid, p.z, 2) * (size_t)grid->level[0].count[1] + (size_t)cell_pair(grid, p.y, 1)) *
+                        (size_t)grid->level[0].count[0] + (size_t)cell_pair(grid, p.x, 0);
         double value = (double)sheet[y][x] + (double)grid->empty;
         assert_true(value >= grid->cell_low[at] - 1e-3 && value <= grid->cell_high[at] + 1e-3);
         width += grid->cell_high[at] - grid->cell_low[at];
@@ -222,14 +222,17 @@ static void test_relevant_blocks_miss_nothing(void **state) {
   static const double pixels[] = {0.05, 0.2, 0.45, 1};
   for (int round = 0; round < 2 * ORIENTATIONS; round++) {
     look_at_random(&bench, &seed, round, pixels[round % 4], HL_KERNEL_BSPLINE);
-    fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, round % bench.sheets.count);
+    int at = round % (bench.sheets.count - 1);
+    fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, at), next = bench_source(&bench, HL_KERNEL_BSPLINE, at + 1);
     fill_sheet(&source, hl_hot_scalar.gather_tile, sheet);
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
-      uint32_t relevant = hl_hot_scalar.relevant_blocks_tile(&source, tile % SIDE_TILES, tile / SIDE_TILES);
+      int tile_x = tile % SIDE_TILES, tile_y = tile / SIDE_TILES;
+      uint32_t relevant = hl_hot_scalar.relevant_blocks_tile(&source, &source, tile_x, tile_y);
+      relevant &= hl_hot_scalar.relevant_blocks_tile(&source, &next, tile_x, tile_y);
       left_out += 16 - __builtin_popcount(relevant);
       for (int i = 0; i < TILE_PIXELS; i++) {
         int x = tile % SIDE_TILES * TILE + i % TILE, y = tile / SIDE_TILES * TILE + i / TILE;
-        vec3 p = bench_position(&bench, round % bench.sheets.count, x, y);
+        vec3 p = bench_position(&bench, at, x, y);
         if (!inside(&bench, p, 0.001) || sheet[y][x] + bench.grid.empty < 168.1f) continue;
         shown++;
         assert_true(relevant >> (y % TILE / BLOCK * 4 + x % TILE / BLOCK) & 1);
