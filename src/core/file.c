@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 
 static hl_status fail_system(hl_error *error, const char *path, const char *verb) {
@@ -18,7 +19,8 @@ static hl_status read_stream(hl_context *context, FILE *file, const char *path, 
                              size_t *length, hl_error *error) {
   size_t capacity = 65536, used = 0;
   unsigned char *buffer = hl_allocate(context, capacity, 1);
-  while (buffer != NULL) {
+  bool cancelled = false;
+  while (buffer != NULL && !cancelled) {
     used += fread(buffer + used, 1, capacity - 1 - used, file);
     if (used < capacity - 1) break;
     if (used > limit) break;
@@ -26,8 +28,13 @@ static hl_status read_stream(hl_context *context, FILE *file, const char *path, 
     if (larger == NULL) hl_release(context, buffer);
     buffer = larger;
     capacity *= 2;
+    cancelled = hl_cancelled(context);
   }
   if (buffer == NULL) return hl_fail_memory(error, capacity, path);
+  if (cancelled) {
+    hl_release(context, buffer);
+    return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", path);
+  }
   if (ferror(file)) {
     hl_release(context, buffer);
     return fail_system(error, path, "read");

@@ -11,13 +11,16 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
-#include <stdbool.h>
+#include <time.h>
 
 #include "core/context.h"
 #include "core/cpu.h"
 #include "core/memory.h"
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
+
+/* Between two questions whether to stop, while a job runs: far less than a person notices, far more than asking takes. */
+static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
 
 typedef struct worker {
   hl_pool *pool;
@@ -44,6 +47,8 @@ struct hl_pool {
   job jobs[2];
   atomic_uint_least64_t ticket; /* generation << 40 | count << 20 | next index */
   atomic_bool stop;
+  atomic_bool cancelled;        /* indices are passed over */
+  int64_t asked;                /* when the calling thread last asked, nanoseconds */
   atomic_int sleepers;
   pthread_mutex_t mutex;
   pthread_cond_t wake;       /* ticket or stop changed */
@@ -57,13 +62,35 @@ static inline void relax(void) {
 
 static bool has_work(uint64_t ticket) { return (ticket & INDEX_MASK) < (ticket >> INDEX_BITS & INDEX_MASK); }
 
+static int64_t now_nanoseconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+bool hl_pool_cancelled(hl_pool *pool) {
+  if (atomic_load(&pool->cancelled)) return true;
+  pool->asked = now_nanoseconds();
+  if (!hl_cancelled(pool->context)) return false;
+  atomic_store(&pool->cancelled, true);
+  return true;
+}
+
+bool hl_pool_stops(hl_pool *pool, int worker) {
+  bool cancelled = atomic_load_explicit(&pool->cancelled, memory_order_relaxed);
+  if (cancelled || worker != 0 || now_nanoseconds() - pool->asked < NANOSECONDS_BETWEEN_QUESTIONS) return cancelled;
+  return hl_pool_cancelled(pool);
+}
+
+void hl_pool_resume(hl_pool *pool) { atomic_store(&pool->cancelled, false); }
+
 /* Works on whatever is to be done until nothing is. */
 static void work(hl_pool *pool, int number) {
   uint64_t ticket = atomic_load(&pool->ticket);
   while (has_work(ticket)) {
     if (!atomic_compare_exchange_weak(&pool->ticket, &ticket, ticket + 1)) continue;
     job *job = &pool->jobs[ticket >> (2 * INDEX_BITS) & 1];
-    job->function(job->data, job->base + (size_t)(ticket & INDEX_MASK), number);
+    if (!hl_pool_stops(pool, number)) job->function(job->data, job->base + (size_t)(ticket & INDEX_MASK), number);
     atomic_fetch_add(&job->done, 1);
     ticket = atomic_load(&pool->ticket);
   }
@@ -119,11 +146,31 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
   if (pool->threads == 1 || count <= 1) {
-    for (size_t index = 0; index < count; index++) function(data, index, 0);
+    for (size_t index = 0; index < count && !hl_pool_stops(pool, 0); index++) function(data, index, 0);
     return;
   }
   for (size_t base = 0; base < count; base += INDEX_MASK)
     run_part(pool, base, count - base < INDEX_MASK ? count - base : INDEX_MASK, function, data);
+}
+
+enum { FLOATS_A_TASK = 1 << 16 };
+
+typedef struct fill_job {
+  float *floats;
+  size_t count;
+  float value;
+} fill_job;
+
+static void fill_part(void *data, size_t index, int worker) {
+  (void)worker;
+  const fill_job *job = data;
+  size_t first = index * FLOATS_A_TASK, end = job->count - first < FLOATS_A_TASK ? job->count : first + FLOATS_A_TASK;
+  for (size_t i = first; i < end; i++) job->floats[i] = job->value;
+}
+
+void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value) {
+  fill_job job = {floats, count, value};
+  hl_pool_run(pool, (count + FLOATS_A_TASK - 1) / FLOATS_A_TASK, fill_part, &job);
 }
 
 int hl_pool_threads(const hl_pool *pool) { return pool->threads; }

@@ -2,9 +2,15 @@
  *
  * The caller is worker 0 and works too. Indices are handed out one by one, so a function must not
  * depend on which worker gets which index; every output has one owner index.
+ *
+ * Between indices the caller asks the context's cancel callback, every few milliseconds at most. Once it says
+ * stop, indices not yet begun are passed over, in this run and in those after it: what was to be computed is then
+ * unfinished, and whoever is about to use it asks hl_pool_cancelled first.
  */
 #ifndef HL_CORE_POOL_H
 #define HL_CORE_POOL_H
+
+#include <stdbool.h>
 
 #include "core/error.h"
 
@@ -18,5 +24,17 @@ int hl_pool_threads(const hl_pool *pool);
 /* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns
  * when all are done. Not to be called from inside such a function. */
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker), void *data);
+
+/* floats[0 .. count) = value, shared out. */
+void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
+
+/* Whether to stop: asks anew, from the calling thread between runs. */
+bool hl_pool_cancelled(hl_pool *pool);
+
+/* The same from within a function whose single index takes long: cheap, and only worker 0 asks anew. */
+bool hl_pool_stops(hl_pool *pool, int worker);
+
+/* A pool that was stopped works again. */
+void hl_pool_resume(hl_pool *pool);
 
 #endif

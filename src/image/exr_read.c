@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "image/format.h"
 
@@ -173,9 +174,13 @@ static hl_status read_chunks(exr_reading *reading) {
   exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
   exr_result_t result = EXR_ERR_SUCCESS;
   int lines = 1;
-  for (int y = 0; y < reading->image->height && result == EXR_ERR_SUCCESS; y += lines)
+  bool cancelled = false;
+  for (int y = 0; y < reading->image->height && result == EXR_ERR_SUCCESS && !cancelled; y += lines) {
     result = read_chunk(reading, &pipeline, y, &lines);
+    cancelled = hl_cancelled(reading->context);
+  }
   exr_decoding_destroy(reading->file, &pipeline);
+  if (cancelled) return hl_fail(reading->error, HL_ERROR_CANCELLED, "%s: cancelled", reading->name);
   return result == EXR_ERR_SUCCESS ? HL_OK : fail_exr(reading, result);
 }
 

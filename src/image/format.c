@@ -72,8 +72,7 @@ static hl_status check_options(const hl_image_write_options *options, hl_error *
 }
 
 hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error) {
-  if (row % 16 != 0) return HL_OK;
-  hl_progress(context, "write", (double)row / height);
+  if (row % 16 == 0) hl_progress(context, "write", (double)row / height);
   if (hl_cancelled(context)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while writing a picture");
   return HL_OK;
 }

@@ -8,7 +8,19 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
+
+enum { ROWS_BETWEEN_QUESTIONS = 64 };
+
+/* Rows of zeros; false: cancelled. The system gives memory as it is first touched, a gigabyte or two a second. */
+static bool clear_rows(hl_context *context, float *rows, size_t row_floats, size_t count) {
+  for (size_t y = 0; y < count; y++) {
+    if (y % ROWS_BETWEEN_QUESTIONS == ROWS_BETWEEN_QUESTIONS - 1 && hl_cancelled(context)) return false;
+    memset(rows + y * row_floats, 0, row_floats * sizeof *rows);
+  }
+  return true;
+}
 
 hl_status hl_image_create(hl_context *context, int width, int height, hl_image **image, hl_error *error) {
   if (image != NULL) *image = NULL;
@@ -20,11 +32,14 @@ hl_status hl_image_create(hl_context *context, int width, int height, hl_image *
   size_t floats = 0;
   bool fits = hl_multiply((size_t)width * 4, (size_t)height, &floats);
   hl_image *made = hl_allocate(context, 1, sizeof *made);
-  float *pixels = fits ? hl_allocate_zeroed(context, floats, sizeof *pixels) : NULL;
-  if (made == NULL || pixels == NULL) {
+  float *pixels = fits ? hl_allocate(context, floats, sizeof *pixels) : NULL;
+  bool cleared = pixels != NULL && clear_rows(context, pixels, (size_t)width * 4, (size_t)height);
+  if (made == NULL || !cleared) {
+    bool cancelled = made != NULL && pixels != NULL;
     hl_release(context, pixels);
     hl_release(context, made);
-    return hl_fail_memory(error, floats * sizeof *pixels, "a picture");
+    return cancelled ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while making a picture")
+                     : hl_fail_memory(error, floats * sizeof *pixels, "a picture");
   }
   *made = (hl_image){.context = context, .width = width, .height = height, .pixels = pixels};
   *image = made;

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "image/format.h"
 
@@ -237,11 +238,9 @@ static float take_float(const unsigned char *from, size_t bytes) {
   return value;
 }
 
-static void convert_pixels(const unsigned char *from, size_t value_bytes, uint64_t channels,
-                           hl_image *image) {
-  size_t count = (size_t)image->width * (size_t)image->height;
-  for (size_t i = 0; i < count; i++) {
-    float *pixel = image->pixels + 4 * i;
+static void convert_row(const unsigned char *from, size_t value_bytes, uint64_t channels, int y, hl_image *image) {
+  float *pixel = image->pixels + (size_t)y * (size_t)image->width * 4;
+  for (int x = 0; x < image->width; x++, pixel += 4) {
     for (uint64_t c = 0; c < channels; c++, from += value_bytes) pixel[c] = take_float(from, value_bytes);
     if (channels == 1) pixel[1] = pixel[2] = pixel[0];
     if (channels < 4) pixel[3] = 1;
@@ -267,6 +266,12 @@ hl_status hl_npy_decode(hl_context *context, const char *name, const unsigned ch
                           name, data, rest, header.shape[0] * row, header.shape[0], header.shape[1],
                           header.shape[2], value_bytes == 8 ? "doubles" : "floats");
   status = hl_image_create_for_file(context, name, header.shape[1], header.shape[0], image, error);
-  if (status == HL_OK) convert_pixels(bytes + data, value_bytes, header.shape[2], *image);
+  for (int y = 0; status == HL_OK && y < (*image)->height; y++) {
+    convert_row(bytes + data + (size_t)y * row, value_bytes, header.shape[2], y, *image);
+    if (hl_cancelled(context)) status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", name);
+  }
+  if (status == HL_OK) return HL_OK;
+  hl_image_destroy(*image);
+  *image = NULL;
   return status;
 }

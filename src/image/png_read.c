@@ -10,6 +10,7 @@
 #include <setjmp.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "image/format.h"
 #include "image/srgb.h"
@@ -135,6 +136,8 @@ static void read_png(png_reading *reading) {
     for (int y = 0; y < reading->image->height; y++) {
       unsigned char *row = reading->rows + (passes > 1 ? (size_t)y * row_bytes : 0);
       png_read_row(reading->png, row, NULL);
+      if (hl_cancelled(reading->context))
+        stop(reading, hl_fail(reading->error, HL_ERROR_CANCELLED, "%s: cancelled", reading->name));
       if (pass == passes - 1) convert_row(reading, row, depth, y);
     }
   png_read_end(reading->png, NULL);

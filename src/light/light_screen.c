@@ -1,6 +1,7 @@
 /* light/light_screen.c - where a light's image stands, averaged to the picture's pixels and blurred by the light's shape. */
 #include "light/light_screen.h"
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "scene/light_shape.h"
 #include "splat/view.h"
@@ -89,18 +90,25 @@ static void convolve_line(const float *from, size_t from_step, int count, const 
   }
 }
 
+enum { LINES_BETWEEN_QUESTIONS = 16 };
+
 /* Rows, then columns. */
 static hl_status convolve(hl_context *context, const float *from, int width, int height, const axis_weights *u,
                           const axis_weights *v, float *to, hl_error *error) {
   size_t narrow_width = (size_t)u->count * 3;
   float *narrow = hl_allocate(context, narrow_width, (size_t)height * sizeof *narrow);
   if (narrow == NULL) return hl_fail_memory(error, narrow_width * (size_t)height * sizeof *narrow, "a light's texture");
-  for (int y = 0; y < height; y++)
+  bool cancelled = false;
+  for (int y = 0; y < height && !cancelled; y++) {
     convolve_line(from + 3 * (size_t)y * (size_t)width, 3, width, u, narrow + (size_t)y * narrow_width, 3);
-  for (int x = 0; x < u->count; x++)
+    cancelled = y % LINES_BETWEEN_QUESTIONS == 0 && hl_cancelled(context);
+  }
+  for (int x = 0; x < u->count && !cancelled; x++) {
     convolve_line(narrow + 3 * (size_t)x, narrow_width, height, v, to + 3 * (size_t)x, narrow_width);
+    cancelled = x % LINES_BETWEEN_QUESTIONS == 0 && hl_cancelled(context);
+  }
   hl_release(context, narrow);
-  return HL_OK;
+  return cancelled ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
 /* One level's two passes. */

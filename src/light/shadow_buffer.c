@@ -112,8 +112,8 @@ static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floa
   return HL_OK;
 }
 
-hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, const view *view, int channels, bool scratch,
-                                 int reach, hl_error *error) {
+hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view, int channels,
+                                 bool scratch, int reach, hl_error *error) {
   size_t margin = ((size_t)reach + 1 + TILE) / TILE * TILE;
   buffer->view = *view;
   buffer->channels = channels;
@@ -125,7 +125,7 @@ hl_status hl_shadow_buffer_reset(hl_context *context, shadow_buffer *buffer, con
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, planes = (size_t)channels * (scratch ? 2 : 1);
   hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);
   if (status != HL_OK) return status;
-  for (size_t i = 0; i < planes * buffer->plane; i++) buffer->memory[i] = 1;
+  hl_pool_fill(pool, buffer->memory, planes * buffer->plane, 1);
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_lit[tile] = ALL_BLOCKS;
   memset(buffer->tile_touched, 0, 2 * tiles);
   for (int c = 0; c < HL_CHANNELS; c++) {

@@ -54,25 +54,17 @@ static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer 
   level->planes = channels * (2 * CASCADE_GROUPS + 2) + 1 + (index == 0 ? channels : 0);
 }
 
-enum { FLOATS_A_TASK = 1 << 16 };
-
-static void clear_floats(void *data, size_t index, int worker) {
-  (void)worker;
-  memset((float *)data + index * FLOATS_A_TASK, 0, FLOATS_A_TASK * sizeof(float));
-}
-
 /* Zeros for all levels, handed out to them. */
 static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade, hl_error *error) {
   size_t floats = 0;
   for (int i = 0; i < cascade->level_count; i++) floats += cascade->level[i].planes * cascade->level[i].plane;
-  floats = (floats + FLOATS_A_TASK - 1) / FLOATS_A_TASK * FLOATS_A_TASK;
   if (memory->capacity < floats) {
     hl_release(context, memory->floats);
     memory->floats = hl_allocate(context, floats, sizeof(float));
     memory->capacity = memory->floats == NULL ? 0 : floats;
     if (memory->floats == NULL) return hl_fail_memory(error, floats * sizeof(float), "a cascade of shadows");
   }
-  hl_pool_run(pool, floats / FLOATS_A_TASK, clear_floats, memory->floats);
+  hl_pool_fill(pool, memory->floats, floats, 0);
   float *next = memory->floats;
   for (int i = 0; i < cascade->level_count; next += cascade->level[i].planes * cascade->level[i].plane, i++)
     cascade->level[i].memory = next;

@@ -50,7 +50,7 @@ static void plan_blurs(sublights *sublights, int side, double first, double last
   sublights->next = start + sublights->step;
 }
 
-static hl_status allocate(hl_context *context, sublights *sublights, hl_error *error) {
+static hl_status allocate(hl_context *context, hl_pool *pool, sublights *sublights, hl_error *error) {
   size_t count = (size_t)sublights->count, channels = (size_t)sublights->channels;
   size_t tiles = (size_t)sublights->tiles_x * (size_t)sublights->tiles_y;
   sublights->stride = (size_t)sublights->tiles_x * TILE + 2 * SUBLIGHT_MARGIN;
@@ -65,7 +65,7 @@ static hl_status allocate(hl_context *context, sublights *sublights, hl_error *e
   sublights->lookups = hl_allocate(context, count, sizeof *sublights->lookups);
   if (sublights->memory == NULL || sublights->flags == NULL || sublights->lookups == NULL)
     return hl_fail_memory(error, floats * sizeof(float), "the parts of a light");
-  for (size_t i = 0; i < floats; i++) sublights->memory[i] = 1;
+  hl_pool_fill(pool, sublights->memory, floats, 1);
   size_t origin = SUBLIGHT_MARGIN * sublights->stride + SUBLIGHT_MARGIN;
   for (size_t i = 0; i < count; i++) {
     sublight *part = &sublights->parts[i];
@@ -85,9 +85,9 @@ static void point_lookups(sublights *sublights) {
       sublights->lookups[i].transmittance[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
 }
 
-hl_status hl_sublights_begin(hl_context *context, sublights *sublights, const light_source *source, int side,
-                             const sheet_light *seen, vec3 normal, const shadow_extent *extent, int channels, double first,
-                             double last, hl_error *error) {
+hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *sublights, const light_source *source,
+                             int side, const sheet_light *seen, vec3 normal, const shadow_extent *extent, int channels,
+                             double first, double last, hl_error *error) {
   size_t count = (size_t)side * (size_t)side;
   sublights->parts = hl_allocate_zeroed(context, count, sizeof *sublights->parts);
   if (sublights->parts == NULL) return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
@@ -99,7 +99,7 @@ hl_status hl_sublights_begin(hl_context *context, sublights *sublights, const li
   sublights->width_v = seen->width_v;
   place_parts(sublights, source, side, normal, extent);
   plan_blurs(sublights, side, first, last);
-  hl_status status = allocate(context, sublights, error);
+  hl_status status = allocate(context, pool, sublights, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < count; i++) {
     sublights->lookups[i] = hl_lookup_of_view(&sublights->parts[i].view);

@@ -52,9 +52,9 @@ typedef struct sublight_functions {
 } sublight_functions;
 
 /* side: M. first, last: heights of the sweep's sheets. */
-hl_status hl_sublights_begin(hl_context *context, sublights *sublights, const light_source *source, int side,
-                             const sheet_light *seen, vec3 normal, const shadow_extent *extent, int channels, double first,
-                             double last, hl_error *error);
+hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *sublights, const light_source *source,
+                             int side, const sheet_light *seen, vec3 normal, const shadow_extent *extent, int channels,
+                             double first, double last, hl_error *error);
 void hl_sublights_release(hl_context *context, sublights *sublights);
 
 /* After the slab between these heights was composited into slab, a buffer that held ones: composites it into all parts,

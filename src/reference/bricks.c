@@ -67,13 +67,13 @@ static void relax_brick(const reference_volume *volume, ptrdiff_t i, ptrdiff_t j
       }
 }
 
-static void measure_clearance(const reference_volume *volume) {
+static void measure_clearance(const reference_volume *volume, hl_pool *pool) {
   const ptrdiff_t n[3] = {(ptrdiff_t)volume->bricks[0], (ptrdiff_t)volume->bricks[1],
                           (ptrdiff_t)volume->bricks[2]};
-  for (ptrdiff_t k = 0; k < n[2]; k++)
+  for (ptrdiff_t k = 0; k < n[2] && !hl_pool_stops(pool, 0); k++)
     for (ptrdiff_t j = 0; j < n[1]; j++)
       for (ptrdiff_t i = 0; i < n[0]; i++) relax_brick(volume, i, j, k, -1);
-  for (ptrdiff_t k = n[2]; k-- > 0;)
+  for (ptrdiff_t k = n[2]; k-- > 0 && !hl_pool_stops(pool, 0);)
     for (ptrdiff_t j = n[1]; j-- > 0;)
       for (ptrdiff_t i = n[0]; i-- > 0;) relax_brick(volume, i, j, k, 1);
 }
@@ -89,8 +89,8 @@ hl_status hl_reference_bricks_create(hl_context *context, reference_volume *volu
   volume->clearance = hl_allocate(context, count, 1);
   if (volume->clearance == NULL) return hl_fail_memory(error, count, "the bricks of a volume");
   hl_pool_run(pool, volume->bricks[2], mark_visible, volume);
-  measure_clearance(volume);
-  return HL_OK;
+  measure_clearance(volume, pool);
+  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
 double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction) {

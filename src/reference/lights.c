@@ -200,18 +200,18 @@ static void add_point(const reference *all, const reference_light *light, vec3 l
 }
 
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
-                              crossing *scratch, double reach[3]) {
+                              reference_worker *worker, double reach[3]) {
   double sum[3] = {0, 0, 0};
   vec3 centre = light->directional ? light->towards : light->centre;
   vec3 facing = vec3_normalise(vec3_subtract(point, light->centre));
   if (!(vec3_length(facing) > 0)) facing = (vec3){0, 0, 1};
   bool casts = light->points != NULL;
   size_t count = casts ? light->point_count : 1;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && !hl_pool_stops(all->pool, worker->number); i++) {
     vec3 light_point = casts ? light->points[i] : centre;
     if (light->sphere) /* seen from the point: its disk */
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
-    add_point(all, light, light_point, point, casts && attenuated, scratch, sum);
+    add_point(all, light, light_point, point, casts && attenuated, worker->shadow, sum);
   }
   for (int c = 0; c < 3; c++) reach[c] = sum[c] / (double)count;
 }

@@ -4,7 +4,6 @@
  * of each other and are shared out in runs over the threads.
  */
 #include <stdatomic.h>
-#include <string.h>
 
 #include <halflight/render.h>
 
@@ -41,7 +40,6 @@ typedef struct picture {
   size_t row_stride;         /* floats */
   size_t runs_per_row;
   atomic_size_t runs_done;
-  atomic_bool cancelled;
 } picture;
 
 static eye_rays eye_rays_of(const hl_scene_description *scene) {
@@ -122,7 +120,7 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
   double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0, first = INFINITY;
   hl_reference_parts_clear(ray, all->scene->light_count);
   hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, nearest, INFINITY, worker->eye, &walk);
-  while (ray->weight < OPAQUE && hl_reference_march_next(&walk)) {
+  while (ray->weight < OPAQUE && !hl_pool_stops(all->pool, worker->number) && hl_reference_march_next(&walk)) {
     double at = walk.at - walk.length / 2, end = at + walk.length, extinction = total_extinction(&walk);
     if (extinction <= 0) continue;
     while (at < end && ray->weight < OPAQUE) {
@@ -135,13 +133,6 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
     }
   }
   return first;
-}
-
-/* Callbacks come from the calling thread alone, which is worker 0. */
-static bool keep_going(picture *all, int worker) {
-  if (atomic_load(&all->cancelled)) return false;
-  if (worker == 0 && hl_cancelled(all->all->context)) atomic_store(&all->cancelled, true);
-  return !atomic_load(&all->cancelled);
 }
 
 /* The picture is the sum of its parts. */
@@ -159,7 +150,7 @@ static void render_run(void *data, size_t index, int worker) {
   const hl_scene_description *scene = all->all->scene;
   size_t y = index / all->runs_per_row, first = index % all->runs_per_row * RUN_PIXELS;
   for (size_t x = first; x < first + RUN_PIXELS && x < (size_t)scene->width; x++) {
-    if (!keep_going(all, worker)) return;
+    if (hl_pool_stops(all->all->pool, worker)) return;
     vec3 origin, direction;
     const reference_parts *ray = &all->workers[worker].ray;
     eye_ray(all, x, y, &origin, &direction);
@@ -222,7 +213,7 @@ static reference_worker *workers_create(const reference *all, size_t threads) {
     return NULL;
   }
   for (size_t t = 0; t < threads; t++)
-    workers[t] = (reference_worker){crossings + 2 * t * volumes, crossings + (2 * t + 1) * volumes,
+    workers[t] = (reference_worker){(int)t, crossings + 2 * t * volumes, crossings + (2 * t + 1) * volumes,
                                     arrivals + t * lights, {.lights = parts + 2 * t * lights},
                                     {.lights = parts + (2 * t + 1) * lights}};
   return workers;
@@ -249,8 +240,7 @@ static hl_status render(const reference *all, hl_pool *pool, float *pixels, size
     return hl_fail_memory(error, threads * sizeof(reference_worker), "the reference's threads");
   hl_pool_run(pool, made.runs_per_row * (size_t)all->scene->height, render_run, &made);
   workers_release(all->context, made.workers);
-  return atomic_load(&made.cancelled) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering")
-                                      : HL_OK;
+  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering") : HL_OK;
 }
 
 void hl_reference_options_defaults(hl_reference_options *options) {
@@ -301,7 +291,7 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   hl_pool *pool = NULL;
   status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  reference all = {.context = context, .scene = &scene->description, .all_shadows = shadows_wanted(layers)};
+  reference all = {.context = context, .pool = pool, .scene = &scene->description, .all_shadows = shadows_wanted(layers)};
   status = prepare(&all, &chosen, pool, error);
   if (status == HL_OK) status = render(&all, pool, pixels, row_stride, layers, error);
   release(&all);

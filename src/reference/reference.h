@@ -57,6 +57,7 @@ typedef struct reference_light {
 
 typedef struct reference {
   hl_context *context;
+  hl_pool *pool;
   const hl_scene_description *scene;
   reference_volume *volumes;  /* owned; [scene->volume_count] */
   reference_light *lights;    /* owned; [scene->light_count] */
@@ -109,6 +110,7 @@ typedef struct reference_parts {
 
 /* What one thread needs; all arrays are owned by hl_reference_render. */
 typedef struct reference_worker {
+  int number;                 /* of the pool */
   crossing *eye, *shadow;     /* [volume_count] */
   arrival *arrivals;          /* [light_count] */
   reference_parts sample, ray;
@@ -148,7 +150,7 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
 /* Mean over the light's points of texture (its colour, or 1) times transmittance; attenuated: false takes
  * the transmittance as 1. */
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
-                              crossing *scratch, double reach[3]);
+                              reference_worker *worker, double reach[3]);
 
 /* The colour of a texture on the ray from a point of the light (or, far: from a direction) to `point`. */
 void hl_reference_texture(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double color[3]);

@@ -16,7 +16,7 @@ static const double *light_reach(const reference *all, const reference_volume *v
   bool attenuated = volume->described->receives_shadow, *known = &arrived->pattern_known;
   double *reach = arrived->pattern;
   if (attenuated) known = &arrived->shadowed_known, reach = arrived->shadowed;
-  if (!*known) hl_reference_light_reach(all, &all->lights[light], point, attenuated, worker->shadow, reach);
+  if (!*known) hl_reference_light_reach(all, &all->lights[light], point, attenuated, worker, reach);
   *known = true;
   return reach;
 }
@@ -43,7 +43,7 @@ static void find_shadow(const reference *all, const reference_volume *volume, si
     return;
   }
   plain.texture = NULL;
-  hl_reference_light_reach(all, &plain, point, attenuated, worker->shadow, shadow);
+  hl_reference_light_reach(all, &plain, point, attenuated, worker, shadow);
 }
 
 /* The light of one source that the sample sends on, for a volume of colour `own`. */

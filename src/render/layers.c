@@ -14,10 +14,17 @@ bool hl_layers_measure(const hl_layers *wanted) {
 
 /* ---- pixels ---- */
 
-static float *allocate_pixels(hl_context *context, size_t tiles, size_t floats, hl_status *status, hl_error *error) {
+typedef struct pixel_room {
+  hl_context *context;
+  hl_pool *pool;
+  size_t tiles;
+} pixel_room;
+
+static float *allocate_pixels(const pixel_room *room, size_t floats, hl_status *status, hl_error *error) {
   if (*status != HL_OK) return NULL;
-  float *pixels = hl_allocate_zeroed(context, tiles * TILE_PIXELS, floats * sizeof *pixels);
-  if (pixels == NULL) *status = hl_fail_memory(error, tiles * TILE_PIXELS * floats * sizeof *pixels, "a layer");
+  float *pixels = hl_allocate(room->context, room->tiles * TILE_PIXELS, floats * sizeof *pixels);
+  if (pixels == NULL) *status = hl_fail_memory(error, room->tiles * TILE_PIXELS * floats * sizeof *pixels, "a layer");
+  else hl_pool_fill(room->pool, pixels, room->tiles * TILE_PIXELS * floats, 0);
   return pixels;
 }
 
@@ -28,21 +35,22 @@ static void clear_first_depth(float *measures, size_t tiles) {
       measures[(block * MEASURES + MEASURE_DEPTH_FIRST) * BLOCK_PIXELS + (size_t)lane] = INFINITY;
 }
 
-hl_status hl_layer_pixels_create(hl_context *context, const hl_layers *wanted, const frame *frame, size_t tiles,
-                                 layer_pixels *pixels, hl_error *error) {
+hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted, const frame *frame,
+                                 size_t tiles, layer_pixels *pixels, hl_error *error) {
   *pixels = (layer_pixels){.wanted = wanted, .light_count = (size_t)frame->light_count};
   if (wanted == NULL) return HL_OK;
   hl_status status = HL_OK;
+  const pixel_room room = {context, pool, tiles};
   pixels->lights = hl_allocate_zeroed(context, pixels->light_count, sizeof *pixels->lights);
   if (pixels->lights == NULL)
     return hl_fail_memory(error, pixels->light_count * sizeof *pixels->lights, "the lights' layers");
-  if (wanted->ambient != NULL) pixels->ambient = allocate_pixels(context, tiles, COLORS, &status, error);
-  if (hl_layers_measure(wanted)) pixels->measures = allocate_pixels(context, tiles, MEASURES, &status, error);
+  if (wanted->ambient != NULL) pixels->ambient = allocate_pixels(&room, COLORS, &status, error);
+  if (hl_layers_measure(wanted)) pixels->measures = allocate_pixels(&room, MEASURES, &status, error);
   for (size_t i = 0; i < pixels->light_count && wanted->light_count > 0; i++) {
     const hl_light_layers *asked = &wanted->lights[frame->lights[i].light_index];
     pixels->lights[i].light_index = (size_t)frame->lights[i].light_index;
-    if (asked->picture != NULL) pixels->lights[i].picture = allocate_pixels(context, tiles, COLORS, &status, error);
-    if (asked->shadow != NULL) pixels->lights[i].shadow = allocate_pixels(context, tiles, COLORS, &status, error);
+    if (asked->picture != NULL) pixels->lights[i].picture = allocate_pixels(&room, COLORS, &status, error);
+    if (asked->shadow != NULL) pixels->lights[i].shadow = allocate_pixels(&room, COLORS, &status, error);
   }
   if (pixels->measures != NULL) clear_first_depth(pixels->measures, tiles);
   return status;
@@ -196,45 +204,57 @@ static float sum_of(const layer_grid *grid, const float *pixels, int floats, int
 }
 
 /* Three channels, premultiplied as they are; or divided by alpha, 0 where that is 0. add: to what is there. */
-static void write_colors(const layer_grid *grid, const float *pixels, bool divide, bool add, float *to) {
+static void write_colors(const layer_grid *grid, int row, const float *pixels, bool divide, bool add, float *to) {
   float area = (float)(grid->oversampling * grid->oversampling);
-  for (int row = 0; row < grid->height; row++)
-    for (int column = 0; column < grid->width; column++) {
-      float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3, NULL) : area;
-      for (int c = 0; c < 3; c++, to++) {
-        *to = (add ? *to : 0) + (alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0);
-        if (divide && *to > 1) *to = 1; /* sectors of a light, each divided by its own sweep's alpha */
-      }
+  to += 3 * (size_t)row * (size_t)grid->width;
+  for (int column = 0; column < grid->width; column++) {
+    float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3, NULL) : area;
+    for (int c = 0; c < 3; c++, to++) {
+      *to = (add ? *to : 0) + (alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0);
+      if (divide && *to > 1) *to = 1; /* sectors of a light, each divided by its own sweep's alpha */
     }
+  }
 }
 
-static void write_measures(const layer_grid *grid, const float *pixels, const hl_layers *to) {
-  for (int row = 0; row < grid->height; row++)
-    for (int column = 0; column < grid->width; column++) {
-      size_t at = (size_t)row * (size_t)grid->width + (size_t)column;
-      int hits = 0;
-      float first = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH_FIRST, &hits);
-      float alpha = sum_of(grid, pixels, MEASURES, column, row, MEASURE_ALPHA, NULL);
-      float depth = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH, NULL);
-      if (to->depth_first != NULL) to->depth_first[at] = hits > 0 ? first / (float)hits * grid->unit : INFINITY;
-      if (to->depth_mean != NULL) to->depth_mean[at] = alpha > 0 ? depth / alpha * grid->unit : INFINITY;
-      for (int c = 0; c < 3 && to->normal != NULL; c++) {
-        float normal = sum_of(grid, pixels, MEASURES, column, row, MEASURE_NORMAL + c, NULL);
-        to->normal[3 * at + (size_t)c] = alpha > 0 ? normal / alpha : 0;
-      }
+static void write_measures(const layer_grid *grid, int row, const float *pixels, const hl_layers *to) {
+  for (int column = 0; column < grid->width; column++) {
+    size_t at = (size_t)row * (size_t)grid->width + (size_t)column;
+    int hits = 0;
+    float first = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH_FIRST, &hits);
+    float alpha = sum_of(grid, pixels, MEASURES, column, row, MEASURE_ALPHA, NULL);
+    float depth = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH, NULL);
+    if (to->depth_first != NULL) to->depth_first[at] = hits > 0 ? first / (float)hits * grid->unit : INFINITY;
+    if (to->depth_mean != NULL) to->depth_mean[at] = alpha > 0 ? depth / alpha * grid->unit : INFINITY;
+    for (int c = 0; c < 3 && to->normal != NULL; c++) {
+      float normal = sum_of(grid, pixels, MEASURES, column, row, MEASURE_NORMAL + c, NULL);
+      to->normal[3 * at + (size_t)c] = alpha > 0 ? normal / alpha : 0;
     }
+  }
 }
 
-void hl_layer_pixels_write(const layer_pixels *pixels, const layer_grid *grid) {
+typedef struct write_job {
+  const layer_pixels *pixels;
+  const layer_grid *grid;
+} write_job;
+
+static void write_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const write_job *job = data;
+  const layer_pixels *pixels = job->pixels;
   const hl_layers *to = pixels->wanted;
-  if (to == NULL) return;
-  if (to->ambient != NULL) write_colors(grid, pixels->ambient, false, false, to->ambient);
-  if (hl_layers_measure(to)) write_measures(grid, pixels->measures, to);
+  int row = (int)index;
+  if (to->ambient != NULL) write_colors(job->grid, row, pixels->ambient, false, false, to->ambient);
+  if (hl_layers_measure(to)) write_measures(job->grid, row, pixels->measures, to);
   for (size_t i = 0; i < pixels->light_count && to->light_count > 0; i++) {
     const light_pixels *from = &pixels->lights[i];
     const hl_light_layers *asked = &to->lights[from->light_index];
     bool add = i > 0 && from[-1].light_index == from->light_index; /* sectors of a light follow each other */
-    if (asked->picture != NULL) write_colors(grid, from->picture, false, add, asked->picture);
-    if (asked->shadow != NULL) write_colors(grid, from->shadow, true, add, asked->shadow);
+    if (asked->picture != NULL) write_colors(job->grid, row, from->picture, false, add, asked->picture);
+    if (asked->shadow != NULL) write_colors(job->grid, row, from->shadow, true, add, asked->shadow);
   }
+}
+
+void hl_layer_pixels_write(const layer_pixels *pixels, const layer_grid *grid, hl_pool *pool) {
+  write_job job = {pixels, grid};
+  if (pixels->wanted != NULL) hl_pool_run(pool, (size_t)grid->height, write_row, &job);
 }

@@ -9,6 +9,7 @@
 
 #include <halflight/layers.h>
 
+#include "core/pool.h"
 #include "render/frame.h"
 #include "simd/hot.h"
 
@@ -46,8 +47,8 @@ typedef struct sweep_layers {
 } sweep_layers;
 
 /* Allocates what is wanted of a frame of so many tiles. */
-hl_status hl_layer_pixels_create(hl_context *context, const hl_layers *wanted, const frame *frame, size_t tiles,
-                                 layer_pixels *pixels, hl_error *error);
+hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted, const frame *frame,
+                                 size_t tiles, layer_pixels *pixels, hl_error *error);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
 /* True where depth or normals are wanted: some sweep must then go front to back. */
@@ -62,6 +63,6 @@ typedef struct layer_grid {
 } layer_grid;
 
 /* Fills the caller's buffers. */
-void hl_layer_pixels_write(const layer_pixels *pixels, const layer_grid *grid);
+void hl_layer_pixels_write(const layer_pixels *pixels, const layer_grid *grid, hl_pool *pool);
 
 #endif

@@ -62,6 +62,7 @@ static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_fu
     hl_prepared_release(context, prepared);
     status = hl_grid_create(context, pool, &hot->bound, hl_kernel_get(kernel), scene, index_to_frame, empty,
                             &prepared->grid, error);
+    if (status == HL_OK && hl_pool_cancelled(pool)) status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
     if (status != HL_OK) return status;
     hl_volume_retain(scene->volume);
     prepared->volume = scene->volume;
@@ -76,8 +77,9 @@ static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_fu
   release_function(context, prepared);
   status = hl_classifier_create(context, scene, &prepared->grid, &prepared->classifier, error);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
-  if (status == HL_OK) hl_grid_mark_relevant(&prepared->grid, &prepared->classifier, pool);
-  return status;
+  if (status != HL_OK) return status;
+  hl_grid_mark_relevant(&prepared->grid, &prepared->classifier, pool);
+  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,

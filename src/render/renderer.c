@@ -249,9 +249,10 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   if (hl_layers_measure(layers)) choose_measuring_sweep(work);
   work->tiles_x = (size_t)hl_tiles(frame->eye.width);
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
-  work->pixels = hl_allocate_zeroed(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
+  work->pixels = hl_allocate(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
   if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
-  return hl_layer_pixels_create(context, layers, frame, work->tiles, &work->layers, error);
+  hl_pool_fill(renderer->pool, work->pixels, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, 0);
+  return hl_layer_pixels_create(context, renderer->pool, layers, frame, work->tiles, &work->layers, error);
 }
 
 static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
@@ -319,21 +320,29 @@ static void add_pixel(const frame_work *work, int column, int row, float sum[4])
     for (int c = 0; c < 3; c++) sum[c] += from[(size_t)s * work->tiles * TILE_PIXELS * 4 + (size_t)(c * BLOCK_PIXELS)];
 }
 
-/* Blocks back to rows, several pixels averaged where the frame is oversampled. */
-static void write_pixels(const frame_work *work, const hl_scene_description *scene, float *pixels, size_t row_stride) {
-  int side = work->frame.oversampling;
-  for (int row = 0; row < scene->height; row++)
-    for (int column = 0; column < scene->width; column++) {
-      float sum[4] = {0, 0, 0, 0}, *to = pixels + (size_t)row * row_stride + 4 * (size_t)column;
-      for (int y = 0; y < side; y++)
-        for (int x = 0; x < side; x++) add_pixel(work, column * side + x, row * side + y, sum);
-      for (int c = 0; c < 4; c++) to[c] = sum[c] / (float)(side * side);
-    }
+typedef struct write_job {
+  const frame_work *work;
+  float *pixels;          /* the caller's */
+  size_t row_stride;      /* floats */
+  int width;
+} write_job;
+
+/* Blocks back to a row, several pixels averaged where the frame is oversampled. */
+static void write_row(void *data, size_t row, int worker) {
+  (void)worker;
+  const write_job *job = data;
+  int side = job->work->frame.oversampling;
+  for (int column = 0; column < job->width; column++) {
+    float sum[4] = {0, 0, 0, 0}, *to = job->pixels + row * job->row_stride + 4 * (size_t)column;
+    for (int y = 0; y < side; y++)
+      for (int x = 0; x < side; x++) add_pixel(job->work, column * side + x, (int)row * side + y, sum);
+    for (int c = 0; c < 4; c++) to[c] = sum[c] / (float)(side * side);
+  }
 }
 
-static void write_layers(const frame_work *work, const hl_scene_description *scene) {
+static void write_layers(const frame_work *work, const hl_scene_description *scene, hl_pool *pool) {
   const layer_grid grid = {scene->width, scene->height, work->frame.oversampling, work->tiles_x, (float)work->framed.unit};
-  hl_layer_pixels_write(&work->layers, &grid);
+  hl_layer_pixels_write(&work->layers, &grid, pool);
 }
 
 static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *world, const hl_layers *layers,
@@ -343,6 +352,7 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   const hl_scene_description *scene = &work->framed.scene;
   hl_status status = hl_framed_scene_create(renderer->context, world, &work->framed, error);
   if (status == HL_OK) status = make_room(renderer, scene, error);
+  if (status == HL_OK) hl_pool_resume(renderer->pool);
   if (status == HL_OK)
     status = hl_prepare_volumes(renderer->context, renderer->pool,
                                 hl_hot_functions(renderer->context->options.instruction_set), scene, renderer->prepared,
@@ -353,8 +363,10 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   for (int s = 0; s < work->sweep_count && status == HL_OK && work->frame.point_count > 0; s++)
     status = run_sweep(renderer, scene, work, s, statistics, error);
   if (status != HL_OK) return status;
-  write_pixels(work, scene, pixels, row_stride);
-  write_layers(work, scene);
+  write_job job = {work, pixels, row_stride, scene->width};
+  hl_pool_run(renderer->pool, (size_t)scene->height, write_row, &job);
+  write_layers(work, scene, renderer->pool);
+  if (hl_pool_cancelled(renderer->pool)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   statistics->seconds_render = hl_clock_seconds() - start;
   statistics->sweeps = work->sweep_count;
   statistics->threads = hl_pool_threads(renderer->pool);

@@ -97,14 +97,14 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
     hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, edge);
     reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
   }
-  status = hl_shadow_buffer_reset(sweep->context, buffer, &view, sweep->channels, paper, reach, error);
+  status = hl_shadow_buffer_reset(sweep->context, sweep->pool, buffer, &view, sweep->channels, paper, reach, error);
   light->lookup = hl_lookup_of_view(&view);
   light->lookup.stride = buffer->stride;
   for (int c = 0; c < sweep->channels; c++) light->lookup.transmittance[c] = buffer->transmittance[c];
   double last = sheets->first + (sheets->count - 1) * sheets->spacing;
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
-    status = hl_sublights_begin(sweep->context, &light->sublights, source, sweep->scene->render.light_samples, &seen,
-                                sheets->normal, &extent, sweep->channels, sheets->first, last, error);
+    status = hl_sublights_begin(sweep->context, sweep->pool, &light->sublights, source, sweep->scene->render.light_samples,
+                                &seen, sheets->normal, &extent, sweep->channels, sheets->first, last, error);
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_CASCADE)
     status = hl_soft_cascade_begin(sweep->context, sweep->pool, memory, &light->cascade, &seen, sheets->normal,
                                    sheets->first, last, edge, buffer, error);

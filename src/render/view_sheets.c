@@ -80,8 +80,9 @@ hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets
   if (status == HL_OK) status = sort_voxels(sweep, view, sheets, error);
   if (status == HL_OK) status = cover(sweep, view, sheets, error);
   if (status == HL_OK) status = keep_patches(sweep, sheets, error);
-  if (status == HL_OK) hl_view_sheets_reach(sweep, view, 0, sheets);
-  return status;
+  if (status != HL_OK) return status;
+  hl_view_sheets_reach(sweep, view, 0, sheets);
+  return hl_pool_cancelled(sweep->pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {

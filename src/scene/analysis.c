@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "scene/sample.h"
 
@@ -161,6 +162,10 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
   hl_sample sample;
   hl_status status = hl_sample_make(volume, &sample, error);
   if (status != HL_OK) return status;
+  if (hl_cancelled(volume->context)) {
+    hl_sample_release(&sample);
+    return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume");
+  }
   if (sample.count == 0 || sample.values[0] == sample.values[sample.count - 1]) {
     /* Nothing differs where the lattice is: shown like a constant. */
     hl_sample_release(&sample);

@@ -21,18 +21,21 @@ void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
 
 /* The camera of a scene whose only volume was analysed, or (analysis null) of any scene. */
 static hl_status frame(const hl_scene_description *description, const hl_data_analysis *analysis,
-                       hl_camera *camera) {
+                       hl_camera *camera, hl_error *error) {
   hl_upright upright = {{0, 0, 1}, {1, 0, 0}, AZIMUTH};
-  if (analysis != NULL) upright = hl_scene_upright(&description->volumes[0], analysis);
-  return hl_camera_frame_upright(description, upright, upright.azimuth_deg, ELEVATION, 1, camera);
+  hl_status status = HL_OK;
+  if (analysis != NULL) status = hl_scene_upright(&description->volumes[0], analysis, &upright, error);
+  if (status != HL_OK) return status;
+  status = hl_camera_frame_upright(description, upright, upright.azimuth_deg, ELEVATION, 1, camera);
+  return status == HL_OK ? HL_OK : hl_fail(error, status, "the volume cannot be framed: mend its spacing");
 }
 
-hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera) {
+hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera, hl_error *error) {
   const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
   hl_data_analysis analysis;
   bool asked = only != NULL && only->rotate_angle_deg == 0; /* who turns a volume knows its way up */
-  if (asked && hl_data_analyse(only->volume, &analysis, NULL) != HL_OK) asked = false;
-  return frame(description, asked ? &analysis : NULL, camera);
+  hl_status status = asked ? hl_data_analyse(only->volume, &analysis, error) : HL_OK;
+  return status == HL_OK ? frame(description, asked ? &analysis : NULL, camera, error) : status;
 }
 
 static void choose_material(hl_data_kind kind, hl_scene_volume *volume) {
@@ -73,10 +76,8 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   hl_scene_description_defaults(&description);
   description.volumes = &scene_volume;
   description.volume_count = 1;
-  status = frame(&description, &analysis, &description.camera);
-  if (status != HL_OK) {
-    hl_fail(error, status, "the volume cannot be framed: mend its spacing");
-  } else {
+  status = frame(&description, &analysis, &description.camera, error);
+  if (status == HL_OK) {
     hl_scene_key_light(&description.camera, &light);
     if (scene_volume.shading == HL_SHADING_NONE) light.intensity = 1.25; /* a medium loses nothing to its slope */
     description.lights = &light;

@@ -20,10 +20,9 @@ static hl_status frame(hl_json_reader *reader, const hl_scene_description *d, hl
     return hl_json_fail(reader, HL_ERROR_INPUT, "fovy_deg",
                         "%.9g is out of range: give an angle in degrees, above 0 and below 180",
                         camera->fovy_deg);
-  hl_status status = hl_scene_frame(d, camera);
-  return status == HL_OK ? HL_OK
-                         : hl_json_fail(reader, status, NULL,
-                                        "the volumes cannot be framed: give a position and a target");
+  hl_status status = hl_scene_frame(d, camera, reader->error);
+  if (status == HL_OK || status == HL_ERROR_MEMORY || status == HL_ERROR_CANCELLED) return status;
+  return hl_json_fail(reader, status, NULL, "the volumes cannot be framed: give a position and a target");
 }
 
 static hl_status read_camera_members(hl_json_reader *reader, const json_t *value, hl_scene_description *d) {

@@ -52,7 +52,7 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
 
 /* The camera that a scene without one gets: a three-quarter view that frames the volumes. Its type and
  * fovy_deg stay. */
-hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera);
+hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera, hl_error *error);
 
 /* The light that a scene without lights gets: soft, from the upper left as the camera sees it. */
 void hl_scene_key_light(const hl_camera *camera, hl_light *light);

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "scene/sample.h"
 #include "scene/scene.h"
@@ -62,10 +63,12 @@ static size_t place_of(const hl_volume *volume, const shape *s, size_t step, int
   return n + 1 == s->size[axis] ? volume->dimension[axis] - 1 : (size_t)n * step;
 }
 
-static bool make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s) {
+/* *any: whether there is a thing. */
+static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s, bool *any,
+                            hl_error *error) {
   size_t step = hl_lattice_step(volume->dimension, LATTICE);
   memset(s, 0, sizeof *s);
-  if (!allocate(volume->context, volume, step, s)) return false;
+  if (!allocate(volume->context, volume, step, s)) return hl_fail_memory(error, (size_t)LATTICE, "a volume's outline");
   double total = 0;
   unsigned char *solid = s->solid;
   for (int k = 0; k < s->size[2]; k++)
@@ -85,7 +88,8 @@ static bool make_shape(const hl_volume *volume, const hl_data_analysis *analysis
     for (sum = 0, n = s->size[a] - 1; n > 0 && (sum += s->area[a][n]) <= 0.002 * total;) n--;
     s->last[a] = n > s->first[a] ? n : s->first[a];
   }
-  return total > 0;
+  *any = total > 0;
+  return hl_cancelled(volume->context) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume") : HL_OK;
 }
 
 /* Part of the grid's face at one end of an axis that the things touch. */
@@ -204,19 +208,22 @@ static hl_upright upright_about(int up) {
   return (hl_upright){vec3_scale(axes[axis], up < 0 ? -1 : 1), axes[axis == 0 ? 1 : 0], AZIMUTH};
 }
 
-hl_upright hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis) {
-  if (ends_with(volume->file, ".nii") || ends_with(volume->file, ".nii.gz"))
-    return (hl_upright){
+hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis, hl_upright *upright,
+                           hl_error *error) {
+  bool oriented = is_oriented(volume->volume), any = false;
+  *upright = upright_about(analysis->kind == HL_DATA_MEDIUM && !oriented ? 2 : 3);
+  if (ends_with(volume->file, ".nii") || ends_with(volume->file, ".nii.gz")) {
+    *upright = (hl_upright){
         {0, 0, 1}, {-1, 0, 0}, AZIMUTH}; /* RAS+: y points to the front, x to the patient's right */
-  if (is_oriented(volume->volume)) return upright_about(3);
-  if (analysis->kind == HL_DATA_MEDIUM) return upright_about(2);
-  if (analysis->kind != HL_DATA_SURFACES) return upright_about(3);
+    return HL_OK;
+  }
+  if (oriented || analysis->kind != HL_DATA_SURFACES) return HL_OK;
   shape s;
-  hl_upright upright = upright_about(3);
-  if (make_shape(volume->volume, analysis, &s)) {
-    upright = upright_about(up_of(&s, volume->volume));
-    upright.azimuth_deg = best_azimuth(&s, upright);
+  hl_status status = make_shape(volume->volume, analysis, &s, &any, error);
+  if (status == HL_OK && any) {
+    *upright = upright_about(up_of(&s, volume->volume));
+    upright->azimuth_deg = best_azimuth(&s, *upright);
   }
   release(volume->volume->context, &s);
-  return upright;
+  return status;
 }

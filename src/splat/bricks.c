@@ -70,13 +70,28 @@ static void bound_slab(void *data, size_t index, int worker) {
     bound_brick_row(&scratch->job, by, (int32_t)index, least, least + width);
 }
 
+typedef struct replace_job {
+  const float *from;
+  float *to;
+  size_t slice;       /* voxels */
+  float empty;
+} replace_job;
+
+static void replace_slice(void *data, size_t index, int worker) {
+  (void)worker;
+  const replace_job *job = data;
+  for (size_t i = index * job->slice; i < (index + 1) * job->slice; i++)
+    job->to[i] = isfinite(job->from[i]) ? job->from[i] : job->empty;
+}
+
 /* A copy of f32 voxels in which every non-finite one is empty. */
-static hl_status replace_nonfinite(hl_context *context, const hl_volume *volume, grid *grid, hl_error *error) {
+static hl_status replace_nonfinite(hl_context *context, hl_pool *pool, const hl_volume *volume, grid *grid,
+                                   hl_error *error) {
   size_t count = hl_volume_voxel_count(volume);
   float *copy = hl_allocate(context, count, sizeof *copy);
   if (copy == NULL) return hl_fail_memory(error, count * sizeof *copy, "a copy of the voxels without NaN");
-  const float *from = volume->voxels;
-  for (size_t i = 0; i < count; i++) copy[i] = isfinite(from[i]) ? from[i] : grid->empty;
+  replace_job job = {volume->voxels, copy, volume->dimension[0] * volume->dimension[1], grid->empty};
+  hl_pool_run(pool, volume->dimension[2], replace_slice, &job);
   grid->voxels = grid->finite_voxels = copy;
   return HL_OK;
 }
@@ -129,7 +144,7 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const bound_functio
     grid->brick_count[axis] = grid->dimension[axis] / HL_BRICK_CELLS + 1;
   }
   hl_status status = HL_OK;
-  if (volume->nonfinite_count > 0) status = replace_nonfinite(context, volume, grid, error);
+  if (volume->nonfinite_count > 0) status = replace_nonfinite(context, pool, volume, grid, error);
   if (status == HL_OK) status = bound_bricks(context, pool, functions->rows[grid->storage], grid, error);
   set_cell_range(volume, grid);
   if (status == HL_OK)

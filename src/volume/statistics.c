@@ -7,10 +7,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "volume/volume.h"
 
 enum { LANES = 8 };
+enum { PIECE = 1 << 22 }; /* voxels between two questions whether to stop: a few milliseconds; a multiple of LANES */
 
 /* Stored values; low > high if no voxel is finite. */
 typedef struct tally {
@@ -35,6 +37,21 @@ static int bin_of(binning bins, double stored) {
   return bin < HL_HISTOGRAM_BINS - 1 ? bin : HL_HISTOGRAM_BINS - 1;
 }
 
+/* A walk over the voxels, piece by piece; begins with piece 0. */
+typedef struct walk {
+  hl_context *context;
+  size_t count, first, piece; /* voxels; the present piece is [first, first + piece) */
+  bool cancelled;
+} walk;
+
+/* False at the end, and where the caller's callback said stop. */
+static bool next_piece(walk *w) {
+  w->first += w->piece;
+  w->piece = w->count - w->first < PIECE ? w->count - w->first : PIECE;
+  w->cancelled = w->piece > 0 && hl_cancelled(w->context);
+  return w->piece > 0 && !w->cancelled;
+}
+
 static void count_u8(const uint8_t *voxels, size_t count, uint64_t *counts) {
   uint64_t lanes[4][256] = {{0}}; /* apart, so that runs of equal values do not wait for each other */
   size_t n = 0;
@@ -42,12 +59,21 @@ static void count_u8(const uint8_t *voxels, size_t count, uint64_t *counts) {
     for (int lane = 0; lane < 4; lane++) lanes[lane][voxels[n + (size_t)lane]]++;
   for (; n < count; n++) lanes[0][voxels[n]]++;
   for (int value = 0; value < 256; value++)
-    counts[value] = lanes[0][value] + lanes[1][value] + lanes[2][value] + lanes[3][value];
+    counts[value] += lanes[0][value] + lanes[1][value] + lanes[2][value] + lanes[3][value];
 }
 
 static void count_u16(const uint16_t *voxels, size_t count, uint64_t *counts) {
-  memset(counts, 0, 65536 * sizeof *counts);
   for (size_t n = 0; n < count; n++) counts[voxels[n]]++;
+}
+
+/* How often each stored value occurs; counts are zeros before. False: cancelled. */
+static bool count_values(const hl_volume *volume, size_t count, uint64_t *counts) {
+  walk w = {.context = volume->context, .count = count};
+  while (next_piece(&w)) {
+    if (volume->storage == HL_STORAGE_U8) count_u8((const uint8_t *)volume->voxels + w.first, w.piece, counts);
+    else count_u16((const uint16_t *)volume->voxels + w.first, w.piece, counts);
+  }
+  return !w.cancelled;
 }
 
 static tally tally_counts(const uint64_t *counts, int values) {
@@ -87,7 +113,8 @@ static void tally_group(const float group[LANES], lanes_f32 *lanes) {
   }
 }
 
-static tally tally_f32(const float *voxels, size_t count) {
+static bool tally_f32(const hl_volume *volume, size_t count, tally *total) {
+  const float *voxels = volume->voxels;
   lanes_f32 lanes = {.sum = {0}};
   float rest[LANES];
   for (int lane = 0; lane < LANES; lane++) {
@@ -96,17 +123,19 @@ static tally tally_f32(const float *voxels, size_t count) {
     rest[lane] = NAN;
   }
   size_t whole = count - count % LANES;
-  for (size_t start = 0; start < whole; start += LANES) tally_group(voxels + start, &lanes);
+  walk w = {.context = volume->context, .count = whole};
+  while (next_piece(&w))
+    for (size_t start = w.first; start < w.first + w.piece; start += LANES) tally_group(voxels + start, &lanes);
   memcpy(rest, voxels + whole, (count - whole) * sizeof *rest);
   tally_group(rest, &lanes);
-  tally total = {INFINITY, -INFINITY, 0, 0};
+  *total = (tally){INFINITY, -INFINITY, 0, 0};
   for (int lane = 0; lane < LANES; lane++) {
-    total.low = fmin(total.low, (double)lanes.low[lane]);
-    total.high = fmax(total.high, (double)lanes.high[lane]);
-    total.sum += lanes.sum[lane];
-    total.finite += lanes.finite[lane];
+    total->low = fmin(total->low, (double)lanes.low[lane]);
+    total->high = fmax(total->high, (double)lanes.high[lane]);
+    total->sum += lanes.sum[lane];
+    total->finite += lanes.finite[lane];
   }
-  return total;
+  return !w.cancelled;
 }
 
 static void bin_f32(const float *voxels, size_t count, binning bins, uint64_t *histogram) {
@@ -114,7 +143,7 @@ static void bin_f32(const float *voxels, size_t count, binning bins, uint64_t *h
   for (size_t n = 0; n < count; n++)
     if (fabsf(voxels[n]) <= FLT_MAX) lanes[n & 3][bin_of(bins, (double)voxels[n])]++;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
-    histogram[bin] = lanes[0][bin] + lanes[1][bin] + lanes[2][bin] + lanes[3][bin];
+    histogram[bin] += lanes[0][bin] + lanes[1][bin] + lanes[2][bin] + lanes[3][bin];
 }
 
 static hl_status record(hl_volume *volume, tally total, const char *subject, hl_error *error) {
@@ -133,24 +162,31 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   return HL_OK;
 }
 
+static bool measure_f32(hl_volume *volume, size_t count, tally *total) {
+  if (!tally_f32(volume, count, total)) return false;
+  if (total->finite == 0) return true;
+  binning bins = make_binning(*total, volume->value_scale);
+  walk w = {.context = volume->context, .count = count};
+  while (next_piece(&w)) bin_f32((const float *)volume->voxels + w.first, w.piece, bins, volume->histogram);
+  return !w.cancelled;
+}
+
 hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *error) {
   size_t count = hl_volume_voxel_count(volume);
+  tally total;
+  bool finished;
   memset(volume->histogram, 0, sizeof volume->histogram);
   if (volume->storage == HL_STORAGE_F32) {
-    tally total = tally_f32(volume->voxels, count);
-    if (total.finite > 0)
-      bin_f32(volume->voxels, count, make_binning(total, volume->value_scale), volume->histogram);
-    return record(volume, total, subject, error);
+    finished = measure_f32(volume, count, &total);
+  } else {
+    int values = volume->storage == HL_STORAGE_U8 ? 256 : 65536;
+    uint64_t *counts = hl_allocate_zeroed(volume->context, (size_t)values, sizeof *counts);
+    if (counts == NULL) return hl_fail_memory(error, (size_t)values * sizeof *counts, subject);
+    finished = count_values(volume, count, counts);
+    total = tally_counts(counts, values);
+    bin_counts(counts, values, make_binning(total, volume->value_scale), volume->histogram);
+    hl_release(volume->context, counts);
   }
-  int values = volume->storage == HL_STORAGE_U8 ? 256 : 65536;
-  uint64_t *counts = hl_allocate(volume->context, (size_t)values, sizeof *counts);
-  if (counts == NULL) return hl_fail_memory(error, (size_t)values * sizeof *counts, subject);
-  if (volume->storage == HL_STORAGE_U8)
-    count_u8(volume->voxels, count, counts);
-  else
-    count_u16(volume->voxels, count, counts);
-  tally total = tally_counts(counts, values);
-  bin_counts(counts, values, make_binning(total, volume->value_scale), volume->histogram);
-  hl_release(volume->context, counts);
+  if (!finished) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
   return record(volume, total, subject, error);
 }

@@ -243,7 +243,7 @@ static void defaults_are_the_documented_ones(void **state) {
   assert_true(d->width == 512 && d->height == 512 && d->ambient[0] == 0.2 && d->background[0] == 0);
   assert_true(d->camera.type == HL_CAMERA_PERSPECTIVE && d->camera.fovy_deg == 30);
   hl_camera framed = d->camera;
-  assert_int_equal(hl_scene_frame(d, &framed), HL_OK);
+  assert_int_equal(hl_scene_frame(d, &framed, NULL), HL_OK);
   assert_memory_equal(framed.position, d->camera.position, sizeof framed.position);
   hl_light key;
   hl_scene_key_light(&d->camera, &key);
