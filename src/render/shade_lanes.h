@@ -139,18 +139,23 @@ typedef struct arriving_light {
   color_lanes full, shadowed; /* without and with attenuation */
 } arriving_light;
 
-/* How far light has come within the box of a volume when it reaches a point: back along its way to the box's face. */
-LANES_INLINE lanes way_in_box(const shade_volume *volume, lanes3 point, lanes3 towards) {
-  lanes way = lanes_set(1e30f);
+/* How far light has come within the box of a volume when it reaches the ends of a way: back to the box's face. */
+typedef struct ways_in_box { lanes first, last; } ways_in_box;
+
+LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start, lanes3 way, lanes3 towards) {
+  ways_in_box ways = {lanes_set(1e30f), lanes_set(1e30f)};
   for (int axis = 0; axis < 3; axis++) {
     const float *row = volume->to_index[axis];
-    lanes at = point.x * row[0] + point.y * row[1] + (point.z * row[2] + row[3]);
+    lanes at = start.x * row[0] + start.y * row[1] + (start.z * row[2] + row[3]);
+    lanes step = way.x * row[0] + way.y * row[1] + way.z * row[2];
     lanes speed = towards.x * row[0] + towards.y * row[1] + towards.z * row[2];
     speed = lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
-    lanes face = lanes_select(speed > 0.0f, lanes_set(volume->high[axis]), lanes_set(volume->low[axis]));
-    way = lanes_min(way, lanes_max((face - at) / speed, lanes_set(0)));
+    lanes slowness = 1.0f / speed;
+    lanes first = (lanes_select(speed > 0.0f, lanes_set(volume->high[axis]), lanes_set(volume->low[axis])) - at) * slowness;
+    ways.first = lanes_min(ways.first, lanes_max(first, lanes_set(0)));
+    ways.last = lanes_min(ways.last, lanes_max(first - step * slowness, lanes_set(0)));
   }
-  return way;
+  return ways;
 }
 
 /* Optical depths of the slab for one light: before the eye's rays enter the matter, and from there to where they leave
@@ -182,10 +187,10 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geom
     const shade_volume *volume = d->patch->volume;
     lanes first = d->part.begin * path, last = (d->part.begin + d->part.length) * path;
     if (d->patch->enter != NULL) {
-      lanes3 start = add3(g->start, scale3(g->step_sheet, d->part.begin));
-      lanes3 end = add3(start, scale3(g->step_sheet, d->part.length));
-      first = lanes_min(first, way_in_box(volume, start, towards));
-      last = lanes_max(lanes_min(last, way_in_box(volume, end, towards)), first);
+      ways_in_box ways = ways_of_light(volume, add3(g->start, scale3(g->step_sheet, d->part.begin)),
+                                       scale3(g->step_sheet, d->part.length), towards);
+      first = lanes_min(first, ways.first);
+      last = lanes_max(lanes_min(last, ways.last), first);
     }
     lanes extinction = extinction_towards(d, towards, first + (last - first) * d->seen);
     for (int c = 0; c < job->channels; c++) {

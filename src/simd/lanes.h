@@ -181,32 +181,44 @@ LANES_INLINE lanes lanes_gather(const float *table, lanes_int index) {
 }
 
 #if defined(__AVX512F__)
-/* From sixteen rows of four floats, given for the lanes 4 q + j in quarter q of rows[j], each column as a vector. */
-LANES_INLINE void lanes_columns(const __m512 rows[4], lanes columns[4]) {
-  __m512 a = _mm512_unpacklo_ps(rows[0], rows[1]), b = _mm512_unpacklo_ps(rows[2], rows[3]);
-  __m512 c = _mm512_unpackhi_ps(rows[0], rows[1]), d = _mm512_unpackhi_ps(rows[2], rows[3]);
-  columns[0] = (lanes)_mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(a), _mm512_castps_pd(b)));
-  columns[1] = (lanes)_mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(a), _mm512_castps_pd(b)));
-  columns[2] = (lanes)_mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(c), _mm512_castps_pd(d)));
-  columns[3] = (lanes)_mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(c), _mm512_castps_pd(d)));
+/* The rows [index, index + 1] of two lanes: eight floats each. */
+LANES_INLINE __m512 two_row_pairs(const float *table, int32_t first, int32_t second) {
+  __m512d low = _mm512_castpd256_pd512(_mm256_castps_pd(_mm256_loadu_ps(table + first)));
+  return _mm512_castpd_ps(_mm512_insertf64x4(low, _mm256_castps_pd(_mm256_loadu_ps(table + second)), 1));
+}
+
+/* From the row pairs of the lanes j (low halves) and 4 + j (high halves), j = 0 to 3, the first three columns: in each
+ * half, four lanes' values of the first rows and then of the second. */
+LANES_INLINE void columns_of_pairs(const __m512 pairs[4], __m512 columns[3]) {
+  __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(pairs[0], pairs[1])), b = _mm512_castps_pd(_mm512_unpacklo_ps(pairs[2], pairs[3]));
+  __m512d c = _mm512_castps_pd(_mm512_unpackhi_ps(pairs[0], pairs[1])), d = _mm512_castps_pd(_mm512_unpackhi_ps(pairs[2], pairs[3]));
+  columns[0] = _mm512_castpd_ps(_mm512_unpacklo_pd(a, b));
+  columns[1] = _mm512_castpd_ps(_mm512_unpackhi_pd(a, b));
+  columns[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(c, d));
 }
 #endif
 
-/* table[4 index + c] as columns[c]: one load a row instead of four. */
-LANES_CALL void lanes_gather_rows(const float *table, lanes_int index, lanes columns[4]) {
+/* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to 2: one load a lane instead of six. */
+LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lanes first[3], lanes second[3]) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index * 4);
-  __m512 rows[4];
-  for (int j = 0; j < 4; j++) {
-    __m512 row = _mm512_castps128_ps512(_mm_loadu_ps(table + offsets.at[j]));
-    row = _mm512_insertf32x4(row, _mm_loadu_ps(table + offsets.at[4 + j]), 1);
-    row = _mm512_insertf32x4(row, _mm_loadu_ps(table + offsets.at[8 + j]), 2);
-    rows[j] = _mm512_insertf32x4(row, _mm_loadu_ps(table + offsets.at[12 + j]), 3);
+  __m512 columns[2][3];
+  for (int half = 0; half < 2; half++) {
+    const int32_t *at = offsets.at + 8 * half;
+    __m512 pairs[4];
+    for (int j = 0; j < 4; j++) pairs[j] = two_row_pairs(table, at[j], at[4 + j]);
+    columns_of_pairs(pairs, columns[half]);
   }
-  lanes_columns(rows, columns);
+  for (int c = 0; c < 3; c++) {
+    first[c] = (lanes)_mm512_shuffle_f32x4(columns[0][c], columns[1][c], 0x88);
+    second[c] = (lanes)_mm512_shuffle_f32x4(columns[0][c], columns[1][c], 0xdd);
+  }
 #else
-  for (int c = 0; c < 4; c++) columns[c] = lanes_gather(table + c, index * 4);
+  for (int c = 0; c < 3; c++) {
+    first[c] = lanes_gather(table + c, index * 4);
+    second[c] = lanes_gather(table + 4 + c, index * 4);
+  }
 #endif
 }
 

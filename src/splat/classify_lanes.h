@@ -19,9 +19,8 @@ LANES_INLINE table_place classify_place(const classifier *classifier, lanes dens
 
 /* The values of a table's columns at a place. */
 LANES_INLINE void table_values(float (*table)[4], table_place place, lanes values[3]) {
-  lanes a[4], b[4];
-  lanes_gather_rows(&table[0][0], place.entry, a);
-  lanes_gather_rows(&table[1][0], place.entry, b);
+  lanes a[3], b[3];
+  lanes_gather_row_pairs(&table[0][0], place.entry, a, b);
   for (int i = 0; i < 3; i++) values[i] = a[i] + (b[i] - a[i]) * place.fraction;
 }
 
