@@ -3,11 +3,12 @@
 #include "light/light_extent.h"
 #include "render/sweep.h"
 
-/* Pixels of hard shadow buffers are as coarse as adds nothing to the error that the sheets leave (measured against the
- * reference, docs/performance.md): three quarters of their distance, half a voxel at least and three quarters at most,
- * and not much coarser than the picture. Soft ones, in voxels, whatever the sheets. */
-static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.5, GREATEST_SHADOW_PIXEL = 0.75;
-static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4, GREATEST_SOFT_PIXEL = 0.6;
+/* Pixels of shadow buffers are as coarse as adds nothing to the error that the sheets leave (measured against the
+ * reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most, and half a voxel
+ * at least; parts of a light, whose pixels are read from those of a slab, suffer more from coarse ones. Hard edges hold
+ * at the nearest matter; soft ones are wider than a pixel where it matters. */
+static const double SHADOW_PIXEL_PER_SPACING = 0.75, GREATEST_SHADOW_PIXEL = 0.75;
+static const double LEAST_HARD_PIXEL = 0.5, LEAST_SOFT_PIXEL = 0.6, SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
@@ -42,10 +43,13 @@ static double penumbra_margin(const sweep *sweep, const light_source *source, co
   return width * (1 / nearest - 1 / (nearest + depth));
 }
 
-static double hard_pixel(const sweep *sweep) {
-  double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
-  double of_voxels = fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL * sweep->frame->voxel), GREATEST_SHADOW_PIXEL * sweep->frame->voxel);
-  return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * sweep->frame->pixel, of_voxels);
+static double shadow_pixel(const sweep *sweep, const light_source *source) {
+  double voxel = sweep->frame->voxel, of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
+  if (source->shadows != HL_SHADOWS_SOFT)
+    return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * sweep->frame->pixel,
+                fmin(fmax(of_sheets, LEAST_HARD_PIXEL * voxel), GREATEST_SHADOW_PIXEL * voxel));
+  if (source->soft_method == HL_SOFT_SUBLIGHTS) of_sheets = 0;
+  return fmin(sweep->frame->middle_pixel, fmin(fmax(of_sheets, LEAST_SOFT_PIXEL * voxel), GREATEST_SHADOW_PIXEL * voxel));
 }
 
 /* Places the buffer: perpendicular to the light for hard shadows; parallel to the sheets for soft ones, around the middle
@@ -54,7 +58,7 @@ static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *p
                          sheet_light *seen, view *view) {
   size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
   *extent = (shadow_extent){.points = points, .point_count = hl_frame_visible_points(sweep->frame, points),
-                          .pixel = hard_pixel(sweep),
+                          .pixel = shadow_pixel(sweep, source),
                           .resolution = sweep->scene->render.shadow_resolution,
                           .greatest_pixels = greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
                           .content = sweep->frame->points, .content_count = sweep->frame->point_count};
@@ -65,8 +69,6 @@ static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *p
   }
   light_source middle = *source;
   *seen = hl_light_on_sheets(source, sweep->geometry->sheets.normal);
-  /* hard edges must hold at the nearest matter; soft ones are wider than a pixel where it matters */
-  extent->pixel = fmin(sweep->frame->middle_pixel, GREATEST_SOFT_PIXEL * sweep->frame->voxel);
   extent->margin = penumbra_margin(sweep, source, seen);
   if (source->soft_method == HL_SOFT_SUBLIGHTS) extent->u = seen->u;
   if (source->soft_method == HL_SOFT_CASCADE) {
