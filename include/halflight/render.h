@@ -10,7 +10,9 @@
 extern "C" {
 #endif
 
-/* Reusable: keeps buffers and prepared volumes between frames. One thread at a time. */
+/* Reusable: keeps buffers and prepared volumes between frames. One thread at a time; scenes may be shared by any number of
+ * renderers. After fork() the child may render with a renderer that was idle, or with one of its own: either starts
+ * threads of its own. */
 typedef struct hl_renderer hl_renderer;
 
 typedef struct hl_render_statistics {

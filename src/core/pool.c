@@ -10,8 +10,10 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "core/context.h"
 #include "core/cpu.h"
@@ -44,6 +46,7 @@ struct hl_pool {
   int spins;
   worker *workers; /* owned; [threads]; entry 0 (the caller) unused */
   int started;     /* threads running, the caller included */
+  pid_t process;   /* whose threads they are */
   job jobs[2];
   atomic_uint_least64_t ticket; /* generation << 40 | count << 20 | next index */
   atomic_bool stop;
@@ -175,6 +178,22 @@ void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value) {
 
 int hl_pool_threads(const hl_pool *pool) { return pool->threads; }
 
+bool hl_pool_is_own(const hl_pool *pool) { return pool->process == getpid(); }
+
+/* Threads inherit the mask of the one that starts them. */
+static void start_workers(hl_pool *pool) {
+  sigset_t all, own;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &own);
+  for (pool->started = 1; pool->started < pool->threads; pool->started++) {
+    worker *self = &pool->workers[pool->started];
+    self->pool = pool;
+    self->number = pool->started;
+    if (pthread_create(&self->thread, NULL, worker_main, self) != 0) break;
+  }
+  pthread_sigmask(SIG_SETMASK, &own, NULL);
+}
+
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error) {
   *pool = NULL;
   if (threads <= 0) threads = hl_cpu_count();
@@ -192,22 +211,16 @@ hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_er
   made->workers = workers;
   pthread_mutex_init(&made->mutex, NULL);
   pthread_cond_init(&made->wake, NULL);
-  for (made->started = 1; made->started < threads; made->started++) {
-    worker *self = &workers[made->started];
-    self->pool = made;
-    self->number = made->started;
-    if (pthread_create(&self->thread, NULL, worker_main, self) != 0) {
-      hl_pool_destroy(made);
-      return hl_fail(error, HL_ERROR_IO, "the system would not start %d threads: ask for fewer", threads);
-    }
-  }
+  made->process = getpid();
+  start_workers(made);
+  if (made->started < threads)
+    hl_log(context, HL_LOG_WARNING, "the system starts only %d of %d threads: it will take longer", made->started, threads);
+  made->threads = made->started;
   *pool = made;
   return HL_OK;
 }
 
-void hl_pool_destroy(hl_pool *pool) {
-  if (pool == NULL) return;
-  hl_context *context = pool->context;
+static void stop_workers(hl_pool *pool) {
   atomic_store(&pool->stop, true);
   pthread_mutex_lock(&pool->mutex);
   pthread_cond_broadcast(&pool->wake);
@@ -215,6 +228,11 @@ void hl_pool_destroy(hl_pool *pool) {
   for (int i = 1; i < pool->started; i++) pthread_join(pool->workers[i].thread, NULL);
   pthread_cond_destroy(&pool->wake);
   pthread_mutex_destroy(&pool->mutex);
-  hl_release(context, pool->workers);
-  hl_release(context, pool);
+}
+
+void hl_pool_destroy(hl_pool *pool) {
+  if (pool == NULL) return;
+  if (hl_pool_is_own(pool)) stop_workers(pool);
+  hl_release(pool->context, pool->workers);
+  hl_release(pool->context, pool);
 }

@@ -16,9 +16,14 @@
 
 typedef struct hl_pool hl_pool;
 
-/* threads: at least 1, the caller included; 0: one per processor. */
+/* threads: at least 1, the caller included; 0: one per processor. Where the system starts fewer, the team is smaller, and
+ * a warning says so. The threads take no signals: those go to the program's own. */
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error);
 void hl_pool_destroy(hl_pool *pool); /* null is allowed */
+
+/* False in a child process made by fork(): threads stay with the parent. All that can be done there with the pool is to
+ * destroy it. */
+bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
 
 /* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns

@@ -60,7 +60,7 @@ void hl_renderer_destroy(hl_renderer *renderer) {
 /* Threads, and room for the scene's volumes and lights. */
 static hl_status make_room(hl_renderer *renderer, const hl_scene_description *scene, hl_error *error) {
   hl_context *context = renderer->context;
-  if (renderer->pool == NULL || renderer->threads != scene->render.threads) {
+  if (renderer->pool == NULL || renderer->threads != scene->render.threads || !hl_pool_is_own(renderer->pool)) {
     hl_pool_destroy(renderer->pool);
     renderer->pool = NULL;
     hl_status status = hl_pool_create(context, scene->render.threads, &renderer->pool, error);

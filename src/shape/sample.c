@@ -120,7 +120,7 @@ static hl_status sample(hl_context *context, sampling *s, int threads, const cha
   for (s->layer = 0; status == HL_OK && s->layer < layers; s->layer++) {
     hl_pool_run(pool, s->blocks[0] * s->blocks[1], s->density != NULL ? sample_solids : sample_orbitals, s);
     hl_progress(context, "load", (double)(s->layer + 1) / (double)layers);
-    if (hl_cancelled(context)) status = hl_fail(error, HL_ERROR_CANCELLED, "%s: stopped", subject);
+    if (hl_pool_cancelled(pool)) status = hl_fail(error, HL_ERROR_CANCELLED, "%s: stopped", subject);
   }
   hl_release(context, s->live);
   hl_pool_destroy(pool);

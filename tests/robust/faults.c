@@ -1,0 +1,463 @@
+/* tests/robust/faults.c - every allocation fails in turn, and every question whether to stop is answered with yes, in all
+ * that the library does: a clean status, a line, nothing held, and the same bytes once memory is back. */
+#include "faulty.h"
+#include "small_scenes.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "volume_files.h"
+
+static char folder[FOLDER_BYTES];
+
+static int open_folder(void **state) {
+  (void)state;
+  make_folder(folder);
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  assert_int_equal(small_slide_write(context, folder, NULL), HL_OK);
+  hl_context_destroy(context);
+  return 0;
+}
+
+static int close_folder(void **state) {
+  (void)state;
+  remove_folder(folder);
+  return 0;
+}
+
+static char *path_of(const char *name, char path[PATH_BYTES]) {
+  snprintf(path, PATH_BYTES, "%s/%s", folder, name);
+  return path;
+}
+
+/* ---- volumes ---- */
+
+static hl_status load_path(faulty *f, void *path, hl_error *error) {
+  hl_volume *volume = NULL;
+  hl_status status = hl_volume_load(f->context, path, &volume, error);
+  hl_volume_release(volume);
+  return status;
+}
+
+static void load_sample(const volume_sample *sample, void *data) {
+  faulty *f = data;
+  char path[PATH_BYTES];
+  write_sample(folder, sample, path);
+  assert_true(faulty_fail_each(f, load_path, NULL, path) >= 3);
+  assert_true(faulty_stop_each(f, load_path, NULL, path) >= 1);
+  remove_sample(folder, sample);
+}
+
+static void test_loading_volumes(void **state) {
+  (void)state;
+  faulty f;
+  faulty_open(&f);
+  for_each_sample(load_sample, &f);
+  faulty_close(&f);
+}
+
+static hl_status save_path(faulty *f, void *path, hl_error *error) {
+  hl_volume_description description;
+  hl_volume *volume = NULL;
+  float voxels[8] = {1, 2, 3, 4, 5, 6, 7, NAN};
+  hl_volume_description_defaults(&description);
+  for (int axis = 0; axis < 3; axis++) description.dimensions[axis] = 2;
+  description.type = HL_VOXEL_F32;
+  description.voxels = voxels;
+  description.stride_bytes[0] = 4, description.stride_bytes[1] = 8, description.stride_bytes[2] = 16;
+  hl_status status = hl_volume_create(f->context, &description, &volume, error);
+  if (status == HL_OK) status = hl_volume_save(f->context, volume, path, error);
+  hl_volume_release(volume);
+  if (status == HL_OK) assert_int_equal(unlink(path), 0);
+  assert_int_not_equal(access(path, F_OK), 0); /* whole or not at all */
+  return status;
+}
+
+static void test_saving_volumes(void **state) {
+  (void)state;
+  static const char *const names[] = {"saved.nrrd", "saved_2x2x2_float32.raw", "saved_2x2x2_float32.raw.gz"};
+  char path[PATH_BYTES];
+  faulty f;
+  faulty_open(&f);
+  for (int n = 0; n < 3; n++) {
+    assert_true(faulty_fail_each(&f, save_path, NULL, path_of(names[n], path)) >= 5);
+    assert_true(faulty_stop_each(&f, save_path, NULL, path) >= 2);
+  }
+  faulty_close(&f);
+}
+
+static hl_status make_shapes(faulty *f, void *data, hl_error *error) {
+  const char *text = hl_shape_preset_text(data);
+  hl_shapes_options options;
+  hl_volume *volume = NULL;
+  hl_shapes_options_defaults(&options);
+  options.size = 16;
+  options.threads = 1;
+  hl_status status = hl_volume_from_shapes(f->context, text, strlen(text), "shapes", &options, &volume, error);
+  hl_volume_release(volume);
+  return status;
+}
+
+static void test_making_volumes(void **state) {
+  (void)state;
+  faulty f;
+  faulty_open(&f);
+  for (size_t n = 0; hl_shape_preset_name(n) != NULL; n++) {
+    assert_true(faulty_fail_each(&f, make_shapes, NULL, (void *)hl_shape_preset_name(n)) >= 5);
+    assert_true(faulty_stop_each(&f, make_shapes, NULL, (void *)hl_shape_preset_name(n)) >= 1);
+  }
+  faulty_close(&f);
+}
+
+/* ---- scenes ---- */
+
+typedef struct scene_work {
+  size_t index;
+  char *text; /* what the scene is written as */
+} scene_work;
+
+/* A text of shapes that does not find its like costs time alone: the scene must still be the same. */
+static hl_status read_scene(faulty *f, void *data, hl_error *error) {
+  const scene_work *work = data;
+  hl_scene *scene = NULL;
+  hl_status status = small_scene_make(f->context, work->index, folder, &scene, error);
+  if (status == HL_OK) {
+    char *text = NULL;
+    long left = atomic_exchange(&f->allocations_left, -1);
+    assert_int_equal(hl_scene_to_json(f->context, scene, &text, error), HL_OK);
+    assert_string_equal(text, work->text);
+    hl_text_release(f->context, text);
+    atomic_store(&f->allocations_left, left);
+  }
+  hl_scene_release(scene);
+  return status;
+}
+
+static hl_status write_scene(faulty *f, void *data, hl_error *error) {
+  char *text = NULL;
+  hl_status status = hl_scene_to_json(f->context, data, &text, error);
+  hl_text_release(f->context, text);
+  return status;
+}
+
+static hl_status copy_scene(faulty *f, void *data, hl_error *error) {
+  hl_scene *scene = NULL;
+  hl_status status = hl_scene_create(f->context, hl_scene_describe(data), &scene, error);
+  hl_scene_release(scene);
+  return status;
+}
+
+static void test_scenes(void **state) {
+  (void)state;
+  faulty f;
+  faulty_open(&f);
+  for (size_t n = 0; n < small_scene_count; n++) {
+    hl_scene *scene = NULL;
+    scene_work work = {.index = n};
+    assert_int_equal(small_scene_make(f.context, n, folder, &scene, NULL), HL_OK);
+    assert_int_equal(hl_scene_to_json(f.context, scene, &work.text, NULL), HL_OK);
+    f.may_recover = true;
+    assert_true(faulty_fail_each(&f, read_scene, NULL, &work) >= 5);
+    f.may_recover = false;
+    assert_true(faulty_stop_each(&f, read_scene, NULL, &work) >= 1);
+    hl_text_release(f.context, work.text);
+    assert_true(faulty_fail_each(&f, write_scene, NULL, scene) >= 1);
+    assert_true(faulty_fail_each(&f, copy_scene, NULL, scene) >= 3);
+    hl_scene_release(scene);
+  }
+  faulty_close(&f);
+}
+
+static hl_status show_volume(faulty *f, void *data, hl_error *error) {
+  hl_scene *scene = NULL;
+  hl_status status = hl_scene_for_volume(f->context, data, NULL, &scene, error);
+  hl_scene_release(scene);
+  return status;
+}
+
+static hl_status read_function(faulty *f, void *data, hl_error *error) {
+  hl_transfer_function function = {0};
+  hl_status status = hl_transfer_function_load(f->context, data, &function, error);
+  if (status == HL_OK) hl_transfer_function_release(f->context, &function);
+  return status;
+}
+
+static hl_status fit_functions(faulty *f, void *data, hl_error *error) {
+  hl_status status = HL_OK;
+  for (size_t n = 0; status == HL_OK && hl_preset_name(n) != NULL; n++) {
+    hl_transfer_function function = {0};
+    status = hl_transfer_function_preset(f->context, hl_preset_name(n), data, &function, error);
+    if (status == HL_OK) status = hl_transfer_function_colormap(f->context, "turbo", 0, 1, &function, error);
+    hl_transfer_function_release(f->context, &function);
+  }
+  return status;
+}
+
+/* A ball that fades out, with noise or without: things with surfaces, and a field. */
+static hl_volume *make_ball(hl_context *context, int noise) {
+  enum { SIDE = 20 };
+  static unsigned char voxels[SIDE * SIDE * SIDE];
+  unsigned state = 1;
+  for (int n = 0; n < SIDE * SIDE * SIDE; n++) {
+    double x = n % SIDE - 9.5, y = n / SIDE % SIDE - 9.5, z = n / SIDE / SIDE - 9.5;
+    state = state * 1103515245u + 12345u;
+    double value = 200 * exp(-(x * x + y * y + z * z) / 30) + (noise ? (state >> 16) % 40 : 0);
+    voxels[n] = (unsigned char)value;
+  }
+  hl_volume_description description;
+  hl_volume *volume = NULL;
+  hl_volume_description_defaults(&description);
+  for (int axis = 0; axis < 3; axis++) description.dimensions[axis] = SIDE;
+  description.type = HL_VOXEL_U8;
+  description.voxels = voxels;
+  assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
+  return volume;
+}
+
+static void test_automatic_scenes(void **state) {
+  (void)state;
+  static const char function[] = "{\"opacity\": [[0, 0], [255, 1]], \"colormap\": \"bone\", \"range\": [0, 255]}";
+  static const char foreign[] =
+      "[{\"ColorSpace\": \"Lab\", \"Name\": \"x\", \"Points\": [0, 0, 0.5, 0, 1, 1, 0.5, 0],"
+      " \"RGBPoints\": [0, 0, 0, 0, 1, 1, 1, 1]}]";
+  char path[PATH_BYTES];
+  byte_buffer content = {.length = 0};
+  faulty f;
+  faulty_open(&f);
+  for (int noise = 0; noise < 2; noise++) {
+    hl_volume *volume = make_ball(f.context, noise);
+    assert_true(faulty_fail_each(&f, show_volume, NULL, volume) >= 5);
+    assert_true(faulty_stop_each(&f, show_volume, NULL, volume) >= 1);
+    assert_true(faulty_fail_each(&f, fit_functions, NULL, volume) >= 5);
+    hl_volume_release(volume);
+  }
+  add_text(&content, "%s", function);
+  write_file(folder, "own.json", &content, path);
+  assert_true(faulty_fail_each(&f, read_function, NULL, path) >= 2);
+  content.length = 0;
+  add_text(&content, "%s", foreign);
+  write_file(folder, "paraview.json", &content, path);
+  assert_true(faulty_fail_each(&f, read_function, NULL, path) >= 2);
+  faulty_close(&f);
+}
+
+/* ---- pictures ---- */
+
+typedef struct picture_work {
+  const hl_image *image;
+  char path[PATH_BYTES];
+} picture_work;
+
+static hl_status write_picture(faulty *f, void *data, hl_error *error) {
+  picture_work *work = data;
+  hl_image_write_options options;
+  hl_image_write_options_defaults(&options);
+  options.scene_json = "{\"halflight\": 1}";
+  return hl_image_write(f->context, work->image, work->path, &options, error);
+}
+
+static hl_status read_picture(faulty *f, void *data, hl_error *error) {
+  picture_work *work = data;
+  hl_image *image = NULL;
+  hl_status status = hl_image_read(f->context, work->path, &image, error);
+  hl_image_destroy(image);
+  return status;
+}
+
+static hl_status make_picture(faulty *f, void *data, hl_error *error) {
+  hl_image *image = NULL;
+  float *values;
+  (void)data;
+  hl_status status = hl_image_create(f->context, 30, 200, &image, error);
+  if (status == HL_OK) status = hl_image_add_layer(image, "depth", "Z", &values, error);
+  if (status == HL_OK) status = hl_image_add_layer(image, "key", "RGB", &values, error);
+  hl_image_destroy(image);
+  return status;
+}
+
+static void test_pictures(void **state) {
+  (void)state;
+  static const char *const names[] = {"picture.png", "picture.exr", "picture.npy"};
+  faulty f;
+  faulty_open(&f);
+  assert_true(faulty_fail_each(&f, make_picture, NULL, NULL) >= 4);
+  assert_true(faulty_stop_each(&f, make_picture, NULL, NULL) >= 1);
+  for (int n = 0; n < 3; n++) {
+    hl_image *image = NULL;
+    float *values;
+    assert_int_equal(hl_image_create(f.context, 21, 40, &image, NULL), HL_OK);
+    for (int i = 0; i < 21 * 40 * 4; i++) hl_image_pixels(image)[i] = (float)(i % 97) / 97;
+    picture_work work = {.image = image};
+    path_of(names[n], work.path);
+    if (n > 0) assert_int_equal(hl_image_add_layer(image, "key", "RGB", &values, NULL), HL_OK);
+    assert_true(faulty_fail_each(&f, write_picture, NULL, &work) >= 2);
+    assert_true(faulty_stop_each(&f, write_picture, NULL, &work) >= 2);
+    assert_true(faulty_fail_each(&f, read_picture, NULL, &work) >= 2);
+    assert_true(faulty_stop_each(&f, read_picture, NULL, &work) >= 1);
+    hl_image_destroy(image);
+  }
+  faulty_close(&f);
+}
+
+/* ---- rendering ---- */
+
+typedef struct render_work {
+  hl_renderer *renderer; /* null: a fresh one each time */
+  hl_scene *scene, *other;
+  hl_image *expected;
+  float *pixels;
+  bool layers;
+} render_work;
+
+static hl_status render_once(faulty *f, render_work *work, hl_renderer *renderer, hl_error *error) {
+  const hl_scene_description *scene = hl_scene_describe(work->scene);
+  size_t pixels = (size_t)scene->width * (size_t)scene->height;
+  float *memory = work->pixels + 4 * pixels;
+  hl_light_layers lights[3];
+  (void)f;
+  for (size_t l = 0; l < scene->light_count; l++)
+    lights[l] = (hl_light_layers){.picture = memory + 6 * l * pixels, .shadow = memory + (6 * l + 3) * pixels};
+  float *rest = memory + 6 * scene->light_count * pixels;
+  hl_layers layers = {.struct_size = sizeof layers, .lights = lights, .light_count = scene->light_count, .ambient = rest,
+                      .depth_first = rest + 3 * pixels, .depth_mean = rest + 4 * pixels, .normal = rest + 5 * pixels};
+  return hl_renderer_render_layers(renderer, work->scene, work->pixels, 4 * (size_t)scene->width,
+                                   work->layers ? &layers : NULL, NULL, error);
+}
+
+static hl_status render(faulty *f, void *data, hl_error *error) {
+  render_work *work = data;
+  if (work->renderer != NULL) return render_once(f, work, work->renderer, error);
+  hl_renderer *renderer = NULL;
+  hl_status status = hl_renderer_create(f->context, &renderer, error);
+  if (status == HL_OK) status = render_once(f, work, renderer, error);
+  hl_renderer_destroy(renderer);
+  return status;
+}
+
+/* The renderer that failed gives the picture that it should once it can. */
+static hl_status render_again(faulty *f, void *data, hl_error *error) {
+  render_work *work = data;
+  memset(work->pixels, 0, small_scene_floats(work->scene) * sizeof(float));
+  hl_status status = render_once(f, work, work->renderer, error);
+  assert_memory_equal(work->pixels, hl_image_pixels(work->expected), small_scene_floats(work->scene) * sizeof(float));
+  return status;
+}
+
+static void open_render(faulty *f, size_t scene, render_work *work) {
+  *work = (render_work){.layers = scene % 2 == 1};
+  assert_int_equal(small_scene_make(f->context, scene, folder, &work->scene, NULL), HL_OK);
+  const hl_scene_description *d = hl_scene_describe(work->scene);
+  work->pixels = calloc(small_scene_floats(work->scene) * 8, sizeof(float));
+  assert_int_equal(hl_image_create(f->context, d->width, d->height, &work->expected, NULL), HL_OK);
+  assert_int_equal(render(f, work, NULL), HL_OK);
+  memcpy(hl_image_pixels(work->expected), work->pixels, small_scene_floats(work->scene) * sizeof(float));
+}
+
+static void close_render(render_work *work) {
+  hl_image_destroy(work->expected);
+  hl_scene_release(work->scene);
+  hl_scene_release(work->other);
+  free(work->pixels);
+}
+
+static void test_rendering(void **state) {
+  (void)state;
+  faulty f;
+  faulty_open(&f);
+  for (size_t n = 0; n < small_scene_count; n++) {
+    render_work work;
+    open_render(&f, n, &work);
+    assert_true(faulty_fail_each(&f, render, NULL, &work) >= 20);
+    assert_true(faulty_stop_each(&f, render, NULL, &work) >= 2);
+    close_render(&work);
+  }
+  faulty_close(&f);
+}
+
+/* A renderer that has been shown another scene before every frame, so that it must make all its things anew. */
+static hl_status render_after_another(faulty *f, void *data, hl_error *error) {
+  render_work *work = data;
+  long allocations = atomic_exchange(&f->allocations_left, -1), questions = atomic_exchange(&f->questions_left, -1);
+  assert_int_equal(hl_renderer_render(work->renderer, work->other, work->pixels, 4 * 24, NULL, NULL), HL_OK);
+  atomic_store(&f->questions_left, questions);
+  atomic_store(&f->allocations_left, allocations);
+  return render_once(f, work, work->renderer, error);
+}
+
+static void test_the_renderer_goes_on(void **state) {
+  (void)state;
+  static const size_t scenes[] = {0, 2, 3, 4, 6};
+  faulty f;
+  faulty_open(&f);
+  for (size_t n = 0; n < sizeof scenes / sizeof scenes[0]; n++) {
+    render_work work;
+    open_render(&f, scenes[n], &work);
+    assert_int_equal(hl_renderer_create(f.context, &work.renderer, NULL), HL_OK);
+    assert_int_equal(small_scene_make(f.context, 5, folder, &work.other, NULL), HL_OK); /* "colors" */
+    faulty_fail_each(&f, n == 0 ? render_after_another : render, render_again, &work);
+    faulty_stop_each(&f, render, render_again, &work);
+    hl_renderer_destroy(work.renderer);
+    close_render(&work);
+  }
+  faulty_close(&f);
+}
+
+static hl_status render_reference(faulty *f, void *data, hl_error *error) {
+  render_work *work = data;
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.light_points = 2;
+  options.step = 2;
+  return hl_reference_render(f->context, work->scene, &options, work->pixels, 4 * 24, error);
+}
+
+static void test_the_reference(void **state) {
+  (void)state;
+  faulty f;
+  faulty_open(&f);
+  for (size_t n = 5; n < 7; n++) {
+    render_work work;
+    open_render(&f, n, &work);
+    assert_true(faulty_fail_each(&f, render_reference, NULL, &work) >= 8);
+    assert_true(faulty_stop_each(&f, render_reference, NULL, &work) >= 2);
+    close_render(&work);
+  }
+  faulty_close(&f);
+}
+
+static void test_the_context_itself(void **state) {
+  (void)state;
+  faulty f;
+  faulty_open(&f);
+  hl_context_options options = {.struct_size = sizeof options};
+  hl_context *context = NULL;
+  hl_error error = {0};
+  options.memory_limit = 100000;
+  assert_int_equal(hl_context_create(&options, &context, &error), HL_OK);
+  hl_image *image = NULL;
+  assert_int_equal(hl_image_create(context, 100, 100, &image, &error), HL_ERROR_MEMORY);
+  assert_null(image);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+  faulty_close(&f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_loading_volumes),      cmocka_unit_test(test_saving_volumes),
+      cmocka_unit_test(test_making_volumes),       cmocka_unit_test(test_scenes),
+      cmocka_unit_test(test_automatic_scenes),     cmocka_unit_test(test_pictures),
+      cmocka_unit_test(test_rendering),            cmocka_unit_test(test_the_renderer_goes_on),
+      cmocka_unit_test(test_the_reference),        cmocka_unit_test(test_the_context_itself),
+  };
+  return cmocka_run_group_tests(tests, open_folder, close_folder);
+}

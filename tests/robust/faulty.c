@@ -1,0 +1,103 @@
+/* tests/robust/faulty.c - see faulty.h. */
+#include "faulty.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static bool strikes(faulty *f, atomic_long *left, bool for_good) {
+  long before = atomic_load(left);
+  if (before < 0) return false;
+  before = atomic_fetch_sub(left, 1);
+  if (before > 0) return false;
+  if (for_good) atomic_store(left, 0);
+  if (before == 0 || for_good) atomic_store(&f->struck, true);
+  return before == 0 || for_good;
+}
+
+static void *allocate(void *user_data, size_t size, size_t alignment) {
+  faulty *f = user_data;
+  if (strikes(f, &f->allocations_left, atomic_load(&f->for_good))) return NULL;
+  return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+
+static void release(void *user_data, void *memory) {
+  (void)user_data;
+  free(memory);
+}
+
+static int cancelled(void *user_data) {
+  faulty *f = user_data;
+  return strikes(f, &f->questions_left, false);
+}
+
+void faulty_open(faulty *f) {
+  *f = (faulty){.context = NULL};
+  atomic_store(&f->allocations_left, -1);
+  atomic_store(&f->questions_left, -1);
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.user_data = f;
+  options.allocate = allocate;
+  options.release = release;
+  options.cancelled = cancelled;
+  assert_int_equal(hl_context_create(&options, &f->context, NULL), HL_OK);
+}
+
+void faulty_close(faulty *f) {
+  assert_int_equal(hl_context_memory_held(f->context), 0);
+  hl_context_destroy(f->context);
+}
+
+static void disarm(faulty *f) {
+  atomic_store(&f->allocations_left, -1);
+  atomic_store(&f->questions_left, -1);
+  atomic_store(&f->for_good, false);
+}
+
+/* One run with a fault ahead; false if the work came to its end before it. */
+static bool run(faulty *f, faulty_work *work, faulty_work *after, void *data, hl_status expected, bool may_recover) {
+  hl_error error = {0};
+  uint64_t held = hl_context_memory_held(f->context);
+  atomic_store(&f->struck, false);
+  hl_status status = work(f, data, &error);
+  disarm(f);
+  if (!atomic_load(&f->struck)) {
+    if (status != HL_OK) print_error("%s\n", error.message);
+    assert_int_equal(status, HL_OK);
+    return false;
+  }
+  if (may_recover && status == HL_OK) {
+    assert_true(hl_context_memory_held(f->context) == held);
+    return true;
+  }
+  if (status != expected) print_error("%d: %s\n", (int)status, error.message);
+  assert_int_equal(status, expected);
+  assert_int_equal(error.code, expected);
+  assert_true(error.message[0] != 0 && strchr(error.message, '\n') == NULL);
+  if (expected == HL_ERROR_MEMORY) assert_non_null(strstr(error.message, "memory"));
+  if (after != NULL) assert_int_equal(after(f, data, &error), HL_OK);
+  else assert_true(hl_context_memory_held(f->context) == held);
+  return true;
+}
+
+enum { EACH = 150, STEP = 7 }; /* beyond so many, every seventh: they come from loops over the like */
+
+long faulty_fail_each(faulty *f, faulty_work *work, faulty_work *after, void *data) {
+  for (long n = 0;; n += n < EACH ? 1 : STEP)
+    for (int for_good = 0; for_good < 2; for_good++) {
+      atomic_store(&f->for_good, for_good != 0);
+      atomic_store(&f->allocations_left, n);
+      if (!run(f, work, after, data, HL_ERROR_MEMORY, f->may_recover && !for_good)) return n;
+    }
+}
+
+long faulty_stop_each(faulty *f, faulty_work *work, faulty_work *after, void *data) {
+  for (long n = 0;; n += 1 + n / 4) {
+    atomic_store(&f->questions_left, n);
+    if (!run(f, work, after, data, HL_ERROR_CANCELLED, false)) return n;
+  }
+}
