@@ -1,4 +1,8 @@
 /* cli/main.c - the program: finds the subcommand, and answers --help and --version. */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -72,7 +76,23 @@ static int run_command(const cli_command *command, int argument_count, char **ar
   return help ? print_topic(command->name) : command->run(values, operands);
 }
 
+/* What the shell closed stays taken: else the picture's file would get its number, and messages would go into it. Nothing
+ * can be written to standard output then, which is told. */
+static void keep_standard_streams(void) {
+  for (int descriptor = 0; descriptor < 3; descriptor++)
+    if (fcntl(descriptor, F_GETFD) == -1 && errno == EBADF)
+      (void)open("/dev/null", descriptor == 1 ? O_RDONLY : O_RDWR);
+}
+
+/* A reader that goes away and a limit on file sizes end a write with a message, not the program without one. */
+static void take_errors_for_signals(void) {
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
+}
+
 int main(int argc, char **argv) {
+  keep_standard_streams();
+  take_errors_for_signals();
   if (argc < 2) return fail(EXIT_CODE_USAGE, "a command is missing: see 'halflight --help'");
   const char *name = argv[1];
   bool asks_help = strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0;

@@ -3,6 +3,8 @@
 #include "core/file.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -15,51 +17,69 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
 }
 
-static hl_status read_stream(hl_context *context, FILE *file, const char *path, size_t limit, unsigned char **bytes,
-                             size_t *length, hl_error *error) {
-  size_t capacity = 65536, used = 0;
-  unsigned char *buffer = hl_allocate(context, capacity, 1);
-  bool cancelled = false;
-  while (buffer != NULL && !cancelled) {
-    used += fread(buffer + used, 1, capacity - 1 - used, file);
-    if (used < capacity - 1) break;
-    if (used > limit) break;
-    unsigned char *larger = hl_reallocate(context, buffer, capacity * 2, 1);
-    if (larger == NULL) hl_release(context, buffer);
-    buffer = larger;
-    capacity *= 2;
-    cancelled = hl_cancelled(context);
+hl_status hl_file_open(const char *path, int *descriptor, hl_error *error) {
+  *descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  return *descriptor < 0 ? fail_system(error, path, "open") : HL_OK;
+}
+
+hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity, size_t *count,
+                       hl_error *error) {
+  enum { MILLISECONDS_BETWEEN_QUESTIONS = 20 };
+  for (*count = 0;;) {
+    struct pollfd wanted = {.fd = descriptor, .events = POLLIN};
+    int ready;
+    while ((ready = poll(&wanted, 1, MILLISECONDS_BETWEEN_QUESTIONS)) == 0 || (ready < 0 && errno == EINTR))
+      if (hl_cancelled(context)) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", path);
+    ssize_t got = read(descriptor, bytes, capacity);
+    if (got >= 0) *count = (size_t)got;
+    if (got >= 0) return HL_OK;
+    if (errno != EINTR && errno != EAGAIN) return fail_system(error, path, "read");
   }
-  if (buffer == NULL) return hl_fail_memory(error, capacity, path);
-  if (cancelled) {
-    hl_release(context, buffer);
-    return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", path);
+}
+
+static hl_status read_all(hl_context *context, int descriptor, const char *path, size_t limit, unsigned char **bytes,
+                          size_t *length, hl_error *error) {
+  enum { GREATEST_PIECE = 1 << 23 }; /* between two questions whether to stop */
+  size_t capacity = 65536, got = 0;
+  hl_status status = HL_OK;
+  *bytes = hl_allocate(context, capacity, 1);
+  for (*length = 0; *bytes != NULL; *length += got) {
+    if (*length + 1 == capacity) {
+      unsigned char *larger = hl_reallocate(context, *bytes, capacity * 2, 1);
+      if (larger == NULL) hl_release(context, *bytes);
+      *bytes = larger;
+      capacity *= 2;
+      if (larger == NULL) break;
+    }
+    size_t room = capacity - 1 - *length;
+    status = hl_cancelled(context)
+                 ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", path)
+                 : hl_file_pull(context, descriptor, path, *bytes + *length, room < GREATEST_PIECE ? room : GREATEST_PIECE, &got, error);
+    if (status != HL_OK || got == 0) return status;
+    if (*length + got > limit)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: more than %zu bytes, too large for a file of this kind", path, limit);
   }
-  if (ferror(file)) {
-    hl_release(context, buffer);
-    return fail_system(error, path, "read");
-  }
-  if (used > limit) {
-    hl_release(context, buffer);
-    return hl_fail(error, HL_ERROR_INPUT, "%s: more than %zu bytes, too large for a file of this kind", path, limit);
-  }
-  buffer[used] = 0;
-  *bytes = buffer;
-  *length = used;
-  return HL_OK;
+  return hl_fail_memory(error, capacity, path);
 }
 
 hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes, size_t *length,
                        hl_error *error) {
   struct stat information;
-  FILE *file = fopen(path, "rb");
-  if (file == NULL) return fail_system(error, path, "open");
-  if (fstat(fileno(file), &information) == 0 && S_ISDIR(information.st_mode)) {
-    fclose(file);
-    return hl_fail(error, HL_ERROR_IO, "%s: is a folder, expected a file", path);
+  int descriptor;
+  *bytes = NULL;
+  hl_status status = hl_file_open(path, &descriptor, error);
+  if (status != HL_OK) return status;
+  if (fstat(descriptor, &information) == 0 && S_ISDIR(information.st_mode))
+    status = hl_fail(error, HL_ERROR_IO, "%s: is a folder, expected a file", path);
+  else
+    status = read_all(context, descriptor, path, limit, bytes, length, error);
+  close(descriptor);
+  if (status == HL_OK) {
+    (*bytes)[*length] = 0;
+  } else {
+    hl_release(context, *bytes);
+    *bytes = NULL;
   }
-  hl_status status = read_stream(context, file, path, limit, bytes, length, error);
-  fclose(file);
   return status;
 }
 
@@ -75,7 +95,7 @@ hl_status hl_output_begin(hl_context *context, const char *path, hl_output *outp
   }
   memcpy(output->temporary_path, path, length);
   memcpy(output->temporary_path + length, ".XXXXXX", 8);
-  int descriptor = mkstemp(output->temporary_path);
+  int descriptor = mkostemp(output->temporary_path, O_CLOEXEC);
   if (descriptor < 0) {
     hl_release(context, output->temporary_path);
     output->temporary_path = NULL;

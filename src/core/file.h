@@ -6,6 +6,12 @@
 
 #include "core/error.h"
 
+/* Opens for reading; a pipe without a writer does not hold it up. */
+hl_status hl_file_open(const char *path, int *descriptor, hl_error *error);
+/* Reads up to capacity bytes, 0 at the end. Where there is nothing yet, as in a pipe, it waits and asks whether to stop. */
+hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity, size_t *count,
+                       hl_error *error);
+
 /* Reads a whole file of at most limit bytes. *bytes is owned by the caller (hl_release) and is
  * followed by one zero byte. */
 hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes, size_t *length,

@@ -3,7 +3,6 @@
 #include "volume/stream.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -45,13 +44,9 @@ void hl_stream_close(hl_stream *stream) {
 static hl_status file_pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count,
                            hl_error *error) {
   file_stream *file = (file_stream *)stream;
-  ssize_t got;
-  do got = read(file->descriptor, bytes, capacity);
-  while (got < 0 && errno == EINTR);
-  if (got < 0) return hl_fail(error, HL_ERROR_IO, "%s: cannot read: %s", stream->path, strerror(errno));
-  *count = (size_t)got;
-  file->position += (uint64_t)got;
-  return HL_OK;
+  hl_status status = hl_file_pull(stream->context, file->descriptor, stream->path, bytes, capacity, count, error);
+  file->position += *count;
+  return status;
 }
 
 static uint64_t file_at_most(const hl_stream *stream) {
@@ -70,9 +65,9 @@ static hl_status file_begin(file_stream *file, const char *path, bool regular_on
   struct stat information;
   file->base.path = hl_copy_text(file->base.context, path);
   if (file->base.path == NULL) return hl_fail_memory(error, strlen(path), path);
-  /* Non-blocking, so that a name that leads to a pipe without a writer cannot hang the program. */
-  file->descriptor = open(path, O_RDONLY | O_CLOEXEC | (regular_only ? O_NONBLOCK : 0));
-  if (file->descriptor < 0 || fstat(file->descriptor, &information) != 0)
+  hl_status status = hl_file_open(path, &file->descriptor, error);
+  if (status != HL_OK) return status;
+  if (fstat(file->descriptor, &information) != 0)
     return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", path, strerror(errno));
   file->regular = S_ISREG(information.st_mode);
   file->size = file->regular && information.st_size > 0 ? (uint64_t)information.st_size : 0;
