@@ -84,6 +84,7 @@ void hl_log(const hl_context *context, hl_log_level level, const char *format, .
   va_start(arguments, format);
   vsnprintf(line, sizeof line, format, arguments);
   va_end(arguments);
+  hl_make_printable(line);
   context->options.log(context->options.user_data, level, line);
 }
 

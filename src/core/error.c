@@ -21,6 +21,11 @@ const char *hl_status_name(hl_status status) {
 
 const char *hl_version(void) { return "0.1.0"; }
 
+void hl_make_printable(char *line) {
+  for (; *line != 0; line++)
+    if ((unsigned char)*line < 0x20 || *line == 0x7f) *line = '?';
+}
+
 static hl_status fail(hl_error *error, hl_status code, int line, int column, int64_t offset, const char *format,
                       va_list arguments) {
   if (error == NULL) return code;
@@ -29,6 +34,7 @@ static hl_status fail(hl_error *error, hl_status code, int line, int column, int
   error->column = column;
   error->byte_offset = offset;
   vsnprintf(error->message, sizeof error->message, format, arguments);
+  hl_make_printable(error->message);
   return code;
 }
 

@@ -18,4 +18,7 @@ __attribute__((format(printf, 4, 5))) hl_status hl_fail_offset(hl_error *error, 
 /* "out of memory: NAME needs N bytes ..." */
 hl_status hl_fail_memory(hl_error *error, size_t bytes, const char *what);
 
+/* Control characters, which names in foreign files may hold, become '?': a message is one line and steers no terminal. */
+void hl_make_printable(char *line);
+
 #endif

@@ -37,7 +37,7 @@ static double length_at_content(const light_source *source, const view *view, ve
 /* Weights of neighbouring pixels for each pixel of a result. */
 typedef struct axis_weights {
   int count, taps;
-  int *first;      /* owned; [count]; the first pixel that is weighed; may be outside the image, where it is dark */
+  int *first;      /* owned; [count]; the first pixel that is weighed; all of them are in the image, beyond which it is dark */
   float *weights;  /* owned; [count][taps] */
 } axis_weights;
 
@@ -53,21 +53,22 @@ static double part_of_disk(double x) {
   return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
 }
 
-/* Result pixel i is the kernel's mean around start + (i + 1/2) step, in pixels of the image. */
+/* Result pixel i is the kernel's mean around start + (i + 1/2) step, in pixels of the image, which has length of them. */
 static hl_status weigh_axis(hl_context *context, kernel_part *part, double half_width, double start, double step, int count,
-                            axis_weights *axis, hl_error *error) {
+                            int length, axis_weights *axis, hl_error *error) {
   axis->count = count;
-  axis->taps = (int)ceil(2 * half_width) + 2;
+  axis->taps = (int)fmin(ceil(2 * half_width) + 2, length);
+  size_t taps = (size_t)axis->taps;
   axis->first = hl_allocate(context, (size_t)count, sizeof *axis->first);
-  axis->weights = hl_allocate(context, (size_t)count * (size_t)axis->taps, sizeof *axis->weights);
+  axis->weights = hl_allocate(context, (size_t)count, taps * sizeof *axis->weights);
   if (axis->first == NULL || axis->weights == NULL)
-    return hl_fail_memory(error, (size_t)count * (size_t)axis->taps * sizeof(float), "a light's texture");
+    return hl_fail_memory(error, (size_t)count * taps * sizeof(float), "a light's texture");
   for (int i = 0; i < count; i++) {
     double middle = start + (i + 0.5) * step;
-    int first = (int)floor(middle - half_width);
+    int first = (int)fmin(fmax(floor(middle - half_width), 0), length - axis->taps);
     axis->first[i] = first;
     for (int tap = 0; tap < axis->taps; tap++)
-      axis->weights[i * axis->taps + tap] =
+      axis->weights[(size_t)i * taps + (size_t)tap] =
           (float)(part((first + tap + 1 - middle) / half_width) - part((first + tap - middle) / half_width));
   }
   return HL_OK;
@@ -79,13 +80,13 @@ static void release_axis(hl_context *context, axis_weights *axis) {
 }
 
 /* One line of pixels of three channels, from_step and to_step floats apart. */
-static void convolve_line(const float *from, size_t from_step, int count, const axis_weights *axis, float *to, size_t to_step) {
+static void convolve_line(const float *from, size_t from_step, const axis_weights *axis, float *to, size_t to_step) {
   for (int i = 0; i < axis->count; i++) {
-    const float *weights = axis->weights + i * axis->taps;
-    int first = axis->first[i], begin = first < 0 ? -first : 0, end = count - first < axis->taps ? count - first : axis->taps;
+    const float *weights = axis->weights + (size_t)i * (size_t)axis->taps;
+    const float *pixel = from + (size_t)axis->first[i] * from_step;
     float sum[3] = {0, 0, 0};
-    for (int tap = begin; tap < end; tap++)
-      for (size_t c = 0; c < 3; c++) sum[c] += weights[tap] * from[(size_t)(first + tap) * from_step + c];
+    for (int tap = 0; tap < axis->taps; tap++, pixel += from_step)
+      for (size_t c = 0; c < 3; c++) sum[c] += weights[tap] * pixel[c];
     for (size_t c = 0; c < 3; c++) to[(size_t)i * to_step + c] = sum[c];
   }
 }
@@ -100,11 +101,11 @@ static hl_status convolve(hl_context *context, const float *from, int width, int
   if (narrow == NULL) return hl_fail_memory(error, narrow_width * (size_t)height * sizeof *narrow, "a light's texture");
   bool cancelled = false;
   for (int y = 0; y < height && !cancelled; y++) {
-    convolve_line(from + 3 * (size_t)y * (size_t)width, 3, width, u, narrow + (size_t)y * narrow_width, 3);
+    convolve_line(from + 3 * (size_t)y * (size_t)width, 3, u, narrow + (size_t)y * narrow_width, 3);
     cancelled = y % LINES_BETWEEN_QUESTIONS == 0 && hl_cancelled(context);
   }
   for (int x = 0; x < u->count && !cancelled; x++) {
-    convolve_line(narrow + 3 * (size_t)x, narrow_width, height, v, to + 3 * (size_t)x, narrow_width);
+    convolve_line(narrow + 3 * (size_t)x, narrow_width, v, to + 3 * (size_t)x, narrow_width);
     cancelled = x % LINES_BETWEEN_QUESTIONS == 0 && hl_cancelled(context);
   }
   hl_release(context, narrow);
@@ -120,9 +121,10 @@ typedef struct level_plan {
 static hl_status make_level(hl_context *context, kernel_part *part, const float *from, int width, int height,
                             const level_plan *plan, float *to, hl_error *error) {
   axis_weights u = {0}, v = {0};
-  hl_status status = weigh_axis(context, part, plan->half_width[0], plan->start[0], plan->step[0], plan->width, &u, error);
+  hl_status status =
+      weigh_axis(context, part, plan->half_width[0], plan->start[0], plan->step[0], plan->width, width, &u, error);
   if (status == HL_OK)
-    status = weigh_axis(context, part, plan->half_width[1], plan->start[1], plan->step[1], plan->height, &v, error);
+    status = weigh_axis(context, part, plan->half_width[1], plan->start[1], plan->step[1], plan->height, height, &v, error);
   if (status == HL_OK) status = convolve(context, from, width, height, &u, &v, to, error);
   release_axis(context, &u);
   release_axis(context, &v);
@@ -154,8 +156,9 @@ static double blur_at(const light_source *source, const view *view, vec3 point) 
 }
 
 /* Level 0 blurs by 1.4 pixels of the picture, every other by the root of 2 more; pixels of a level are half as large as
- * its blur, no smaller than 0.7 of the picture's. */
+ * its blur, no smaller than 0.7 of the picture's; an image that is magnified beyond the greatest side gets coarser ones. */
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
+enum { GREATEST_LEVEL_SIDE = 8192 };
 
 static level_plan plan_level(const light_screen *screen, const double deviation[2], double half_widths, double blur) {
   level_plan plan;
@@ -164,9 +167,9 @@ static level_plan plan_level(const light_screen *screen, const double deviation[
   for (int axis = 0; axis < 2; axis++) {
     double sigma = deviation[axis] * blur, least = LEAST_PIXEL / (double)screen->sharpness[axis];
     plan.half_width[axis] = fmax(half_widths * sigma, 0.5 / (double)screen->sharpness[axis]);
-    plan.step[axis] = fmax(sigma * LEVEL_PIXEL, least);
-    double margin = plan.half_width[axis] + 2 * plan.step[axis];
-    size[axis] = (int)ceil((image[axis] + 2 * margin) / plan.step[axis]);
+    double extent = image[axis] + 2 * plan.half_width[axis];
+    plan.step[axis] = fmax(fmax(sigma * LEVEL_PIXEL, least), extent / (GREATEST_LEVEL_SIDE - 4));
+    size[axis] = (int)fmin(ceil(extent / plan.step[axis] + 4), GREATEST_LEVEL_SIDE); /* two more on either side */
     plan.start[axis] = (image[axis] - size[axis] * plan.step[axis]) / 2;
   }
   plan.width = size[0];

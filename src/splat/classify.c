@@ -82,7 +82,7 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   classifier->color = classifier->sums + COUNT;
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
-  if (!(high > low)) high = low + 1;
+  if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low)); /* 1 alone is lost on 1e30 */
   classifier->scale = (float)(grid->value_scale * CLASSIFIER_ENTRIES / (high - low));
   classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
   classifier->normal_edge = normal_edge(volume, grid);

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Writes the table of fuzz targets into a document, between its markers.
+
+usage: report.py DOCUMENT (from the source folder)
+Executions, seconds and findings come from build-fuzz/logs, line coverage from the corpus programs of build-coverage, run
+over the committed inputs and those of build-fuzz/corpus. The exit status is 1 if a campaign ended with a finding.
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+BEGIN, END = "<!-- fuzz table -->", "<!-- end of fuzz table -->"
+
+# What a target is for: its title, and the files whose lines count.
+TARGETS = {
+    "nrrd": ("NRRD", ["volume/nrrd.c"]),
+    "nifti": ("NIfTI", ["volume/nifti.c"]),
+    "metaimage": ("MetaImage", ["volume/metaimage.c"]),
+    "legacy_vtk": ("legacy VTK", ["volume/legacy_vtk.c"]),
+    "vti": ("VTK XML", ["volume/vti.c", "volume/xml.c"]),
+    "raw": ("bare voxels, descriptors", ["volume/raw.c"]),
+    "transfer": ("transfer functions", ["scene/transfer_load.c", "scene/json_transfer.c"]),
+    "shapes": ("shapes", ["scene/json_shapes.c", "scene/shapes_volume.c", "shape/"]),
+    "picture": ("PNG, OpenEXR, NPY", ["image/png_read.c", "image/exr_read.c", "image/npy.c"]),
+    "scene": ("scene files", ["scene/json_", "scene/scene_json.c", "scene/check.c", "scene/scene.c"]),
+    "render": ("whole renders", ["render/", "light/", "splat/"])}
+SHARED = ("all volume files, what they share included", ["volume/"],
+          ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "raw"])
+
+root = pathlib.Path(__file__).resolve().parents[2]
+coverage = root / "build-coverage"
+
+
+def campaign(target):
+    """(executions, seconds, a finding or not) of a log; None where there is none."""
+    log = root / "build-fuzz" / "logs" / f"{target}.log"
+    text = log.read_text(errors="replace") if log.exists() else ""
+    runs = re.search(r"stat::number_of_executed_units:\s*(\d+)", text)
+    done = re.search(r"Done \d+ runs in (\d+) second", text)
+    return (int(runs[1]), int(done[1]) if done else 0, done is None) if runs else None
+
+
+def profile(target):
+    """Runs a target over both its corpora; the profile's path."""
+    made = coverage / f"{target}.profdata"
+    raw = []
+    for folder in (root / "tests/fuzz/corpus" / target, root / "build-fuzz/corpus" / target):
+        if folder.is_dir() and any(folder.iterdir()):
+            raw.append(coverage / f"{target}-{len(raw)}.profraw")
+            subprocess.run([coverage / f"tests/fuzz/fuzz_{target}_corpus", folder], check=True, stdout=subprocess.DEVNULL,
+                           env=dict(os.environ, LLVM_PROFILE_FILE=str(raw[-1])))
+    subprocess.run(["llvm-profdata", "merge", "-sparse", *raw, "-o", made], check=True)
+    return made
+
+
+def lines(programs, profile_data, parts):
+    """Covered and all lines of the sources whose path has one of the parts."""
+    objects = [f"--object={program}" for program in programs[1:]]
+    text = subprocess.run(["llvm-cov", "export", "-summary-only", f"-instr-profile={profile_data}", programs[0], *objects],
+                          check=True, capture_output=True, text=True).stdout
+    files = [f for f in json.loads(text)["data"][0]["files"]
+             if any("/src/" + part in os.path.normpath(f["filename"]) for part in parts)]
+    return sum(f["summary"]["lines"]["covered"] for f in files), sum(f["summary"]["lines"]["count"] for f in files)
+
+
+def percent(counted):
+    return f"{100 * counted[0] / counted[1]:.0f} %"
+
+
+def program(target):
+    return coverage / f"tests/fuzz/fuzz_{target}_corpus"
+
+
+rows = ["| target | executions | seconds | a second | lines covered | finding |", "|---|--:|--:|--:|--:|---|"]
+profiles, found = {}, False
+for target, (title, parts) in TARGETS.items():
+    run = campaign(target)
+    profiles[target] = profile(target)
+    covered = percent(lines([program(target)], profiles[target], parts))
+    if run is None:
+        rows.append(f"| {title} | | | | {covered} | not run |")
+        continue
+    executions, seconds, finding = run
+    found = found or finding
+    rows.append(f"| {title} | {executions:,} | {seconds:,} | {executions // max(seconds, 1):,} | {covered} | "
+                f"{'yes' if finding else 'none'} |")
+title, parts, members = SHARED
+merged = coverage / "volumes.profdata"
+subprocess.run(["llvm-profdata", "merge", "-sparse", *(profiles[m] for m in members), "-o", merged], check=True)
+rows.append(f"| {title} | | | | {percent(lines([program(m) for m in members], merged, parts))} | |")
+
+document = pathlib.Path(sys.argv[1])
+text = document.read_text()
+before, rest = text.split(BEGIN, 1)
+document.write_text(before + BEGIN + "\n\n" + "\n".join(rows) + "\n\n" + END + rest.split(END, 1)[1])
+print("\n".join(rows))
+sys.exit(1 if found else 0)
