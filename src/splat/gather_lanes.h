@@ -8,13 +8,13 @@
 #include "splat/place_lanes.h"
 #include "splat/window_lanes.h"
 
-/* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t. */
+/* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t; their sum is 1. */
 LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes weight[4]) {
   lanes s = 1.0f - t;
   weight[0] = kernel_piece(kernel->outer, degree, t);
   weight[1] = kernel_piece(kernel->inner, degree, t);
-  weight[2] = kernel_piece(kernel->inner, degree, s);
   weight[3] = kernel_piece(kernel->outer, degree, s);
+  weight[2] = 1.0f - (weight[0] + weight[1] + weight[3]);
 }
 
 /* Four neighbouring voxels along x for every lane, weighed and added; offsets in bytes. u8 in WHOLE_UNITs. */

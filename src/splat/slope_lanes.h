@@ -12,13 +12,13 @@ LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
   return sum;
 }
 
-/* Derivatives of the four taps' weights; the two on the far side see their distance shrink. */
+/* Derivatives of the four taps' weights; the two on the far side see their distance shrink. Their sum is 0. */
 LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes slope[4]) {
   lanes s = 1.0f - t;
   slope[0] = kernel_piece_slope(kernel->outer, degree, t);
   slope[1] = kernel_piece_slope(kernel->inner, degree, t);
-  slope[2] = -kernel_piece_slope(kernel->inner, degree, s);
   slope[3] = -kernel_piece_slope(kernel->outer, degree, s);
+  slope[2] = -(slope[0] + slope[1] + slope[3]);
 }
 
 typedef struct tap_slope_weights { lanes weight[3][4], slope[3][4]; } tap_slope_weights;

@@ -16,10 +16,18 @@ static const float WHOLE_UNIT = 1 << 21, WHOLE_INVERSE = 1.0f / (1 << 21);
 
 typedef struct whole_weights { lanes_int tap[4]; } whole_weights;
 
+/* Rounded to the nearest whole number, |x| < 2^22: of a float from 2^23 to 2^24 a unit is the last bit, and adding
+ * rounds to it. */
+LANES_INLINE lanes_int round_to_whole(lanes x) {
+  const float units = 3 << 22;
+  return (lanes_int)(x + units) - (lanes_int)lanes_set(units);
+}
+
 /* Rounded; the third takes the error of the others, so that the sum is total units. */
 LANES_INLINE whole_weights round_weights(const lanes weight[4], int total) {
   whole_weights whole;
-  for (int i = 0; i < 4; i++) whole.tap[i] = lanes_floor(weight[i] * WHOLE_UNIT + 0.5f);
+  for (int i = 0; i < 4; i++)
+    if (i != 2) whole.tap[i] = round_to_whole(weight[i] * WHOLE_UNIT);
   whole.tap[2] = total * (1 << 21) - (whole.tap[0] + whole.tap[1] + whole.tap[3]);
   return whole;
 }
@@ -88,19 +96,22 @@ LANES_INLINE __m512i window_taps(const byte_window *window, __m512i slice, int y
 typedef struct byte_weights { __m512i digit[3]; } byte_weights;
 
 LANES_INLINE byte_weights split_weights(const whole_weights *whole) {
-  byte_weights weights;
   __m512i biased[4];
-  const __m512i bias = _mm512_set1_epi32(0x808080);
+  const __m512i bias = _mm512_set1_epi32(0x808080), sign = _mm512_set1_epi32((int)0x80808080);
   for (int tap = 0; tap < 4; tap++) biased[tap] = _mm512_add_epi32((__m512i)whole->tap[tap], bias);
-  const __m512i byte = _mm512_set1_epi32(255);
-  for (int place = 0; place < 3; place++) {
-    __m512i packed = _mm512_setzero_si512();
-    for (int tap = 0; tap < 4; tap++) {
-      __m512i digit = _mm512_and_si512(_mm512_srli_epi32(biased[tap], (unsigned)(16 - 8 * place)), byte);
-      packed = _mm512_or_si512(packed, _mm512_slli_epi32(digit, (unsigned)(8 * tap)));
-    }
-    weights.digit[place] = _mm512_xor_si512(packed, _mm512_set1_epi32((int)0x80808080));
-  }
+  /* bytes of each lane: of two taps, the two lower digits in turn, or the highest; then of all four one digit each */
+  const __m512i lane = _mm512_set_epi32(0x3c3c3c3c, 0x38383838, 0x34343434, 0x30303030, 0x2c2c2c2c, 0x28282828, 0x24242424,
+                                        0x20202020, 0x1c1c1c1c, 0x18181818, 0x14141414, 0x10101010, 0x0c0c0c0c, 0x08080808,
+                                        0x04040404, 0);
+  const __m512i lower = _mm512_add_epi8(lane, _mm512_set1_epi32(0x41014000)), highest = _mm512_add_epi8(lane, _mm512_set1_epi32(0x42024202));
+  const __m512i first = _mm512_add_epi8(lane, _mm512_set1_epi32(0x41400100)), second = _mm512_add_epi8(lane, _mm512_set1_epi32(0x43420302));
+  __m512i low = _mm512_permutex2var_epi8(biased[0], lower, biased[1]), high = _mm512_permutex2var_epi8(biased[2], lower, biased[3]);
+  __m512i low_top = _mm512_permutex2var_epi8(biased[0], highest, biased[1]);
+  __m512i high_top = _mm512_permutex2var_epi8(biased[2], highest, biased[3]);
+  byte_weights weights;
+  weights.digit[2] = _mm512_xor_si512(_mm512_permutex2var_epi8(low, first, high), sign);
+  weights.digit[1] = _mm512_xor_si512(_mm512_permutex2var_epi8(low, second, high), sign);
+  weights.digit[0] = _mm512_xor_si512(_mm512_permutex2var_epi8(low_top, first, high_top), sign);
   return weights;
 }
 
