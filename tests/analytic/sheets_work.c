@@ -1,0 +1,135 @@
+/* analytic/sheets_work.c - work is done for what is seen: what is empty, out of sight or hidden costs next to nothing,
+ * counted in pixels reconstructed, which do not depend on the machine. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 64, FLOATS = SIDE * SIDE * 4, BALL = 24 };
+
+static const hl_opacity_point EDGE[] = {{0, 0}, {0.45, 0}, {0.55, 0.9}, {1, 0.9}};
+
+/* A ball in the middle of a cube of air, whose middle is at `middle`. */
+static hl_scene_volume *add_ball(stage *set, size_t n, vec3 middle) {
+  float *voxels = malloc(n * n * n * sizeof *voxels);
+  assert_non_null(voxels);
+  double centre = (double)(n - 1) / 2, half = (double)n / 2;
+  for (size_t i = 0; i < n * n * n; i++) {
+    double x = (double)(i % n) - centre, y = (double)(i / n % n) - centre, z = (double)(i / n / n) - centre;
+    double value = 0.5 + (BALL / 2 - 3 - sqrt(x * x + y * y + z * z)) / 4;
+    voxels[i] = (float)fmin(fmax(value, 0), 1);
+  }
+  set->type = HL_VOXEL_U8;
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){n, n, n}, (double[3]){1, 1, 1},
+                                           vec3_subtract(middle, (vec3){half, half, half}), voxels);
+  free(voxels);
+  volume->transfer_function.opacity = EDGE;
+  volume->transfer_function.opacity_count = sizeof EDGE / sizeof *EDGE;
+  return volume;
+}
+
+static void open_scene(stage *set, hl_shadows shadows) {
+  stage_open(set);
+  set->scene.render.shadows = shadows;
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 32;
+  stage_look(set, (vec3){60, -50, 40}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  stage_add_directional(set, (vec3){-1, 0.3, -1})->angular_diameter_deg = 6;
+}
+
+typedef struct work { uint64_t image, light; } work;
+
+static work render(stage *set, float *pixels) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  hl_render_statistics statistics = {.struct_size = sizeof statistics};
+  if (hl_scene_create(set->context, &set->scene, &scene, &error) != HL_OK ||
+      hl_renderer_create(set->context, &renderer, &error) != HL_OK ||
+      hl_renderer_render(renderer, scene, pixels, 4 * SIDE, &statistics, &error) != HL_OK)
+    fail_msg("%s", error.message);
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+  return (work){statistics.pixels_filled_image, statistics.pixels_filled_light};
+}
+
+static void assert_at_most(uint64_t more, uint64_t base, double factor, const char *what) {
+  if ((double)more > factor * (double)base)
+    fail_msg("%s: %llu pixels instead of %llu", what, (unsigned long long)more, (unsigned long long)base);
+}
+
+static const hl_shadows SHADOWS[] = {HL_SHADOWS_OFF, HL_SHADOWS_HARD, HL_SHADOWS_SOFT};
+
+/* Eight times the voxels, all of them air. Soft buffers' pixels lie elsewhere then, hence the per cent. */
+static void test_empty_space(void **state) {
+  (void)state;
+  static float near[FLOATS], far[FLOATS];
+  for (int s = 0; s < 3; s++) {
+    work of[2];
+    for (int wide = 0; wide < 2; wide++) {
+      stage set;
+      open_scene(&set, SHADOWS[s]);
+      add_ball(&set, wide ? 2 * BALL : BALL, (vec3){0, 0, 0});
+      of[wide] = render(&set, wide ? far : near);
+      stage_close(&set);
+    }
+    assert_true(of[0].image > 10000 && (s == 0 || of[0].light > 10000));
+    assert_at_most(of[1].image, of[0].image, 1.05, "image, among air");
+    assert_at_most(of[1].light, of[0].light, 1.05, "light, among air");
+  }
+}
+
+/* A second ball beside the picture, whose shadow passes it by: the same picture, and no more pixels than sheets at
+ * other heights make. */
+static void test_out_of_sight(void **state) {
+  (void)state;
+  static float alone[FLOATS], beside[FLOATS];
+  for (int s = 0; s < 2; s++) {
+    work of[2];
+    for (int other = 0; other < 2; other++) {
+      stage set;
+      open_scene(&set, SHADOWS[s]);
+      add_ball(&set, BALL, (vec3){0, 0, 0});
+      if (other) add_ball(&set, BALL, (vec3){-50, -60, 0});
+      of[other] = render(&set, other ? beside : alone);
+      stage_close(&set);
+    }
+    assert_at_most(of[1].image, of[0].image, 1.02, "image, beside");
+    assert_at_most(of[1].light, of[0].light, 1.02, "light, beside");
+    double sum = 0;
+    for (int i = 0; i < FLOATS; i++) sum += (double)(alone[i] - beside[i]) * (double)(alone[i] - beside[i]);
+    if (!(sqrt(sum / FLOATS) < 2e-3)) fail_msg("pictures differ by %g", sqrt(sum / FLOATS));
+  }
+}
+
+/* A ball right behind another one, seen from in front: its rays are closed before they reach it. */
+static void test_hidden(void **state) {
+  (void)state;
+  static float pixels[FLOATS];
+  work of[2];
+  for (int hidden = 0; hidden < 2; hidden++) {
+    stage set;
+    open_scene(&set, HL_SHADOWS_OFF);
+    vec3 away = vec3_scale(vec3_normalise((vec3){-60, 50, -40}), BALL);
+    hl_scene_volume *front = add_ball(&set, BALL, (vec3){0, 0, 0});
+    stage_set_opacity(&set, front, 0.99, 1);
+    if (hidden) add_ball(&set, BALL, away);
+    of[hidden] = render(&set, pixels);
+    stage_close(&set);
+  }
+  assert_at_most(of[1].image, of[0].image, 1.05, "image, behind");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_empty_space),
+      cmocka_unit_test(test_out_of_sight),
+      cmocka_unit_test(test_hidden),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
