@@ -89,6 +89,7 @@ static void test_empty_space(void **state) {
 static void test_out_of_sight(void **state) {
   (void)state;
   static float alone[FLOATS], beside[FLOATS];
+  static const double limit[] = {0, 0.006}; /* what hard shadows may err: their buffer's pixels lie elsewhere */
   for (int s = 0; s < 2; s++) {
     work of[2];
     for (int other = 0; other < 2; other++) {
@@ -103,7 +104,7 @@ static void test_out_of_sight(void **state) {
     assert_at_most(of[1].light, of[0].light, 1.02, "light, beside");
     double sum = 0;
     for (int i = 0; i < FLOATS; i++) sum += (double)(alone[i] - beside[i]) * (double)(alone[i] - beside[i]);
-    if (!(sqrt(sum / FLOATS) < 2e-3)) fail_msg("pictures differ by %g", sqrt(sum / FLOATS));
+    if (!(sqrt(sum / FLOATS) <= limit[s])) fail_msg("pictures differ by %g", sqrt(sum / FLOATS));
   }
 }
 
