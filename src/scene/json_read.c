@@ -18,6 +18,13 @@ const char *const hl_reconstruction_names[] = {"auto", "splat", "gather", NULL};
 const char *const hl_slicing_names[] = {"half-vector", "image-aligned", NULL};
 const char *const hl_shadow_lookup_names[] = {"bilinear", "nearest", NULL};
 
+json_t *hl_json_copy(const json_t *value) {
+  json_t *copy = json_copy((json_t *)value);
+  if (json_object_size(copy) == json_object_size(value)) return copy; /* members that it had no room for are left out */
+  json_decref(copy);
+  return NULL;
+}
+
 hl_status hl_json_parse(const char *text, size_t length, const char *name, json_t **root, hl_error *error) {
   json_error_t fault;
   if (length > HL_JSON_LIMIT)
@@ -25,7 +32,8 @@ hl_status hl_json_parse(const char *text, size_t length, const char *name, json_
                    name, length, HL_JSON_LIMIT);
   *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
-  if (json_error_code(&fault) == json_error_out_of_memory) return hl_fail_memory(error, length, name);
+  /* without memory for its first buffer the parser gives no reason, and no line */
+  if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1) return hl_fail_memory(error, length, name);
   bool comment = strstr(fault.text, "near '/'") != NULL || strstr(fault.text, "near '//") != NULL;
   return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line,
                     fault.column, fault.text, comment ? ": JSON has no comments, remove them" : "");

@@ -26,6 +26,9 @@ typedef struct hl_json_reader {
 /* Text to a tree (json_decref by the caller); a syntax error gives NAME:LINE:COLUMN. */
 hl_status hl_json_parse(const char *text, size_t length, const char *name, json_t **root, hl_error *error);
 
+/* A copy, members shared, with all of them; null without memory. */
+json_t *hl_json_copy(const json_t *value);
+
 /* "NAME: PLACE/KEY: ..."; key may be null (the place itself). */
 __attribute__((format(printf, 4, 5))) hl_status hl_json_fail(hl_json_reader *reader, hl_status code,
                                                              const char *key, const char *format, ...);

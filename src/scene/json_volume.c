@@ -203,7 +203,7 @@ static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, h
   if (file == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "stand_in", "is for a file that may be absent: name one, or remove it");
   if (is_there(reader, file)) return HL_OK;
-  json_t *merged = json_copy((json_t *)*value);
+  json_t *merged = hl_json_copy(*value);
   json_object_del(merged, "stand_in");
   json_object_del(merged, "file");
   if (shelf->stood_in == NULL) shelf->stood_in = json_array();

@@ -16,6 +16,10 @@ typedef struct faulty {
   bool may_recover;             /* work may do without one failing allocation; it then checks its result itself */
 } faulty;
 
+/* True where the system's allocator is to fail: faulty_system.c asks. Its failures count like the context's, but work may
+ * do without (a thread less, no buffer for a file), and the error may have another name. */
+bool faulty_system_strikes(void);
+
 void faulty_open(faulty *f);
 void faulty_close(faulty *f); /* asserts that nothing is held */
 
