@@ -192,21 +192,28 @@ void stage_render(stage *set, const hl_reference_options *options, float *pixels
   hl_scene_release(scene);
 }
 
-void stage_render_with(stage *set, hl_renderer *renderer, float *pixels) {
+static hl_render_statistics render_with(stage *set, hl_renderer *renderer, float *pixels) {
   hl_error error = {0};
   hl_scene *scene = NULL;
+  hl_render_statistics statistics = {.struct_size = sizeof statistics};
   require(hl_scene_create(set->context, &set->scene, &scene, &error), &error);
-  require(hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set->scene.width, NULL, &error), &error);
+  require(hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set->scene.width, &statistics, &error), &error);
   hl_scene_release(scene);
+  return statistics;
 }
 
-void stage_render_sheets(stage *set, float *pixels) {
+void stage_render_with(stage *set, hl_renderer *renderer, float *pixels) { (void)render_with(set, renderer, pixels); }
+
+hl_render_statistics stage_render_counted(stage *set, float *pixels) {
   hl_error error = {0};
   hl_renderer *renderer = NULL;
   require(hl_renderer_create(set->context, &renderer, &error), &error);
-  stage_render_with(set, renderer, pixels);
+  hl_render_statistics statistics = render_with(set, renderer, pixels);
   hl_renderer_destroy(renderer);
+  return statistics;
 }
+
+void stage_render_sheets(stage *set, float *pixels) { (void)stage_render_counted(set, pixels); }
 
 float stage_noise(double x, double y, double z) {
   double sum = 0, frequency = 1, size = 0.25;

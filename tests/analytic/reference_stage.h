@@ -46,8 +46,9 @@ double stage_chord(vec3 low, vec3 high, vec3 origin, vec3 direction);
 
 /* pixels: [height][width][4]. options may be null. The test fails where rendering does. */
 void stage_render(stage *set, const hl_reference_options *options, float *pixels);
-/* The same by the sheets: with a renderer of the moment, or with the caller's. */
+/* The same by the sheets: with a renderer of the moment, which may count its work, or with the caller's. */
 void stage_render_sheets(stage *set, float *pixels);
+hl_render_statistics stage_render_counted(stage *set, float *pixels);
 void stage_render_with(stage *set, hl_renderer *renderer, float *pixels);
 
 /* Smooth noise without a library: sums of sines with a fixed pattern, in [0, 1]. */

@@ -247,17 +247,7 @@ static void test_screen_edge_of_extended_lights(void **state) {
 
 static uint64_t tiles_filled_for_light(stage *set) {
   static float pixels[SIDE * SIDE * 4];
-  hl_error error = {0};
-  hl_scene *scene = NULL;
-  hl_renderer *renderer = NULL;
-  hl_render_statistics statistics = {.struct_size = sizeof statistics};
-  if (hl_scene_create(set->context, &set->scene, &scene, &error) != HL_OK ||
-      hl_renderer_create(set->context, &renderer, &error) != HL_OK ||
-      hl_renderer_render(renderer, scene, pixels, 4 * SIDE, &statistics, &error) != HL_OK)
-    fail_msg("%s", error.message);
-  hl_renderer_destroy(renderer);
-  hl_scene_release(scene);
-  return statistics.tiles_filled_light;
+  return stage_render_counted(set, pixels).tiles_filled_light;
 }
 
 /* No pixels of the shadow buffer where the screen or the cone leaves the volume dark. */

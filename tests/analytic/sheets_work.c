@@ -42,22 +42,6 @@ static void open_scene(stage *set, hl_shadows shadows) {
   stage_add_directional(set, (vec3){-1, 0.3, -1})->angular_diameter_deg = 6;
 }
 
-typedef struct work { uint64_t image, light; } work;
-
-static work render(stage *set, float *pixels) {
-  hl_error error = {0};
-  hl_scene *scene = NULL;
-  hl_renderer *renderer = NULL;
-  hl_render_statistics statistics = {.struct_size = sizeof statistics};
-  if (hl_scene_create(set->context, &set->scene, &scene, &error) != HL_OK ||
-      hl_renderer_create(set->context, &renderer, &error) != HL_OK ||
-      hl_renderer_render(renderer, scene, pixels, 4 * SIDE, &statistics, &error) != HL_OK)
-    fail_msg("%s", error.message);
-  hl_renderer_destroy(renderer);
-  hl_scene_release(scene);
-  return (work){statistics.pixels_filled_image, statistics.pixels_filled_light};
-}
-
 static void assert_at_most(uint64_t more, uint64_t base, double factor, const char *what) {
   if ((double)more > factor * (double)base)
     fail_msg("%s: %llu pixels instead of %llu", what, (unsigned long long)more, (unsigned long long)base);
@@ -70,17 +54,17 @@ static void test_empty_space(void **state) {
   (void)state;
   static float near[FLOATS], far[FLOATS];
   for (int s = 0; s < 3; s++) {
-    work of[2];
+    hl_render_statistics of[2];
     for (int wide = 0; wide < 2; wide++) {
       stage set;
       open_scene(&set, SHADOWS[s]);
       add_ball(&set, wide ? 2 * BALL : BALL, (vec3){0, 0, 0});
-      of[wide] = render(&set, wide ? far : near);
+      of[wide] = stage_render_counted(&set, wide ? far : near);
       stage_close(&set);
     }
-    assert_true(of[0].image > 10000 && (s == 0 || of[0].light > 10000));
-    assert_at_most(of[1].image, of[0].image, 1.05, "image, among air");
-    assert_at_most(of[1].light, of[0].light, 1.05, "light, among air");
+    assert_true(of[0].pixels_filled_image > 10000 && (s == 0 || of[0].pixels_filled_light > 10000));
+    assert_at_most(of[1].pixels_filled_image, of[0].pixels_filled_image, 1.05, "image, among air");
+    assert_at_most(of[1].pixels_filled_light, of[0].pixels_filled_light, 1.05, "light, among air");
   }
 }
 
@@ -91,17 +75,17 @@ static void test_out_of_sight(void **state) {
   static float alone[FLOATS], beside[FLOATS];
   static const double limit[] = {0, 0.006}; /* what hard shadows may err: their buffer's pixels lie elsewhere */
   for (int s = 0; s < 2; s++) {
-    work of[2];
+    hl_render_statistics of[2];
     for (int other = 0; other < 2; other++) {
       stage set;
       open_scene(&set, SHADOWS[s]);
       add_ball(&set, BALL, (vec3){0, 0, 0});
       if (other) add_ball(&set, BALL, (vec3){-50, -60, 0});
-      of[other] = render(&set, other ? beside : alone);
+      of[other] = stage_render_counted(&set, other ? beside : alone);
       stage_close(&set);
     }
-    assert_at_most(of[1].image, of[0].image, 1.02, "image, beside");
-    assert_at_most(of[1].light, of[0].light, 1.02, "light, beside");
+    assert_at_most(of[1].pixels_filled_image, of[0].pixels_filled_image, 1.02, "image, beside");
+    assert_at_most(of[1].pixels_filled_light, of[0].pixels_filled_light, 1.02, "light, beside");
     double sum = 0;
     for (int i = 0; i < FLOATS; i++) sum += (double)(alone[i] - beside[i]) * (double)(alone[i] - beside[i]);
     if (!(sqrt(sum / FLOATS) <= limit[s])) fail_msg("pictures differ by %g", sqrt(sum / FLOATS));
@@ -112,7 +96,7 @@ static void test_out_of_sight(void **state) {
 static void test_hidden(void **state) {
   (void)state;
   static float pixels[FLOATS];
-  work of[2];
+  hl_render_statistics of[2];
   for (int hidden = 0; hidden < 2; hidden++) {
     stage set;
     open_scene(&set, HL_SHADOWS_OFF);
@@ -120,10 +104,10 @@ static void test_hidden(void **state) {
     hl_scene_volume *front = add_ball(&set, BALL, (vec3){0, 0, 0});
     stage_set_opacity(&set, front, 0.99, 1);
     if (hidden) add_ball(&set, BALL, away);
-    of[hidden] = render(&set, pixels);
+    of[hidden] = stage_render_counted(&set, pixels);
     stage_close(&set);
   }
-  assert_at_most(of[1].image, of[0].image, 1.05, "image, behind");
+  assert_at_most(of[1].pixels_filled_image, of[0].pixels_filled_image, 1.05, "image, behind");
 }
 
 int main(void) {
