@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Draws the images that lights of the example scenes project to examples/slides/, the same bytes on every run.
+"""Draws the images of lights of the example scenes to examples/slides/, the same bytes on every run.
 
 beams.png  three disks of pure red, green and blue on black
 beam.png   one white disk on black
 grid.png   white lines on a dim ground, 16 squares a side
 logo.png   the emblem and name of Halflight between four corners
 open.png   white: a screen that only bounds the light
+window.png a window of four coloured panes
 Shapes are drawn by their distance, smooth over one pixel.
 """
 import math
@@ -147,10 +148,23 @@ def logo():
     canvas.write("logo.png")
 
 
+def window():
+    side, bar = 96, 8
+    canvas = Canvas(side, side)
+    panes = [(1, 0.05, 0.03), (1, 0.75, 0.1), (0.1, 0.8, 0.25), (0.08, 0.2, 1)]
+    for y in range(side):
+        canvas.rows[y] = [panes[2 * (y >= side // 2) + (x >= side // 2)] for x in range(side)]
+    for at, thickness in ((0, 2 * bar), (side / 2, bar), (side, 2 * bar)):
+        canvas.line((0, 0, 0), (at, -9), (at, side + 9), thickness)
+        canvas.line((0, 0, 0), (-9, at), (side + 9, at), thickness)
+    canvas.write("window.png")
+
+
 if __name__ == "__main__":
     FOLDER.mkdir(exist_ok=True)
     beams()
     beam()
     grid()
     logo()
+    window()
     Canvas(1, 1, (1, 1, 1)).write("open.png")

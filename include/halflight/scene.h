@@ -52,6 +52,18 @@ typedef struct hl_light_texture {
   double screen_up[3];          /* from the centre to the middle of its top edge */
 } hl_light_texture;
 
+/* An image on the surface of an extended light itself: what each of its points sends, times color and intensity. Soft
+ * shadows take its shape and colours; without them the light has its mean. A rect's image has its right edge at the end of
+ * edge1 and its top at that of edge2; that of a disk or polygon fills the square or rectangle around it, upright (along
+ * `up`) and not mirrored for who stands before its normal; spheres and directional lights show it to every sample.
+ * Bilinear between the middles of pixels. */
+typedef struct hl_light_emission {
+  const char *file;             /* where the pixels came from, for hl_scene_to_json; may be null */
+  const float *pixels;          /* [height][width][3]: linear RGB, top row first; null: the light is even */
+  int width, height;
+  double up[3];                 /* not for rects; where it points along the light's normal, [0, 1, 0] in its place */
+} hl_light_emission;
+
 typedef struct hl_light {
   hl_light_type type;
   double direction[3];          /* directional, spot: the way the light travels */
@@ -69,6 +81,7 @@ typedef struct hl_light {
   hl_falloff falloff;
   hl_shadows shadows;
   hl_light_texture texture;     /* copied with its pixels by hl_scene_create() */
+  hl_light_emission emission;   /* likewise; not beside a texture */
 } hl_light;
 
 typedef struct hl_opacity_point { double value, opacity; } hl_opacity_point;

@@ -2,6 +2,8 @@
 #ifndef HL_LIGHT_BLUR_H
 #define HL_LIGHT_BLUR_H
 
+#include <stddef.h>
+
 #include "light/attenuate.h"
 
 /* A box of width 2 reach + 1 + 2 edge pixels: whole weights out to reach, weight edge (0 to 1) one further. */
@@ -20,10 +22,23 @@ typedef struct blur_job {
 
 typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
 
+/* Weighted sums of a field's pixels around each pixel: a penumbra by its taps (light_image.h). */
+typedef struct image_job {
+  const float *from;        /* pixel (0,0); rows stride apart */
+  const float *thin;        /* the same */
+  float *to;
+  size_t stride;
+  int count;
+  const ptrdiff_t *offset;  /* [count]; from a pixel to the one that is weighed */
+  const float *weight;      /* [count] */
+} image_job;
+typedef void image_tile_function(const image_job *job, int tile_x, int tile_y);
+
 /* What a soft method needs of the instruction set. */
 typedef struct blur_functions {
   blur_tile_function *rows, *columns;
   lit_blocks_function *lit_blocks;
+  image_tile_function *image; /* to = sum of from */
 } blur_functions;
 
 /* The box of the given width in pixels (at least 1): even whole widths become centred by half weights. */

@@ -6,7 +6,7 @@
 
 /* A field's pixels: pixel (0,0); rows stride apart; zeros all around it. */
 typedef struct field_job {
-  const float *a, *b; /* inputs; b may be coarser or finer, as the function says */
+  const float *a, *b; /* inputs; b may be coarser or finer, as the function says; null for zeros where it is not coarser */
   float *to;
   size_t stride_in, stride; /* of b and of the rest where they differ */
   const float *thin;  /* beside a: the part of b that a's matter takes; null: none */
@@ -29,14 +29,35 @@ blur_box hl_blur_box_of_variance(double variance);
 
 typedef void blur_add_tile_function(const blur_add_job *job, int tile_x, int tile_y);
 
-/* What a chunk's slabs took of the light before it: (1 - lacking) - now, and the part of it that thin matter took. */
+/* What a chunk's slabs took of the light before it: (1 - lacking) - now, and the part of it that thin matter took. Of
+ * either the part moment / (length taken) goes to the group at the chunk's end, the rest to the one at its start. */
 typedef struct absorbed_job {
   const float *lacking;  /* rows stride apart */
   const float *now;      /* rows stride_now apart */
-  float *absorbed, *thin; /* rows stride apart */
+  float *moment;         /* sum over the slabs of what each took, times its place in the chunk; is cleared */
+  float length;          /* of the chunk */
+  float *start_absorbed, *start_thin, *end_absorbed, *end_thin; /* rows stride apart; raised; written */
   size_t stride, stride_now;
 } absorbed_job;
 typedef void absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
+
+/* Matter parted in two; the first may take its place. */
+typedef struct part_job {
+  const float *absorbed, *thin; /* pixel (0,0); rows stride apart */
+  float *to_absorbed[2], *to_thin[2];
+  size_t stride;
+  float late;            /* the part of it that is the second's */
+} part_job;
+typedef void part_tile_function(const part_job *job, int tile_x, int tile_y);
+
+/* to += weight * now */
+typedef struct moment_job {
+  const float *now;      /* rows stride_now apart */
+  float *to;             /* rows stride apart */
+  float weight;
+  size_t stride, stride_now;
+} moment_job;
+typedef void moment_tile_function(const moment_job *job, int tile_x, int tile_y);
 
 typedef struct cascade_functions {
   lit_blocks_function *lit_blocks;
@@ -46,6 +67,9 @@ typedef struct cascade_functions {
   field_tile_function *add_double; /* to = a + (1 - thin) (b of half the resolution, stride_in, bilinear) */
   field_tile_function *left;       /* to = 1 - a, from 0 to 1; rows of to stride_in apart */
   absorbed_tile_function *absorbed;
+  part_tile_function *part;
+  field_tile_function *double_tile; /* to = a of half the resolution (stride_in), bilinear */
+  image_tile_function *image_add;   /* to = sum of from + (1 - sum of thin) to */
 } cascade_functions;
 
 #endif

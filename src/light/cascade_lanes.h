@@ -2,6 +2,8 @@
 #ifndef HL_LIGHT_CASCADE_LANES_H
 #define HL_LIGHT_CASCADE_LANES_H
 
+#include <string.h>
+
 #include "light/blur_lanes.h"
 #include "light/cascade_field.h"
 
@@ -22,7 +24,7 @@ static void blur_add_tile(const blur_add_job *job, int tile_x, int tile_y) {
 static void add_tile(const field_job *job, int tile_x, int tile_y) {
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
   for (int row = 0; row < TILE; row++, at += job->stride) {
-    lanes b = lanes_load(job->b + at);
+    lanes b = job->b == NULL ? lanes_set(0) : lanes_load(job->b + at);
     if (job->thin != NULL) b = b * (1.0f - lanes_load(job->thin + at));
     lanes_store(job->to + at, lanes_load(job->a + at) + b);
   }
@@ -34,31 +36,81 @@ static void add_half_tile(const field_job *job, int tile_x, int tile_y) {
     float *to = job->to + (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
     float sum[2][2 * TILE];
     for (size_t half = 0; half < 2; half++) {
-      const float *a = job->a + from + half * job->stride_in, *b = job->b + from + half * job->stride_in;
+      const float *a = job->a + from + half * job->stride_in, *b = job->b == NULL ? NULL : job->b + from + half * job->stride_in;
       const float *thin = job->thin == NULL ? NULL : job->thin + from + half * job->stride_in;
-      for (int i = 0; i < 2 * TILE; i++) sum[half][i] = a[i] + (thin == NULL ? b[i] : b[i] * (1.0f - thin[i]));
+      for (int i = 0; i < 2 * TILE; i++) {
+        float behind = b == NULL ? 0 : thin == NULL ? b[i] : b[i] * (1.0f - thin[i]);
+        sum[half][i] = a[i] + behind;
+      }
     }
     for (int i = 0; i < TILE; i++)
       to[i] = 0.25f * ((sum[0][2 * i] + sum[0][2 * i + 1]) + (sum[1][2 * i] + sum[1][2 * i + 1]));
   }
 }
 
-/* Pixel 2i lies a quarter of a coarse pixel before coarse pixel i's centre, pixel 2i+1 a quarter after. */
+/* A row of a tile from a field of half the resolution. Pixel 2i lies a quarter of a coarse pixel before coarse pixel i's
+ * centre, pixel 2i+1 a quarter after. */
+LANES_INLINE void double_row(const float *from, size_t stride, int tile_x, int y, float fine[TILE]) {
+  const float *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2;
+  const float *far = y & 1 ? near + stride : near - stride;
+  float coarse[TILE / 2 + 2];
+  for (int i = 0; i < TILE / 2 + 2; i++) coarse[i] = 0.75f * near[i - 1] + 0.25f * far[i - 1];
+  for (int i = 0; i < TILE / 2; i++) {
+    fine[2 * i] = 0.75f * coarse[i + 1] + 0.25f * coarse[i];
+    fine[2 * i + 1] = 0.75f * coarse[i + 1] + 0.25f * coarse[i + 2];
+  }
+}
+
 static void add_double_tile(const field_job *job, int tile_x, int tile_y) {
   for (int row = 0; row < TILE; row++) {
     int y = tile_y * TILE + row;
-    const float *near = job->b + (ptrdiff_t)(y / 2) * (ptrdiff_t)job->stride_in + tile_x * TILE / 2;
-    const float *far = y & 1 ? near + job->stride_in : near - job->stride_in;
     size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
-    float coarse[TILE / 2 + 2];
-    for (int i = 0; i < TILE / 2 + 2; i++) coarse[i] = 0.75f * near[i - 1] + 0.25f * far[i - 1];
     float fine[TILE];
-    for (int i = 0; i < TILE / 2; i++) {
-      fine[2 * i] = 0.75f * coarse[i + 1] + 0.25f * coarse[i];
-      fine[2 * i + 1] = 0.75f * coarse[i + 1] + 0.25f * coarse[i + 2];
-    }
+    double_row(job->b, job->stride_in, tile_x, y, fine);
     for (size_t i = 0; i < TILE; i++)
       job->to[at + i] = job->a[at + i] + (job->thin == NULL ? fine[i] : fine[i] * (1.0f - job->thin[at + i]));
+  }
+}
+
+static void double_tile(const field_job *job, int tile_x, int tile_y) {
+  for (int row = 0; row < TILE; row++) {
+    float fine[TILE];
+    double_row(job->a, job->stride_in, tile_x, tile_y * TILE + row, fine);
+    memcpy(job->to + (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE, fine, sizeof fine);
+  }
+}
+
+enum { IMAGE_ROWS = 4 };
+
+/* Some neighbouring rows of sixteen pixels, which hide each other's latency. */
+LANES_INLINE void weigh_rows(const image_job *job, const float *from, lanes sum[IMAGE_ROWS]) {
+  for (int row = 0; row < IMAGE_ROWS; row++) sum[row] = lanes_set(0);
+  for (int tap = 0; tap < job->count; tap++) {
+    const float *at = from + job->offset[tap];
+    for (int row = 0; row < IMAGE_ROWS; row++)
+      sum[row] = sum[row] + lanes_load(at + (size_t)row * job->stride) * job->weight[tap];
+  }
+}
+
+static void image_add_tile(const image_job *job, int tile_x, int tile_y) {
+  for (int row = 0; row < TILE; row += IMAGE_ROWS) {
+    size_t at = (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
+    lanes sum[IMAGE_ROWS], thin[IMAGE_ROWS];
+    weigh_rows(job, job->from + at, sum);
+    weigh_rows(job, job->thin + at, thin);
+    for (int i = 0; i < IMAGE_ROWS; i++) {
+      float *to = job->to + at + (size_t)i * job->stride;
+      lanes_store(to, sum[i] + lanes_load(to) * (1.0f - thin[i]));
+    }
+  }
+}
+
+static void image_tile(const image_job *job, int tile_x, int tile_y) {
+  for (int row = 0; row < TILE; row += IMAGE_ROWS) {
+    size_t at = (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
+    lanes sum[IMAGE_ROWS];
+    weigh_rows(job, job->from + at, sum);
+    for (int i = 0; i < IMAGE_ROWS; i++) lanes_store(job->to + at + (size_t)i * job->stride, sum[i]);
   }
 }
 
@@ -66,6 +118,33 @@ static void left_tile(const field_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++)
     lanes_store(job->to + (size_t)row * job->stride_in + (size_t)tile_x * TILE,
                 lanes_clamp(1.0f - lanes_load(job->a + (size_t)row * job->stride + (size_t)tile_x * TILE), 0, 1.0f));
+}
+
+/* Matter at one place as matter at two, the part `late` of it at the second (derived): of a ray thin matter leaves 1 - F,
+ * which is the product of (1 - F)^(1 - late) and (1 - F)^late; and what the two take of the same light one after the other,
+ * A2 + (1 - F2) A1, is the A of both. */
+typedef struct parted_matter { lanes absorbed[2], thin[2]; } parted_matter;
+
+LANES_INLINE parted_matter part_matter(lanes absorbed, lanes thin, lanes late) {
+  parted_matter to;
+  lanes depth = lanes_log2(lanes_max(1.0f - thin, lanes_set(1e-6f)));
+  to.thin[0] = 1.0f - lanes_exp2(depth * (1.0f - late));
+  to.thin[1] = 1.0f - lanes_exp2(depth * late);
+  lanes solid = (absorbed - thin) / lanes_max(late + (1.0f - to.thin[1]) * (1.0f - late), lanes_set(1e-3f));
+  to.absorbed[0] = solid * (1.0f - late) + to.thin[0];
+  to.absorbed[1] = solid * late + to.thin[1];
+  return to;
+}
+
+static void part_tile(const part_job *job, int tile_x, int tile_y) {
+  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
+    size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
+    parted_matter to = part_matter(lanes_load(job->absorbed + at), lanes_load(job->thin + at), lanes_set(job->late));
+    for (int i = 0; i < 2; i++) {
+      lanes_store(job->to_absorbed[i] + at, to.absorbed[i]);
+      lanes_store(job->to_thin[i] + at, to.thin[i]);
+    }
+  }
 }
 
 /* Where a chunk takes less than the first part of its light it counts as thin, from the second on as solid. */
@@ -77,10 +156,24 @@ static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     lanes before = lanes_clamp(1.0f - lanes_load(job->lacking + at), 0, 1.0f);
     lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
     lanes taken = lanes_max(before - now, lanes_set(0)), part = taken / lanes_max(before, lanes_set(1e-3f));
+    lanes place = lanes_clamp(lanes_load(job->moment + at) / lanes_max(taken * job->length, lanes_set(1e-6f)), 0, 1.0f);
     lanes solid = lanes_clamp((part - THIN_MATTER) * (1.0f / (SOLID_MATTER - THIN_MATTER)), 0, 1.0f);
     lanes thin = part * (1.0f - solid);
-    lanes_store(job->thin + at, thin);
-    lanes_store(job->absorbed + at, taken * solid + thin);
+    parted_matter to = part_matter(taken * solid + thin, thin, place);
+    lanes_store(job->moment + at, lanes_set(0));
+    lanes_store(job->end_absorbed + at, to.absorbed[1]);
+    lanes_store(job->end_thin + at, to.thin[1]);
+    lanes left = 1.0f - to.thin[0];
+    lanes_store(job->start_absorbed + at, to.absorbed[0] + lanes_load(job->start_absorbed + at) * left);
+    lanes_store(job->start_thin + at, to.thin[0] + lanes_load(job->start_thin + at) * left);
+  }
+}
+
+static void moment_tile(const moment_job *job, int tile_x, int tile_y) {
+  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
+    size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
+    lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
+    lanes_store(job->to + at, lanes_load(job->to + at) + now * job->weight);
   }
 }
 

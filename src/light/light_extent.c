@@ -207,6 +207,15 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   return seen;
 }
 
+void hl_sheet_light_place(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset, double place[3]) {
+  vec3 point = source->parallel ? seen_on_plane(source, normal, offset) : vec3_add(source->position, offset);
+  vec3 from_middle = vec3_subtract(point, seen->middle);
+  double height = source->parallel ? fmax(vec3_dot(source->direction, normal), 0.1) : 1;
+  place[0] = vec3_dot(from_middle, seen->u) / height;
+  place[1] = vec3_dot(from_middle, seen->v) / height;
+  place[2] = source->parallel ? 0 : vec3_dot(from_middle, normal);
+}
+
 /* Derived: a point of the light at x + z h, seen from a receiver at slope s, lies at x - s z on the plane through the
  * light's centre; of the mean square of that a box has 1/12. */
 double hl_sheet_light_squared_width(const sheet_light *light, int axis, double slope) {

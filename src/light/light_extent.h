@@ -24,6 +24,10 @@ typedef struct sheet_light {
 
 sheet_light hl_light_on_sheets(const light_source *source, vec3 normal);
 
+/* Where an offset from the light's centre (hl_light_point) lies, from seen->middle: along u, v and the sheets' normal; of
+ * parallel light along u and v a unit of height away. A receiver at a slope sees u and v less by slope times the third. */
+void hl_sheet_light_place(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset, double place[3]);
+
 /* The square of width_u (axis 0) or width_v (1) as seen at a slope from the light: where a receiver lies that many lengths
  * along the axis a length of height below the light. A light tilted against the sheets looks wider from one side. */
 double hl_sheet_light_squared_width(const sheet_light *light, int axis, double slope);

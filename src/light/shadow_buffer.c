@@ -163,7 +163,7 @@ void hl_shadow_buffer_find_lit(shadow_buffer *buffer, const unsigned char *wante
 }
 
 shadow_lookup hl_lookup_of_view(const view *view) {
-  shadow_lookup lookup = {.width = view->width, .height = view->height};
+  shadow_lookup lookup = {.width = view->width, .height = view->height, .weight = {1, 1, 1}};
   double rows[3][4];
   hl_view_homogeneous(view, affine3_identity(), rows);
   for (int row = 0; row < 3; row++)

@@ -7,6 +7,7 @@
 typedef struct shadow_lookup {
   float map[3][4];                /* frame space -> (w, w u, w v) of the buffer */
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0); rows stride apart */
+  float weight[HL_CHANNELS];      /* in the mean over several lookups; 1 but for lights with an image */
   size_t stride;
   int width, height;
 } shadow_lookup;

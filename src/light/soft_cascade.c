@@ -7,6 +7,8 @@
 
 /* Chunks that a sweep is cut into at most, and the least omega of one, pixels. */
 static const double GREATEST_CHUNKS = 96, LEAST_CHUNK = 0.5;
+/* The same through a light's image: kernels are dear, and none is blurred again by others. */
+static const double IMAGE_CHUNKS = 64;
 
 static double omega_at(const soft_cascade *cascade, double height) {
   if (cascade->parallel) return cascade->rate * height;
@@ -15,9 +17,9 @@ static double omega_at(const soft_cascade *cascade, double height) {
 }
 
 /* Levels keep at least four pixels of their own to the narrowest penumbra that they give: level j starts at least
- * 5 (2^j - 1) chunks behind the receiver, since every level before it keeps five groups. */
+ * 4 (2^j - 1) chunks behind the receiver, since every level before it keeps five groups. */
 static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = cascade->chunk * 5 * (pow(2, level) - 1) * cascade->least_part;
+  double penumbra = cascade->chunk * 4 * (pow(2, level) - 1) * cascade->least_part;
   int scale = 1;
   while (scale * 8 <= penumbra && scale < 1 << level) scale *= 2;
   return scale;
@@ -30,13 +32,10 @@ static cascade_field next_field(cascade_level *level, size_t *used) {
 }
 
 /* How wide each column or row of tiles sees the light. */
-static void set_parts(const soft_cascade *cascade, const sheet_light *light, const shadow_buffer *buffer, int axis, int count,
-                      int scale, cascade_box *boxes) {
-  const view *view = &buffer->view;
-  vec3 along = axis == 0 ? light->u : light->v;
-  double start = vec3_dot(view->corner, along), step = vec3_dot(axis == 0 ? view->du : view->dv, along);
+static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
+                      cascade_box *boxes) {
   for (int tile = 0; tile < count; tile++) {
-    double slope = start + step * (tile + 0.5) * TILE * scale;
+    double slope = cascade->slope_start[axis] + cascade->slope_step[axis] * (tile + 0.5) * TILE * scale;
     boxes[tile].part = hl_sheet_light_squared_width(light, axis, slope) / (cascade->widest * cascade->widest);
   }
 }
@@ -51,7 +50,8 @@ static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer 
   level->stride = (size_t)level->tiles_x * TILE + 2 * CASCADE_MARGIN;
   level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
-  level->planes = channels * (2 * CASCADE_GROUPS + 2) + 1 + (index == 0 ? channels : 0);
+  level->planes = channels * (2 * CASCADE_GROUPS + 2) + 1 + (index == 0 ? 2 * channels : 0);
+  if (cascade->image != NULL) level->planes += 2 * channels;
 }
 
 /* Zeros for all levels, handed out to them. */
@@ -72,16 +72,16 @@ static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory 
 }
 
 static hl_status open_level(hl_context *context, soft_cascade *cascade, int index, const sheet_light *light,
-                            const shadow_buffer *buffer, hl_error *error) {
+                            hl_error *error) {
   cascade_level *level = &cascade->level[index];
   size_t channels = (size_t)cascade->channels, used = 0, tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  level->flags = hl_allocate(context, level->planes, tiles);
+  level->flags = hl_allocate(context, level->planes + 1, tiles);
   level->boxes = hl_allocate(context, (size_t)(level->tiles_x + level->tiles_y), sizeof *level->boxes);
   if (level->flags == NULL || level->boxes == NULL)
     return hl_fail_memory(error, level->planes * tiles, "a cascade of shadows");
   memset(level->flags, 1, level->planes * tiles);
-  set_parts(cascade, light, buffer, 0, level->tiles_x, level->scale, level->boxes);
-  set_parts(cascade, light, buffer, 1, level->tiles_y, level->scale, level->boxes + level->tiles_x);
+  set_parts(cascade, light, 0, level->tiles_x, level->scale, level->boxes);
+  set_parts(cascade, light, 1, level->tiles_y, level->scale, level->boxes + level->tiles_x);
   for (size_t c = 0; c < channels; c++) {
     for (int g = 0; g < CASCADE_GROUPS; g++) {
       level->group[g].absorbed[c] = next_field(level, &used);
@@ -90,33 +90,46 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
     for (int i = 0; i < 2; i++) level->sum[i][c] = next_field(level, &used);
   }
   level->scratch = next_field(level, &used);
-  for (size_t c = 0; c < channels && index == 0; c++) cascade->shade[c] = next_field(level, &used);
+  for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++) level->mean[c % 2][c / 2] = next_field(level, &used);
+  level->wanted = level->flags + level->planes * tiles;
+  for (size_t c = 0; c < channels && index == 0; c++) {
+    cascade->shade[c] = next_field(level, &used);
+    cascade->moment[c] = next_field(level, &used).pixels;
+  }
   return HL_OK;
 }
 
 hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
-                                const sheet_light *light, vec3 normal, double first, double last, double pixel,
-                                shadow_buffer *buffer, hl_error *error) {
-  double widest = fmax(light->width_u, light->width_v);
+                                const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
+                                double pixel, shadow_buffer *buffer, hl_error *error) {
+  double widest = fmax(light->width_u, light->width_v), chunks = image == NULL ? GREATEST_CHUNKS : IMAGE_CHUNKS;
   *cascade = (soft_cascade){.parallel = light->parallel, .channels = buffer->channels, .rate = widest / pixel,
                             .widest = widest, .least_part = fmin(light->width_u, light->width_v) / widest,
-                            .light_height = vec3_dot(light->middle, normal)};
+                            .light_height = vec3_dot(light->middle, normal), .image = image};
+  const vec3 along[2] = {light->u, light->v};
+  for (int axis = 0; axis < 2; axis++) {
+    cascade->slope_start[axis] = vec3_dot(buffer->view.corner, along[axis]);
+    cascade->slope_step[axis] = vec3_dot(axis == 0 ? buffer->view.du : buffer->view.dv, along[axis]);
+  }
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   cascade->touched = hl_allocate_zeroed(context, tiles * (1 + CASCADE_MASKS), 1);
   for (int i = 0; i < CASCADE_MASKS && cascade->touched != NULL; i++)
     cascade->wanted[i] = cascade->touched + tiles * (size_t)(1 + i);
   if (cascade->touched == NULL) return hl_fail_memory(error, tiles, "a cascade of shadows");
   double start = omega_at(cascade, first), end = omega_at(cascade, last);
-  if (!isfinite(start)) start = end - 1e4; /* the light lies within the sheets: its nearest ones have no end of width */
-  cascade->chunk = fmax(LEAST_CHUNK, (end - start) / GREATEST_CHUNKS);
+  /* a light close to the sheets: penumbrae twice as wide as the buffer are as good as wider ones */
+  start = fmax(start, end - 2 * TILE * fmax(buffer->tiles_x, buffer->tiles_y));
+  cascade->chunk = fmax(LEAST_CHUNK, (end - start) / chunks);
   cascade->chunk_start = start;
-  /* level j is first used after 6 * 2^j - 5 chunks (derived: a level keeps five of its seven groups) */
-  int levels = 1 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 6) / 6));
+  /* level j is first used after 5 * 2^j - 4 chunks (derived: a level keeps five of its seven groups) */
+  int levels = 1 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) lay_out_level(cascade, i, buffer);
   hl_status status = open_memory(context, pool, memory, cascade, error);
   for (int i = 0; i < cascade->level_count && status == HL_OK; i++)
-    status = open_level(context, cascade, i, light, buffer, error);
+    status = open_level(context, cascade, i, light, error);
+  cascade->level[0].count = 1; /* at the first chunk's start */
+  cascade->level[0].group[0].omega = start;
   return status;
 }
 
@@ -155,6 +168,7 @@ static bool sum_is_zeros(const add_task *task, int x, int y) {
   const cascade_level *levels[2] = {task->level_a, task->level_b};
   const cascade_field *fields[2] = {task->a, task->b};
   for (int i = 0; i < 2; i++) {
+    if (fields[i] == NULL) continue;
     int coarse = levels[i]->scale, own = task->level->scale, x0 = x, y0 = y, x1 = x, y1 = y;
     if (coarse < own) x0 = 2 * x, x1 = 2 * x + 1, y0 = 2 * y, y1 = 2 * y + 1;
     if (coarse > own) x0 = (x - 1) / 2, x1 = (x + 1) / 2, y0 = (y - 1) / 2, y1 = (y + 1) / 2;
@@ -176,18 +190,20 @@ static void add_row(void *data, size_t index, int worker) {
   }
 }
 
-/* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse; thin, on a's
- * level, may be null. */
+/* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse; thin,
+ * on a's level, may be null; so may b where a is not coarser. */
 static void add(hl_pool *pool, const cascade_functions *functions, const cascade_level *level_a,
-                     const cascade_field *a, const cascade_field *thin, const cascade_level *level_b,
-                     const cascade_field *b, const cascade_level *level, const cascade_field *to,
-                     const unsigned char *wanted) {
-  field_tile_function *function = level_a->scale < level->scale   ? functions->add_half
-                                  : level_b->scale > level->scale ? functions->add_double
-                                                                  : functions->add;
-  add_task task = {level, level_a, level_b, a, b, to, {a->pixels, b->pixels, to->pixels, level_b->stride, level->stride,
-                        thin == NULL ? NULL : thin->pixels},
-                        function, wanted};
+                const cascade_field *a, const cascade_field *thin, const cascade_level *level_b,
+                const cascade_field *b, const cascade_level *level, const cascade_field *to,
+                const unsigned char *wanted) {
+  field_tile_function *function = level_a->scale < level->scale                 ? functions->add_half
+                                  : b != NULL && level_b->scale > level->scale ? functions->add_double
+                                                                               : functions->add;
+  add_task task = {.level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b, .to = to, .function = function,
+                   .wanted = wanted};
+  task.job = (field_job){.a = a->pixels, .b = b == NULL ? NULL : b->pixels, .to = to->pixels,
+                         .stride_in = b == NULL ? level_a->stride : level_b->stride, .stride = level->stride,
+                         .thin = thin == NULL ? NULL : thin->pixels};
   hl_pool_run(pool, (size_t)level->tiles_y, add_row, &task);
 }
 
@@ -248,17 +264,59 @@ static double variance_between(double wide, double narrow, int scale) {
   return fmax(wide * wide - narrow * narrow, 0) / 12 / ((double)scale * scale);
 }
 
-/* The two oldest groups of a level become one of the next. */
+typedef struct part_task {
+  const cascade_level *level;
+  const cascade_field *fields[4]; /* absorbed and thin of the first, then of the second */
+  part_job job;
+  part_tile_function *function;
+} part_task;
+
+static void part_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const part_task *task = data;
+  for (int x = 0; x < task->level->tiles_x; x++) {
+    size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
+    bool any = !task->fields[0]->zeros[tile] || !task->fields[1]->zeros[tile];
+    if (any) task->function(&task->job, x, (int)index);
+    for (int i = 2; i < 4; i++) {
+      if (!any && !task->fields[i]->zeros[tile]) store_zeros(task->fields[i]->pixels, task->job.stride, (size_t)x, index);
+      task->fields[i]->zeros[tile] = !any;
+    }
+  }
+}
+
+static void part(hl_pool *pool, const cascade_functions *functions, const cascade_level *level, const cascade_field *absorbed,
+                 const cascade_field *thin, const cascade_field *late_absorbed, const cascade_field *late_thin, double late) {
+  part_task task = {level, {absorbed, thin, late_absorbed, late_thin},
+                    {absorbed->pixels, thin->pixels, {absorbed->pixels, late_absorbed->pixels}, {thin->pixels, late_thin->pixels},
+                     level->stride, (float)late},
+                    functions->part};
+  hl_pool_run(pool, (size_t)level->tiles_y, part_row, &task);
+}
+
+/* The two oldest groups of a level go to the next, where the first has a group at its own place already and the second lies
+ * between that and a new one at the third's place: what it took is shared between them by its distances (derived: kernels
+ * are then linear between groups, so that what a penumbra's middle should be is kept). */
 static void merge_up(soft_cascade *cascade, int index, hl_pool *pool, const cascade_functions *functions) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
-  cascade_group a = level->group[0], b = level->group[1], *to = &next->group[next->count++];
+  cascade_group a = level->group[0], b = level->group[1];
+  double late = (b.omega - a.omega) / (level->group[2].omega - a.omega);
+  if (next->count == 0) next->group[next->count++].omega = a.omega;
+  cascade_group *first = &next->group[next->count - 1], *second = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++) {
-    add(pool, functions, level, &b.absorbed[c], &b.thin[c], level, &a.absorbed[c], next, &to->absorbed[c], NULL);
-    add(pool, functions, level, &b.thin[c], &b.thin[c], level, &a.thin[c], next, &to->thin[c], NULL);
+    const cascade_field *late_absorbed = &level->scratch, *late_thin = &level->sum[!level->newest][c];
+    part(pool, functions, level, &b.absorbed[c], &b.thin[c], late_absorbed, late_thin, late);
+    /* what goes to the first, by way of the second's fields */
+    add(pool, functions, level, &b.absorbed[c], &b.thin[c], level, &a.absorbed[c], next, &second->absorbed[c], NULL);
+    add(pool, functions, level, &b.thin[c], &b.thin[c], level, &a.thin[c], next, &second->thin[c], NULL);
+    add(pool, functions, next, &second->absorbed[c], &second->thin[c], next, &first->absorbed[c], next, &first->absorbed[c], NULL);
+    add(pool, functions, next, &second->thin[c], &second->thin[c], next, &first->thin[c], next, &first->thin[c], NULL);
+    add(pool, functions, level, late_absorbed, NULL, NULL, NULL, next, &second->absorbed[c], NULL);
+    add(pool, functions, level, late_thin, NULL, NULL, NULL, next, &second->thin[c], NULL);
   }
-  to->empty = a.empty && b.empty;
-  to->weight = a.weight + b.weight;
-  if (to->weight > 0) to->omega = (a.omega * a.weight + b.omega * b.weight) / to->weight;
+  first->filled = first->filled || a.filled || b.filled;
+  second->filled = b.filled;
+  second->omega = level->group[2].omega;
   next->renewed = level->renewed = true;
   for (int g = 2; g < CASCADE_GROUPS; g++) level->group[g - 2] = level->group[g];
   level->group[CASCADE_GROUPS - 2] = a;
@@ -269,45 +327,78 @@ static void merge_up(soft_cascade *cascade, int index, hl_pool *pool, const casc
 typedef struct absorb_task {
   const soft_cascade *cascade;
   const shadow_buffer *buffer;
-  cascade_group *group;
+  cascade_group *start, *end;
+  double length;
   absorbed_tile_function *absorbed;
 } absorb_task;
 
-/* Tiles of the new group: what the chunk's slabs took of the light that reached the chunk. */
-static void absorb_row(void *data, size_t index, int worker) {
-  (void)worker;
-  const absorb_task *task = data;
+static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, int channel) {
   const cascade_level *level = &task->cascade->level[0];
-  for (size_t tile_x = 0; tile_x < (size_t)level->tiles_x; tile_x++) {
-    size_t tile = index * (size_t)level->tiles_x + tile_x;
-    for (int c = 0; c < task->cascade->channels; c++) {
-      const cascade_field *to[2] = {&task->group->absorbed[c], &task->group->thin[c]};
-      absorbed_job job = {task->cascade->shade[c].pixels, task->buffer->transmittance[c], to[0]->pixels, to[1]->pixels,
-                          level->stride, task->buffer->stride};
-      if (task->cascade->touched[tile]) task->absorbed(&job, (int)tile_x, (int)index);
-      for (int i = 0; i < 2; i++) {
-        if (!task->cascade->touched[tile] && !to[i]->zeros[tile]) store_zeros(to[i]->pixels, level->stride, tile_x, index);
-        to[i]->zeros[tile] = !task->cascade->touched[tile];
-      }
-    }
-    task->cascade->touched[tile] = 0;
+  const cascade_field *start[2] = {&task->start->absorbed[channel], &task->start->thin[channel]};
+  const cascade_field *end[2] = {&task->end->absorbed[channel], &task->end->thin[channel]};
+  size_t tile = tile_y * (size_t)level->tiles_x + tile_x;
+  bool touched = task->cascade->touched[tile];
+  absorbed_job job = {task->cascade->shade[channel].pixels, task->buffer->transmittance[channel], task->cascade->moment[channel],
+                      (float)task->length, start[0]->pixels, start[1]->pixels, end[0]->pixels, end[1]->pixels, level->stride,
+                      task->buffer->stride};
+  if (touched) task->absorbed(&job, (int)tile_x, (int)tile_y);
+  for (int i = 0; i < 2; i++) {
+    if (!touched && !end[i]->zeros[tile]) store_zeros(end[i]->pixels, level->stride, tile_x, tile_y);
+    end[i]->zeros[tile] = !touched;
+    start[i]->zeros[tile] = start[i]->zeros[tile] && !touched;
   }
 }
 
-static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, hl_pool *pool,
+/* What the chunk's slabs took of the light that reached the chunk goes to the groups at its two ends. */
+static void absorb_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const absorb_task *task = data;
+  size_t tiles = (size_t)task->cascade->level[0].tiles_x;
+  for (size_t tile_x = 0; tile_x < tiles; tile_x++) {
+    for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, tile_x, index, c);
+    task->cascade->touched[index * tiles + tile_x] = 0;
+  }
+}
+
+static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, double omega, hl_pool *pool,
                        const cascade_functions *functions) {
   cascade_level *level = &cascade->level[0];
-  cascade_group *to = &level->group[level->count++];
-  to->empty = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) == NULL;
-  absorb_task task = {cascade, buffer, to, functions->absorbed};
+  cascade_group *start = &level->group[level->count - 1], *end = &level->group[level->count++];
+  end->filled = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
+  start->filled = start->filled || end->filled;
+  end->omega = omega;
+  absorb_task task = {cascade, buffer, start, end, omega - cascade->chunk_start, functions->absorbed};
   hl_pool_run(pool, (size_t)level->tiles_y, absorb_row, &task);
-  to->weight = cascade->chunk_weight;
-  if (to->weight > 0) to->omega = cascade->chunk_sum / cascade->chunk_weight;
   level->renewed = true;
-  cascade->chunk_weight = cascade->chunk_sum = 0;
+  cascade->chunk_start = omega;
   cascade->chunks++;
   for (int i = 0; i + 1 < cascade->level_count && cascade->level[i].count == CASCADE_GROUPS; i++)
     merge_up(cascade, i, pool, functions);
+}
+
+void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
+  double middle = omega_at(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
+  cascade->slab = isfinite(middle) ? middle - cascade->chunk_start : 0;
+}
+
+/* Adds the buffer's tile, weighted by the slab's place, to the moments: with a minus sign after the slab was composited
+ * what is left of the two is what the slab took. */
+static void add_moment(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, double sign,
+                       moment_tile_function *moment) {
+  const cascade_level *level = &cascade->level[0];
+  for (int c = 0; c < cascade->channels; c++) {
+    moment_job job = {buffer->transmittance[c], cascade->moment[c], (float)(sign * cascade->slab), level->stride, buffer->stride};
+    moment(&job, (int)(tile % (size_t)level->tiles_x), (int)(tile / (size_t)level->tiles_x));
+  }
+}
+
+void hl_soft_cascade_before(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, moment_tile_function *moment) {
+  cascade->touched[tile] = 1;
+  add_moment(cascade, buffer, tile, 1, moment);
+}
+
+void hl_soft_cascade_after(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, moment_tile_function *moment) {
+  add_moment(cascade, buffer, tile, -1, moment);
 }
 
 /* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's thin matter
@@ -319,14 +410,18 @@ static void bring(cascade_level *from, const cascade_field *sum, double variance
     blur_add(pool, functions, from, sum, own, thin, to, variance, wanted);
     return;
   }
-  blur_add(pool, functions, from, sum, NULL, NULL, &from->scratch, variance, NULL);
+  if (variance > 0) {
+    blur_add(pool, functions, from, sum, NULL, NULL, &from->scratch, variance, NULL);
+    sum = &from->scratch;
+  }
   while (from->scale > 2 * to_level->scale) {
     cascade_level *next = from - 1;
-    add(pool, functions, next, &next->group[0].absorbed[channel], NULL, from, &from->scratch, next, &next->scratch, NULL);
+    add(pool, functions, next, &next->group[0].absorbed[channel], NULL, from, sum, next, &next->scratch, NULL);
+    sum = &next->scratch;
     from = next;
   }
-  add(pool, functions, to_level, own == NULL ? &to_level->group[0].absorbed[channel] : own, thin, from, &from->scratch,
-      to_level, to, wanted);
+  add(pool, functions, to_level, own == NULL ? &to_level->group[0].absorbed[channel] : own, thin, from, sum, to_level, to,
+      wanted);
 }
 
 /* What the groups before absorbed, blurred for this group, and what this group did. */
@@ -402,7 +497,7 @@ static int reach_behind(const soft_cascade *cascade, int g, double receiver) {
   double omega = level->group[g].omega;
   int reach = 0;
   for (int later = g + 1; later < level->count; later++) {
-    if (level->group[later].empty) continue;
+    if (!level->group[later].filled) continue;
     reach += reach_of(level, variance_between(receiver - omega, receiver - level->group[later].omega, 1));
     omega = level->group[later].omega;
   }
@@ -417,15 +512,18 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, hl_pool *
   bool due = false;
   for (int i = cascade->level_count - 1; i >= 0; i--) {
     cascade_level *level = &cascade->level[i];
-    due = due || level->renewed || cascade->chunks % ((uint64_t)1 << i) == 0;
+    uint64_t period = i > 0 ? (uint64_t)1 << (i - 1) : 1;
+    due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
+    /* until it is due again receivers go on by a period less one chunk: their mean is served */
+    double served = receiver + cascade->chunk * (double)(period - 1) / 2;
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
-      if (group->empty) continue;
+      if (!group->filled) continue;
       if (sum == NULL) pass_first(cascade, level, group);
       else {
         const unsigned char *wanted = i == 0 ? wanted_within(cascade, reach_behind(cascade, g, receiver)) : NULL;
-        pass_group(cascade->channels, sum, level, group, receiver, wanted, pool, functions);
+        pass_group(cascade->channels, sum, level, group, served, wanted, pool, functions);
       }
       level->filled = true;
       level->sum_omega = group->omega;
@@ -461,31 +559,32 @@ static void light_row(void *data, size_t index, int worker) {
   }
 }
 
-/* The buffer that sheets look up, for receivers around omega = receiver. */
-static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, hl_pool *pool,
-                          const cascade_functions *functions) {
+/* What receivers around omega = receiver lack, where it is wanted; false if nothing is in the way. */
+static bool find_shade(soft_cascade *cascade, double receiver, hl_pool *pool, const cascade_functions *functions) {
+  if (cascade->image != NULL) return hl_soft_cascade_pass_image(cascade, receiver, pool, functions);
   cascade_level *level = pass_all(cascade, receiver, pool, functions);
-  if (level == NULL) return; /* the buffer is all ones */
+  if (level == NULL) return false;
   double variance = variance_between(receiver - level->sum_omega, 0, level->scale);
   for (int c = 0; c < cascade->channels; c++)
     bring(level, &level->sum[level->newest][c], variance, &cascade->level[0], NULL, NULL, &cascade->shade[c], c,
           cascade->wanted[0], pool, functions);
+  return true;
+}
+
+/* The buffer that sheets look up, for receivers around omega = receiver. */
+static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, hl_pool *pool,
+                          const cascade_functions *functions) {
+  if (!find_shade(cascade, receiver, pool, functions)) return; /* the buffer is all ones */
   light_task task = {cascade, buffer, functions->left};
   hl_pool_run(pool, (size_t)cascade->level[0].tiles_y, light_row, &task);
   hl_shadow_buffer_find_lit(buffer, cascade->wanted[0], pool, functions->lit_blocks);
 }
 
 void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
-                             const sheet_stack *sheets, int sheet, double matter, hl_pool *pool,
-                             const cascade_functions *functions) {
-  double from = hl_sheet_height(sheets, sheet - 1), to = hl_sheet_height(sheets, sheet);
-  double omega = omega_at(cascade, to), middle = omega_at(cascade, (from + to) / 2);
-  if (!isfinite(middle)) return;
-  cascade->chunk_weight += matter;
-  cascade->chunk_sum += matter * middle;
-  if (omega - cascade->chunk_start < cascade->chunk) return;
-  push_chunk(cascade, buffer, pool, functions);
-  cascade->chunk_start = omega;
+                             const sheet_stack *sheets, int sheet, hl_pool *pool, const cascade_functions *functions) {
+  double omega = omega_at(cascade, hl_sheet_height(sheets, sheet));
+  if (!isfinite(omega) || omega - cascade->chunk_start < cascade->chunk) return;
+  push_chunk(cascade, buffer, omega, pool, functions);
   find_wanted(cascade, occupancy, sheets, sheet);
   refill_buffer(cascade, buffer, omega + cascade->chunk / 2, pool, functions);
 }

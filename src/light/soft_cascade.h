@@ -22,6 +22,7 @@
 #include "core/pool.h"
 #include "light/cascade_field.h"
 #include "light/light_extent.h"
+#include "light/light_image.h"
 #include "light/shadow_buffer.h"
 
 /* CASCADE_REACH: pixels beyond a tile that the buffer must hold, so that its rows are as long as level 0's. */
@@ -34,13 +35,12 @@ typedef struct cascade_field {
   unsigned char *zeros; /* [tiles]; 1 where the tile is all zeros: work skips it; in the level's flags */
 } cascade_field;
 
-/* What some neighbouring slabs absorbed. */
+/* What slabs around omega absorbed. */
 typedef struct cascade_group {
   cascade_field absorbed[HL_CHANNELS]; /* G + F */
   cascade_field thin[HL_CHANNELS];     /* F */
-  double omega;                      /* mean over its matter, pixels of the buffer */
-  double weight;                     /* of matter */
-  bool empty;                        /* all zeros */
+  double omega;                      /* pixels of the buffer */
+  bool filled;                       /* not all zeros */
 } cascade_group;
 
 /* A column or row of tiles: the part of the greatest variance that it has, and the box of the blur now done. */
@@ -58,6 +58,8 @@ typedef struct cascade_level {
   double sum_omega;               /* of the newest group in sum */
   bool renewed;                      /* sum is to be found anew */
   cascade_field scratch;
+  cascade_field mean[2][HL_CHANNELS]; /* through an image: of one group's absorbed and thin light */
+  unsigned char *wanted;             /* in flags; [tiles]; through an image, of farther levels */
   cascade_box *boxes;                /* owned; [tiles_x], then [tiles_y] */
   float *memory;                     /* the cascade_memory's */
   size_t planes;
@@ -76,28 +78,40 @@ typedef struct soft_cascade {
   double light_height;
   double widest;        /* of the light's widths along the buffer's axes */
   double least_part;    /* the other of them, as a part of it */
+  const light_image *image; /* null: boxes will do */
+  double slope_start[2], slope_step[2]; /* of the buffer's pixels, seen from the light: at its corner, and from one to the next */
   double chunk;         /* omega of a chunk of slabs, pixels */
   double chunk_start;   /* omega */
-  double chunk_weight, chunk_sum; /* its matter; sum of that times omega */
+  double slab;          /* the place of the slab now composited in the chunk, omega from its start */
   uint64_t chunks;      /* finished */
   int channels;
   int level_count;      /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
   cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0 */
+  float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: what the chunk's slabs took, times their places */
   unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs met light */
   unsigned char *wanted[CASCADE_MASKS]; /* owned with touched; [tiles]; what the next chunk's slabs read; a tile wider each */
 } soft_cascade;
 
-/* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. */
+/* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. image: the
+ * light's, borrowed until the end; null where it is even. */
 hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
-                                const sheet_light *light, vec3 normal, double first, double last, double pixel,
-                                shadow_buffer *buffer, hl_error *error);
+                                const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
+                                double pixel, shadow_buffer *buffer, hl_error *error);
 void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade);
 
-/* After the slab before the sheet was composited into the buffer. occupancy: what the light sees; the buffer is
- * found anew only where the next slabs lie. matter: how much there was, say blocks of pixels. */
+/* Before the slab before the sheet is composited into the buffer, and before and after each of its tiles is. */
+void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int sheet);
+void hl_soft_cascade_before(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, moment_tile_function *moment);
+void hl_soft_cascade_after(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, moment_tile_function *moment);
+
+/* After the slab was composited. occupancy: what the light sees; the buffer is found anew only where the next slabs
+ * lie. */
 void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
-                             const sheet_stack *sheets, int sheet, double matter, hl_pool *pool,
-                             const cascade_functions *functions);
+                             const sheet_stack *sheets, int sheet, hl_pool *pool, const cascade_functions *functions);
+
+/* soft_cascade_image.c: what receivers around omega = receiver lack, through the light's image, in shade where it is
+ * wanted; false if nothing is in the way. */
+bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, hl_pool *pool, const cascade_functions *functions);
 
 #endif

@@ -9,13 +9,16 @@
  * (1)), of average size (section 5.2, (3)): a disk of diameter L tilted by t becomes an ellipse with axes L and L cos t.
  * Z is measured along the sheets' normal; for parallel light L / Z then is (L / D) / cos t with L / D = 2 tan(angle / 2)
  * along the ray (derived). */
-void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first, double pixel) {
+void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first, const view *view,
+                         light_image *image) {
   double tilt = fmax(vec3_dot(source->direction, normal), 1e-3);
   soft->parallel = source->parallel;
   soft->size = hl_light_average_size(source, normal);
+  if (image != NULL) hl_light_image_project(source, view, soft->size, image);
+  soft->image = image;
   if (source->parallel) soft->size /= tilt;
   soft->light_height = vec3_dot(source->position, normal);
-  soft->pixel = pixel;
+  soft->pixel = vec3_length(view->du);
   soft->last = first;
   soft->remainder = 0;
 }
@@ -32,7 +35,7 @@ int hl_soft_paper_reach(const soft_paper *soft, double first, double spacing, in
   double widest = 0;
   for (int k = 0; k < sheets; k++)
     widest = fmax(widest, hl_soft_paper_width(soft, first + k * spacing, first + (k + 1) * spacing));
-  return (int)fmin(widest / 2 + 3, 1024);
+  return (int)fmin(soft->image != NULL ? soft->image->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
 }
 
 typedef struct convolve_job {
@@ -49,6 +52,49 @@ static void convolve_tile(void *data, size_t index, int worker) {
     if (job->wanted[index * (size_t)job->buffer->tiles_x + (size_t)x]) job->blur_tile(&job->blur, x, (int)index);
 }
 
+/* The taps of the image in place of a box's rows and columns, from the buffer to the scratch. */
+typedef struct image_convolution {
+  const shadow_buffer *buffer;
+  const unsigned char *wanted; /* [tiles] */
+  image_job job;
+  image_tile_function *image_tile;
+} image_convolution;
+
+static void convolve_image_tile(void *data, size_t index, int worker) {
+  (void)worker;
+  const image_convolution *task = data;
+  for (int x = 0; x < task->buffer->tiles_x; x++)
+    if (task->wanted[index * (size_t)task->buffer->tiles_x + (size_t)x]) task->image_tile(&task->job, x, (int)index);
+}
+
+static void copy_back_tile(void *data, size_t index, int worker) {
+  (void)worker;
+  const image_convolution *task = data;
+  const shadow_buffer *buffer = task->buffer;
+  float *to = (float *)task->job.from;
+  for (int x = 0; x < buffer->tiles_x; x++)
+    for (size_t row = 0; row < TILE && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; row++) {
+      size_t at = (index * TILE + row) * buffer->stride + (size_t)x * TILE;
+      memcpy(to + at, task->job.to + at, TILE * sizeof(float));
+    }
+}
+
+static void convolve_with_image(const soft_paper *soft, shadow_buffer *buffer, int width, const unsigned char *wanted,
+                                hl_pool *pool, image_tile_function *image_tile) {
+  image_taps taps;
+  ptrdiff_t offset[IMAGE_TAPS];
+  const int step[2] = {1, 1};
+  hl_light_image_taps(soft->image, width, step, (const double[2]){0, 0}, &taps);
+  for (int i = 0; i < taps.count; i++) offset[i] = (ptrdiff_t)taps.y[i] * (ptrdiff_t)buffer->stride + taps.x[i];
+  for (int c = 0; c < buffer->channels; c++) {
+    image_convolution task = {buffer, wanted, {.from = buffer->transmittance[c], .to = buffer->scratch[c],
+                              .stride = buffer->stride, .count = taps.count, .offset = offset, .weight = taps.weight[c]},
+                              image_tile};
+    hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_image_tile, &task);
+    hl_pool_run(pool, (size_t)buffer->tiles_y, copy_back_tile, &task);
+  }
+}
+
 /* Tiles within reach of one that light was taken from. */
 static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const unsigned char *from, unsigned char *to) {
   for (int y = 0; y < buffer->tiles_y; y++)
@@ -62,13 +108,10 @@ static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const u
     }
 }
 
-/* Rows go from the buffer to the scratch, columns back: both for the tiles that can change. Tiles outside hold 1 in
- * either. */
-static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, const blur_functions *blur) {
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
-  unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
-  convolve_job job = {buffer, {NULL, NULL, buffer->stride, buffer->stride, hl_blur_box((float)width)}, blur->rows, spread};
-  spread_touched(buffer, (job.blur.box.reach + TILE) / TILE, touched, spread);
+/* Rows go from the buffer to the scratch, columns back. */
+static void convolve_with_box(shadow_buffer *buffer, blur_box box, const unsigned char *wanted, hl_pool *pool,
+                              const blur_functions *blur) {
+  convolve_job job = {buffer, {NULL, NULL, buffer->stride, buffer->stride, box}, blur->rows, wanted};
   for (int c = 0; c < buffer->channels; c++) {
     job.blur.from = buffer->transmittance[c];
     job.blur.to = buffer->scratch[c];
@@ -79,17 +122,32 @@ static void convolve(shadow_buffer *buffer, int width, hl_pool *pool, const blur
     job.blur_tile = blur->columns;
     hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_tile, &job);
   }
+}
+
+/* Only the tiles that can change. Tiles outside hold 1 in the buffer and in the scratch. */
+static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, hl_pool *pool, const blur_functions *blur) {
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
+  unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
+  blur_box box = hl_blur_box((float)width);
+  int reach = soft->image == NULL ? box.reach : (int)(soft->image->reach * width) + 2;
+  spread_touched(buffer, (reach + TILE) / TILE, touched, spread);
+  if (soft->image == NULL) convolve_with_box(buffer, box, spread, pool, blur);
+  else convolve_with_image(soft, buffer, width, spread, pool, blur->image);
   memcpy(touched, spread, tiles);
   hl_shadow_buffer_find_lit(buffer, spread, pool, blur->lit_blocks);
 }
 
-/* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest. */
+/* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest. An image has
+ * one tap a pixel and no more of them than cells: wider steps are several. */
 void hl_soft_paper_convolve(soft_paper *soft, shadow_buffer *buffer, double next, hl_pool *pool,
                             const blur_functions *blur) {
-  double width = soft->remainder + hl_soft_paper_width(soft, soft->last, next);
+  double width = soft->remainder + hl_soft_paper_width(soft, soft->last, next), most = soft->image == NULL ? 2048 : IMAGE_SIDE;
   if (width <= 2) return;
-  double whole = fmin(floor(width), 2048);
-  convolve(buffer, (int)whole, pool, blur);
-  soft->remainder = width - whole;
+  do {
+    double whole = fmin(floor(width), most);
+    convolve(soft, buffer, (int)whole, pool, blur);
+    width -= whole;
+  } while (width > 2 && soft->image != NULL);
+  soft->remainder = width;
   soft->last = next;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "light/light_image.h"
 
 /* More than this is refused beforehand. */
 static const double GREATEST_BYTES = 4294967296.0;
@@ -78,6 +79,18 @@ static hl_status allocate(hl_context *context, hl_pool *pool, sublights *subligh
   return HL_OK;
 }
 
+/* The parts of a light with an image send its colours. */
+static hl_status weigh_parts(hl_context *context, sublights *sublights, const light_source *source, int side, hl_error *error) {
+  size_t count = (size_t)sublights->count;
+  double mean[HL_CHANNELS];
+  float(*weights)[HL_CHANNELS] = hl_allocate(context, count, sizeof *weights);
+  if (weights == NULL) return hl_fail_memory(error, count * sizeof *weights, "the parts of a light");
+  hl_light_image_weights(source, side, weights, mean);
+  for (size_t i = 0; i < count; i++) memcpy(sublights->lookups[i].weight, weights[i], sizeof *weights);
+  hl_release(context, weights);
+  return HL_OK;
+}
+
 /* Where samples find each part's light. */
 static void point_lookups(sublights *sublights) {
   for (int i = 0; i < sublights->count; i++)
@@ -106,7 +119,7 @@ hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *subl
     sublights->lookups[i].stride = sublights->stride;
   }
   point_lookups(sublights);
-  return HL_OK;
+  return source->light->emission.pixels != NULL ? weigh_parts(context, sublights, source, side, error) : HL_OK;
 }
 
 void hl_sublights_release(hl_context *context, sublights *sublights) {

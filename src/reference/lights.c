@@ -4,6 +4,8 @@
  * projects alone: transmittance and texture are means over a fixed set of points on the light, the same for
  * every sample, so that the picture has no noise. A sphere is the disk of its radius that faces the sample.
  */
+#include <string.h>
+
 #include "core/memory.h"
 #include "reference/reference.h"
 #include "scene/light_shape.h"
@@ -117,6 +119,36 @@ static bool has_extent(const hl_light *light) {
   return light->radius > 0;
 }
 
+/* How a light's offset from its centre is found from one of its points. */
+static vec3 offset_of(const reference_light *light, vec3 light_point) {
+  if (!light->directional) return vec3_subtract(light_point, light->centre);
+  vec3 at_distance_1 = vec3_scale(light_point, 1 / vec3_dot(light_point, light->towards));
+  return vec3_subtract(at_distance_1, light->towards);
+}
+
+enum { MEAN_POINTS = 1 << 14 };
+
+/* The image's mean over the light: what is left of it where the light counts as a point. */
+static hl_status find_mean(hl_context *context, reference_light *light, hl_error *error) {
+  reference_light dense = *light;
+  vec3 facing = light->directional ? vec3_scale(light->towards, -1) : (vec3){0, 0, 1};
+  dense.point_count = MEAN_POINTS;
+  dense.points = hl_allocate(context, MEAN_POINTS, sizeof *dense.points);
+  if (dense.points == NULL) return hl_fail_memory(error, MEAN_POINTS * sizeof *dense.points, "points on a light");
+  fill_points(&dense);
+  if (light->described->type == HL_LIGHT_POINT || light->described->type == HL_LIGHT_SPOT)
+    for (size_t i = 0; i < MEAN_POINTS; i++)
+      dense.points[i] = point_of_disk(light->centre, facing, light->described->radius, i, MEAN_POINTS);
+  emission_plane plane = hl_emission_plane(light->described, facing);
+  for (size_t i = 0; i < MEAN_POINTS; i++) {
+    double color[3];
+    hl_reference_emission(light->emission, &plane, offset_of(light, dense.points[i]), color);
+    for (int c = 0; c < 3; c++) light->mean[c] += color[c] / MEAN_POINTS;
+  }
+  hl_release(context, dense.points);
+  return HL_OK;
+}
+
 hl_status hl_reference_light_create(const reference *all, const hl_light *light, int point_count,
                                     reference_light *made, hl_error *error) {
   *made = (reference_light){.described = light, .directional = light->type == HL_LIGHT_DIRECTIONAL};
@@ -126,6 +158,11 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
     made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
   else
     made->centre = hl_light_centre(light);
+  if (light->emission.pixels != NULL) {
+    made->emission = &light->emission;
+    hl_status status = find_mean(all->context, made, error);
+    if (status != HL_OK) return status;
+  }
   hl_shadows shadows = light->shadows == HL_SHADOWS_DEFAULT ? all->scene->render.shadows : light->shadows;
   if (shadows == HL_SHADOWS_OFF) return HL_OK;
   made->point_count = shadows == HL_SHADOWS_SOFT && has_extent(light) ? (size_t)point_count : 1;
@@ -182,11 +219,14 @@ static void find_transmittance(const reference *all, vec3 point, vec3 direction,
   for (int c = 0; c < 3; c++) passing[c] = exp(-depth[c]);
 }
 
-/* One point's light: texture times transmittance, added to sum. light_point is a direction where directional. */
-static void add_point(const reference *all, const reference_light *light, vec3 light_point, vec3 point,
-                      bool attenuated, crossing *scratch, double sum[3]) {
+/* One point's light: image times transmittance, added to sum. light_point is a direction where directional; plane: of
+ * the light's own image, where it counts point by point. */
+static void add_point(const reference *all, const reference_light *light, const emission_plane *plane, vec3 light_point,
+                      vec3 point, bool attenuated, crossing *scratch, double sum[3]) {
   double distance = INFINITY, pattern[3] = {1, 1, 1}, passing[3] = {1, 1, 1};
   vec3 direction = light_point;
+  if (plane != NULL) hl_reference_emission(light->emission, plane, offset_of(light, light_point), pattern);
+  else if (light->emission != NULL) memcpy(pattern, light->mean, sizeof pattern);
   if (light->texture != NULL)
     hl_reference_texture(light->texture, light->directional, light_point, point, pattern);
   if (!(pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0)) return;
@@ -207,11 +247,15 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
   if (!(vec3_length(facing) > 0)) facing = (vec3){0, 0, 1};
   bool casts = light->points != NULL;
   size_t count = casts ? light->point_count : 1;
+  bool extended = light->emission != NULL && count > 1;
+  emission_plane plane = {.middle = {0, 0, 0}};
+  if (extended)
+    plane = hl_emission_plane(light->described, light->directional ? vec3_scale(light->towards, -1) : facing);
   for (size_t i = 0; i < count && !hl_pool_stops(all->pool, worker->number); i++) {
     vec3 light_point = casts ? light->points[i] : centre;
     if (light->sphere) /* seen from the point: its disk */
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
-    add_point(all, light, light_point, point, casts && attenuated, worker->shadow, sum);
+    add_point(all, light, extended ? &plane : NULL, light_point, point, casts && attenuated, worker->shadow, sum);
   }
   for (int c = 0; c < 3; c++) reach[c] = sum[c] / (double)count;
 }

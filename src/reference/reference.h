@@ -7,7 +7,7 @@
  *     march.c       a ray through the boxes of the volumes, step by step, jumping over empty bricks
  *     field.c       reconstruction of one volume at a point: value, gradient, extinction
  *     bricks.c      where a volume has nothing
- *     texture.c     the image that a light projects
+ *     texture.c     the image that a light projects, the one on a light
  *     lights.c      points on the lights, and the transmittance towards them
  *     shade.c       the light that one sample sends to the eye
  *     layers.c      that light by its sources, depth and normals
@@ -22,6 +22,7 @@
 #include "core/error.h"
 #include "core/pool.h"
 #include "core/vector.h"
+#include "scene/light_shape.h"
 #include "scene/scene.h"
 
 /* One volume of the scene, made ready for questions at points of its index space. */
@@ -51,6 +52,8 @@ typedef struct reference_light {
   vec3 towards;               /* directional lights: unit vector to the light */
   double color[3];            /* color * intensity */
   const hl_light_texture *texture; /* null: none */
+  const hl_light_emission *emission; /* the image on the light itself; null: none */
+  double mean[3];             /* of that over the light's surface */
   vec3 *points;               /* owned; null where the light casts no shadows; not set for spheres */
   size_t point_count;
 } reference_light;
@@ -91,8 +94,8 @@ typedef struct march {
 typedef struct arrival {
   vec3 towards;               /* unit vector to the light's centre */
   double incoming[3];         /* without texture and without attenuation by volumes; eq. (1) */
-  double pattern[3];          /* the texture's colour, mean over the light's points; 1 without one; eq. (2) */
-  double shadowed[3];         /* mean over the light's points of texture times transmittance */
+  double pattern[3];          /* the colour of the light's image, mean over its points; 1 without one; eq. (2) */
+  double shadowed[3];         /* mean over the light's points of image times transmittance */
   bool pattern_known, shadowed_known;
 } arrival;
 
@@ -147,13 +150,16 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
                                     reference_light *made, hl_error *error);
 /* The light at a world point, before any volume. */
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived);
-/* Mean over the light's points of texture (its colour, or 1) times transmittance; attenuated: false takes
+/* Mean over the light's points of its image (texture or emission; else 1) times transmittance; attenuated: false takes
  * the transmittance as 1. */
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
                               reference_worker *worker, double reach[3]);
 
 /* The colour of a texture on the ray from a point of the light (or, far: from a direction) to `point`. */
 void hl_reference_texture(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double color[3]);
+
+/* The colour of a light's own image at an offset of its plane. */
+void hl_reference_emission(const hl_light_emission *emission, const emission_plane *plane, vec3 offset, double color[3]);
 
 /* Adds what a sample of one volume sends along `to_eye`, times its weight, to the worker's sample. `index_point` is the
  * same point as `point`. */

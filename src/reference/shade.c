@@ -33,11 +33,19 @@ static vec3 find_normal(const reference_volume *volume, vec3 index_point, double
   return vec3_scale(gradient, (value > volume->empty_value ? -1 : 1) / size);
 }
 
-/* The part of the light that the volumes let through, whatever image it projects. */
+/* The part of the light that the volumes let through, whatever image it projects; of a light with an image of its own
+ * the part of each colour. */
 static void find_shadow(const reference *all, const reference_volume *volume, size_t light, vec3 point,
                         reference_worker *worker, double shadow[3]) {
   reference_light plain = all->lights[light];
   bool attenuated = volume->described->receives_shadow;
+  if (plain.emission != NULL) {
+    double full[3];
+    const double *reach = light_reach(all, volume, light, point, worker);
+    hl_reference_light_reach(all, &plain, point, false, worker, full);
+    for (int c = 0; c < 3; c++) shadow[c] = full[c] > 0 ? reach[c] / full[c] : 1;
+    return;
+  }
   if (plain.texture == NULL) {
     memcpy(shadow, light_reach(all, volume, light, point, worker), 3 * sizeof *shadow);
     return;

@@ -1,7 +1,7 @@
-/* reference/texture.c - the image that a light projects; eq. (2).
+/* reference/texture.c - the image that a light projects, eq. (2), and the one on its own surface.
  *
- * The ray from a point of the light meets the screen's parallelogram or passes beside it; the image is
- * bilinear between the middles of its pixels, and held from there to its borders.
+ * The ray from a point of the light meets the screen's parallelogram or passes beside it; images are
+ * bilinear between the middles of their pixels, and held from there to their borders.
  */
 #include "reference/reference.h"
 
@@ -27,17 +27,28 @@ static double neighbours(double place, int count, size_t pixel[2]) {
   return at - (double)pixel[0];
 }
 
-void hl_reference_texture(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double color[3]) {
-  double s, t;
+/* s to the right and t upwards, each from -1 to 1. */
+static void look_up(const float *pixels, int width, int height, double s, double t, double color[3]) {
   size_t column[2], row[2];
+  double x = neighbours((1 + s) / 2 * width, width, column), y = neighbours((1 - t) / 2 * height, height, row);
   color[0] = color[1] = color[2] = 0;
-  if (!meet_screen(texture, far, light, point, &s, &t)) return;
-  double x = neighbours((1 + s) / 2 * texture->width, texture->width, column);
-  double y = neighbours((1 - t) / 2 * texture->height, texture->height, row);
   for (int corner = 0; corner < 4; corner++) {
     int right = corner & 1, below = corner >> 1;
     double weight = (right ? x : 1 - x) * (below ? y : 1 - y);
-    const float *pixel = texture->pixels + 3 * (row[below] * (size_t)texture->width + column[right]);
+    const float *pixel = pixels + 3 * (row[below] * (size_t)width + column[right]);
     for (int c = 0; c < 3; c++) color[c] += weight * (double)pixel[c];
   }
+}
+
+void hl_reference_texture(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double color[3]) {
+  double s, t;
+  color[0] = color[1] = color[2] = 0;
+  if (meet_screen(texture, far, light, point, &s, &t))
+    look_up(texture->pixels, texture->width, texture->height, s, t, color);
+}
+
+void hl_reference_emission(const hl_light_emission *emission, const emission_plane *plane, vec3 offset, double color[3]) {
+  double s, t;
+  hl_emission_place(plane, offset, &s, &t);
+  look_up(emission->pixels, emission->width, emission->height, s, t, color);
 }

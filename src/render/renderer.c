@@ -282,7 +282,10 @@ static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
   statistics->seconds_soften += sweep->seconds_soften;
 }
 
+/* Three where matter takes colours apart, or light comes in several from several places. */
 static int attenuation_channels(const hl_scene_description *scene) {
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (hl_light_image_colored(&scene->lights[i])) return 3;
   for (size_t i = 0; i < scene->volume_count; i++) {
     const double *color = scene->volumes[i].attenuation_color;
     if (scene->volumes[i].casts_shadow && (color[0] != color[1] || color[1] != color[2])) return 3;

@@ -107,7 +107,7 @@ LANES_INLINE color_lanes reaching(const shade_light *light, lanes3 position) {
     lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
     lanes u = lanes_select(ahead, place[1] / safe, outside), v = lanes_select(ahead, place[2] / safe, outside);
     for (int c = 0; c < light->channels; c++)
-      sum.c[c] = sum.c[c] + look_up(lookup, light->nearest, lookup->transmittance[c], u, v);
+      sum.c[c] = sum.c[c] + look_up(lookup, light->nearest, lookup->transmittance[c], u, v) * lookup->weight[c];
   }
   for (int c = 0; c < light->channels && light->lookup_count > 1; c++) sum.c[c] = sum.c[c] / (float)light->lookup_count;
   return sum;

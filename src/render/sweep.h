@@ -49,6 +49,7 @@ typedef struct sweep_light {
   shadow_buffer *buffer;          /* null: no shadows */
   view_sheets sheets;
   light_screen screen;            /* the image that the light projects */
+  light_image *image;             /* owned; the image on the light itself; null: none */
   soft_paper paper;               /* by the source's soft method */
   soft_cascade cascade;
   sublights sublights;            /* with these, buffer holds one slab at a time */
@@ -56,7 +57,6 @@ typedef struct sweep_light {
 } sweep_light;
 
 typedef struct sweep_counts {
-  uint64_t attenuated[FRAME_LIGHTS]; /* blocks in which a light met matter, of the slab now composited */
   uint64_t samples, filled_image, filled_light, skipped_image, skipped_light; /* pixels shaded; tiles */
   uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
   double seconds_fill, seconds_shade; /* of the image stage */

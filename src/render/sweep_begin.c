@@ -83,8 +83,11 @@ static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *p
 static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source, shadow_buffer *buffer,
                              cascade_memory *memory, vec3 *points, hl_error *error) {
   light->source = source;
-  hl_status status = hl_light_screen_create(sweep->context, source, sweep->frame->points, sweep->frame->point_count,
-                                            sweep->frame->middle, sweep->frame->middle_pixel, &light->screen, error);
+  hl_status status = hl_light_image_create(sweep->context, source, &light->image, error);
+  if (status != HL_OK) return status;
+  light_image *image = light->image == NULL || light->image->even ? NULL : light->image;
+  status = hl_light_screen_create(sweep->context, source, sweep->frame->points, sweep->frame->point_count,
+                                  sweep->frame->middle, sweep->frame->middle_pixel, &light->screen, error);
   view view;
   shadow_extent extent;
   sheet_light seen = {0};
@@ -96,7 +99,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   int reach = soft ? CASCADE_REACH : 0;
   const sheet_stack *sheets = &sweep->geometry->sheets;
   if (paper) {
-    hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, edge);
+    hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, &view, image);
     reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
   }
   status = hl_shadow_buffer_reset(sweep->context, sweep->pool, buffer, &view, sweep->channels, paper, reach, error);
@@ -107,8 +110,10 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
     status = hl_sublights_begin(sweep->context, sweep->pool, &light->sublights, source, sweep->scene->render.light_samples,
                                 &seen, sheets->normal, &extent, sweep->channels, sheets->first, last, error);
-  if (status == HL_OK && soft && source->soft_method == HL_SOFT_CASCADE)
-    status = hl_soft_cascade_begin(sweep->context, sweep->pool, memory, &light->cascade, &seen, sheets->normal,
+  bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
+  if (cascade && image != NULL) hl_light_image_see(source, &seen, sheets->normal, image);
+  if (status == HL_OK && cascade)
+    status = hl_soft_cascade_begin(sweep->context, sweep->pool, memory, &light->cascade, &seen, image, sheets->normal,
                                    sheets->first, last, edge, buffer, error);
   if (status == HL_OK) status = hl_view_sheets_begin(sweep, &view, &light->sheets, error);
   return status;
@@ -170,7 +175,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
                          .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST};
   vec3_store(light->towards, vec3_scale(from->source->direction, -1));
   vec3_store(light->position, from->source->position);
-  for (int c = 0; c < 3; c++) light->color[c] = (float)(scene->color[c] * scene->intensity);
+  for (int c = 0; c < 3; c++) light->color[c] = (float)(scene->color[c] * scene->intensity * (from->image == NULL ? 1 : from->image->mean[c]));
   light->path = (float)spacing;
   if (from->source->parallel) light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
   if (from->buffer == NULL) return;
@@ -229,6 +234,7 @@ void hl_sweep_end(sweep *sweep) {
     sweep_light *light = &sweep->lights[i];
     hl_view_sheets_end(sweep, &light->sheets);
     hl_light_screen_release(context, &light->screen);
+    hl_release(context, light->image);
     hl_soft_cascade_release(context, &light->cascade);
     hl_sublights_release(context, &light->sublights);
   }

@@ -132,10 +132,12 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   job.volume_count = count;
   for (int c = 0; c < job.channels; c++)
     job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
-  if (light->cascade.level_count > 0) light->cascade.touched[tile] = 1;
+  bool cascade = light->cascade.level_count > 0;
+  if (cascade) hl_soft_cascade_before(&light->cascade, buffer, tile, sweep->hot->moment_tile);
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
   buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | sweep->hot->attenuate_tile(&job, tile_x, tile_y));
+  if (cascade) hl_soft_cascade_after(&light->cascade, buffer, tile, sweep->hot->moment_tile);
   buffer->tile_touched[tile] = light->sublights.count == 0 || holds_shade(&job);
 }
 
@@ -152,7 +154,6 @@ static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker
   double start = read_clock(timed);
   int count = fill_light_tile(sweep, &sweep->lights[light_index], tile, worker, need, volumes);
   double filled = read_clock(timed);
-  for (int i = 0; i < count; i++) counts->attenuated[light_index] += (uint64_t)__builtin_popcount(volumes[i].blocks);
   if (count > 0) composite_light_tile(sweep, light_index, tile, need, volumes, count);
   double end = read_clock(timed);
   counts->filled_light++;
@@ -183,6 +184,7 @@ static void reach_sheet(sweep *sweep, int light_index, int sheet) {
   hl_view_sheets_reach(sweep, &light->buffer->view, sheet, &light->sheets);
   hl_view_sheet_rays(&light->buffer->view, sheets->normal, hl_sheet_height(sheets, sheet), affine3_identity(), &job->rays);
   job->height = (float)(sheet * sheets->spacing);
+  if (light->cascade.level_count > 0) hl_soft_cascade_reach(&light->cascade, sheets, sheet);
 }
 
 void hl_sweep_attenuate(sweep *sweep, int sheet) {
@@ -203,22 +205,13 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
   sweep->seconds_light += hl_clock_seconds() - start;
 }
 
-/* How much matter a light met in the last slab. */
-static double take_attenuated(sweep *sweep, int light) {
-  uint64_t blocks = 0;
-  for (int worker = 0; worker < hl_pool_threads(sweep->pool); worker++) {
-    blocks += sweep->counts[worker].attenuated[light];
-    sweep->counts[worker].attenuated[light] = 0;
-  }
-  return (double)blocks;
-}
-
 void hl_sweep_soften(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
   const hot_functions *hot = sweep->hot;
-  const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile};
+  const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile, hot->image_tile};
   const cascade_functions cascade = {hot->lit_blocks_tile, hot->blur_add_tile, hot->add_tile,
-                                     hot->add_half_tile, hot->add_double_tile, hot->left_tile, hot->absorbed_tile};
+                                     hot->add_half_tile, hot->add_double_tile, hot->left_tile, hot->absorbed_tile, hot->part_tile,
+                                     hot->double_tile, hot->image_add_tile};
   const sublight_functions parts = {hot->sublight_tile, hot->blur_add_tile, hot->lit_blocks_tile};
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
@@ -232,7 +225,7 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
                            hl_sheet_height(&sweep->geometry->sheets, sheet), sweep->pool, &parts);
     else if (sheet > 0)
       hl_soft_cascade_advance(&light->cascade, light->buffer, &light->sheets.occupancy, &sweep->geometry->sheets, sheet,
-                              take_attenuated(sweep, i), sweep->pool, &cascade);
+                              sweep->pool, &cascade);
   }
   sweep->seconds_soften += hl_clock_seconds() - start;
 }

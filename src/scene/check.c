@@ -193,22 +193,20 @@ static hl_status check_light_place(const checker *check, const hl_light *light) 
   return status == HL_OK ? check_radius(check, light) : status;
 }
 
-static hl_status check_texture_pixels(const checker *check, const hl_light_texture *texture) {
+/* [height][width][3] */
+static hl_status check_pixels(const checker *check, const float *pixels, int width, int height) {
   const char *size = "give an image of at most 32768 pixels a side, 67108864 in all";
   hl_status status;
-  if ((status = check_range(check, "width", texture->width, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK) return status;
-  if ((status = check_range(check, "height", texture->height, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK)
-    return status;
-  size_t count = (size_t)texture->width * (size_t)texture->height;
+  if ((status = check_range(check, "width", width, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK) return status;
+  if ((status = check_range(check, "height", height, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK) return status;
+  size_t count = (size_t)width * (size_t)height;
   if (count > HL_LIMIT_TEXTURE_PIXELS)
-    return hl_fail(check->error, HL_ERROR_INPUT, "%s: has %d x %d pixels: %s", check->place, texture->width,
-                   texture->height, size);
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s: has %d x %d pixels: %s", check->place, width, height, size);
   for (size_t i = 0; i < 3 * count; i++)
-    if (!(texture->pixels[i] >= 0 && (double)texture->pixels[i] <= HL_LIMIT_LENGTH))
+    if (!(pixels[i] >= 0 && (double)pixels[i] <= HL_LIMIT_LENGTH))
       return hl_fail(check->error, HL_ERROR_INPUT,
                      "%s/file: pixel (%zu, %zu) has %.9g in channel %zu: give linear RGB, finite and none below 0",
-                     check->place, i / 3 % (size_t)texture->width, i / 3 / (size_t)texture->width,
-                     (double)texture->pixels[i], i % 3);
+                     check->place, i / 3 % (size_t)width, i / 3 / (size_t)width, (double)pixels[i], i % 3);
   return HL_OK;
 }
 
@@ -219,7 +217,7 @@ static hl_status check_texture(const checker *parent, const hl_light *light) {
   hl_status status;
   if (texture->pixels == NULL) return HL_OK;
   snprintf(check.place, sizeof check.place, "%s/texture", parent->place);
-  if ((status = check_texture_pixels(&check, texture)) != HL_OK) return status;
+  if ((status = check_pixels(&check, texture->pixels, texture->width, texture->height)) != HL_OK) return status;
   if ((status = check_point(&check, "screen/center", texture->screen_center)) != HL_OK) return status;
   if ((status = check_direction(&check, "screen/right", texture->screen_right)) != HL_OK) return status;
   if ((status = check_direction(&check, "screen/up", texture->screen_up)) != HL_OK) return status;
@@ -232,6 +230,27 @@ static hl_status check_texture(const checker *parent, const hl_light *light) {
   if (!(fabs(vec3_dot(vec3_normalise(normal), vec3_normalise(way))) > 1e-4))
     return refuse(&check, "screen/center",
                   "the light's rays run along the screen, not through it: turn or move the screen");
+  return HL_OK;
+}
+
+/* There must be a surface for the image to be on. */
+static hl_status check_emission(const checker *parent, const hl_light *light) {
+  const hl_light_emission *emission = &light->emission;
+  checker check = {parent->error, ""};
+  hl_status status;
+  if (emission->pixels == NULL) return HL_OK;
+  snprintf(check.place, sizeof check.place, "%s/emission", parent->place);
+  if ((status = check_pixels(&check, emission->pixels, emission->width, emission->height)) != HL_OK) return status;
+  if ((status = check_direction(&check, "up", emission->up)) != HL_OK) return status;
+  if (light->texture.pixels != NULL)
+    return refuse(parent, "emission", "is beside a texture: a light has an image of its own or projects one, use two lights");
+  bool flat = light->type == HL_LIGHT_DIRECTIONAL ? !(light->angular_diameter_deg > 0) : !(light->radius > 0);
+  if (light->type == HL_LIGHT_POLYGON) flat = false;
+  if (light->type == HL_LIGHT_RECT) {
+    vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
+    flat = !(vec3_length(vec3_cross(edge1, edge2)) > THIN * vec3_length(edge1) * vec3_length(edge2));
+  }
+  if (flat) return refuse(parent, "emission", "is on a light without a surface: give it a radius, an angle or two edges");
   return HL_OK;
 }
 
@@ -248,6 +267,7 @@ static hl_status check_light(const hl_light *light, size_t index, hl_error *erro
   if ((status = check_vector(&check, "color", light->color, 0, HL_LIMIT_LENGTH,
                              "give linear RGB, none below 0")) != HL_OK) return status;
   if ((status = check_texture(&check, light)) != HL_OK) return status;
+  if ((status = check_emission(&check, light)) != HL_OK) return status;
   return check_range(&check, "intensity", light->intensity, 0, HL_LIMIT_LENGTH, "give a factor, 0 or more");
 }
 

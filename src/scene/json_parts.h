@@ -10,7 +10,10 @@ hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_sc
 /* The image that a light projects (null: none); its pixels and file name are owned by *texture. */
 hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture);
 
-/* One light, with its texture: hl_light_texture_release(). */
+/* The image on a light's own surface (null: none); its pixels and file name are owned by *emission. */
+hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_light_type type, hl_light_emission *emission);
+
+/* One light, with its texture: hl_light_images_release(). */
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light);
 
 /* A volume that a scene has, found again when it is there twice. */

@@ -1,4 +1,4 @@
-/* scene/json_texture.c - the image that a light projects, from JSON: its file and the screen it stands on. */
+/* scene/json_texture.c - images of lights, from JSON: what one projects, and the screen it stands on; what one shows itself. */
 #include <string.h>
 
 #include <halflight/image.h>
@@ -25,27 +25,40 @@ static hl_status read_screen(hl_json_reader *reader, const json_t *value, hl_lig
   return status;
 }
 
+/* Where an image goes. */
+typedef struct light_image {
+  const char **file;
+  const float **pixels;
+  int *width, *height;
+} light_image;
+
 /* Premultiplied colours are those over black: alpha is left out. */
-static hl_status take_pixels(hl_context *context, const hl_image *image, hl_light_texture *texture, hl_error *error) {
+static hl_status take_pixels(hl_context *context, const hl_image *image, const light_image *to, hl_error *error) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *from = hl_image_pixels_const(image);
   float *pixels = hl_allocate(context, count, 3 * sizeof *pixels);
-  if (pixels == NULL) return hl_fail_memory(error, count * 3 * sizeof *pixels, "a light's texture");
+  if (pixels == NULL) return hl_fail_memory(error, count * 3 * sizeof *pixels, "a light's image");
   for (size_t i = 0; i < count; i++)
     for (size_t c = 0; c < 3; c++) pixels[3 * i + c] = from[4 * i + c];
-  texture->pixels = pixels;
-  texture->width = hl_image_width(image);
-  texture->height = hl_image_height(image);
+  *to->pixels = pixels;
+  *to->width = hl_image_width(image);
+  *to->height = hl_image_height(image);
   return HL_OK;
 }
 
-static hl_status load(hl_json_reader *reader, const char *file, hl_light_texture *texture) {
+/* The image that an object's "file" names. */
+static hl_status load(hl_json_reader *reader, const json_t *value, const light_image *to) {
+  const char *file = NULL;
+  hl_status status = hl_json_text(reader, value, "file", &file);
+  if (status != HL_OK) return status;
+  if (file == NULL || file[0] == 0)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "%s: name the image's file", file == NULL ? "is missing" : "is empty");
   char *path = hl_path_join(reader->context, reader->folder, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
-  texture->file = path;
+  *to->file = path;
   hl_image *image = NULL;
-  hl_status status = hl_image_read(reader->context, path, &image, reader->error);
-  if (status == HL_OK) status = take_pixels(reader->context, image, texture, reader->error);
+  status = hl_image_read(reader->context, path, &image, reader->error);
+  if (status == HL_OK) status = take_pixels(reader->context, image, to, reader->error);
   hl_image_destroy(image);
   if (status == HL_OK) return HL_OK;
   hl_json_enter(reader, "file");
@@ -54,15 +67,24 @@ static hl_status load(hl_json_reader *reader, const char *file, hl_light_texture
 
 hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture) {
   static const char *const keys[] = {"file", "screen", NULL};
-  const char *file = NULL;
+  const light_image image = {&texture->file, &texture->pixels, &texture->width, &texture->height};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "texture");
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = hl_json_text(reader, value, "file", &file);
-  if (status == HL_OK && (file == NULL || file[0] == 0))
-    status = hl_json_fail(reader, HL_ERROR_INPUT, "file", "%s: name the image's file", file == NULL ? "is missing" : "is empty");
   if (status == HL_OK) status = read_screen(reader, json_object_get(value, "screen"), texture);
-  if (status == HL_OK) status = load(reader, file, texture);
+  if (status == HL_OK) status = load(reader, value, &image);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_light_type type, hl_light_emission *emission) {
+  static const char *const keys[] = {"file", "up", NULL}, *const rect_keys[] = {"file", NULL};
+  const light_image image = {&emission->file, &emission->pixels, &emission->width, &emission->height};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "emission");
+  hl_status status = hl_json_object(reader, value, type == HL_LIGHT_RECT ? rect_keys : keys);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "up", 3, emission->up);
+  if (status == HL_OK) status = load(reader, value, &image);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }

@@ -59,7 +59,7 @@ hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_sc
 }
 
 /* What each type of light may say, in the order of hl_light_type. */
-#define COMMON_KEYS "color", "intensity", "falloff", "shadows", "texture", NULL
+#define COMMON_KEYS "color", "intensity", "falloff", "shadows", "texture", "emission", NULL
 static const char *const directional_keys[] = {"type", "direction", "angular_diameter_deg", COMMON_KEYS};
 static const char *const point_keys[] = {"type", "position", "radius", COMMON_KEYS};
 static const char *const spot_keys[] = {"type",   "position", "direction", "opening_angle_deg", "falloff_angle_deg",
@@ -116,7 +116,7 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
   static const char *const all[] = {
       "type", "direction", "angular_diameter_deg", "position", "radius", "normal", "edge1", "edge2",
       "opening_angle_deg", "falloff_angle_deg", "vertices", "color", "intensity", "falloff", "shadows", "texture",
-      NULL};
+      "emission", NULL};
   hl_light_defaults(light);
   int type = (int)light->type, falloff = (int)light->falloff, shadows = (int)light->shadows;
   hl_status status = hl_json_object(reader, value, all);
@@ -133,6 +133,8 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
   light->falloff = (hl_falloff)falloff;
   light->shadows = (hl_shadows)shadows;
   if (status == HL_OK) status = hl_json_read_texture(reader, json_object_get(value, "texture"), &light->texture);
+  if (status == HL_OK)
+    status = hl_json_read_emission(reader, json_object_get(value, "emission"), light->type, &light->emission);
   return status;
 }
 

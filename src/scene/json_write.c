@@ -156,6 +156,14 @@ static void write_texture(writer *w, const hl_light_texture *texture) {
   close_bracket(w, "}");
 }
 
+static void write_emission(writer *w, const hl_light *light) {
+  if (light->emission.pixels == NULL) return;
+  open_bracket(w, "emission", "{");
+  write_name(w, "file", light->emission.file);
+  if (light->type != HL_LIGHT_RECT) write_row(w, "up", light->emission.up, 3);
+  close_bracket(w, "}");
+}
+
 static void write_light_place(writer *w, const hl_light *light) {
   if (light->type == HL_LIGHT_DIRECTIONAL) {
     write_row(w, "direction", light->direction, 3);
@@ -193,6 +201,7 @@ static void write_light(writer *w, const hl_light *light) {
   if (light->shadows != HL_SHADOWS_DEFAULT)
     write_name(w, "shadows", hl_shadows_names[light->shadows - HL_SHADOWS_OFF]);
   write_texture(w, &light->texture);
+  write_emission(w, light);
   close_bracket(w, "}");
 }
 
@@ -357,17 +366,23 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
                  "/volumes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", index);
 }
 
+static hl_status check_light_image(const float *pixels, const char *file, const char *key, size_t light, hl_error *error) {
+  if (pixels == NULL) return HL_OK;
+  if (file == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "/lights/%zu/%s/file: the image came from memory: write it to a file and name that in the scene",
+                   light, key);
+  if (is_utf8(file)) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT, "/lights/%zu/%s/file: is not UTF-8, as JSON texts must be: rename it", light, key);
+}
+
 /* What a text cannot say: voxels and pixels without a file, names that are not UTF-8. */
 static hl_status check_writable(const hl_scene_description *d, hl_error *error) {
   for (size_t l = 0; l < d->light_count; l++) {
-    const hl_light_texture *texture = &d->lights[l].texture;
-    if (texture->pixels != NULL && texture->file == NULL)
-      return hl_fail(error, HL_ERROR_ARGUMENT,
-                     "/lights/%zu/texture/file: the image came from memory: write it to a file and name that in the scene",
-                     l);
-    if (texture->pixels != NULL && !is_utf8(texture->file))
-      return hl_fail(error, HL_ERROR_ARGUMENT,
-                     "/lights/%zu/texture/file: is not UTF-8, as JSON texts must be: rename it", l);
+    const hl_light *light = &d->lights[l];
+    hl_status status = check_light_image(light->texture.pixels, light->texture.file, "texture", l, error);
+    if (status == HL_OK) status = check_light_image(light->emission.pixels, light->emission.file, "emission", l, error);
+    if (status != HL_OK) return status;
   }
   for (size_t v = 0; v < d->volume_count; v++) {
     hl_status status = check_volume(&d->volumes[v], v, error);

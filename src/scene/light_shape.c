@@ -93,3 +93,52 @@ mat3 hl_light_spread(const hl_light *light, vec3 facing) {
   double radius = parallel ? tan(light->angular_diameter_deg * HL_PI / 360) : light->radius;
   return add(spread, add(unit, outer(normal, normal), -1), radius * radius / 4);
 }
+
+/* Unit, right and up for who looks against the normal. */
+static void upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up) {
+  *right = vec3_cross(vec3_normalise(wanted_up), normal);
+  if (!(vec3_length(*right) > 1e-3)) *right = vec3_cross((vec3){0, 1, 0}, normal);
+  if (!(vec3_length(*right) > 1e-3)) *right = vec3_cross((vec3){0, 0, 1}, normal);
+  *right = vec3_normalise(*right);
+  *up = vec3_cross(normal, *right);
+}
+
+/* The rectangle around the vertices. */
+static emission_plane plane_of_polygon(const hl_light *light) {
+  polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  vec3 axis[2];
+  upright(shape.normal, vec3_of(light->emission.up), &axis[0], &axis[1]);
+  for (size_t i = 0; i < light->vertex_count; i++)
+    for (int a = 0; a < 2; a++) {
+      double at = vec3_dot(axis[a], vec3_subtract(vec3_of(light->vertices[i]), shape.centre));
+      low[a] = fmin(low[a], at);
+      high[a] = fmax(high[a], at);
+    }
+  return (emission_plane){vec3_add(vec3_scale(axis[0], (low[0] + high[0]) / 2), vec3_scale(axis[1], (low[1] + high[1]) / 2)),
+                          vec3_scale(axis[0], (high[0] - low[0]) / 2), vec3_scale(axis[1], (high[1] - low[1]) / 2)};
+}
+
+emission_plane hl_emission_plane(const hl_light *light, vec3 facing) {
+  emission_plane plane = {.middle = {0, 0, 0}};
+  if (light->type == HL_LIGHT_POLYGON) return plane_of_polygon(light);
+  if (light->type == HL_LIGHT_RECT) {
+    plane.right = vec3_scale(vec3_of(light->edge1), 0.5);
+    plane.up = vec3_scale(vec3_of(light->edge2), 0.5);
+    return plane;
+  }
+  double radius = light->type == HL_LIGHT_DIRECTIONAL ? tan(light->angular_diameter_deg * HL_PI / 360) : light->radius;
+  vec3 normal = light->type == HL_LIGHT_DISK ? vec3_normalise(vec3_of(light->normal)) : facing;
+  upright(normal, vec3_of(light->emission.up), &plane.right, &plane.up);
+  plane.right = vec3_scale(plane.right, radius);
+  plane.up = vec3_scale(plane.up, radius);
+  return plane;
+}
+
+/* offset = middle + s right + t up: right and up need not be perpendicular (derived, by their cross products). */
+void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t) {
+  vec3 on_plane = vec3_subtract(offset, plane->middle), normal = vec3_cross(plane->right, plane->up);
+  double area = vec3_dot(normal, normal);
+  *s = vec3_dot(vec3_cross(on_plane, plane->up), normal) / area;
+  *t = vec3_dot(vec3_cross(plane->right, on_plane), normal) / area;
+}

@@ -30,4 +30,17 @@ vec3 hl_light_centre(const hl_light *light);
  * and the directions of parallel light at distance 1, count as the disk perpendicular to `facing` (unit). */
 mat3 hl_light_spread(const hl_light *light, vec3 facing);
 
+/* Where a light's own image lies: offsets from the light's centre, or for parallel light from its direction towards the
+ * light, at distance 1. */
+typedef struct emission_plane {
+  vec3 middle;    /* of the image */
+  vec3 right, up; /* from there to the middles of its right and top edges */
+} emission_plane;
+
+/* facing: unit, the way light leaves a sphere or comes from a directional light. */
+emission_plane hl_emission_plane(const hl_light *light, vec3 facing);
+
+/* Where an offset of the plane lies in the image: s along right and t along up, each from -1 to 1. */
+void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t);
+
 #endif

@@ -23,6 +23,7 @@ void hl_light_defaults(hl_light *light) {
       .intensity = 1,
       .falloff = HL_FALLOFF_NONE,
       .shadows = HL_SHADOWS_DEFAULT,
+      .emission = {.up = {0, 0, 1}},
   };
 }
 
@@ -74,7 +75,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, (void *)d->volumes);
   for (size_t l = 0; l < d->light_count; l++) {
     hl_release(context, (void *)d->lights[l].vertices);
-    hl_light_texture_release(context, (hl_light_texture *)&d->lights[l].texture);
+    hl_light_images_release(context, (hl_light *)&d->lights[l]);
   }
   hl_release(context, (void *)d->lights);
   hl_release(context, (void *)d->description);
@@ -142,22 +143,37 @@ static hl_status copy_volumes(hl_scene *scene, const hl_scene_description *from,
   return HL_OK;
 }
 
-void hl_light_texture_release(hl_context *context, hl_light_texture *texture) {
-  hl_release(context, (void *)texture->file);
-  hl_release(context, (void *)texture->pixels);
-  texture->file = NULL;
-  texture->pixels = NULL;
+static void forget_images(hl_light *light) {
+  light->texture.file = light->emission.file = NULL;
+  light->texture.pixels = light->emission.pixels = NULL;
 }
 
-/* to: its pointers are null until they are its own. */
-static hl_status copy_texture(hl_context *context, const hl_light_texture *from, hl_light_texture *to,
-                              hl_error *error) {
-  if (from->pixels == NULL) return HL_OK;
-  void *pixels = NULL;
-  hl_status status = copy_array(context, from->pixels, (size_t)from->width * (size_t)from->height,
-                                3 * sizeof(float), "a light's texture", &pixels, error);
-  to->pixels = pixels;
-  return status == HL_OK ? copy_text(context, from->file, &to->file, error) : status;
+void hl_light_images_release(hl_context *context, hl_light *light) {
+  hl_release(context, (void *)light->texture.file);
+  hl_release(context, (void *)light->texture.pixels);
+  hl_release(context, (void *)light->emission.file);
+  hl_release(context, (void *)light->emission.pixels);
+  forget_images(light);
+}
+
+/* An image of width x height pixels and the name of its file; null for none. */
+static hl_status copy_light_image(hl_context *context, const float *from, int width, int height, const char *file,
+                                  const float **pixels, const char **name, hl_error *error) {
+  if (from == NULL) return HL_OK;
+  void *copy = NULL;
+  hl_status status = copy_array(context, from, (size_t)width * (size_t)height, 3 * sizeof(float), "a light's image",
+                                &copy, error);
+  *pixels = copy;
+  return status == HL_OK ? copy_text(context, file, name, error) : status;
+}
+
+/* to: its images' pointers are null until they are its own. */
+static hl_status copy_images(hl_context *context, const hl_light *from, hl_light *to, hl_error *error) {
+  hl_status status = copy_light_image(context, from->texture.pixels, from->texture.width, from->texture.height,
+                                      from->texture.file, &to->texture.pixels, &to->texture.file, error);
+  if (status != HL_OK) return status;
+  return copy_light_image(context, from->emission.pixels, from->emission.width, from->emission.height,
+                          from->emission.file, &to->emission.pixels, &to->emission.file, error);
 }
 
 static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
@@ -169,8 +185,7 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
   for (size_t l = 0; l < from->light_count; l++) {
     lights[l].vertices = NULL;
     if (lights[l].type != HL_LIGHT_POLYGON) lights[l].vertex_count = 0;
-    lights[l].texture.file = NULL;
-    lights[l].texture.pixels = NULL;
+    forget_images(&lights[l]);
   }
   scene->description.lights = lights;
   scene->description.light_count = from->light_count;
@@ -179,7 +194,7 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
     status = copy_array(scene->context, from->lights[l].vertices, lights[l].vertex_count,
                         sizeof *from->lights[l].vertices, "a light's vertices", &vertices, error);
     lights[l].vertices = vertices;
-    if (status == HL_OK) status = copy_texture(scene->context, &from->lights[l].texture, &lights[l].texture, error);
+    if (status == HL_OK) status = copy_images(scene->context, &from->lights[l], &lights[l], error);
   }
   return status;
 }

@@ -57,8 +57,8 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
 /* The light that a scene without lights gets: soft, from the upper left as the camera sees it. */
 void hl_scene_key_light(const hl_camera *camera, hl_light *light);
 
-/* Frees a texture's pixels and file name, where they are owned. */
-void hl_light_texture_release(hl_context *context, hl_light_texture *texture);
+/* Frees the pixels and file names of a light's texture and emission, where they are owned. */
+void hl_light_images_release(hl_context *context, hl_light *light);
 
 /* A value with opacity zero that the volume's surroundings and missing voxels take: the most frequent
  * transparent value; if no value is transparent, one below the volume's range, treated as transparent. */

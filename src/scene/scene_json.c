@@ -34,7 +34,7 @@ static void release(hl_context *context, gathered *g) {
   hl_release(context, g->volumes);
   for (size_t l = 0; g->lights != NULL && l < g->description.light_count; l++) {
     hl_release(context, (void *)g->lights[l].vertices);
-    hl_light_texture_release(context, &g->lights[l].texture);
+    hl_light_images_release(context, &g->lights[l]);
   }
   hl_release(context, g->lights);
 }

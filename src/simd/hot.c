@@ -30,4 +30,9 @@ const hot_functions HL_HOT_TABLE = {
     .sublight_tile = sublight_tile,
     .left_tile = left_tile,
     .absorbed_tile = absorbed_tile,
+    .moment_tile = moment_tile,
+    .part_tile = part_tile,
+    .double_tile = double_tile,
+    .image_tile = image_tile,
+    .image_add_tile = image_add_tile,
 };

@@ -27,6 +27,10 @@ typedef struct hot_functions {
   blur_add_tile_function *blur_add_tile;
   field_tile_function *add_tile, *add_half_tile, *add_double_tile, *left_tile;
   absorbed_tile_function *absorbed_tile;
+  moment_tile_function *moment_tile;
+  part_tile_function *part_tile;
+  field_tile_function *double_tile;
+  image_tile_function *image_tile, *image_add_tile;
 } hot_functions;
 
 const hot_functions *hl_hot_functions(hl_instruction_set set);

@@ -29,6 +29,24 @@ static void copies_everything(void **state) {
   parts_release(&p);
 }
 
+static void copies_a_lights_own_image(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  p.light.type = HL_LIGHT_RECT;
+  p.light.texture.pixels = NULL;
+  p.light.emission = (hl_light_emission){"glow.png", p.glow, 2, 2, {0, 0, 1}};
+  p.glow[7] = 3;
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
+  p.glow[7] = 0;
+  const hl_light_emission *emission = &hl_scene_describe(scene)->lights[0].emission;
+  assert_true(emission->pixels[7] == 3 && emission->pixels[0] == 0 && emission->width == 2 && emission->up[2] == 1);
+  assert_string_equal(emission->file, "glow.png");
+  hl_scene_release(scene);
+  parts_release(&p);
+}
+
 /* A memory limit at every size below what is needed: an orderly refusal, and nothing leaks. */
 static void survives_any_memory_limit(void **state) {
   (void)state;
@@ -124,6 +142,18 @@ SPOIL(screen_nan, p->light.texture.screen_center[1] = NAN)
 SPOIL(screen_narrow, p->light.texture.screen_right[0] = 0)
 SPOIL(screen_flat, p->light.texture.screen_up[0] = 1e6)
 SPOIL(screen_edge_on, p->light.direction[1] = 1; p->light.direction[2] = 0)
+static void glow(parts *p) {
+  p->light.type = HL_LIGHT_RECT;
+  p->light.texture.pixels = NULL;
+  p->light.emission = (hl_light_emission){"glow.png", p->glow, 2, 2, {0, 0, 1}};
+}
+SPOIL(emission_width, glow(p); p->light.emission.width = 0)
+SPOIL(emission_nan, glow(p); p->glow[5] = NAN)
+SPOIL(emission_up, glow(p); p->light.emission.up[2] = 0)
+SPOIL(emission_beside_texture, glow(p); p->light.texture.pixels = p->slide; p->light.position[2] = -1)
+SPOIL(emission_on_line, glow(p); p->light.edge2[0] = 3; p->light.edge2[1] = 0)
+SPOIL(emission_on_point, glow(p); p->light.type = HL_LIGHT_POINT)
+SPOIL(emission_on_sharp_light, glow(p); p->light.type = HL_LIGHT_DIRECTIONAL)
 SPOIL(volumes_none, p->description.volume_count = 0)
 SPOIL(volume_null, p->scene_volume.volume = NULL)
 SPOIL(scale_zero, p->scene_volume.scale = 0)
@@ -231,6 +261,19 @@ static const refusal refusals[] = {
     {"/lights/0/texture/screen/center: the light's rays run along the screen, not through it: turn or move the "
      "screen",
      HL_ERROR_INPUT, screen_edge_on},
+    {"/lights/0/emission/width: 0 is out of range: give an image of at most 32768 pixels a side, 67108864 in all",
+     HL_ERROR_INPUT, emission_width},
+    {"/lights/0/emission/file: pixel (1, 0) has nan in channel 2: give linear RGB, finite and none below 0",
+     HL_ERROR_INPUT, emission_nan},
+    {"/lights/0/emission/up: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT, emission_up},
+    {"/lights/0/emission: is beside a texture: a light has an image of its own or projects one, use two lights",
+     HL_ERROR_INPUT, emission_beside_texture},
+    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges", HL_ERROR_INPUT,
+     emission_on_line},
+    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges", HL_ERROR_INPUT,
+     emission_on_point},
+    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges", HL_ERROR_INPUT,
+     emission_on_sharp_light},
     {"/volumes: is empty: name at least one volume", HL_ERROR_INPUT, volumes_none},
     {"/volumes/0/volume: is null: give a volume", HL_ERROR_ARGUMENT, volume_null},
     {"/volumes/0/transform/scale: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, scale_zero},
@@ -445,6 +488,7 @@ static void transform_is_scale_then_rotate_then_translate(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(copies_everything),
+      cmocka_unit_test(copies_a_lights_own_image),
       cmocka_unit_test(survives_any_memory_limit),
       cmocka_unit_test(refuses_with_the_place_and_the_mend),
       cmocka_unit_test(shapes_have_their_moments),

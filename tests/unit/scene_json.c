@@ -327,6 +327,32 @@ static void textures_are_read_linear(void **state) {
   hl_context_destroy(context);
 }
 
+/* The image on a light's own surface is read likewise, and survives a round trip; a rect says which way is up itself. */
+static void emissions_are_read_linear(void **state) {
+  (void)state;
+  static const char *const lights[] = {
+      "{\"angular_diameter_deg\": 9, \"emission\": {\"file\": \"slide.png\", \"up\": [0.1, 2, -0.0]}}",
+      "{\"type\": \"rect\", \"emission\": {\"file\": \"slide.png\"}}"};
+  hl_context *context = make_context();
+  const float expected[6] = {1, 0, 0, 0.5f, 0.5f, 0.5f};
+  for (int l = 0; l < 2; l++) {
+    hl_scene *scene = NULL;
+    char text[400], path[300];
+    snprintf(text, sizeof text, "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}], \"lights\": [%s]}", lights[l]);
+    assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
+    const hl_light_emission *emission = &hl_scene_describe(scene)->lights[0].emission;
+    assert_true(emission->width == 2 && emission->height == 1);
+    for (int i = 0; i < 6; i++) assert_near(emission->pixels[i], expected[i], 1e-4f);
+    assert_true(emission->up[1] == (l == 0 ? 2 : 0) && emission->up[2] == (l == 0 ? 0 : 1));
+    snprintf(path, sizeof path, "%s/slide.png", folder);
+    assert_string_equal(emission->file, path);
+    assert_round_trip(context, scene);
+    hl_scene_release(scene);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void textures_from_memory_cannot_be_written(void **state) {
   (void)state;
   parts p;
@@ -435,6 +461,7 @@ int main(void) {
       cmocka_unit_test(colors_alone_keep_opacity),
       cmocka_unit_test(files_are_relative_to_the_scene_file),
       cmocka_unit_test(textures_are_read_linear),
+      cmocka_unit_test(emissions_are_read_linear),
       cmocka_unit_test(textures_from_memory_cannot_be_written),
       cmocka_unit_test(volumes_from_memory_cannot_be_written),
       cmocka_unit_test(odd_values_survive),

@@ -39,6 +39,7 @@ typedef struct parts {
   hl_opacity_point opacity[4];
   hl_color_point color[3];
   float slide[6];
+  float glow[12];
   hl_light light;
   hl_scene_volume scene_volume;
   hl_scene_description description;

@@ -355,7 +355,11 @@ typedef struct field_state {
   field_job field;
   blur_add_job blur_add;
   absorbed_job absorbed;
+  moment_job moment;
+  part_job part;
   sublight_job sublight;
+  image_job image;
+  ptrdiff_t offset[40];
   float a[FIELD][FIELD], b[FIELD][FIELD], out[FIELD][FIELD];
   int lit;
 } field_state;
@@ -371,11 +375,17 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 6) hot->left_tile(&s->field, 1, 1);
   if (s->which == 7) hot->absorbed_tile(&s->absorbed, 1, 1);
   if (s->which == 8) s->lit = hot->sublight_tile(&s->sublight, 1, 1);
+  if (s->which == 9) hot->double_tile(&s->field, 1, 1);
+  if (s->which == 10) hot->image_tile(&s->image, 1, 1);
+  if (s->which == 13) hot->part_tile(&s->part, 1, 1);
+  if (s->which == 12) hot->moment_tile(&s->moment, 1, 1);
+  if (s->which == 11) hot->image_add_tile(&s->image, 1, 1);
 }
 
 static void test_fields(void **unused) {
   (void)unused;
-  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "blur_add_tile", "left_tile", "absorbed_tile", "sublight_tile"};
+  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "blur_add_tile", "left_tile", "absorbed_tile", "sublight_tile",
+                                      "double_tile", "image_tile", "image_add_tile", "moment_tile", "part_tile"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -386,8 +396,12 @@ static void test_fields(void **unused) {
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
     s.field = (field_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD,
                           round % 2 ? &s.b[MARGIN + 3][MARGIN] : NULL};
-    s.absorbed = (absorbed_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], &s.out[2 * MARGIN][MARGIN],
-                                FIELD, FIELD};
+    s.absorbed = (absorbed_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], 0.8f,
+                                &s.out[MARGIN + 16][MARGIN], &s.out[MARGIN + 32][MARGIN], &s.out[MARGIN + 48][MARGIN],
+                                &s.out[MARGIN + 64][MARGIN], FIELD, FIELD};
+    s.part = (part_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], {&s.out[MARGIN][MARGIN], &s.out[MARGIN + 16][MARGIN]},
+                        {&s.out[MARGIN + 32][MARGIN], &s.out[MARGIN + 48][MARGIN]}, FIELD, random_between(&seed, 0, 1)};
+    s.moment = (moment_job){&s.a[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], salted(&seed, 0, 3), FIELD, FIELD};
     s.blur_add = (blur_add_job){&s.b[MARGIN][MARGIN], round % 3 ? &s.a[MARGIN][MARGIN] : NULL,
                                 round % 2 ? &s.a[MARGIN + 3][MARGIN] : NULL, &s.out[MARGIN][MARGIN],
                                           FIELD, hl_blur_box(random_between(&seed, 1, 90)),
@@ -402,7 +416,12 @@ static void test_fields(void **unused) {
       s.sublight.slab[c] = &s.a[MARGIN + c][MARGIN];
       s.sublight.transmittance[c] = &s.out[MARGIN][MARGIN];
     }
-    for (s.which = 0; s.which < 9; s.which++) {
+    s.image = (image_job){.from = &s.a[MARGIN][MARGIN], .thin = &s.b[MARGIN][MARGIN],
+                          .to = &s.out[MARGIN][MARGIN], .stride = FIELD, .count = 1 + round % 40, .offset = s.offset,
+                          .weight = &s.b[MARGIN + 30][MARGIN]};
+    for (int i = 0; i < 40; i++)
+      s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD + (ptrdiff_t)random_between(&seed, -20, 20);
+    for (s.which = 0; s.which < 14; s.which++) {
       trial trial = {call_field, &s, s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
@@ -443,7 +462,7 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
                            .channels = s->job.channels, .nearest = round % 5 == 4};
     for (int part = 0; part < 3; part++) {
       shadow_lookup *lookup = &s->lookups[i][part];
-      *lookup = (shadow_lookup){.stride = 64, .width = 60, .height = 50};
+      *lookup = (shadow_lookup){.stride = 64, .width = 60, .height = 50, .weight = {1, 0.7f, salted(seed, 0, 1)}};
       for (int c = 0; c < HL_CHANNELS; c++) lookup->transmittance[c] = &s->buffer[c][2][2];
       for (int row = 0; row < 3; row++)
         for (int column = 0; column < 4; column++) lookup->map[row][column] = random_between(seed, -9, 9);

@@ -1,0 +1,190 @@
+/* light/light_image.c - a light's own image cut into cells, and cells into the taps of a penumbra. */
+#include "light/light_image.h"
+
+#include "core/memory.h"
+#include "light/cascade_field.h"
+#include "scene/light_shape.h"
+
+/* Samples of the image along either side of a cell. */
+enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };
+
+/* Bilinear between the middles of pixels; s to the right and t upwards, each from -1 to 1. */
+static void add_color(const hl_light_emission *emission, double s, double t, double sum[HL_CHANNELS]) {
+  const int size[2] = {emission->width, emission->height};
+  const double place[2] = {(1 + s) / 2 * size[0] - 0.5, (1 - t) / 2 * size[1] - 0.5};
+  size_t pixel[2][2];
+  double part[2];
+  for (int axis = 0; axis < 2; axis++) {
+    double at = fmin(fmax(place[axis], 0), size[axis] - 1);
+    pixel[axis][0] = (size_t)at;
+    pixel[axis][1] = pixel[axis][0] + 1 < (size_t)size[axis] ? pixel[axis][0] + 1 : pixel[axis][0];
+    part[axis] = at - (double)pixel[axis][0];
+  }
+  for (int corner = 0; corner < 4; corner++) {
+    int right = corner & 1, below = corner >> 1;
+    double weight = (right ? part[0] : 1 - part[0]) * (below ? part[1] : 1 - part[1]);
+    const float *color = emission->pixels + 3 * (pixel[1][below] * (size_t)emission->width + pixel[0][right]);
+    for (int c = 0; c < HL_CHANNELS; c++) sum[c] += weight * (double)color[c];
+  }
+}
+
+/* Mean over cell (i, j) of side x side. A parallel light's offset is of its way, opposite to where it is seen. */
+static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j, double mean[HL_CHANNELS]) {
+  const hl_light_emission *emission = &source->light->emission;
+  int longer = emission->width > emission->height ? emission->width : emission->height, n = 2 * longer / side + 1;
+  n = n < LEAST_SAMPLES ? LEAST_SAMPLES : n > GREATEST_SAMPLES ? GREATEST_SAMPLES : n;
+  for (int c = 0; c < HL_CHANNELS; c++) mean[c] = 0;
+  for (int k = 0; k < n * n; k++) {
+    double s, t, a = (i + (k / n + 0.5) / n) / side, b = (j + (k % n + 0.5) / n) / side;
+    vec3 offset = hl_light_point(source, a, b);
+    hl_emission_place(plane, source->parallel ? vec3_scale(offset, -1) : offset, &s, &t);
+    add_color(emission, s, t, mean);
+  }
+  for (int c = 0; c < HL_CHANNELS; c++) mean[c] /= n * n;
+}
+
+void hl_light_image_weights(const light_source *source, int side, float (*weights)[HL_CHANNELS], double mean[HL_CHANNELS]) {
+  size_t cells = (size_t)side * (size_t)side;
+  for (int c = 0; c < HL_CHANNELS; c++) mean[c] = source->light->emission.pixels == NULL;
+  for (size_t i = 0; i < cells; i++)
+    for (int c = 0; c < HL_CHANNELS; c++) weights[i][c] = 1;
+  if (source->light->emission.pixels == NULL) return;
+  emission_plane plane = hl_emission_plane(source->light, source->direction);
+  for (size_t i = 0; i < cells; i++) {
+    double color[HL_CHANNELS];
+    mean_of_cell(source, &plane, side, (int)(i / (size_t)side), (int)(i % (size_t)side), color);
+    for (int c = 0; c < HL_CHANNELS; c++) {
+      weights[i][c] = (float)color[c];
+      mean[c] += color[c] / (double)cells;
+    }
+  }
+  for (size_t i = 0; i < cells; i++)
+    for (int c = 0; c < HL_CHANNELS; c++) weights[i][c] = mean[c] > 0 ? (float)((double)weights[i][c] / mean[c]) : 1;
+}
+
+/* Weights of all cells, dark ones too, in their order. */
+static void weigh_cells(const light_source *source, light_image *image) {
+  float weights[IMAGE_CELLS][HL_CHANNELS];
+  hl_light_image_weights(source, IMAGE_SIDE, weights, image->mean);
+  image->even = true;
+  image->count = IMAGE_CELLS;
+  for (int i = 0; i < IMAGE_CELLS; i++)
+    for (int c = 0; c < HL_CHANNELS; c++) {
+      image->even = image->even && fabsf(weights[i][c] - 1) < 1e-6f;
+      image->cells[i].weight[c] = weights[i][c] / IMAGE_CELLS;
+    }
+}
+
+hl_status hl_light_image_create(hl_context *context, const light_source *source, light_image **image, hl_error *error) {
+  *image = NULL;
+  if (source->light->emission.pixels == NULL) return HL_OK;
+  *image = hl_allocate_zeroed(context, 1, sizeof **image);
+  if (*image == NULL) return hl_fail_memory(error, sizeof **image, "a light's image");
+  weigh_cells(source, *image);
+  return HL_OK;
+}
+
+/* The middle of cell i of the unit square. */
+static vec3 middle_of_cell(const light_source *source, int i) {
+  return hl_light_point(source, (i / IMAGE_SIDE + 0.5) / IMAGE_SIDE, (i % IMAGE_SIDE + 0.5) / IMAGE_SIDE);
+}
+
+/* At which a tilted light is still seen cell by cell; it is drawn together for receivers further aside. */
+static const double GREATEST_SLOPE = 0.5;
+
+/* Leaves dark cells out and finds how far the others lie apart. */
+static void finish(light_image *image) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  int count = 0;
+  for (int i = 0; i < IMAGE_CELLS; i++) {
+    image_cell cell = image->cells[i];
+    if (!(cell.weight[0] > 0 || cell.weight[1] > 0 || cell.weight[2] > 0)) continue;
+    const double at[3] = {cell.u, cell.v, cell.z};
+    for (int axis = 0; axis < 3; axis++) {
+      low[axis] = fmin(low[axis], at[axis]);
+      high[axis] = fmax(high[axis], at[axis]);
+    }
+    image->cells[count++] = cell;
+  }
+  image->count = count;
+  double tilt = GREATEST_SLOPE * (high[2] - low[2]);
+  image->reach = 0;
+  for (int axis = 0; axis < 2; axis++) {
+    image->range[axis] = high[axis] - low[axis] + tilt;
+    image->reach = fmax(image->reach, fmax(fabs(low[axis]), fabs(high[axis])) + tilt);
+  }
+}
+
+/* Parallel light that comes from further along u casts its shadows back along u. */
+void hl_light_image_see(const light_source *source, const sheet_light *seen, vec3 normal, light_image *image) {
+  double unit = fmax(seen->width_u, seen->width_v) * (source->parallel ? -1 : 1);
+  for (int i = 0; i < IMAGE_CELLS; i++) {
+    double place[3];
+    hl_sheet_light_place(seen, source, normal, middle_of_cell(source, i), place);
+    image->cells[i].u = place[0] / unit;
+    image->cells[i].v = place[1] / unit;
+    image->cells[i].z = place[2] / unit;
+  }
+  finish(image);
+}
+
+void hl_light_image_project(const light_source *source, const view *view, double size, light_image *image) {
+  double unit = size * (source->parallel ? -1 : 1);
+  vec3 u = vec3_normalise(view->du), v = vec3_normalise(view->dv);
+  for (int i = 0; i < IMAGE_CELLS; i++) {
+    vec3 offset = middle_of_cell(source, i);
+    image->cells[i].u = vec3_dot(offset, u) / unit;
+    image->cells[i].v = vec3_dot(offset, v) / unit;
+    image->cells[i].z = 0;
+  }
+  finish(image);
+}
+
+bool hl_light_image_colored(const hl_light *light) {
+  const float *pixel = light->emission.pixels;
+  size_t count = pixel == NULL ? 0 : (size_t)light->emission.width * (size_t)light->emission.height;
+  for (size_t i = 0; i < count; i++, pixel += 3)
+    if (pixel[0] != pixel[1] || pixel[1] != pixel[2]) return true;
+  return false;
+}
+
+void hl_light_image_steps(const light_image *image, double width, int step[2]) {
+  for (int axis = 0; axis < 2; axis++)
+    step[axis] = (int)fmin(fmax(1, ceil(image->range[axis] * width / IMAGE_SIDE)), 2 * BLUR_GREATEST_REACH - 4);
+}
+
+/* Each cell falls on the four taps around it, by its distances to them. */
+void hl_light_image_taps(const light_image *image, double width, const int step[2], const double slope[2], image_taps *taps) {
+  enum { GRID = IMAGE_SIDE + 3 };
+  float grid[GRID][GRID][HL_CHANNELS] = {{{0}}};
+  int first[2] = {INT32_MAX, INT32_MAX}, tap[IMAGE_CELLS][2];
+  float part[IMAGE_CELLS][2];
+  for (int i = 0; i < image->count; i++) {
+    const image_cell *cell = &image->cells[i];
+    const double at[2] = {(cell->u - slope[0] * cell->z) * width / step[0], (cell->v - slope[1] * cell->z) * width / step[1]};
+    for (int axis = 0; axis < 2; axis++) {
+      tap[i][axis] = (int)floor(at[axis]);
+      part[i][axis] = (float)(at[axis] - tap[i][axis]);
+      if (tap[i][axis] < first[axis]) first[axis] = tap[i][axis];
+    }
+  }
+  for (int i = 0; i < image->count; i++) {
+    int x = tap[i][0] - first[0], y = tap[i][1] - first[1];
+    x = x < GRID - 1 ? x : GRID - 2; /* beyond GREATEST_SLOPE */
+    y = y < GRID - 1 ? y : GRID - 2;
+    for (int corner = 0; corner < 4; corner++) {
+      int right = corner & 1, below = corner >> 1;
+      float weight = (right ? part[i][0] : 1 - part[i][0]) * (below ? part[i][1] : 1 - part[i][1]);
+      for (int c = 0; c < HL_CHANNELS; c++) grid[y + below][x + right][c] += weight * image->cells[i].weight[c];
+    }
+  }
+  taps->count = 0;
+  for (int i = 0; i < GRID * GRID; i++) {
+    const float *weight = grid[i / GRID][i % GRID];
+    if (!(weight[0] + weight[1] + weight[2] > 0)) continue;
+    taps->x[taps->count] = (first[0] + i % GRID) * step[0];
+    taps->y[taps->count] = (first[1] + i / GRID) * step[1];
+    for (int c = 0; c < HL_CHANNELS; c++) taps->weight[c][taps->count] = weight[c];
+    taps->count++;
+  }
+}

@@ -1,0 +1,196 @@
+/* light/soft_cascade_image.c - a cascade's groups through a light with an image: each by its own kernel.
+ *
+ * Boxes may be blurred step by step, since of them variances alone matter. An image must be whole in every penumbra: what
+ * group o absorbed is weighed at once by the taps of the image, scaled to w(o -> r) (light_image.h), far groups first:
+ * s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel (derived as in soft_cascade.h; without thin matter it is
+ * the sum over groups of K(G), which is the light's mean of what its cells see). Nothing is kept from one receiver to the
+ * next; far groups are coarse. */
+#include "light/soft_cascade.h"
+
+#include <string.h>
+
+typedef struct image_pass {
+  const soft_cascade *cascade;
+  cascade_level *level;
+  const cascade_group *group;
+  double width;         /* of the group's penumbra, pixels of the level */
+  int step[2];
+  bool averaged;        /* pre holds the group's means over step pixels */
+  int reach;            /* of the taps and the means, tiles */
+  const cascade_functions *functions;
+} image_pass;
+
+/* What a level adds its groups to. */
+static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_level *level, int channel) {
+  return level == &cascade->level[0] ? &cascade->shade[channel] : &level->sum[0][channel];
+}
+
+static const unsigned char *wanted_of(const soft_cascade *cascade, const cascade_level *level) {
+  return level == &cascade->level[0] ? cascade->wanted[0] : level->wanted;
+}
+
+/* ---- which tiles are read: under those of the next finer level, and their neighbours ---- */
+
+static void mark_wanted(const soft_cascade *cascade) {
+  for (int i = 1; i < cascade->level_count; i++) {
+    const cascade_level *fine = &cascade->level[i - 1], *level = &cascade->level[i];
+    const unsigned char *wanted = wanted_of(cascade, fine);
+    int ratio = level->scale / fine->scale;
+    memset(level->wanted, 0, (size_t)level->tiles_x * (size_t)level->tiles_y);
+    for (int y = 0; y < fine->tiles_y; y++)
+      for (int x = 0; x < fine->tiles_x; x++) {
+        if (!wanted[y * fine->tiles_x + x]) continue;
+        int x0 = (x - 1) / ratio, y0 = (y - 1) / ratio, x1 = (x + 1) / ratio, y1 = (y + 1) / ratio;
+        for (int j = y0; j <= y1 && j < level->tiles_y; j++)
+          for (int k = x0; k <= x1 && k < level->tiles_x; k++) level->wanted[j * level->tiles_x + k] = 1;
+      }
+  }
+}
+
+/* ---- the sum of the farther levels ---- */
+
+static bool any_near(const cascade_level *level, const cascade_field *field, int x, int y, int reach) {
+  for (int j = y < reach ? 0 : y - reach; j <= y + reach && j < level->tiles_y; j++)
+    for (int i = x < reach ? 0 : x - reach; i <= x + reach && i < level->tiles_x; i++)
+      if (!field->zeros[j * level->tiles_x + i]) return true;
+  return false;
+}
+
+static void clear_tile(const cascade_level *level, const cascade_field *field, int x, int y) {
+  unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
+  float *pixels = field->pixels + (size_t)y * TILE * level->stride + (size_t)x * TILE;
+  for (size_t row = 0; row < TILE && !*zeros; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(float));
+  *zeros = 1;
+}
+
+typedef struct start_task {
+  const soft_cascade *cascade;
+  const cascade_level *level, *farther; /* farther: null where nothing lies there */
+  const cascade_functions *functions;
+} start_task;
+
+static void start_tile(const start_task *task, const cascade_field *from, const cascade_field *to, int x, int y) {
+  const cascade_level *level = task->level, *farther = task->farther;
+  int ratio = farther == NULL ? 1 : farther->scale / level->scale;
+  if (farther == NULL || !any_near(farther, from, x / ratio, y / ratio, ratio - 1)) {
+    clear_tile(level, to, x, y);
+    return;
+  }
+  field_job job = {.a = from->pixels, .to = to->pixels, .stride_in = farther->stride, .stride = level->stride};
+  size_t at = (size_t)y * TILE * level->stride + (size_t)x * TILE;
+  if (ratio == 2) task->functions->double_tile(&job, x, y);
+  for (size_t row = 0; row < TILE && ratio == 1; row++)
+    memcpy(to->pixels + at + row * level->stride, from->pixels + at + row * level->stride, TILE * sizeof(float));
+  to->zeros[y * level->tiles_x + x] = 0;
+}
+
+static void start_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const start_task *task = data;
+  const cascade_level *level = task->level;
+  for (int x = 0; x < level->tiles_x; x++) {
+    if (!wanted_of(task->cascade, level)[index * (size_t)level->tiles_x + (size_t)x]) continue;
+    for (int c = 0; c < task->cascade->channels; c++)
+      start_tile(task, task->farther == NULL ? NULL : sum_of(task->cascade, task->farther, c),
+                 sum_of(task->cascade, level, c), x, (int)index);
+  }
+}
+
+/* ---- a group ---- */
+
+/* Means over step pixels, of what was absorbed and of what thin matter took of it. */
+static void average_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const image_pass *pass = data;
+  const cascade_level *level = pass->level;
+  for (int c = 0; c < pass->cascade->channels; c++) {
+    const cascade_field *from[2] = {&pass->group->absorbed[c], &pass->group->thin[c]};
+    for (int i = 0; i < 2; i++) {
+      const cascade_field *to = &level->mean[i][c];
+      blur_add_job job = {.from = from[i]->pixels, .to = to->pixels, .stride = level->stride,
+                          .u = hl_blur_box((float)pass->step[0]), .v = hl_blur_box((float)pass->step[1])};
+      for (int x = 0; x < level->tiles_x; x++) {
+        if (!any_near(level, from[i], x, (int)index, 1)) {
+          clear_tile(level, to, x, (int)index);
+          continue;
+        }
+        pass->functions->blur_add(&job, x, (int)index);
+        to->zeros[index * (size_t)level->tiles_x + (size_t)x] = 0;
+      }
+    }
+  }
+}
+
+/* Taps that look beyond the level's zeros see nothing. Returns how many are left. */
+static int offsets_of(const cascade_level *level, const image_taps *taps, int x, int y, ptrdiff_t *offset, int *kept) {
+  int count = 0;
+  for (int i = 0; i < taps->count; i++) {
+    int left = x * TILE + taps->x[i], top = y * TILE + taps->y[i];
+    if (left <= -TILE || top <= -TILE || left >= level->tiles_x * TILE || top >= level->tiles_y * TILE) continue;
+    offset[count] = (ptrdiff_t)taps->y[i] * (ptrdiff_t)level->stride + taps->x[i];
+    kept[count++] = i;
+  }
+  return count;
+}
+
+static void add_tile(const image_pass *pass, const image_taps *taps, int x, int y) {
+  const cascade_level *level = pass->level;
+  ptrdiff_t offset[IMAGE_TAPS];
+  int kept[IMAGE_TAPS], count = offsets_of(level, taps, x, y, offset, kept);
+  for (int c = 0; c < pass->cascade->channels; c++) {
+    const cascade_field *to = sum_of(pass->cascade, level, c);
+    const cascade_field *from = pass->averaged ? &level->mean[0][c] : &pass->group->absorbed[c];
+    const cascade_field *thin = pass->averaged ? &level->mean[1][c] : &pass->group->thin[c];
+    if (!any_near(level, from, x, y, pass->reach)) continue;
+    float weight[IMAGE_TAPS];
+    for (int i = 0; i < count; i++) weight[i] = taps->weight[c][kept[i]];
+    image_job job = {.from = from->pixels, .thin = thin->pixels, .to = to->pixels, .stride = level->stride,
+                     .count = count, .offset = offset, .weight = weight};
+    pass->functions->image_add(&job, x, y);
+    to->zeros[y * level->tiles_x + x] = 0;
+  }
+}
+
+static void add_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const image_pass *pass = data;
+  const soft_cascade *cascade = pass->cascade;
+  const cascade_level *level = pass->level;
+  image_taps taps;
+  for (int x = 0; x < level->tiles_x; x++) {
+    if (!wanted_of(cascade, level)[index * (size_t)level->tiles_x + (size_t)x]) continue;
+    const double slope[2] = {cascade->slope_start[0] + cascade->slope_step[0] * (x + 0.5) * TILE * level->scale,
+                             cascade->slope_start[1] + cascade->slope_step[1] * ((double)index + 0.5) * TILE * level->scale};
+    hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
+    add_tile(pass, &taps, x, (int)index);
+  }
+}
+
+static void add_group(const soft_cascade *cascade, cascade_level *level, const cascade_group *group, double receiver,
+                      hl_pool *pool, const cascade_functions *functions) {
+  image_pass pass = {.cascade = cascade, .level = level, .group = group, .functions = functions,
+                     .width = fmax(receiver - group->omega, 0) / level->scale};
+  hl_light_image_steps(cascade->image, pass.width, pass.step);
+  pass.averaged = pass.step[0] > 1 || pass.step[1] > 1;
+  double reach = cascade->image->reach * pass.width + fmax(pass.step[0], pass.step[1]) + 2;
+  pass.reach = (int)fmin(ceil(reach / TILE), fmax(level->tiles_x, level->tiles_y));
+  if (pass.averaged) hl_pool_run(pool, (size_t)level->tiles_y, average_row, &pass);
+  hl_pool_run(pool, (size_t)level->tiles_y, add_row, &pass);
+}
+
+bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, hl_pool *pool, const cascade_functions *functions) {
+  cascade_level *farther = NULL;
+  mark_wanted(cascade);
+  for (int i = cascade->level_count - 1; i >= 0; i--) {
+    cascade_level *level = &cascade->level[i];
+    start_task task = {cascade, level, farther, functions};
+    bool any = farther != NULL;
+    for (int g = 0; g < level->count; g++) any = any || level->group[g].filled;
+    if (!any) continue;
+    hl_pool_run(pool, (size_t)level->tiles_y, start_row, &task);
+    for (int g = 0; g < level->count; g++)
+      if (level->group[g].filled) add_group(cascade, level, &level->group[g], receiver, pool, functions);
+    farther = level;
+  }
+  return farther != NULL;
+}
