@@ -11,7 +11,7 @@
 #define SUN "\"lights\": [{\"type\": \"directional\", \"direction\": [0.5, 0.3, -1], \"angular_diameter_deg\": 12}]"
 
 const small_scene small_scenes[] = {
-    {"cascade", HEAD SUN ", " BLOB "}], \"render\": {\"threads\": 2, \"shadow_resolution\": 32}}"},
+    {"cascade", HEAD SUN ", " BLOB "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
     {"paper", HEAD SUN ", " BLOB "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"soft_method\": \"paper\"}}"},
     {"sublights", HEAD SUN ", " BLOB "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"soft_method\": \"sublights\", \"light_samples\": 2}}"},
     {"splat",
