@@ -97,6 +97,14 @@ static hl_status render_sheets(render_job *job, const hl_scene_description *desc
   return status;
 }
 
+/* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read. */
+static void name_scene(const render_job *job, hl_error *error) {
+  char place[sizeof error->message];
+  if (error->message[0] != '/') return;
+  memcpy(place, error->message, sizeof place);
+  snprintf(error->message, sizeof error->message, "%.300s: %.690s", job->input, place);
+}
+
 static int job_render(render_job *job) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
   hl_error error = {0};
@@ -111,6 +119,7 @@ static int job_render(render_job *job) {
   job->result.description = description;
   job->result.seconds.prepare = job->result.statistics.seconds_prepare;
   job->result.seconds.render = job->result.statistics.seconds_render;
+  name_scene(job, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 

@@ -10,13 +10,13 @@
 static const float DARK = 1.0f / 1024;
 
 /* Length of the rays' way through one sheet: spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|). Lanes whose
- * sheet lies behind the view's origin get 0. */
-LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
+ * sheet lies behind the view's origin by more than `reach`, a height, get 0. */
+LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, float reach, lanes u, lanes v) {
   if (!rays->perspective) return lanes_set(path);
   lanes3 w = rays_directions(rays, u, v);
   lanes climb = u * rays->hu + (v * rays->hv + rays->h0);
   lanes length = lanes_sqrt(w.x * w.x + w.y * w.y + w.z * w.z) / lanes_abs(climb) * path;
-  return lanes_keep(climb * rays->step > 0.0f, length);
+  return lanes_keep(climb * rays->step + lanes_abs(climb) * reach > 0.0f, length);
 }
 
 /* The part of the slab before the sheet that lies in the volume's box, block by block. */
@@ -67,7 +67,7 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
   lanes any = depth[0] + depth[1] + depth[2];
   if (lanes_bits(any > 0.0f) == 0) return;
   int x = block % 4 * BLOCK, y = block / 4 * BLOCK;
-  lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
+  lanes path = path_through_sheet(&job->rays, job->path, 0, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
   for (int c = 0; c < job->channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;
     lanes passing = lanes_exp_negative(depth[c] * path);

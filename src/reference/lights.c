@@ -153,6 +153,7 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
                                     reference_light *made, hl_error *error) {
   *made = (reference_light){.described = light, .directional = light->type == HL_LIGHT_DIRECTIONAL};
   for (int c = 0; c < 3; c++) made->color[c] = light->color[c] * light->intensity;
+  made->least_distance = HL_LEAST_LIGHT_DISTANCE * hl_scene_frame_space(all->scene).unit;
   if (light->texture.pixels != NULL) made->texture = &light->texture;
   if (made->directional)
     made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
@@ -193,7 +194,7 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
     vec3 offset = vec3_subtract(light->centre, point);
     arrived->towards = vec3_normalise(offset);
     if (light->described->falloff == HL_FALLOFF_INVERSE_SQUARE)
-      factor = 1 / fmax(vec3_dot(offset, offset), 1e-30);
+      factor = 1 / fmax(vec3_dot(offset, offset), light->least_distance * light->least_distance);
     if (light->described->type == HL_LIGHT_SPOT) factor *= spot_brightness(light->described, arrived->towards);
   }
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;

@@ -51,6 +51,7 @@ typedef struct reference_light {
   vec3 centre;                /* world; not for directional lights */
   vec3 towards;               /* directional lights: unit vector to the light */
   double color[3];            /* color * intensity */
+  double least_distance;      /* world; closer it gets no brighter */
   const hl_light_texture *texture; /* null: none */
   const hl_light_emission *emission; /* the image on the light itself; null: none */
   double mean[3];             /* of that over the light's surface */

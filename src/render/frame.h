@@ -53,7 +53,7 @@ void hl_frame_add_eye_sweep(const frame *frame, frame_sweep *sweeps, int *count)
 /* False where the light's rays do not cross the sheets that would serve it and the eye: it must be cut into sectors. */
 bool hl_frame_serves(const frame *frame, const hl_render_settings *settings, const light_source *source);
 
-/* Refuses a sweep whose sheets a shadowing light does not cross (image-aligned slicing). */
+/* Refuses a sweep of too many sheets, or whose sheets some ray of the eye or a shadowing light does not cross. */
 hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error);
 
 /* Corners of the part of the content that the eye sees: what a shadow buffer must cover. points: room for

@@ -151,13 +151,22 @@ static void look(frame *frame) {
   frame->middle_pixel = fmax(frame->pixel, fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
 }
 
-/* Rays then start at the eye, within the box. */
-static bool inside_box(const grid *grid, vec3 eye) {
-  vec3 p = affine3_apply(grid->frame_to_index, eye);
+/* Rays of the eye, or of a light, then start within the box. */
+static bool inside_box(const grid *grid, vec3 origin) {
+  vec3 p = affine3_apply(grid->frame_to_index, origin);
   const double at[3] = {p.x, p.y, p.z};
   for (int axis = 0; axis < 3; axis++)
     if (at[axis] < grid->box_low[axis] || at[axis] > grid->box_high[axis]) return false;
   return true;
+}
+
+static bool rays_start_inside(const frame *frame, const grid *grid) {
+  bool inside = frame->eye.perspective && inside_box(grid, frame->eye.origin);
+  for (int i = 0; i < frame->light_count; i++) {
+    const light_source *light = &frame->lights[i];
+    inside = inside || (light->shadows != HL_SHADOWS_OFF && !light->parallel && inside_box(grid, light->position));
+  }
+  return inside;
 }
 
 /* Where voxels are smaller than pixels, their footprints must not fall between pixels: the frame is made of as many more
@@ -238,15 +247,15 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   frame->middle = content_middle(frame);
   hl_status status = set_up_eye(renderer, scene, frame, error);
   if (status != HL_OK) return status;
-  for (size_t i = 0; i < scene->volume_count; i++)
-    if (frame->eye.perspective && inside_box(&work->grids[i], frame->eye.origin)) work->grids[i].cut = true;
   frame->voxel = smallest_edge(renderer);
-  frame->spacing = scene->render.sheet_spacing * frame->voxel;
+  frame->spacing = fmin(scene->render.sheet_spacing, GRID_MARGIN) * frame->voxel; /* volumes go on as far beyond their faces */
   set_up_lights(scene, frame);
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (rays_start_inside(frame, &work->grids[i])) work->grids[i].cut = true;
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
+  if (hl_layers_measure(layers)) choose_measuring_sweep(work);
   status = hl_frame_check_sweeps(frame, work->sweeps, work->sweep_count, error);
   if (status != HL_OK) return status;
-  if (hl_layers_measure(layers)) choose_measuring_sweep(work);
   work->tiles_x = (size_t)hl_tiles(frame->eye.width);
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
   work->pixels = hl_allocate(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));

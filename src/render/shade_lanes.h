@@ -10,6 +10,8 @@
 /* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
 static const float OPAQUE = 1.0f - 1.0f / 2048;
 
+static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
+
 typedef struct color_lanes { lanes c[3]; } color_lanes;
 
 LANES_INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -31,7 +33,7 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
   const sheet_rays *rays = &job->rays;
   block_geometry g;
   g.position = rays_positions(rays, u, v);
-  g.path = path_through_sheet(rays, job->path, u, v);
+  g.path = path_through_sheet(rays, job->path, job->spacing * 0.5f, u, v); /* the rays end in the slab's middle */
   if (!rays->perspective) {
     g.step_sheet = set3(job->through);
     g.towards_eye = set3(job->towards_eye);
@@ -231,7 +233,8 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   } else {
     lanes3 way = {light->position[0] - g->position.x, light->position[1] - g->position.y,
                   light->position[2] - g->position.z};
-    lanes squared = lanes_max(dot3(way, way), lanes_set(1e-20f)), distance = lanes_sqrt(squared);
+    lanes least = lanes_set(LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE);
+    lanes squared = lanes_max(dot3(way, way), least), distance = lanes_sqrt(squared);
     arriving.towards = scale3(way, 1.0f / distance);
     lanes climb = lanes_abs(dot3(arriving.towards, set3(job->normal)));
     path = lanes_min(light->path / lanes_max(climb, lanes_set(1e-3f)), distance);
@@ -264,11 +267,14 @@ LANES_INLINE lanes power(lanes base, float exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Unit normal away from the matter; *surface: 1 for a surface, falling to 0 for a medium, which has no normal. */
+/* Unit normal away from the matter; *surface: 1 for a surface, falling to 0 for a medium, which has no normal. The slope is
+ * taken in steps of the transfer function's table: squares of data in units of 1e-27 or 1e30 are no floats. Where
+ * even those vanish, components are below 1e-19: the normal stays short. */
 LANES_INLINE lanes3 normal_of(const shade_volume *volume, lanes3 slope, lanes density, lanes *surface) {
+  slope = scale3(slope, lanes_set(fabsf(volume->classifier->scale)));
   lanes steepness = lanes_sqrt(dot3(slope, slope));
   *surface = volume->phong ? lanes_min(steepness / volume->classifier->normal_edge, lanes_set(1.0f)) : lanes_set(0);
-  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-30f));
+  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-18f));
   return scale3(slope, outward);
 }
 

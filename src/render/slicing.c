@@ -4,6 +4,9 @@
 /* cos 60 degrees: the steepest crossing of a sheet by an eye or light ray that one axis may ask of several lights. */
 static const double STEEPEST = 0.5;
 
+/* Flatter crossings are refused: of the picture's outermost rays (87 degrees), and of a light's direction. */
+static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
+
 /* Least |cos| between the eye's rays through the picture's corners and h, all crossing in the same sense; 0 if not. */
 static double flattest_eye_ray(const view *eye, vec3 h) {
   double least = INFINITY, sense = 0;
@@ -25,10 +28,12 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   vec3 e = *back_to_front ? vec3_scale(frame->eye_direction, -1) : frame->eye_direction;
   if (settings->slicing == HL_SLICING_IMAGE_ALIGNED) return e;
   vec3 h = vec3_normalise(vec3_add(e, light));
-  for (int lean = 0; lean < 8 && flattest_eye_ray(&frame->eye, h) < 0.2; lean++) {
+  double flattest = flattest_eye_ray(&frame->eye, h);
+  for (int lean = 0; lean < 16 && flattest < 0.2; lean++) {
     vec3 leaning = vec3_normalise(vec3_add(h, vec3_scale(e, 0.25)));
-    if (vec3_dot(leaning, light) < 0.3) break;
+    if (vec3_dot(leaning, light) < (flattest < FLATTEST_EYE_RAY ? FLATTEST_LIGHT : 0.3)) break;
     h = leaning;
+    flattest = flattest_eye_ray(&frame->eye, h);
   }
   return h;
 }
@@ -81,6 +86,9 @@ static bool try_light(const frame *frame, const hl_render_settings *settings, fr
   return false;
 }
 
+/* Heights on more sheets than these are not told apart well by floats; more are refused. */
+enum { GREATEST_SHEETS = 1 << 20 };
+
 /* Sheets over the whole content, one to spare on either side. */
 static void place_sheets(const frame *frame, sheet_stack *sheets) {
   double low = INFINITY, high = -INFINITY;
@@ -90,7 +98,8 @@ static void place_sheets(const frame *frame, sheet_stack *sheets) {
     high = fmax(high, height);
   }
   sheets->spacing = frame->spacing;
-  sheets->count = frame->point_count == 0 ? 0 : (int)ceil((high - low) / sheets->spacing) + 3;
+  double count = frame->point_count == 0 ? 0 : ceil((high - low) / sheets->spacing) + 3;
+  sheets->count = count > GREATEST_SHEETS ? GREATEST_SHEETS + 1 : (int)count;
   sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
 }
 
@@ -146,14 +155,24 @@ int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, fram
 }
 
 hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error) {
-  for (int s = 0; s < count; s++)
+  for (int s = 0; s < count; s++) {
+    if (sweeps[s].sheets.count > GREATEST_SHEETS)
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "/render/sheet_spacing: makes more than %d sheets of the volumes, whose smallest voxel edge is small beside "
+                     "their size: raise it", GREATEST_SHEETS);
+    if (flattest_eye_ray(&frame->eye, sweeps[s].sheets.normal) < FLATTEST_EYE_RAY)
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "/camera/fovy_deg: no sheets are crossed by every ray of so wide a view%s: use a smaller angle%s",
+                     sweeps[s].light_count > 0 ? " and by the light" : "",
+                     sweeps[s].light_count > 0 ? ", or lights from ahead or behind" : "");
     for (int i = 0; i < sweeps[s].light_count; i++) {
       int light = sweeps[s].light[i];
       if (frame->lights[light].shadows == HL_SHADOWS_OFF) continue;
-      if (vec3_dot(frame->lights[light].direction, sweeps[s].sheets.normal) < 0.17)
+      if (vec3_dot(frame->lights[light].direction, sweeps[s].sheets.normal) < FLATTEST_LIGHT)
         return hl_fail(error, HL_ERROR_UNSUPPORTED,
                        "/render/slicing: image-aligned sheets cannot carry the shadows of /lights/%d, which comes from the "
                        "side: use half-vector", frame->lights[light].light_index);
     }
+  }
   return HL_OK;
 }

@@ -171,10 +171,15 @@ static void attenuate_task(void *data, size_t index, int worker) {
   }
 }
 
-/* A point light within the content sees the slabs that begin beyond it. */
+/* A point light within the content sees the slabs beyond it. */
 static bool is_beyond(const sweep *sweep, const light_source *source, int sheet) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
+}
+
+/* Of the slab that it lies in itself, the part beyond it. Penumbrae begin with the next slab. */
+static bool is_reached(const sweep *sweep, const light_source *source, int sheet) {
+  return is_beyond(sweep, source, source->shadows == HL_SHADOWS_SOFT ? sheet : sheet + 1);
 }
 
 static void reach_sheet(sweep *sweep, int light_index, int sheet) {
@@ -194,7 +199,7 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
     int count = 0;
     if (sweep->lights[i].buffer != NULL) {
       reach_sheet(sweep, i, sheet);
-      if (is_beyond(sweep, sweep->lights[i].source, sheet))
+      if (is_reached(sweep, sweep->lights[i].source, sheet))
         count = list_tiles(&sweep->lights[i].sheets.occupancy, sheet, sweep->tasks + sweep->task_start[i]);
     }
     sweep->task_start[i + 1] = sweep->task_start[i] + count;

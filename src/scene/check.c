@@ -203,9 +203,9 @@ static hl_status check_pixels(const checker *check, const float *pixels, int wid
   if (count > HL_LIMIT_TEXTURE_PIXELS)
     return hl_fail(check->error, HL_ERROR_INPUT, "%s: has %d x %d pixels: %s", check->place, width, height, size);
   for (size_t i = 0; i < 3 * count; i++)
-    if (!(pixels[i] >= 0 && (double)pixels[i] <= HL_LIMIT_LENGTH))
+    if (!(pixels[i] >= 0 && (double)pixels[i] <= HL_LIMIT_TEXTURE_VALUE))
       return hl_fail(check->error, HL_ERROR_INPUT,
-                     "%s/file: pixel (%zu, %zu) has %.9g in channel %zu: give linear RGB, finite and none below 0",
+                     "%s/file: pixel (%zu, %zu) has %.9g in channel %zu: give linear RGB from 0 to 1e6",
                      check->place, i / 3 % (size_t)width, i / 3 / (size_t)width, (double)pixels[i], i % 3);
   return HL_OK;
 }
@@ -268,7 +268,7 @@ static hl_status check_light(const hl_light *light, size_t index, hl_error *erro
                              "give linear RGB, none below 0")) != HL_OK) return status;
   if ((status = check_texture(&check, light)) != HL_OK) return status;
   if ((status = check_emission(&check, light)) != HL_OK) return status;
-  return check_range(&check, "intensity", light->intensity, 0, HL_LIMIT_LENGTH, "give a factor, 0 or more");
+  return check_range(&check, "intensity", light->intensity, 0, HL_LIMIT_INTENSITY, "give a factor, 0 or more");
 }
 
 /* Sorted, and at most two points at one value: two make a step. */
@@ -377,9 +377,11 @@ static hl_status check_clip(const hl_scene_volume *volume, const char *parent, h
 static hl_status check_placement(const checker *check, const hl_scene_volume *volume) {
   affine3 placement = hl_scene_volume_index_to_world(volume), inverse;
   for (int a = 0; a < 3; a++) {
-    vec3 axis = mat3_column(placement.linear, a);
-    if (!(vec3_length(axis) <= HL_LIMIT_LENGTH))
-      return refuse(check, "transform", "makes voxels too large to compute with: use a smaller scale");
+    double edge = vec3_length(mat3_column(placement.linear, a));
+    if (!(edge <= HL_LIMIT_LENGTH && edge >= 1 / HL_LIMIT_LENGTH))
+      return hl_fail(check->error, HL_ERROR_INPUT,
+                     "%s/transform: makes the edges of voxels %.9g long: give a scale with which they are from 1e-15 to 1e15",
+                     check->place, edge);
   }
   if (!(vec3_length(placement.offset) <= 1e3 * HL_LIMIT_LENGTH))
     return refuse(check, "transform",
@@ -389,7 +391,17 @@ static hl_status check_placement(const checker *check, const hl_scene_volume *vo
   return HL_OK;
 }
 
-static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_error *error) {
+/* Data values and, where they are kept as floats, stored ones. */
+static hl_status check_values(const checker *check, const hl_volume *volume) {
+  double greatest = fmax(fabs(volume->minimum), fabs(volume->maximum)), stored = 0;
+  if (volume->storage == HL_STORAGE_F32) stored = (greatest + fabs(volume->value_offset)) / fabs(volume->value_scale);
+  if (greatest <= HL_LIMIT_VOXEL_VALUE && stored <= HL_LIMIT_VOXEL_VALUE) return HL_OK;
+  return hl_fail(check->error, HL_ERROR_INPUT,
+                 "%s/file: its voxels reach %.3g, more than the 1e36 that pictures can be computed with: scale them, and mark "
+                 "missing ones by NaN", check->place, fmax(greatest, stored));
+}
+
+hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_error *error) {
   checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "/volumes/%zu", index);
   hl_status status;
@@ -397,6 +409,7 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s/volume: is null: give a volume", check.place);
   if (volume->file != NULL && volume->shapes != NULL)
     return refuse(&check, "shapes", "and file exclude each other: the voxels came from one of them");
+  if ((status = check_values(&check, volume->volume)) != HL_OK) return status;
   if ((status = check_transform(volume, check.place, error)) != HL_OK) return status;
   char place[80];
   snprintf(place, sizeof place, "/volumes/%zu/transfer_function", index);
@@ -410,6 +423,62 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
     return status;
   if ((status = check_clip(volume, check.place, error)) != HL_OK) return status;
   return check_placement(&check, volume);
+}
+
+/* ---- what must fit together ---- */
+
+/* A length or a distance that floats must hold beside voxels. */
+static hl_status check_reach(const checker *check, const char *key, double length, const hl_frame_space *space) {
+  if (length <= HL_LIMIT_REACH * space->unit) return HL_OK;
+  return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: reaches %.3g from the volumes, whose smallest voxel edge is %.3g: "
+                 "use at most 1e12 times that, or a directional light or orthographic camera", check->place, key, length,
+                 space->unit);
+}
+
+static hl_status check_distance(const checker *check, const char *key, const double point[3], const hl_frame_space *space) {
+  return check_reach(check, key, vec3_length(vec3_subtract(vec3_of(point), space->centre)), space);
+}
+
+/* Derived: a light that falls with the square of the distance has intensity / d^2 at d. */
+static hl_status check_brightness(const checker *check, const hl_light *light, const hl_frame_space *space) {
+  double brightness = fmax(fmax(light->color[0], light->color[1]), light->color[2]) * light->intensity;
+  if (light->falloff == HL_FALLOFF_INVERSE_SQUARE) brightness /= space->unit * space->unit;
+  if (brightness <= HL_LIMIT_BRIGHTNESS) return HL_OK;
+  return hl_fail(check->error, HL_ERROR_INPUT, "%s/intensity: makes the light's color %.3g%s: use an intensity with which it is "
+                 "at most 1e20", check->place, brightness,
+                 light->falloff == HL_FALLOFF_INVERSE_SQUARE ? " at the distance of a voxel's edge" : "");
+}
+
+static hl_status check_light_reach(const hl_light *light, size_t index, const hl_frame_space *space, hl_error *error) {
+  checker check = {error, ""};
+  snprintf(check.place, sizeof check.place, "/lights/%zu", index);
+  hl_status status = check_brightness(&check, light, space);
+  bool placed = light->type != HL_LIGHT_DIRECTIONAL, rect = light->type == HL_LIGHT_RECT;
+  if (status == HL_OK && placed && light->type != HL_LIGHT_POLYGON)
+    status = check_distance(&check, "position", light->position, space);
+  if (status == HL_OK && placed) status = check_reach(&check, "radius", light->radius, space);
+  if (status == HL_OK && rect) status = check_reach(&check, "edge1", vec3_length(vec3_of(light->edge1)), space);
+  if (status == HL_OK && rect) status = check_reach(&check, "edge2", vec3_length(vec3_of(light->edge2)), space);
+  for (size_t v = 0; status == HL_OK && v < light->vertex_count && light->type == HL_LIGHT_POLYGON; v++)
+    status = check_distance(&check, "vertices", light->vertices[v], space);
+  if (status != HL_OK || light->texture.pixels == NULL) return status;
+  status = check_distance(&check, "texture/screen/center", light->texture.screen_center, space);
+  if (status == HL_OK)
+    status = check_reach(&check, "texture/screen/right", vec3_length(vec3_of(light->texture.screen_right)), space);
+  if (status == HL_OK)
+    status = check_reach(&check, "texture/screen/up", vec3_length(vec3_of(light->texture.screen_up)), space);
+  return status;
+}
+
+static hl_status check_scales(const hl_scene_description *d, hl_error *error) {
+  const hl_frame_space space = hl_scene_frame_space(d);
+  checker camera = {error, "/camera"};
+  hl_status status = check_distance(&camera, "position", d->camera.position, &space);
+  if (status == HL_OK && d->camera.type == HL_CAMERA_ORTHOGRAPHIC)
+    status = check_reach(&camera, "height", d->camera.height, &space);
+  for (size_t l = 0; status == HL_OK && l < d->light_count; l++)
+    status = check_light_reach(&d->lights[l], l, &space, error);
+  return status;
 }
 
 static hl_status check_render(const hl_render_settings *render, hl_error *error) {
@@ -459,6 +528,7 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
   for (size_t l = 0; l < d->light_count; l++)
     if ((status = check_light(&d->lights[l], l, error)) != HL_OK) return status;
   for (size_t v = 0; v < d->volume_count; v++)
-    if ((status = check_volume(&d->volumes[v], v, error)) != HL_OK) return status;
+    if ((status = hl_scene_volume_check(&d->volumes[v], v, error)) != HL_OK) return status;
+  if ((status = check_scales(d, error)) != HL_OK) return status;
   return check_render(&d->render, error);
 }

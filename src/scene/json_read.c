@@ -25,6 +25,21 @@ json_t *hl_json_copy(const json_t *value) {
   return NULL;
 }
 
+/* What JSON does not have, and what is often written nevertheless. */
+static const char *mend_of_fault(const char *fault) {
+  static const struct { const char *near, *mend; } mends[] = {
+      {"near '/'", ": JSON has no comments, remove them"},
+      {"near '//", ": JSON has no comments, remove them"},
+      {"near 'NaN'", ": JSON has no NaN, give a number"},
+      {"near 'Infinity'", ": JSON has no infinity, give a number"},
+      {"overflow", ": give a number that a double holds"},
+      {"duplicate object key", ": remove one of the two"},
+  };
+  for (size_t m = 0; m < sizeof mends / sizeof *mends; m++)
+    if (strstr(fault, mends[m].near) != NULL) return mends[m].mend;
+  return "";
+}
+
 hl_status hl_json_parse(const char *text, size_t length, const char *name, json_t **root, hl_error *error) {
   json_error_t fault;
   if (length > HL_JSON_LIMIT)
@@ -34,9 +49,8 @@ hl_status hl_json_parse(const char *text, size_t length, const char *name, json_
   if (*root != NULL) return HL_OK;
   /* without memory for its first buffer the parser gives no reason, and no line */
   if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1) return hl_fail_memory(error, length, name);
-  bool comment = strstr(fault.text, "near '/'") != NULL || strstr(fault.text, "near '//") != NULL;
   return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line,
-                    fault.column, fault.text, comment ? ": JSON has no comments, remove them" : "");
+                    fault.column, fault.text, mend_of_fault(fault.text));
 }
 
 hl_status hl_json_fail(hl_json_reader *reader, hl_status code, const char *key, const char *format, ...) {

@@ -75,7 +75,7 @@ double hl_scene_volume_empty_value(const hl_scene_volume *volume) {
   }
   if (found) return empty;
   double range = v->maximum - v->minimum;
-  return v->minimum - (range > 0 ? range : 1);
+  return v->minimum - (range > 0 ? range : fmax(1, fabs(v->minimum)));
 }
 
 static vec3 middle_of_volumes(const hl_scene_description *scene) {

@@ -28,6 +28,9 @@ typedef struct hl_frame_space {
   double unit;
 } hl_frame_space;
 
+/* In frame space: closer to its centre no light gets brighter, though it fall with the square of the distance. */
+#define HL_LEAST_LIGHT_DISTANCE 1e-3
+
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene); /* of one volume at least */
 
 /* opacity (per unit_distance) and linear colour of a data value: piecewise linear, ends held. */

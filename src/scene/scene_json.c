@@ -113,6 +113,17 @@ static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathere
   return HL_OK;
 }
 
+/* A camera can frame only what is possible. */
+static hl_status check_volumes(hl_json_reader *reader, const hl_scene_description *d) {
+  for (size_t v = 0; v < d->volume_count; v++) {
+    hl_status status = hl_scene_volume_check(&d->volumes[v], v, reader->error);
+    if (status == HL_OK) continue;
+    if (status == HL_ERROR_INPUT) hl_json_prefix(reader, NULL);
+    return status;
+  }
+  return HL_OK;
+}
+
 static hl_status read_version(hl_json_reader *reader, const json_t *root) {
   int version = 0;
   if (json_object_get(root, "halflight") == NULL)
@@ -138,6 +149,7 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   if (status == HL_OK) status = hl_json_read_render(reader, json_object_get(root, "render"), &d->render);
   if (status == HL_OK) status = hl_json_check_groups(reader, json_object_get(root, "groups"));
   if (status == HL_OK) status = read_volumes(reader, root, g);
+  if (status == HL_OK) status = check_volumes(reader, d);
   if (status == HL_OK) status = hl_json_read_camera(reader, json_object_get(root, "camera"), d);
   return status == HL_OK ? read_lights(reader, root, g) : status;
 }

@@ -7,6 +7,8 @@
  * the neighbours that slabs across its faces read. */
 #include "splat/bricks.h"
 
+#include <float.h>
+
 #include <string.h>
 
 #include "core/memory.h"
@@ -122,7 +124,7 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   float b = (float)((volume->maximum - volume->value_offset) / volume->value_scale);
   float low = fminf(fminf(a, b), grid->empty), high = fmaxf(fmaxf(a, b), grid->empty);
   grid->cell_base = grid->storage == HL_STORAGE_U8 ? 0 : low;
-  grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? (high - low) / 255 : 1;
+  grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const bound_functions *functions, const kernel *kernel,

@@ -59,15 +59,18 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
 }
 
 /* A gradient below a thousandth of the transfer function's span per voxel edge does not make a surface. */
-static float normal_edge(const hl_scene_volume *volume, const grid *grid) {
+static float normal_edge(const hl_scene_volume *volume, double entries_per_value) {
   const hl_transfer_function *function = &volume->transfer_function;
   double span = function->opacity_count == 0
                     ? 0
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
   double edge = mat3_shortest_column(volume->volume->index_to_world.linear) * volume->scale;
-  return (float)(1e-3 * span / (edge * fabs(grid->value_scale)));
+  return (float)fmin(fmax(1e-3 * span / edge * entries_per_value, 1e-30), 1e30);
 }
+
+/* A range that is narrower beside 0 than floats can scale by is widened: nothing in it is told apart. */
+static const double NARROWEST_RANGE = 1e-34;
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
                                classifier *classifier, hl_error *error) {
@@ -83,9 +86,10 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
   if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low)); /* 1 alone is lost on 1e30 */
+  high = fmax(high, low + NARROWEST_RANGE * fabs(grid->value_scale));
   classifier->scale = (float)(grid->value_scale * CLASSIFIER_ENTRIES / (high - low));
   classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
-  classifier->normal_edge = normal_edge(volume, grid);
+  classifier->normal_edge = normal_edge(volume, CLASSIFIER_ENTRIES / (high - low));
   fill_tables(volume, empty, low, high, classifier);
   return HL_OK;
 }

@@ -18,7 +18,7 @@ typedef struct classifier {
   float (*color)[4];     /* owned with sums; [same]; linear RGB; 0 */
   int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: first entry at or above with extinction > 0 */
   float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
-  float normal_edge;     /* the least gradient (density per world unit) that counts as a surface */
+  float normal_edge;     /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,

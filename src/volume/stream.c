@@ -101,9 +101,10 @@ hl_status hl_stream_switch(hl_stream **stream, const char *name, hl_error *error
   hl_release(context, folder);
   if (path == NULL) return hl_fail_memory(error, strlen(name), name);
   hl_stream *opened;
-  hl_status status = hl_stream_open(context, path, true, &opened, error);
+  hl_error inner = {0};
+  hl_status status = hl_stream_open(context, path, true, &opened, &inner);
   hl_release(context, path);
-  if (status != HL_OK) return status;
+  if (status != HL_OK) return hl_fail(error, status, "%s: its data file %s", (*stream)->path, inner.message);
   hl_stream_close(*stream);
   *stream = opened;
   return HL_OK;

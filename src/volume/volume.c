@@ -43,6 +43,24 @@ static hl_status check_size(const hl_volume_description *description, const char
   return HL_OK;
 }
 
+static hl_status check_place(const hl_volume_description *description, const char *subject, hl_error *error) {
+  affine3 place = index_to_world(description), inverse;
+  for (int axis = 0; axis < 3; axis++) {
+    double length = vec3_length(vec3_of(description->axis[axis]));
+    if (!isfinite(length * (double)description->dimensions[axis]) || !(length > 0))
+      return hl_fail(error, HL_ERROR_INPUT,
+                     "%s: the spacing along axis %d is %g: give a finite number above 0, or a direction that is not zero", subject,
+                     axis, length);
+  }
+  if (!isfinite(vec3_length(place.offset)))
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the origin has coordinates that are not finite: correct it", subject);
+  bool possible = affine3_invert(place, &inverse) && isfinite(vec3_length(inverse.offset));
+  for (int axis = 0; axis < 3; axis++) possible = possible && isfinite(vec3_length(inverse.linear.row[axis]));
+  if (!possible)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the three axes lie in one plane: correct its directions", subject);
+  return HL_OK;
+}
+
 hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,
                                hl_error *error) {
   if (hl_voxel_type_bytes(description->type) == 0)
@@ -54,19 +72,7 @@ hl_status hl_volume_check_grid(const hl_volume_description *description, const c
     return hl_fail(error, HL_ERROR_INPUT,
                    "%s: value scale %g and offset %g: both must be finite, the scale not 0", subject,
                    description->value_scale, description->value_offset);
-  affine3 place = index_to_world(description), inverse;
-  bool possible = affine3_invert(place, &inverse) && isfinite(vec3_length(inverse.offset)) &&
-                  isfinite(vec3_length(place.offset));
-  for (int axis = 0; axis < 3; axis++) {
-    double length = vec3_length(vec3_of(description->axis[axis]));
-    possible = possible && isfinite(length * (double)description->dimensions[axis]) && length > 0 &&
-               isfinite(vec3_length(inverse.linear.row[axis]));
-  }
-  if (!possible)
-    return hl_fail(error, HL_ERROR_INPUT,
-                   "%s: origin and axes must be finite numbers, the axes not zero and not in one plane",
-                   subject);
-  return HL_OK;
+  return check_place(description, subject, error);
 }
 
 /* Everything but the voxels. */
