@@ -108,6 +108,7 @@ static void finish(light_image *image) {
   }
   image->count = count;
   double tilt = GREATEST_SLOPE * (high[2] - low[2]);
+  image->tilted = tilt > 0;
   image->reach = 0;
   for (int axis = 0; axis < 2; axis++) {
     image->range[axis] = high[axis] - low[axis] + tilt;

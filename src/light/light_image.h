@@ -23,6 +23,7 @@ typedef struct light_image {
   bool even;                 /* of a single colour: penumbrae are those of a light without an image */
   int count;                 /* cells that are not dark */
   image_cell cells[IMAGE_CELLS];
+  bool tilted;               /* receivers at different slopes see it differently */
   double reach;              /* of the cells from the middle, for any receiver */
   double range[2];           /* of the cells along u and v, for any receiver */
 } light_image;

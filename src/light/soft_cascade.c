@@ -6,9 +6,7 @@
 #include "core/memory.h"
 
 /* Chunks that a sweep is cut into at most, and the least omega of one, pixels. */
-static const double GREATEST_CHUNKS = 96, LEAST_CHUNK = 0.5;
-/* The same through a light's image: kernels are dear, and none is blurred again by others. */
-static const double IMAGE_CHUNKS = 64;
+static const double GREATEST_CHUNKS = 64, LEAST_CHUNK = 0.5;
 
 static double omega_at(const soft_cascade *cascade, double height) {
   if (cascade->parallel) return cascade->rate * height;
@@ -102,7 +100,7 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
 hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
                                 const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
                                 double pixel, shadow_buffer *buffer, hl_error *error) {
-  double widest = fmax(light->width_u, light->width_v), chunks = image == NULL ? GREATEST_CHUNKS : IMAGE_CHUNKS;
+  double widest = fmax(light->width_u, light->width_v);
   *cascade = (soft_cascade){.parallel = light->parallel, .channels = buffer->channels, .rate = widest / pixel,
                             .widest = widest, .least_part = fmin(light->width_u, light->width_v) / widest,
                             .light_height = vec3_dot(light->middle, normal), .image = image};
@@ -119,7 +117,7 @@ hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memo
   double start = omega_at(cascade, first), end = omega_at(cascade, last);
   /* a light close to the sheets: penumbrae twice as wide as the buffer are as good as wider ones */
   start = fmax(start, end - 2 * TILE * fmax(buffer->tiles_x, buffer->tiles_y));
-  cascade->chunk = fmax(LEAST_CHUNK, (end - start) / chunks);
+  cascade->chunk = fmax(LEAST_CHUNK, (end - start) / GREATEST_CHUNKS);
   cascade->chunk_start = start;
   /* level j is first used after 5 * 2^j - 4 chunks (derived: a level keeps five of its seven groups) */
   int levels = 1 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));

@@ -157,11 +157,13 @@ static void add_row(void *data, size_t index, int worker) {
   const soft_cascade *cascade = pass->cascade;
   const cascade_level *level = pass->level;
   image_taps taps;
+  bool known = false;
   for (int x = 0; x < level->tiles_x; x++) {
     if (!wanted_of(cascade, level)[index * (size_t)level->tiles_x + (size_t)x]) continue;
     const double slope[2] = {cascade->slope_start[0] + cascade->slope_step[0] * (x + 0.5) * TILE * level->scale,
                              cascade->slope_start[1] + cascade->slope_step[1] * ((double)index + 0.5) * TILE * level->scale};
-    hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
+    if (!known || cascade->image->tilted) hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
+    known = true;
     add_tile(pass, &taps, x, (int)index);
   }
 }
