@@ -49,12 +49,13 @@ typedef struct hl_error {
 
 typedef enum hl_log_level { HL_LOG_WARNING = 1, HL_LOG_INFO = 2 } hl_log_level;
 
-/* Instruction sets of the hot functions, in rising order. Each gives the same bytes. */
+/* Instruction sets of the hot functions. Each gives the same bytes. */
 typedef enum hl_instruction_set {
   HL_INSTRUCTION_SET_AUTO = 0,   /* the best that the processor has */
-  HL_INSTRUCTION_SET_SCALAR = 1, /* the compiler's baseline for the target */
+  HL_INSTRUCTION_SET_SCALAR = 1, /* the compiler's baseline for the target; on 64-bit Arm without vectors */
   HL_INSTRUCTION_SET_AVX2 = 2,
-  HL_INSTRUCTION_SET_AVX512 = 3
+  HL_INSTRUCTION_SET_AVX512 = 3,
+  HL_INSTRUCTION_SET_NEON = 4 /* every 64-bit Arm processor */
 } hl_instruction_set;
 
 /* All callbacks may be null (a default is used) and receive user_data. They may be called

@@ -46,8 +46,8 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   }
   hl_instruction_set best = hl_cpu_best_instruction_set();
   if (chosen.instruction_set == HL_INSTRUCTION_SET_AUTO) chosen.instruction_set = best;
-  if (chosen.instruction_set > best)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "instruction set %s: this processor or build has at most %s",
+  if (!hl_cpu_has_instruction_set(chosen.instruction_set))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "instruction set %s: this processor or build does not have it; its best is %s",
                    hl_instruction_set_name(chosen.instruction_set), hl_instruction_set_name(best));
   size_t folder_bytes = chosen.data_folder != NULL ? strlen(chosen.data_folder) + 1 : 0;
   hl_context *made = chosen.allocate(chosen.user_data, sizeof *made + folder_bytes, 64);

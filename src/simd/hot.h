@@ -38,6 +38,8 @@ const hot_functions *hl_hot_functions(hl_instruction_set set);
 extern const hot_functions hl_hot_scalar;
 #if defined(__x86_64__)
 extern const hot_functions hl_hot_avx2, hl_hot_avx512;
+#elif defined(__aarch64__)
+extern const hot_functions hl_hot_neon;
 #endif
 
 #endif
