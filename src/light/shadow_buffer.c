@@ -112,15 +112,27 @@ static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floa
   return HL_OK;
 }
 
-hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view, int channels,
-                                 bool scratch, int reach, hl_error *error) {
+static size_t lay_out(const view *view, int reach, shadow_buffer *buffer) {
   size_t margin = ((size_t)reach + 1 + TILE) / TILE * TILE;
   buffer->view = *view;
-  buffer->channels = channels;
   buffer->tiles_x = hl_tiles(view->width);
   buffer->tiles_y = hl_tiles(view->height);
   buffer->stride = (size_t)buffer->tiles_x * TILE + 2 * margin;
   buffer->plane = ((size_t)buffer->tiles_y * TILE + 2 * margin) * buffer->stride;
+  return margin;
+}
+
+uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool scratch, int reach) {
+  shadow_buffer buffer = {0};
+  (void)lay_out(view, reach, &buffer);
+  uint64_t tiles = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y;
+  return buffer.plane * (uint64_t)channels * (scratch ? 2 : 1) * sizeof(float) + tiles * 4;
+}
+
+hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view, int channels,
+                                 bool scratch, int reach, hl_error *error) {
+  size_t margin = lay_out(view, reach, buffer);
+  buffer->channels = channels;
   buffer->origin = margin * buffer->stride + margin;
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, planes = (size_t)channels * (scratch ? 2 : 1);
   hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);

@@ -47,6 +47,8 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
  * needed. reach: pixels that blurs read beyond a tile. */
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view, int channels,
                                  bool scratch, int reach, hl_error *error);
+/* The bytes that it then holds. */
+uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool scratch, int reach);
 /* Finds tile_lit anew after a blur, for the wanted tiles ([tiles]; null: all). */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, const unsigned char *wanted, hl_pool *pool,
                                lit_blocks_function *lit_blocks);

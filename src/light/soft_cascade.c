@@ -97,9 +97,9 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   return HL_OK;
 }
 
-hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
-                                const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
-                                double pixel, shadow_buffer *buffer, hl_error *error) {
+/* Chunks and levels for a buffer whose view, tiles and channels are known. */
+static void plan(soft_cascade *cascade, const sheet_light *light, const light_image *image, vec3 normal, double first,
+                 double last, double pixel, const shadow_buffer *buffer) {
   double widest = fmax(light->width_u, light->width_v);
   *cascade = (soft_cascade){.parallel = light->parallel, .channels = buffer->channels, .rate = widest / pixel,
                             .widest = widest, .least_part = fmin(light->width_u, light->width_v) / widest,
@@ -109,11 +109,6 @@ hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memo
     cascade->slope_start[axis] = vec3_dot(buffer->view.corner, along[axis]);
     cascade->slope_step[axis] = vec3_dot(axis == 0 ? buffer->view.du : buffer->view.dv, along[axis]);
   }
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
-  cascade->touched = hl_allocate_zeroed(context, tiles * (1 + CASCADE_MASKS), 1);
-  for (int i = 0; i < CASCADE_MASKS && cascade->touched != NULL; i++)
-    cascade->wanted[i] = cascade->touched + tiles * (size_t)(1 + i);
-  if (cascade->touched == NULL) return hl_fail_memory(error, tiles, "a cascade of shadows");
   double start = omega_at(cascade, first), end = omega_at(cascade, last);
   /* a light close to the sheets: penumbrae twice as wide as the buffer are as good as wider ones */
   start = fmax(start, end - 2 * TILE * fmax(buffer->tiles_x, buffer->tiles_y));
@@ -123,11 +118,37 @@ hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memo
   int levels = 1 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) lay_out_level(cascade, i, buffer);
+}
+
+void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
+                           double pixel, const view *view, int channels, uint64_t *kept, uint64_t *passing) {
+  soft_cascade cascade;
+  shadow_buffer buffer = {.view = *view, .channels = channels, .tiles_x = hl_tiles(view->width), .tiles_y = hl_tiles(view->height)};
+  plan(&cascade, light, image, normal, first, last, pixel, &buffer);
+  *kept = 0;
+  *passing = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y * (1 + CASCADE_MASKS);
+  for (int i = 0; i < cascade.level_count; i++) {
+    const cascade_level *level = &cascade.level[i];
+    uint64_t tiles_x = (uint64_t)level->tiles_x, tiles_y = (uint64_t)level->tiles_y;
+    *kept += level->planes * level->plane * sizeof(float);
+    *passing += (level->planes + 1) * tiles_x * tiles_y + (tiles_x + tiles_y) * sizeof *level->boxes;
+  }
+}
+
+hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
+                                const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
+                                double pixel, shadow_buffer *buffer, hl_error *error) {
+  plan(cascade, light, image, normal, first, last, pixel, buffer);
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
+  cascade->touched = hl_allocate_zeroed(context, tiles * (1 + CASCADE_MASKS), 1);
+  for (int i = 0; i < CASCADE_MASKS && cascade->touched != NULL; i++)
+    cascade->wanted[i] = cascade->touched + tiles * (size_t)(1 + i);
+  if (cascade->touched == NULL) return hl_fail_memory(error, tiles, "a cascade of shadows");
   hl_status status = open_memory(context, pool, memory, cascade, error);
   for (int i = 0; i < cascade->level_count && status == HL_OK; i++)
     status = open_level(context, cascade, i, light, error);
   cascade->level[0].count = 1; /* at the first chunk's start */
-  cascade->level[0].group[0].omega = start;
+  cascade->level[0].group[0].omega = cascade->chunk_start;
   return status;
 }
 

@@ -98,6 +98,9 @@ typedef struct soft_cascade {
 hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
                                 const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
                                 double pixel, shadow_buffer *buffer, hl_error *error);
+/* The bytes that it then holds for a buffer of that view: of memory, which stays, and of its own. */
+void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
+                           double pixel, const view *view, int channels, uint64_t *kept, uint64_t *passing);
 void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade);
 
 /* Before the slab before the sheet is composited into the buffer, and before and after each of its tiles is. */

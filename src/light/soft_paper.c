@@ -31,11 +31,13 @@ double hl_soft_paper_width(const soft_paper *soft, double from, double to) {
   return soft->size * (1 / near - 1 / far) / soft->pixel;
 }
 
-int hl_soft_paper_reach(const soft_paper *soft, double first, double spacing, int sheets) {
-  double widest = 0;
-  for (int k = 0; k < sheets; k++)
+/* The first convolution comes after two sheets. */
+int hl_soft_paper_reach(soft_paper *soft, double first, double spacing, int sheets) {
+  double widest = hl_soft_paper_width(soft, first, first + 2 * spacing);
+  for (int k = 1; k < sheets; k++)
     widest = fmax(widest, hl_soft_paper_width(soft, first + k * spacing, first + (k + 1) * spacing));
-  return (int)fmin(soft->image != NULL ? soft->image->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
+  soft->reach = (int)fmin(soft->image != NULL ? soft->image->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
+  return soft->reach;
 }
 
 typedef struct convolve_job {
@@ -141,7 +143,8 @@ static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, h
  * one tap a pixel and no more of them than cells: wider steps are several. */
 void hl_soft_paper_convolve(soft_paper *soft, shadow_buffer *buffer, double next, hl_pool *pool,
                             const blur_functions *blur) {
-  double width = soft->remainder + hl_soft_paper_width(soft, soft->last, next), most = soft->image == NULL ? 2048 : IMAGE_SIDE;
+  double width = soft->remainder + hl_soft_paper_width(soft, soft->last, next);
+  double most = soft->image == NULL ? 2 * soft->reach : IMAGE_SIDE; /* no box reads beyond the buffer's margin */
   if (width <= 2) return;
   do {
     double whole = fmin(floor(width), most);

@@ -19,6 +19,7 @@ typedef struct soft_paper {
   double pixel;        /* buffer pixel: frame units; not parallel: at distance 1 */
   double last;         /* height of the last convolved sheet */
   double remainder;    /* accumulated width not yet convolved, pixels */
+  int reach;           /* pixels beyond a tile that the buffer's margin lets blurs read */
 } soft_paper;
 
 /* first: height of the first sheet. image: of the light, null where it is even; its cells are placed here. */
@@ -29,7 +30,7 @@ void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 norm
 double hl_soft_paper_width(const soft_paper *soft, double from, double to);
 
 /* The greatest box that a sweep of these sheets can need, pixels. */
-int hl_soft_paper_reach(const soft_paper *soft, double first, double spacing, int sheets);
+int hl_soft_paper_reach(soft_paper *soft, double first, double spacing, int sheets);
 
 /* After a sheet's composite: convolves the buffer for the next sheet, at height next, if it is time to. */
 void hl_soft_paper_convolve(soft_paper *soft, shadow_buffer *buffer, double next, hl_pool *pool,

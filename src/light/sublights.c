@@ -13,20 +13,26 @@ static const double GREATEST_BYTES = 4294967296.0;
 static const double CLOSED_PART = 0.4;
 enum { GREATEST_BLURS = 12 };
 
+/* What part i of side x side sees; the greatest numbers of tiles. */
+static void place_part(const light_source *source, int side, int i, vec3 normal, const shadow_extent *extent, view *view,
+                       int *tiles_x, int *tiles_y) {
+  double square[2];
+  light_source part = *source;
+  hl_light_part(side, i / side, i % side, square);
+  vec3 offset = hl_light_point(source, square[0], square[1]);
+  if (source->parallel) part.direction = vec3_normalise(vec3_add(source->direction, offset));
+  else part.position = vec3_add(source->position, offset);
+  hl_shadow_view(&part, normal, extent, view);
+  if (hl_tiles(view->width) > *tiles_x) *tiles_x = hl_tiles(view->width);
+  if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
+}
+
 static void place_parts(sublights *sublights, const light_source *source, int side, vec3 normal,
                         const shadow_extent *extent) {
   for (int i = 0; i < sublights->count; i++) {
-    double square[2];
-    light_source part = *source;
-    hl_light_part(side, i / side, i % side, square);
-    vec3 offset = hl_light_point(source, square[0], square[1]);
-    if (source->parallel) part.direction = vec3_normalise(vec3_add(source->direction, offset));
-    else part.position = vec3_add(source->position, offset);
-    view *view = &sublights->parts[i].view;
-    hl_shadow_view(&part, normal, extent, view);
-    sublights->parts[i].pixel = vec3_length(view->du);
-    if (hl_tiles(view->width) > sublights->tiles_x) sublights->tiles_x = hl_tiles(view->width);
-    if (hl_tiles(view->height) > sublights->tiles_y) sublights->tiles_y = hl_tiles(view->height);
+    sublight *part = &sublights->parts[i];
+    place_part(source, side, i, normal, extent, &part->view, &sublights->tiles_x, &sublights->tiles_y);
+    part->pixel = vec3_length(part->view.du);
   }
 }
 
@@ -51,11 +57,27 @@ static void plan_blurs(sublights *sublights, int side, double first, double last
   sublights->next = start + sublights->step;
 }
 
+static void lay_out_planes(sublights *sublights) {
+  sublights->stride = (size_t)sublights->tiles_x * TILE + 2 * SUBLIGHT_MARGIN;
+  sublights->plane = ((size_t)sublights->tiles_y * TILE + 2 * SUBLIGHT_MARGIN) * sublights->stride;
+}
+
+uint64_t hl_sublights_bytes(const light_source *source, int side, vec3 normal, const shadow_extent *extent, int channels) {
+  sublights planned = {.channels = channels};
+  uint64_t count = (uint64_t)side * (uint64_t)side;
+  view view;
+  for (int i = 0; i < side * side; i++)
+    place_part(source, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
+  lay_out_planes(&planned);
+  uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
+  return (count + 1) * (uint64_t)channels * planned.plane * sizeof(float) + (2 * count + 1) * tiles +
+         count * (sizeof *planned.parts + sizeof *planned.lookups);
+}
+
 static hl_status allocate(hl_context *context, hl_pool *pool, sublights *sublights, hl_error *error) {
   size_t count = (size_t)sublights->count, channels = (size_t)sublights->channels;
   size_t tiles = (size_t)sublights->tiles_x * (size_t)sublights->tiles_y;
-  sublights->stride = (size_t)sublights->tiles_x * TILE + 2 * SUBLIGHT_MARGIN;
-  sublights->plane = ((size_t)sublights->tiles_y * TILE + 2 * SUBLIGHT_MARGIN) * sublights->stride;
+  lay_out_planes(sublights);
   size_t floats = (count + 1) * channels * sublights->plane;
   if ((double)floats * sizeof(float) > GREATEST_BYTES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,

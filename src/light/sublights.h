@@ -55,6 +55,8 @@ typedef struct sublight_functions {
 hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *sublights, const light_source *source,
                              int side, const sheet_light *seen, vec3 normal, const shadow_extent *extent, int channels,
                              double first, double last, hl_error *error);
+/* The bytes that they then hold. */
+uint64_t hl_sublights_bytes(const light_source *source, int side, vec3 normal, const shadow_extent *extent, int channels);
 void hl_sublights_release(hl_context *context, sublights *sublights);
 
 /* After the slab between these heights was composited into slab, a buffer that held ones: composites it into all parts,

@@ -6,6 +6,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "render/clock.h"
+#include "render/estimate.h"
 #include "render/framed_scene.h"
 #include "render/prepare.h"
 #include "scene/layers.h"
@@ -19,7 +20,10 @@ struct hl_renderer {
   shadow_buffer *buffers;      /* owned; [buffer_count]; one per light of a frame, of which a scene's light is some */
   size_t buffer_count;
   cascade_memory cascades[FRAME_LIGHTS]; /* owned; of a sweep's lights */
+  uint64_t estimate;           /* bytes; see render/estimate.h */
 };
+
+uint64_t hl_renderer_estimate(const hl_renderer *renderer) { return renderer->estimate; }
 
 hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_error *error) {
   if (context == NULL || renderer == NULL)
@@ -258,6 +262,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   if (status != HL_OK) return status;
   work->tiles_x = (size_t)hl_tiles(frame->eye.width);
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
+  status = hl_check_room(context, hl_pixels_bytes(frame, work->sweep_count, layers), &renderer->estimate, error);
+  if (status != HL_OK) return status;
   work->pixels = hl_allocate(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
   if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
   hl_pool_fill(renderer->pool, work->pixels, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, 0);
@@ -302,9 +308,8 @@ static int attenuation_channels(const hl_scene_description *scene) {
   return 1;
 }
 
-static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work, int index,
-                           hl_render_statistics *statistics, hl_error *error) {
-  sweep sweep = {.context = renderer->context, .pool = renderer->pool, .scene = scene, .frame = &work->frame,
+static sweep sweep_of(const hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work, int index) {
+  return (sweep){.context = renderer->context, .pool = renderer->pool, .scene = scene, .frame = &work->frame,
                  .hot = hl_hot_functions(renderer->context->options.instruction_set),
                  .geometry = &work->sweeps[index], .volumes = renderer->prepared, .grids = work->grids,
                  .volume_count = (int)scene->volume_count, .kernel = hl_kernel_get(scene->render.kernel),
@@ -312,6 +317,42 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
                  .layer_pixels = &work->layers, .measures = index == work->measuring_sweep,
                  .channels = attenuation_channels(scene),
                  .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};
+}
+
+/* Bytes of shadow buffers that the renderer holds from the frame before. */
+static uint64_t kept_buffers(const hl_renderer *renderer) {
+  uint64_t bytes = 0;
+  for (size_t i = 0; i < renderer->buffer_count; i++)
+    bytes += renderer->buffers[i].capacity * sizeof(float) + renderer->buffers[i].tile_capacity * 4;
+  for (int i = 0; i < FRAME_LIGHTS; i++) bytes += renderer->cascades[i].capacity * sizeof(float);
+  return bytes;
+}
+
+/* Refuses what cannot fit before the first sheet; its picture is allocated already. */
+static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work,
+                                   hl_error *error) {
+  hl_context *context = renderer->context;
+  if (work->frame.point_count == 0) return HL_OK;
+  vec3 *points = hl_allocate(context, scene->volume_count * CONTENT_POINTS + 1, sizeof *points);
+  sweep_bytes *bytes = hl_allocate(context, (size_t)work->sweep_count, sizeof *bytes);
+  hl_status status = HL_OK;
+  if (points == NULL || bytes == NULL)
+    status = hl_fail_memory(error, (size_t)work->sweep_count * sizeof *bytes, "the frame");
+  for (int s = 0; s < work->sweep_count && status == HL_OK; s++) {
+    sweep planned = sweep_of(renderer, scene, work, s);
+    bytes[s] = hl_sweep_bytes(&planned, points, hl_pool_threads(renderer->pool));
+  }
+  uint64_t needed = status == HL_OK ? hl_sweeps_bytes(bytes, work->sweep_count, work->layers.wanted != NULL) : 0;
+  uint64_t kept = kept_buffers(renderer);
+  hl_release(context, points);
+  hl_release(context, bytes);
+  if (status != HL_OK) return status;
+  return hl_check_room(context, needed > kept ? needed - kept : 0, &renderer->estimate, error);
+}
+
+static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work, int index,
+                           hl_render_statistics *statistics, hl_error *error) {
+  sweep sweep = sweep_of(renderer, scene, work, index);
   double start = hl_clock_seconds();
   hl_status status = hl_sweep_begin(&sweep, renderer->buffers, renderer->cascades, error);
   sweep.seconds_sort = hl_clock_seconds() - start;
@@ -365,11 +406,16 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   hl_status status = hl_framed_scene_create(renderer->context, world, &work->framed, error);
   if (status == HL_OK) status = make_room(renderer, scene, error);
   if (status == HL_OK) hl_pool_resume(renderer->pool);
+  renderer->estimate = 0;
+  if (status == HL_OK)
+    status = hl_check_room(renderer->context, hl_prepare_bytes(scene, renderer->prepared, hl_pool_threads(renderer->pool)),
+                           &renderer->estimate, error);
   if (status == HL_OK)
     status = hl_prepare_volumes(renderer->context, renderer->pool,
                                 hl_hot_functions(renderer->context->options.instruction_set), scene, renderer->prepared,
                                 error);
   if (status == HL_OK) status = set_up_frame(renderer, scene, layers, work, error);
+  if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();
   for (int s = 0; s < work->sweep_count && status == HL_OK && work->frame.point_count > 0; s++)

@@ -108,6 +108,17 @@ typedef struct sweep {
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error);
 void hl_sweep_end(sweep *sweep);
 
+/* What hl_sweep_begin would hold, bytes. */
+typedef struct sweep_bytes {
+  uint64_t buffers;                /* of the lights; they stay */
+  uint64_t cascades[FRAME_LIGHTS]; /* sweeps share them in turn */
+  uint64_t passing;                /* what the sweep gives back; slides and the lists of splatted voxels apart */
+} sweep_bytes;
+
+/* The sweep's context, scene, frame, geometry, grids and channels must be set. points: room for the corners that
+ * hl_frame_visible_points() gives. threads: of the pool. */
+sweep_bytes hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads);
+
 /* The sheet loop: steps 3 to 18. */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
@@ -127,6 +138,8 @@ void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int pa
 /* A view's sheets (view_sheets.c). What fails half-way is released by hl_view_sheets_end. */
 hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets);
+/* The bytes that they hold, lists of splatted voxels apart. */
+uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view);
 /* Before patches of a sheet are asked for. */
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets);
 /* A patch's densities on the sheet and the one before, [256] block-major, in the needed blocks that hold any: kept from

@@ -80,6 +80,48 @@ static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *p
   return true;
 }
 
+/* One light's part of hl_sweep_bytes; as begin_light takes it. image: null where penumbrae are even. */
+static void add_light_bytes(const sweep *sweep, int index, const light_image *image, vec3 *points, sweep_bytes *bytes) {
+  const light_source *source = &sweep->frame->lights[sweep->geometry->light[index]];
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  double last = sheets->first + (sheets->count - 1) * sheets->spacing;
+  view view;
+  shadow_extent extent;
+  sheet_light seen = {0};
+  if (source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, points, &extent, &seen, &view)) return;
+  bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
+  int reach = soft ? CASCADE_REACH : 0;
+  if (paper) {
+    soft_paper begun;
+    light_image seen_image = image != NULL ? *image : (light_image){0};
+    hl_soft_paper_begin(&begun, source, sheets->normal, sheets->first, &view, image != NULL ? &seen_image : NULL);
+    reach = hl_soft_paper_reach(&begun, sheets->first, sheets->spacing, sheets->count);
+  }
+  uint64_t tiles = (uint64_t)hl_tiles(view.width) * (uint64_t)hl_tiles(view.height), passing = 0;
+  bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper, reach);
+  bytes->passing += hl_view_sheets_bytes(sweep, &view) + tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
+  if (soft && source->soft_method == HL_SOFT_SUBLIGHTS)
+    bytes->passing += hl_sublights_bytes(source, sweep->scene->render.light_samples, sheets->normal, &extent, sweep->channels);
+  if (soft && source->soft_method == HL_SOFT_CASCADE)
+    hl_soft_cascade_bytes(&seen, image, sheets->normal, sheets->first, last, vec3_length(view.du), &view, sweep->channels,
+                          &bytes->cascades[index], &passing);
+  bytes->passing += passing;
+}
+
+sweep_bytes hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads) {
+  uint64_t a_grid = SHADE_SCRATCH_BYTES + sizeof *sweep->scratch_volumes + 2 * sizeof *sweep->shade_patches;
+  uint64_t tiles = (uint64_t)hl_tiles(sweep->frame->width) * (uint64_t)hl_tiles(sweep->frame->height);
+  sweep_bytes bytes = {.passing = hl_view_sheets_bytes(sweep, &sweep->frame->eye)};
+  bytes.passing += tiles * (sizeof *sweep->tasks + sizeof *sweep->open) + (uint64_t)threads * (uint64_t)sweep->volume_count * a_grid;
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    light_image *image = NULL; /* without memory for one, hl_sweep_begin tells */
+    hl_status status = hl_light_image_create(sweep->context, &sweep->frame->lights[sweep->geometry->light[i]], &image, NULL);
+    add_light_bytes(sweep, i, status != HL_OK || image == NULL || image->even ? NULL : image, points, &bytes);
+    hl_release(sweep->context, image);
+  }
+  return bytes;
+}
+
 static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source, shadow_buffer *buffer,
                              cascade_memory *memory, vec3 *points, hl_error *error) {
   light->source = source;

@@ -63,6 +63,15 @@ static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error 
   return HL_OK;
 }
 
+uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view) {
+  size_t patches;
+  bool cut = false;
+  for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
+  uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, &patches);
+  uint64_t a_patch = RING * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + (cut ? 2 * TILE_PIXELS * sizeof(float) : 0);
+  return bytes + patches * a_patch;
+}
+
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
   for (int g = 0; g < sweep->volume_count; g++) {
     fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + g];

@@ -127,6 +127,13 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
+uint64_t hl_grid_bytes(const hl_volume *volume, int threads) {
+  uint64_t bricks = 1;
+  for (int axis = 0; axis < 3; axis++) bricks *= volume->dimension[axis] / HL_BRICK_CELLS + 1;
+  uint64_t copied = volume->nonfinite_count > 0 ? hl_volume_voxel_count(volume) * sizeof(float) : 0;
+  return copied + bricks * (2 * sizeof(float) + 1 + sizeof(uint32_t)) + hl_cell_bounds_bytes(volume->dimension, threads);
+}
+
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const bound_functions *functions, const kernel *kernel,
                          const hl_scene_volume *scene_volume, affine3 index_to_frame, double empty, grid *grid,
                          hl_error *error) {

@@ -18,6 +18,8 @@ typedef struct bound_functions {
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const bound_functions *functions, const kernel *kernel,
                          const hl_scene_volume *volume, affine3 index_to_frame, double empty, grid *grid,
                          hl_error *error);
+/* The bytes that it takes. */
+uint64_t hl_grid_bytes(const hl_volume *volume, int threads);
 void hl_grid_release(hl_context *context, grid *grid);
 
 /* Marks the bricks that the transfer function can show, and counts their voxels. */

@@ -87,6 +87,19 @@ static hl_status allocate_levels(hl_context *context, grid *grid, hl_error *erro
   return HL_OK;
 }
 
+uint64_t hl_cell_bounds_bytes(const size_t dimension[3], int threads) {
+  uint64_t count[3], cells = 1, bytes = 0, dimension_0 = dimension[0];
+  for (int axis = 0; axis < 3; axis++) cells *= count[axis] = dimension[axis] / HL_NEAR_CELLS + 1;
+  if (cells >= INT32_MAX) return 0;
+  bytes = 2 * cells;
+  uint64_t scratch = (2 * CELL_TAPS + 2) * count[0] * count[1] + 2 * dimension[1] * count[0] + dimension_0 + 6;
+  for (int i = 0; i < CELL_LEVELS; i++) {
+    bytes += 2 * count[0] * count[1] * count[2] + 4;
+    for (int axis = 0; axis < 3; axis++) count[axis] = (count[axis] + 1) / 2;
+  }
+  return bytes + (uint64_t)threads * scratch * sizeof(float);
+}
+
 hl_status hl_cell_bounds_build(hl_context *context, hl_pool *pool, bound_along_function *along,
                                bound_across_function *across, bool smooth, grid *grid, hl_error *error) {
   size_t cells = 1;

@@ -23,6 +23,9 @@ typedef void bound_across_function(const float *const low_rows[CELL_TAPS], const
 hl_status hl_cell_bounds_build(hl_context *context, hl_pool *pool, bound_along_function *along,
                                bound_across_function *across, bool smooth, grid *grid, hl_error *error);
 
+/* The bytes that it takes for such a grid, its scratch included. */
+uint64_t hl_cell_bounds_bytes(const size_t dimension[3], int threads);
+
 /* Fills visible and near from the bounds, the transfer function and the relevant bricks. */
 void hl_cells_mark_near(grid *grid, const classifier *classifier, hl_pool *pool);
 

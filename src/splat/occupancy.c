@@ -185,14 +185,34 @@ static hl_status allocate(hl_context *context, occupancy *o, size_t tiles, hl_er
   return HL_OK;
 }
 
+static void set_size(const view *view, const sheet_stack *sheets, occupancy *o) {
+  o->tiles_x = hl_tiles(view->width);
+  o->tiles_y = hl_tiles(view->height);
+  o->sheets = sheets->count;
+  o->words = (sheets->count + 63) / 64;
+  o->tile_words = (int)(((size_t)o->tiles_x * (size_t)o->tiles_y + 63) / 64);
+}
+
+/* As allocate() takes it. */
+uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets,
+                            size_t *patch_count) {
+  occupancy o = {0};
+  set_size(view, sheets, &o);
+  for (int g = 0; g < grid_count; g++) {
+    footprint_map map;
+    hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &map);
+    tile_rectangle r = find_rectangle(&grids[g], &map, &o);
+    o.patch_count += (size_t)r.width * (size_t)r.height;
+  }
+  *patch_count = o.patch_count;
+  uint64_t tiles = (uint64_t)o.tiles_x * (uint64_t)o.tiles_y, words = (uint64_t)o.words;
+  return o.patch_count * (8 + 8 * words) + 4 * tiles + words * 64 * (uint64_t)o.tile_words * 8;
+}
+
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
                              const sheet_stack *sheets, occupancy *occupancy, hl_error *error) {
-  occupancy->tiles_x = hl_tiles(view->width);
-  occupancy->tiles_y = hl_tiles(view->height);
-  occupancy->sheets = sheets->count;
-  occupancy->words = (sheets->count + 63) / 64;
+  set_size(view, sheets, occupancy);
   size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
-  occupancy->tile_words = (int)((tiles + 63) / 64);
   occupancy->rectangle = hl_allocate(context, (size_t)grid_count, sizeof(tile_rectangle));
   if (occupancy->rectangle == NULL) return hl_fail_memory(error, sizeof(tile_rectangle), "the occupancy of tiles");
   for (int g = 0; g < grid_count; g++) {

@@ -41,6 +41,10 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *gri
                              const sheet_stack *sheets, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
+/* How many patches it would have, and the bytes that it would hold. */
+uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets,
+                            size_t *patch_count);
+
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
   const uint64_t *bits = occupancy->by_patch + patch * (size_t)occupancy->words;
   return (int)(bits[sheet / 64] >> (sheet % 64) & 1);

@@ -1,0 +1,24 @@
+/* render/estimate.h - the memory that a frame will take, so that one that cannot fit is refused before it begins. */
+#ifndef HL_RENDER_ESTIMATE_H
+#define HL_RENDER_ESTIMATE_H
+
+#include <halflight/render.h>
+
+#include "render/sweep.h"
+
+/* What the volumes that are not prepared yet take, bytes. */
+uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared, int threads);
+
+/* What the picture and its layers take, for sweeps of the frame. */
+uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *layers);
+
+/* What the sweeps take together: buffers stay, the rest is given back or shared. sweeps: [count]. */
+uint64_t hl_sweeps_bytes(const sweep_bytes *sweeps, int count, bool with_layers);
+
+/* Whether so many bytes more fit below the context's limit; *estimate is raised to the bytes then held. */
+hl_status hl_check_room(const hl_context *context, uint64_t bytes, uint64_t *estimate, hl_error *error);
+
+/* The most that the last frame was expected to hold through the context, what was held before included. */
+uint64_t hl_renderer_estimate(const hl_renderer *renderer);
+
+#endif

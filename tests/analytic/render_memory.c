@@ -1,0 +1,118 @@
+/* tests/analytic/render_memory.c - a frame's memory: foretold from above and not far off, and refused before it begins. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+#include "render/estimate.h"
+
+enum { SIDE = 320, EDGE = 64 };
+
+/* Noise over a plate: matter everywhere in the picture. */
+static void open_stage(stage *set, uint64_t limit) {
+  static float voxels[EDGE * EDGE * EDGE];
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.memory_limit = limit;
+  stage_open_with(set, &options);
+  for (size_t k = 0; k < EDGE; k++)
+    for (size_t j = 0; j < EDGE; j++)
+      for (size_t i = 0; i < EDGE; i++)
+        voxels[(k * EDGE + j) * EDGE + i] = stage_noise((double)i / 5, (double)j / 5, (double)k / 5);
+  stage_add_grid(set, (size_t[3]){EDGE, EDGE, EDGE}, (double[3]){1, 1, 1}, (vec3){-EDGE / 2, -EDGE / 2, -EDGE / 2}, voxels);
+  stage_look(set, (vec3){60, -160, 90}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  set->scene.camera.fovy_deg = 32;
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.render.threads = 2;
+}
+
+typedef struct variant {
+  const char *name;
+  hl_shadows shadows;
+  hl_soft_method method;
+  int lights;
+  bool colored, clipped, layers;
+} variant;
+
+static const variant variants[] = {{"no shadows", HL_SHADOWS_OFF, 0, 1, false, false, false},
+                                   {"hard", HL_SHADOWS_HARD, 0, 2, false, true, false},
+                                   {"cascade", HL_SHADOWS_SOFT, HL_SOFT_CASCADE, 1, true, false, false},
+                                   {"paper", HL_SHADOWS_SOFT, HL_SOFT_PAPER, 1, false, false, false},
+                                   {"sublights", HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS, 1, false, false, false},
+                                   {"lamp inside", HL_SHADOWS_HARD, 0, 3, false, false, false},
+                                   {"layers", HL_SHADOWS_HARD, 0, 1, false, false, true}};
+
+static void set_up(stage *set, const variant *v) {
+  static const vec3 ways[2] = {{0.5, 0.6, -1}, {-1, 0.4, -0.6}};
+  for (int l = 0; l < v->lights && l < 2; l++)
+    stage_add_directional(set, ways[l])->angular_diameter_deg = v->shadows == HL_SHADOWS_SOFT ? 12 : 0;
+  if (v->lights == 3) stage_add_point(set, (vec3){3, 4, 5});
+  set->scene.render.shadows = v->shadows;
+  set->scene.render.soft_method = v->method;
+  set->scene.render.light_samples = 3;
+  if (v->colored) set->volumes[0].attenuation_color[0] = 0.5;
+  set->volumes[0].clipped = v->clipped;
+  for (int a = 0; a < 3; a++) {
+    set->volumes[0].clip_min[a] = -20;
+    set->volumes[0].clip_max[a] = 24;
+  }
+}
+
+/* Renders one frame; estimate and peak in bytes. */
+static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, uint64_t *peak, hl_error *error) {
+  static float pixels[SIDE * SIDE * 4], picture[SIDE * SIDE * 3], shadow[SIDE * SIDE * 3], depth[SIDE * SIDE];
+  stage set;
+  open_stage(&set, limit);
+  set_up(&set, v);
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, NULL), HL_OK);
+  assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+  hl_light_layers light = {picture, shadow};
+  hl_layers layers = {.struct_size = sizeof layers, .depth_mean = depth, .lights = &light, .light_count = 1};
+  hl_status status =
+      hl_renderer_render_layers(renderer, scene, pixels, SIDE * 4, v->layers ? &layers : NULL, NULL, error);
+  *estimate = hl_renderer_estimate(renderer);
+  *peak = hl_context_memory_peak(set.context);
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+  stage_close(&set);
+  return status;
+}
+
+static void estimates_hold(void **state) {
+  (void)state;
+  for (size_t n = 0; n < sizeof variants / sizeof *variants; n++) {
+    uint64_t estimate, peak;
+    assert_int_equal(render(&variants[n], 0, &estimate, &peak, NULL), HL_OK);
+    print_message("# %s: estimate %.2f MiB, peak %.2f MiB\n", variants[n].name, (double)estimate / (1 << 20),
+                  (double)peak / (1 << 20));
+    assert_true(estimate >= peak);
+    assert_true((double)estimate <= 1.25 * (double)peak);
+  }
+}
+
+/* The estimate is enough, and less than it is refused with the numbers before a sheet is begun. */
+static void frames_are_refused_beforehand(void **state) {
+  (void)state;
+  const variant *v = &variants[2];
+  uint64_t estimate, peak, refused_estimate, refused_peak;
+  hl_error error = {0};
+  assert_int_equal(render(v, 0, &estimate, &peak, NULL), HL_OK);
+  assert_int_equal(render(v, estimate, &refused_estimate, &refused_peak, &error), HL_OK);
+  assert_int_equal(render(v, peak - (peak >> 3), &refused_estimate, &refused_peak, &error), HL_ERROR_MEMORY);
+  assert_true(refused_estimate == estimate);
+  assert_true(refused_peak < peak / 2);
+  assert_non_null(strstr(error.message, "this frame needs about "));
+  assert_non_null(strstr(error.message, "the memory limit is "));
+  assert_non_null(strstr(error.message, "make the picture smaller"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(estimates_hold), cmocka_unit_test(frames_are_refused_beforehand)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
