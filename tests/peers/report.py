@@ -11,7 +11,7 @@ import job as jobs
 
 DOCUMENT = jobs.ROOT / "docs" / "performance.md"
 PICTURES = jobs.ROOT / "docs" / "pictures"
-BEGIN, END = "<!-- peers: written by scripts/peers -->", "<!-- /peers -->"
+BEGIN, END = "<!-- peers -->", "<!-- end of peers -->"
 AGAINST = {"off": "off", "hard": "hard", "soft": "cascade"}  # what a renderer's kind of shadows is held against
 TITLES = {"off": "none", "hard": "hard", "soft": "soft", "paper": "soft, `paper`", "cascade": "soft, `cascade`",
           "sublights": "soft, 4x4 sub-lights"}
