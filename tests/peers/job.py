@@ -59,7 +59,7 @@ def write_volumes(volume):
 
 
 def classified(transfer_function):
-    """(extinction per voxel [256], linear RGB [256][3]) of the values 0 to 255; opacity o of a voxel is an extinction of -ln(1 - o)."""
+    """(extinction per voxel [256], linear RGB [256][3]) of the values 0 to 255: opacity o of a voxel is -ln(1 - o)."""
     values = numpy.arange(256)
     points = numpy.array(transfer_function["opacity"])
     extinction = -numpy.log1p(-numpy.interp(values, points[:, 0], points[:, 1]))

@@ -30,7 +30,7 @@ class Unavailable(Exception):
 
 @dataclasses.dataclass
 class Outcome:
-    """A picture (linear RGB, float) and what it cost: medians of frames by the clock and of all threads, and the whole process."""
+    """A picture (linear RGB, float) and what it cost: medians of frames, by the clock and of all threads, and the process."""
     renderer: str
     version: str
     kind: str
@@ -50,7 +50,8 @@ def run(command, variables=None):
         raise Unavailable(f"{pathlib.Path(words[0]).name} is not installed")
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     try:
-        done = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE, env=dict(os.environ, **(variables or {})))
+        done = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE,
+                              env=dict(os.environ, **(variables or {})))
     except subprocess.TimeoutExpired:
         raise Unavailable(f"not done within {PATIENCE} s") from None
     seconds, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -109,7 +110,8 @@ def paraview(job):
 def vtk(job):
     done, seconds, _ = run(["xvfb-run", "-a", "/usr/bin/python3", HERE / "vtk_scene.py", WORK / "job.json", 3])
     report = measured(done.stdout)
-    yield outcome("VTK", report["version"], "off", job["light"]["intensity"] * numpy.load(WORK / "vtk-off.npy"), report["off"], seconds)
+    picture = job["light"]["intensity"] * numpy.load(WORK / "vtk-off.npy")
+    yield outcome("VTK", report["version"], "off", picture, report["off"], seconds)
 
 
 def blender(job):
@@ -142,13 +144,15 @@ def openvdb(job):
     command = ["vdb_render", WORK / "extinction.vdb", picture, "-v", "-res", f"{job['size']}x{job['size']}",
                "-camera", "ortho", "-frame", camera["height"], "-translate", triple(camera["position"]),
                "-lookat", triple(camera["target"]), "-up", triple(camera["up"]),
-               "-light", triple([*light["position"], *3 * [brightness]]), "-absorb", "0,0,0", "-scatter", "1,1,1", "-gain", "0", "-step", "1"]
+               "-light", triple([*light["position"], *3 * [brightness]]), "-absorb", "0,0,0", "-scatter", "1,1,1",
+               "-gain", "0", "-step", "1"]
     version, _, _ = run(["/usr/bin/python3", HERE / "write_vdb.py", WORK / "job.json"])
     for step, note in ((3, "shadow rays in steps of 3 voxels, its default"), (1, "shadow rays in steps of 1 voxel")):
         done, seconds, processor = run([*command, "-shadowstep", step])
         tracing = float(re.findall(r"completed in ([\d.]+) sec", done.stdout + done.stderr)[1])
         frame = {"frame_ms": [1e3 * tracing], "processor_ms": [1e3 * processor]}
-        yield outcome("OpenVDB vdb_render", measured(version.stdout)["version"], "hard", read_png(picture), frame, seconds, note=note)
+        yield outcome("OpenVDB vdb_render", measured(version.stdout)["version"], "hard", read_png(picture), frame, seconds,
+                      note=note)
 
 
 def write_volpack_job(job, path):
@@ -163,10 +167,11 @@ def volpack(job):
     write_volpack_job(job, WORK / "volpack.txt")
     done, seconds, _ = run([WORK / "volpack", WORK / "volume.raw", WORK / "volpack.txt", 15, WORK / "volpack"])
     report = measured(done.stdout)
-    status, _, _ = run(["dpkg-query", "-W", "-f", "${Version}", "libvolpack1"])
+    version, _, _ = run(["dpkg-query", "-W", "-f", "${Version}", "libvolpack1"])
     for kind in ("off", "hard"):
         pixels = numpy.fromfile(WORK / f"volpack-{kind}.rgb", numpy.uint8).reshape(job["size"], job["size"], 3)
-        yield outcome("VolPack", status.stdout.split("-")[0], kind, job["light"]["intensity"] * pixels[::-1] / 255, report[kind], seconds,
+        picture = job["light"]["intensity"] * pixels[::-1] / 255
+        yield outcome("VolPack", version.stdout.split("-")[0], kind, picture, report[kind], seconds,
                       note=f"classified before, once, in {report['classify_ms'] / 1e3:.1f} s")
 
 
@@ -190,4 +195,5 @@ class Halflight:
             output = WORK / f"halflight-{kind}.npy"
             _, seconds, _ = run([self.program, "render", WORK / "scene.json", "--quiet", "--shadows", *soft, "-o", output])
             frame = {of: [report[of][key] for report in self.reports] for of in ("frame_ms", "processor_ms")}
-            yield outcome("Halflight", self.reports[0]["version"], kind, numpy.load(output)[:, :, :3].astype(float), frame, seconds)
+            picture = numpy.load(output)[:, :, :3].astype(float)
+            yield outcome("Halflight", self.reports[0]["version"], kind, picture, frame, seconds)

@@ -22,7 +22,8 @@ def arguments():
     parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("HALFLIGHT_DATA", job.ROOT / "../shared/data"),
                         help="folder of real volumes (default $HALFLIGHT_DATA or ../shared/data)")
     parser.add_argument("--size", type=int, default=512, metavar="N", help="N x N pixels (default 512)")
-    parser.add_argument("--samples", type=int, default=64, metavar="N", help="of a pixel, where light is sampled by chance (default 64)")
+    parser.add_argument("--samples", type=int, default=64, metavar="N",
+                        help="of a pixel, where light is sampled by chance (default 64)")
     parser.add_argument("--program", type=pathlib.Path, default=job.ROOT / "build/halflight", metavar="PROGRAM")
     return parser.parse_args()
 

@@ -24,9 +24,10 @@ LACKS = {
                           "processor time",
     "VTK": "shadows, in its ray caster for processors",
     "ParaView": "soft shadows; it is made for graphics processors, and its OpenGL is software here",
-    "Blender Cycles": "pictures without noise: time grows with the samples, noise falls with their root; each frame reads and sorts "
-                      "the volume anew",
-    "Mitsuba 3": "pictures without noise, as Blender; a table for what lies between voxels; new programs are compiled within its frame",
+    "Blender Cycles": "pictures without noise: time grows with the samples, noise falls with their root; each frame reads and "
+                      "sorts the volume anew",
+    "Mitsuba 3": "pictures without noise, as Blender; a table for what lies between voxels; new programs are compiled within "
+                 "its frame",
 }
 
 
@@ -45,8 +46,8 @@ def compare(outcomes):
 
 
 def print_row(outcome):
-    print(f"  {outcome.renderer} {outcome.version}, {outcome.kind}: {outcome.frame_ms:.0f} ms, processor {outcome.processor_ms:.0f} ms, "
-          f"process {outcome.process_s:.1f} s, noise {outcome.noise:.4f}"
+    print(f"  {outcome.renderer} {outcome.version}, {outcome.kind}: {outcome.frame_ms:.0f} ms, "
+          f"processor {outcome.processor_ms:.0f} ms, process {outcome.process_s:.1f} s, noise {outcome.noise:.4f}"
           + (f", alike {outcome.alike:.3f}, ratio {outcome.ratio:.2f}" if hasattr(outcome, "alike") else ""), flush=True)
 
 
@@ -92,7 +93,7 @@ def gallery(outcomes):
     outcomes = list({picture_name(outcome): outcome for outcome in outcomes}.values())
     for start in range(0, len(outcomes), 3):
         row = outcomes[start:start + 3]
-        yield "| " + " | ".join(f"![{o.renderer}, {TITLES[o.kind].replace('`', '')}](pictures/{picture_name(o)})" for o in row) + " |"
+        yield "| " + " | ".join(f"![{o.renderer}](pictures/{picture_name(o)})" for o in row) + " |"
         if start == 0:
             yield "|" + "---|" * len(row)
         yield "| " + " | ".join(f"{o.renderer}, {TITLES[o.kind]}" for o in row) + " |"
@@ -104,20 +105,21 @@ def text(job, outcomes, absent, loads):
     yield "## Beside other renderers"
     yield ""
     yield from paragraph(
-        f"`scripts/peers` lets others draw the same: Bonsai 256x256x256 u8 without the boards beside it, {job['size']}x{job['size']} pixels, "
-        f"a parallel camera, one table of opacities and colours, light that is scattered once and alike in all directions, from a disk "
-        f"{width:.0f} degrees wide or, for hard shadows, from its middle. That much each of them can do. Halflight's sheets are a voxel apart. All ran "
-        f"in one go on {os.cpu_count()} threads of {processor()}, Halflight in turn with each of the others. Load averages were {min(loads):.0f} to "
-        f"{max(loads):.0f}: where that is more than a few, times by the clock are long, and only processor times, of all threads together, "
-        "are to be compared.")
+        f"`scripts/peers` lets others draw the same: Bonsai 256x256x256 u8 without the boards beside it, {job['size']}x{job['size']} "
+        f"pixels, a parallel camera, one table of opacities and colours, light that is scattered once and alike in all directions, "
+        f"from a disk {width:.0f} degrees wide or, for hard shadows, from its middle. That much each of them can do. Halflight's "
+        f"sheets are a voxel apart. All ran in one go on {os.cpu_count()} threads of {processor()}, Halflight in turn with each of "
+        f"the others. Load averages were {min(loads):.0f} to {max(loads):.0f}: where that is more than a few, times by the clock "
+        "are long, and only processor times, of all threads together, are to be compared.")
     yield ""
     yield from table(outcomes)
     yield ""
     yield from paragraph(
         "*A frame* is the median of frames of a turning camera from a loaded, prepared volume; of vdb_render, Blender and Mitsuba "
-        f"({job['samples']} samples a pixel) it is one frame. *Of Halflight's* is processor time in that of Halflight's frame with the same kind of shadows, "
-        "soft ones by `cascade`. *Process* is a new one from start to end by the clock; of VolPack, VTK and ParaView with all their "
-        "frames. *Noise* is the root mean square of what chance leaves in the pixels seen, of full scale, linear, found from two halves of the samples. "
+        f"({job['samples']} samples a pixel) it is one frame. *Of Halflight's* is processor time in that of Halflight's frame with "
+        "the same kind of shadows, soft ones by `cascade`. *Process* is a new one from start to end by the clock; of VolPack, VTK "
+        "and ParaView with all their frames. *Noise* is the root mean square of what chance leaves in the pixels seen, of full "
+        "scale, linear, found from two halves of the samples. "
         "*Alike* is the correlation of the luminance with Halflight's: framing and light agree.")
     yield ""
     yield "What they do not do:"

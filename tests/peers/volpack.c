@@ -3,8 +3,9 @@
  * usage: volpack VOLUME.raw JOB.txt FRAMES OUT
  *
  * JOB.txt has, as words: the size of the picture, the world height that it shows, the camera's right, up and forward axes,
- * the direction towards the light, its intensity, and 256 lines of a value's opacity and colour. Prints JSON; pictures go to OUT-off.rgb and
- * OUT-hard.rgb: bytes, red, green and blue of linear light, scaled so that 255 is the brightest colour under full light.
+ * the direction in which light travels, and 256 lines of a value's opacity and colour. Prints JSON; pictures go to
+ * OUT-off.rgb and OUT-hard.rgb: bytes of linear red, green and blue, bottom row first, where 255 is a colour of 1 in full
+ * light.
  *
  * Colours depend on the value alone, as in the other renderers of the comparison: where VolPack's examples keep the index of
  * a normal, and tables of shaded normals, a voxel has its value again, and tables are of coloured values. */
@@ -98,7 +99,7 @@ static struct voxel *read_volume(const char *path) {
   return voxels;
 }
 
-/* The grid fills the cube from -0.5 to 0.5; the eye looks along z of its axes. VolPack's rows are matrices on the left. */
+/* The grid fills the cube from -0.5 to 0.5. VolPack's eye looks along z of a left-handed frame. */
 static void look(vpContext *context, const struct job *job, double turn) {
   double c = cos(turn), s = sin(turn), half = job->height / 2 / SIDE;
   vpMatrix4 view = {{0}};
