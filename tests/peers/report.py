@@ -20,8 +20,8 @@ LACKS = {
     "VolPack": "soft shadows, a table for what lies between voxels (voxels are classified, then blended), light more than 45 "
                "degrees off the view's main axis; its shadows begin some voxels behind what casts them; one thread; new "
                "opacities classify anew",
-    "OpenVDB vdb_render": "soft shadows, colours, transfer functions (its file holds extinctions); the whole process is in its "
-                          "processor time",
+    "OpenVDB vdb_render": "soft shadows, colours, transfer functions (its file holds extinctions); its shadows stop at some "
+                          "hundredths of the light; the whole process is in its processor time",
     "VTK": "shadows, in its ray caster for processors",
     "ParaView": "soft shadows; it is made for graphics processors, and its OpenGL is software here",
     "Blender Cycles": "pictures without noise: time grows with the samples, noise falls with their root; each frame reads and "
