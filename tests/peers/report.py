@@ -107,7 +107,7 @@ def text(job, outcomes, absent, loads):
     yield from paragraph(
         f"`scripts/peers` lets others draw the same: Bonsai 256x256x256 u8 without the boards beside it, {job['size']}x{job['size']} "
         f"pixels, a parallel camera, one table of opacities and colours, light that is scattered once and alike in all directions, "
-        f"from a disk {width:.0f} degrees wide or, for hard shadows, from its middle. That much each of them can do. Halflight's "
+        f"from a disk {width:.0f} degrees wide or, for hard shadows, from its middle. Halflight's "
         f"sheets are a voxel apart. All ran in one go on {os.cpu_count()} threads of {processor()}, Halflight in turn with each of "
         f"the others. Load averages were {min(loads):.0f} to {max(loads):.0f}: where that is more than a few, times by the clock "
         "are long, and only processor times, of all threads together, are to be compared.")
