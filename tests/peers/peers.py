@@ -10,6 +10,7 @@
 import argparse
 import os
 import pathlib
+import sys
 
 import job
 import measure
@@ -34,7 +35,10 @@ def load():
 
 def main():
     chosen = arguments()
-    described = job.prepare(pathlib.Path(chosen.data).resolve(), chosen.size, chosen.samples)
+    try:
+        described = job.prepare(pathlib.Path(chosen.data).resolve(), chosen.size, chosen.samples)
+    except job.MissingData as missing:
+        sys.exit(f"{missing}: say with --data where the volumes are")
     ours, others, absent, loads = measure.Halflight(chosen.program), [], {}, []
     for name, renderer in measure.RENDERERS.items():
         if chosen.only not in (None, name):
