@@ -205,41 +205,33 @@ static void test_large_picture_under_a_limit(void **state) {
   stage_close(&set);
 }
 
-static void assert_refused(stage *set, const char *message) {
-  hl_scene *scene = NULL;
-  hl_error error = {0};
-  assert_int_equal(hl_scene_create(set->context, &set->scene, &scene, &error), HL_ERROR_INPUT);
-  assert_null(scene);
-  assert_string_equal(error.message, message);
-}
-
 static void test_refused(void **state) {
   (void)state;
   stage set;
   open_perspective(&set, (vec3){9, -8, 7}, (vec3){9, -8, 7}, 60);
-  assert_refused(&set, "/camera/target: is where the eye is: move the target or the position, so that there is a line of sight");
+  stage_refused(&set, "/camera/target: is where the eye is: move the target or the position, so that there is a line of sight");
   stage_look(&set, (vec3){9, -8, 7}, (vec3){0, 0, 0}, (vec3){0, 0, 0});
-  assert_refused(&set, "/camera/up: has no length: give the direction as three numbers, not all 0");
+  stage_refused(&set, "/camera/up: has no length: give the direction as three numbers, not all 0");
   stage_look(&set, (vec3){9, -8, NAN}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
-  assert_refused(&set, "/camera/position/2: nan is not a number: give a coordinate between -1e15 and 1e15");
+  stage_refused(&set, "/camera/position/2: nan is not a number: give a coordinate between -1e15 and 1e15");
   stage_look(&set, (vec3){9, -8, 7}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
   set.scene.camera.fovy_deg = 0;
-  assert_refused(&set, "/camera/fovy_deg: 0 is out of range: give an angle in degrees, above 0 and below 180");
+  stage_refused(&set, "/camera/fovy_deg: 0 is out of range: give an angle in degrees, above 0 and below 180");
   set.scene.camera.fovy_deg = 180;
-  assert_refused(&set, "/camera/fovy_deg: 180 is out of range: give an angle in degrees, above 0 and below 180");
+  stage_refused(&set, "/camera/fovy_deg: 180 is out of range: give an angle in degrees, above 0 and below 180");
   set.scene.camera.fovy_deg = -30;
-  assert_refused(&set, "/camera/fovy_deg: -30 is out of range: give an angle in degrees, above 0 and below 180");
+  stage_refused(&set, "/camera/fovy_deg: -30 is out of range: give an angle in degrees, above 0 and below 180");
   set.scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
   set.scene.camera.height = 0;
-  assert_refused(&set, "/camera/height: 0 is not above 0: give the picture's height in world units, above 0");
+  stage_refused(&set, "/camera/height: 0 is not above 0: give the picture's height in world units, above 0");
   set.scene.camera.height = 10;
   set.scene.width = 0;
-  assert_refused(&set, "/image/width: 0 is out of range: give a number of pixels from 1 to 32768");
+  stage_refused(&set, "/image/width: 0 is out of range: give a number of pixels from 1 to 32768");
   set.scene.width = 32;
   set.scene.height = -3;
-  assert_refused(&set, "/image/height: -3 is out of range: give a number of pixels from 1 to 32768");
+  stage_refused(&set, "/image/height: -3 is out of range: give a number of pixels from 1 to 32768");
   set.scene.height = 32769;
-  assert_refused(&set, "/image/height: 32769 is out of range: give a number of pixels from 1 to 32768");
+  stage_refused(&set, "/image/height: 32769 is out of range: give a number of pixels from 1 to 32768");
   stage_close(&set);
 }
 

@@ -196,44 +196,36 @@ static void test_falloff_at_the_lamp(void **state) {
 
 /* ---- refused ---- */
 
-static void assert_refused(stage *set, const char *message) {
-  hl_scene *scene = NULL;
-  hl_error error = {0};
-  assert_int_equal(hl_scene_create(set->context, &set->scene, &scene, &error), HL_ERROR_INPUT);
-  assert_null(scene);
-  assert_string_equal(error.message, message);
-}
-
 static void test_refused(void **state) {
   (void)state;
   stage set;
   open_haze(&set);
   hl_light *light = stage_add_point(&set, (vec3){9, -3, 14});
   light->intensity = -1;
-  assert_refused(&set, "/lights/0/intensity: -1 is negative: give a factor, 0 or more");
+  stage_refused(&set, "/lights/0/intensity: -1 is negative: give a factor, 0 or more");
   light->intensity = NAN;
-  assert_refused(&set, "/lights/0/intensity: nan is not a number: give a factor, 0 or more");
+  stage_refused(&set, "/lights/0/intensity: nan is not a number: give a factor, 0 or more");
   light->intensity = INFINITY;
-  assert_refused(&set, "/lights/0/intensity: inf is out of range: give a factor, 0 or more");
+  stage_refused(&set, "/lights/0/intensity: inf is out of range: give a factor, 0 or more");
   light->intensity = 1e30;
-  assert_refused(&set, "/lights/0/intensity: makes the light's color 1e+30: use an intensity with which it is at most 1e20");
+  stage_refused(&set, "/lights/0/intensity: makes the light's color 1e+30: use an intensity with which it is at most 1e20");
   light->intensity = 1;
   light->color[1] = -0.5;
-  assert_refused(&set, "/lights/0/color/1: -0.5 is negative: give linear RGB, none below 0");
+  stage_refused(&set, "/lights/0/color/1: -0.5 is negative: give linear RGB, none below 0");
   light->color[1] = 1;
   light->radius = -1;
-  assert_refused(&set, "/lights/0/radius: -1 is negative: give a length in world units, 0 for a point");
+  stage_refused(&set, "/lights/0/radius: -1 is negative: give a length in world units, 0 for a point");
   light->radius = 0;
   light->position[2] = NAN;
-  assert_refused(&set, "/lights/0/position/2: nan is not a number: give a coordinate between -1e15 and 1e15");
+  stage_refused(&set, "/lights/0/position/2: nan is not a number: give a coordinate between -1e15 and 1e15");
   light->type = HL_LIGHT_DIRECTIONAL;
   set_vector(light->direction, 0, 0, 0);
-  assert_refused(&set, "/lights/0/direction: has no length: give the direction as three numbers, not all 0");
+  stage_refused(&set, "/lights/0/direction: has no length: give the direction as three numbers, not all 0");
   static const double line[3][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
   light->type = HL_LIGHT_POLYGON;
   light->vertices = line;
   light->vertex_count = 3;
-  assert_refused(&set, "/lights/0/vertices: span no area: move one off the line, or use a rect light with an edge of no length");
+  stage_refused(&set, "/lights/0/vertices: span no area: move one off the line, or use a rect light with an edge of no length");
   stage_close(&set);
 }
 

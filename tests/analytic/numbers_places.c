@@ -169,32 +169,24 @@ static void test_far_lamps(void **state) {
 }
 
 /* What floats cannot hold beside voxels is refused, by name. */
-static void assert_refused(stage *set, const char *message) {
-  hl_scene *scene = NULL;
-  hl_error error = {0};
-  assert_int_equal(hl_scene_create(set->context, &set->scene, &scene, &error), HL_ERROR_INPUT);
-  assert_null(scene);
-  assert_string_equal(error.message, message);
-}
-
 static void test_beyond_reach(void **state) {
   (void)state;
   stage set;
   open_scene(&set, scene_named("balls"), 0);
   set.scene.camera.position[0] = 1e13;
-  assert_refused(&set, "/camera/position: reaches 1e+13 from the volumes, whose smallest voxel edge is 1: use at most 1e12 times "
+  stage_refused(&set, "/camera/position: reaches 1e+13 from the volumes, whose smallest voxel edge is 1: use at most 1e12 times "
                        "that, or a directional light or orthographic camera");
   set.scene.camera.position[0] = 40;
   set.lights[0].type = HL_LIGHT_POINT;
   set.lights[0].position[2] = 1e14;
-  assert_refused(&set, "/lights/0/position: reaches 1e+14 from the volumes, whose smallest voxel edge is 1: use at most 1e12 times "
+  stage_refused(&set, "/lights/0/position: reaches 1e+14 from the volumes, whose smallest voxel edge is 1: use at most 1e12 times "
                        "that, or a directional light or orthographic camera");
   set.lights[0].position[2] = 40;
   set.lights[0].intensity = 1e30;
-  assert_refused(&set, "/lights/0/intensity: makes the light's color 1e+30: use an intensity with which it is at most 1e20");
+  stage_refused(&set, "/lights/0/intensity: makes the light's color 1e+30: use an intensity with which it is at most 1e20");
   set.lights[0].intensity = 1;
   set.volumes[0].scale = 1e-20;
-  assert_refused(&set, "/volumes/0/transform: makes the edges of voxels 1e-20 long: give a scale with which they are from 1e-15 to 1e15");
+  stage_refused(&set, "/volumes/0/transform: makes the edges of voxels 1e-20 long: give a scale with which they are from 1e-15 to 1e15");
   stage_close(&set);
 }
 

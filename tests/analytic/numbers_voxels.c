@@ -234,14 +234,6 @@ static void test_unit_distances_and_spacings(void **state) {
     }
 }
 
-static void assert_refused(stage *set, const char *message) {
-  hl_scene *scene = NULL;
-  hl_error error = {0};
-  assert_int_equal(hl_scene_create(set->context, &set->scene, &scene, &error), HL_ERROR_INPUT);
-  assert_null(scene);
-  assert_string_equal(error.message, message);
-}
-
 static void test_refused(void **state) {
   (void)state;
   stage set;
@@ -250,7 +242,7 @@ static void test_refused(void **state) {
   hl_scene_volume *volume = add_cube(&set, NULL);
   static float voxels[VOXELS] = {FLT_MAX};
   hl_scene_volume *filled = add_cube(&set, voxels);
-  assert_refused(&set, "/volumes/1/file: its voxels reach 3.4e+38, more than the 1e36 that pictures can be computed with: scale "
+  stage_refused(&set, "/volumes/1/file: its voxels reach 3.4e+38, more than the 1e36 that pictures can be computed with: scale "
                        "them, and mark missing ones by NaN");
   hl_volume_release(filled->volume);
   set.scene.volume_count = 1;
@@ -258,25 +250,25 @@ static void test_refused(void **state) {
   hl_transfer_function *function = &volume->transfer_function;
   function->opacity = points;
   function->opacity_count = 3;
-  assert_refused(&set, "/volumes/0/transfer_function/opacity/2/0: 0.5 comes after 1: sort the points by value");
+  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/0: 0.5 comes after 1: sort the points by value");
   points[0].value = points[1].value = points[2].value = 0.5;
-  assert_refused(&set, "/volumes/0/transfer_function/opacity/2/0: 0.5 is there a third time: two points at one value make a step, "
+  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/0: 0.5 is there a third time: two points at one value make a step, "
                        "remove the others");
   points[2].value = NAN;
-  assert_refused(&set, "/volumes/0/transfer_function/opacity/2/0: nan is not a number: give a data value between -1e30 and 1e30");
+  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/0: nan is not a number: give a data value between -1e30 and 1e30");
   points[2] = (hl_opacity_point){0.6, 1.5};
-  assert_refused(&set, "/volumes/0/transfer_function/opacity/2/1: 1.5 is out of range: give an opacity from 0 to 1");
+  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/1: 1.5 is out of range: give an opacity from 0 to 1");
   points[2].opacity = NAN;
-  assert_refused(&set, "/volumes/0/transfer_function/opacity/2/1: nan is not a number: give an opacity from 0 to 1");
+  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/1: nan is not a number: give an opacity from 0 to 1");
   points[2].opacity = 1;
   function->unit_distance = 0;
-  assert_refused(&set, "/volumes/0/transfer_function/unit_distance: 0 is not above 0: give the length in world units that the "
+  stage_refused(&set, "/volumes/0/transfer_function/unit_distance: 0 is not above 0: give the length in world units that the "
                        "opacities are for, above 0");
   function->unit_distance = 1;
   set.scene.render.sheet_spacing = 0;
-  assert_refused(&set, "/render/sheet_spacing: 0 is out of range: give voxels between sheets, from 0.01 to 100");
+  stage_refused(&set, "/render/sheet_spacing: 0 is out of range: give voxels between sheets, from 0.01 to 100");
   set.scene.render.sheet_spacing = 1e9;
-  assert_refused(&set, "/render/sheet_spacing: 1e+09 is out of range: give voxels between sheets, from 0.01 to 100");
+  stage_refused(&set, "/render/sheet_spacing: 1e+09 is out of range: give voxels between sheets, from 0.01 to 100");
   stage_close(&set);
 }
 

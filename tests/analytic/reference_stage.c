@@ -215,6 +215,14 @@ hl_render_statistics stage_render_counted(stage *set, float *pixels) {
 
 void stage_render_sheets(stage *set, float *pixels) { (void)stage_render_counted(set, pixels); }
 
+void stage_refused(stage *set, const char *message) {
+  hl_scene *scene = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_scene_create(set->context, &set->scene, &scene, &error), HL_ERROR_INPUT);
+  assert_null(scene);
+  assert_string_equal(error.message, message);
+}
+
 float stage_noise(double x, double y, double z) {
   double sum = 0, frequency = 1, size = 0.25;
   for (int octave = 0; octave < 3; octave++, frequency *= 1.9, size *= 0.6) {

@@ -51,6 +51,9 @@ void stage_render_sheets(stage *set, float *pixels);
 hl_render_statistics stage_render_counted(stage *set, float *pixels);
 void stage_render_with(stage *set, hl_renderer *renderer, float *pixels);
 
+/* The test fails unless the scene is refused with just this message. */
+void stage_refused(stage *set, const char *message);
+
 /* Smooth noise without a library: sums of sines with a fixed pattern, in [0, 1]. */
 float stage_noise(double x, double y, double z);
 
