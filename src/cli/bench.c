@@ -12,6 +12,9 @@
 
 static const cli_choice moves[] = {{"camera", MOVE_CAMERA}, {"light", MOVE_LIGHT}, {"tf", MOVE_TF}, {NULL, 0}};
 
+static const cli_choice kinds[] = {{"off", SETTING_OFF}, {"hard", SETTING_HARD}, {"soft_paper", SETTING_PAPER},
+                                   {"soft_cascade", SETTING_CASCADE}, {"soft_sublights", SETTING_SUBLIGHTS}, {NULL, 0}};
+
 static const cli_option bench_options[BENCH_OPTION_COUNT] = {
     [BENCH_FRAMES] = {.name = "frames",
                       .kind = OPTION_NUMBERS,
@@ -22,6 +25,10 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                       .whole = true,
                       .low = 1,
                       .high = 10000},
+    [BENCH_ONLY] = {.name = "only",
+                    .kind = OPTION_CHOICE,
+                    .choices = kinds,
+                    .help = "measure one kind of shadows (default: each in turn)"},
     [BENCH_MOVE] = {.name = "move",
                     .kind = OPTION_CHOICE,
                     .choices = moves,
@@ -111,7 +118,7 @@ static int open_renderers(bench_job *job) {
   if (job->pixels == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for a picture of %dx%d pixels", result->width, result->height);
   hl_error error = {0};
   for (int setting = 0; setting < SETTING_COUNT; setting++) {
-    result->run[setting].supported = true;
+    result->run[setting].supported = !job->values[BENCH_ONLY].given || job->values[BENCH_ONLY].choice == setting;
     result->run[setting].samples = calloc((size_t)result->frames, sizeof(bench_sample));
     if (result->run[setting].samples == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for %d frames", result->frames);
     hl_status status = hl_renderer_create(job->host->context, &job->renderer[setting], &error);

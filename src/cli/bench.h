@@ -7,6 +7,7 @@
 
 enum bench_option {
   BENCH_FRAMES,
+  BENCH_ONLY,
   BENCH_MOVE,
   BENCH_SIZE,
   BENCH_TF,

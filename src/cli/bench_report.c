@@ -23,6 +23,13 @@ static double seconds_of(const bench_sample *sample, int stage) {
   return stage == WHOLE_FRAME ? sample->frame : stage == PROCESSOR ? sample->processor : sample->stage[stage];
 }
 
+/* The first kind of shadows that was measured: what it says of the volume and the machine holds for all. */
+static const bench_run *first_measured(const bench_result *result) {
+  int setting = 0;
+  while (setting < SETTING_COUNT - 1 && !result->run[setting].supported) setting++;
+  return &result->run[setting];
+}
+
 /* Milliseconds; stage: also WHOLE_FRAME or PROCESSOR. NAN where the setting is not supported. */
 static double median_ms(const bench_run *run, int frames, int stage) {
   double *values = run->supported ? malloc((size_t)frames * sizeof *values) : NULL;
@@ -59,7 +66,7 @@ static void print_work(json_writer *json, const char *key, const hl_render_stati
 }
 
 static void print_result(json_writer *json, const bench_result *result) {
-  const hl_render_statistics *statistics = &result->run[SETTING_OFF].statistics;
+  const hl_render_statistics *statistics = &first_measured(result)->statistics;
   json_open_object(json, NULL);
   json_text(json, "version", hl_version());
   json_text(json, "input", result->input);
@@ -77,7 +84,7 @@ static void print_result(json_writer *json, const bench_result *result) {
   for (int i = 0; i < SETTING_COUNT; i++)
     json_number(json, setting_names[i], median_ms(&result->run[i], result->frames, PROCESSOR));
   json_close(json);
-  json_number(json, "first_prepare_ms", 1e3 * result->run[SETTING_OFF].first.stage[STAGE_PREPARE]);
+  json_number(json, "first_prepare_ms", 1e3 * first_measured(result)->first.stage[STAGE_PREPARE]);
   json_open_object(json, "stage_ms");
   for (int i = 0; i < SETTING_COUNT; i++) {
     json_open_object(json, setting_names[i]);
@@ -121,7 +128,7 @@ static uint64_t skipped_light(const hl_render_statistics *s) { return s->pixels_
 static uint64_t samples(const hl_render_statistics *s) { return s->samples_shaded; }
 
 void bench_print_text(const bench_result *result) {
-  const hl_render_statistics *statistics = &result->run[SETTING_OFF].statistics;
+  const hl_render_statistics *statistics = &first_measured(result)->statistics;
   printf("%s: %dx%d, %d threads, %s, %d frames, moving %s; milliseconds (medians)\n  %-16s", result->input, result->width,
          result->height, statistics->threads, hl_instruction_set_name(statistics->instruction_set), result->frames,
          move_names[result->move], "");
