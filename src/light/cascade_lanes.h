@@ -2,8 +2,6 @@
 #ifndef HL_LIGHT_CASCADE_LANES_H
 #define HL_LIGHT_CASCADE_LANES_H
 
-#include <string.h>
-
 #include "light/blur_lanes.h"
 #include "light/cascade_field.h"
 
@@ -21,63 +19,59 @@ static void blur_add_tile(const blur_add_job *job, int tile_x, int tile_y) {
   }
 }
 
+/* a + (1 - thin) b; b and thin may be null: 0. */
+LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
+  lanes a = lanes_load(job->a + at);
+  if (job->b == NULL) return a;
+  lanes b = lanes_load(job->b + at);
+  return a + (job->thin == NULL ? b : b * (1.0f - lanes_load(job->thin + at)));
+}
+
 static void add_tile(const field_job *job, int tile_x, int tile_y) {
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
-  for (int row = 0; row < TILE; row++, at += job->stride) {
-    lanes b = job->b == NULL ? lanes_set(0) : lanes_load(job->b + at);
-    if (job->thin != NULL) b = b * (1.0f - lanes_load(job->thin + at));
-    lanes_store(job->to + at, lanes_load(job->a + at) + b);
-  }
+  for (int row = 0; row < TILE; row++, at += job->stride) lanes_store(job->to + at, a_and_b(job, at));
+}
+
+/* Sums of neighbours in 32 pixels. */
+LANES_INLINE lanes sums_of_pairs(lanes first, lanes second) {
+  return __builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
+         __builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
 }
 
 static void add_half_tile(const field_job *job, int tile_x, int tile_y) {
-  for (int row = 0; row < TILE; row++) {
-    size_t from = (size_t)(tile_y * TILE + row) * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
-    float *to = job->to + (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
-    float sum[2][2 * TILE];
-    for (size_t half = 0; half < 2; half++) {
-      const float *a = job->a + from + half * job->stride_in, *b = job->b == NULL ? NULL : job->b + from + half * job->stride_in;
-      const float *thin = job->thin == NULL ? NULL : job->thin + from + half * job->stride_in;
-      for (int i = 0; i < 2 * TILE; i++) {
-        float behind = b == NULL ? 0 : thin == NULL ? b[i] : b[i] * (1.0f - thin[i]);
-        sum[half][i] = a[i] + behind;
-      }
-    }
-    for (int i = 0; i < TILE; i++)
-      to[i] = 0.25f * ((sum[0][2 * i] + sum[0][2 * i + 1]) + (sum[1][2 * i] + sum[1][2 * i + 1]));
+  size_t from = (size_t)tile_y * TILE * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
+  float *to = job->to + (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  for (int row = 0; row < TILE; row++, from += 2 * job->stride_in, to += job->stride) {
+    size_t below = from + job->stride_in;
+    lanes upper = sums_of_pairs(a_and_b(job, from), a_and_b(job, from + TILE));
+    lanes lower = sums_of_pairs(a_and_b(job, below), a_and_b(job, below + TILE));
+    lanes_store(to, 0.25f * (upper + lower));
   }
 }
 
 /* A row of a tile from a field of half the resolution. Pixel 2i lies a quarter of a coarse pixel before coarse pixel i's
  * centre, pixel 2i+1 a quarter after. */
-LANES_INLINE void double_row(const float *from, size_t stride, int tile_x, int y, float fine[TILE]) {
-  const float *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2;
+LANES_INLINE lanes double_row(const float *from, size_t stride, int tile_x, int y) {
+  const float *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
   const float *far = y & 1 ? near + stride : near - stride;
-  float coarse[TILE / 2 + 2];
-  for (int i = 0; i < TILE / 2 + 2; i++) coarse[i] = 0.75f * near[i - 1] + 0.25f * far[i - 1];
-  for (int i = 0; i < TILE / 2; i++) {
-    fine[2 * i] = 0.75f * coarse[i + 1] + 0.25f * coarse[i];
-    fine[2 * i + 1] = 0.75f * coarse[i + 1] + 0.25f * coarse[i + 2];
-  }
+  lanes coarse = 0.75f * lanes_load(near) + 0.25f * lanes_load(far); /* from the coarse pixel before the tile's first */
+  lanes own = __builtin_shufflevector(coarse, coarse, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8);
+  lanes other = __builtin_shufflevector(coarse, coarse, 0, 2, 1, 3, 2, 4, 3, 5, 4, 6, 5, 7, 6, 8, 7, 9);
+  return 0.75f * own + 0.25f * other;
 }
 
 static void add_double_tile(const field_job *job, int tile_x, int tile_y) {
-  for (int row = 0; row < TILE; row++) {
-    int y = tile_y * TILE + row;
+  for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++) {
     size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
-    float fine[TILE];
-    double_row(job->b, job->stride_in, tile_x, y, fine);
-    for (size_t i = 0; i < TILE; i++)
-      job->to[at + i] = job->a[at + i] + (job->thin == NULL ? fine[i] : fine[i] * (1.0f - job->thin[at + i]));
+    lanes fine = double_row(job->b, job->stride_in, tile_x, y);
+    if (job->thin != NULL) fine = fine * (1.0f - lanes_load(job->thin + at));
+    lanes_store(job->to + at, job->a == NULL ? fine : lanes_load(job->a + at) + fine);
   }
 }
 
 static void double_tile(const field_job *job, int tile_x, int tile_y) {
-  for (int row = 0; row < TILE; row++) {
-    float fine[TILE];
-    double_row(job->a, job->stride_in, tile_x, tile_y * TILE + row, fine);
-    memcpy(job->to + (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE, fine, sizeof fine);
-  }
+  for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++)
+    lanes_store(job->to + (size_t)y * job->stride + (size_t)tile_x * TILE, double_row(job->a, job->stride_in, tile_x, y));
 }
 
 enum { IMAGE_ROWS = 4 };

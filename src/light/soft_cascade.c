@@ -4,9 +4,10 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "light/cascade_passes.h"
 
-/* Chunks that a sweep is cut into at most, and the least omega of one, pixels. */
-static const double GREATEST_CHUNKS = 64, LEAST_CHUNK = 0.5;
+/* Chunks that a sweep is cut into at most; where they need not be thin, pixels of omega; the least of one, pixels. */
+static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.5;
 
 static double omega_at(const soft_cascade *cascade, double height) {
   if (cascade->parallel) return cascade->rate * height;
@@ -14,12 +15,13 @@ static double omega_at(const soft_cascade *cascade, double height) {
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
 }
 
-/* Levels keep at least four pixels of their own to the narrowest penumbra that they give: level j starts at least
- * 4 (2^j - 1) chunks behind the receiver, since every level before it keeps five groups. */
+/* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give: level j starts at least
+ * 4 (2^j - 1) chunks behind the receiver, since every level before it keeps five groups. What resampling blurs is taken off
+ * the penumbra (resampled_by), but for an image, which keeps four. */
 static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = cascade->chunk * 4 * (pow(2, level) - 1) * cascade->least_part;
+  double penumbra = cascade->chunk * 4 * (pow(2, level) - 1) * cascade->least_part, own = cascade->image == NULL ? 1.5 : 4;
   int scale = 1;
-  while (scale * 8 <= penumbra && scale < 1 << level) scale *= 2;
+  while (2 * scale * own <= penumbra && scale < 1 << level) scale *= 2;
   return scale;
 }
 
@@ -112,7 +114,8 @@ static void plan(soft_cascade *cascade, const sheet_light *light, const light_im
   double start = omega_at(cascade, first), end = omega_at(cascade, last);
   /* a light close to the sheets: penumbrae twice as wide as the buffer are as good as wider ones */
   start = fmax(start, end - 2 * TILE * fmax(buffer->tiles_x, buffer->tiles_y));
-  cascade->chunk = fmax(LEAST_CHUNK, (end - start) / GREATEST_CHUNKS);
+  double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
+  cascade->chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
   cascade->chunk_start = start;
   /* level j is first used after 5 * 2^j - 4 chunks (derived: a level keeps five of its seven groups) */
   int levels = 1 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
@@ -161,162 +164,27 @@ void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade) {
   *cascade = (soft_cascade){0};
 }
 
-/* ---- whole-field operations, a row of tiles a task; tiles of zeros are skipped ---- */
-
-static void store_zeros(float *pixels, size_t stride, size_t tile_x, size_t tile_y) {
-  for (size_t row = 0; row < TILE; row++) memset(pixels + (tile_y * TILE + row) * stride + tile_x * TILE, 0, TILE * sizeof(float));
+/* Of boxes, in pixels of the buffer, where the light is widest. */
+static double variance_between(double wide, double narrow) {
+  return fmax(wide * wide - narrow * narrow, 0) / 12;
 }
 
-/* True if all tiles of the level's rectangle are zeros; what lies outside is. */
-static bool all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1) {
-  for (int y = y0 < 0 ? 0 : y0; y <= y1 && y < level->tiles_y; y++)
-    for (int x = x0 < 0 ? 0 : x0; x <= x1 && x < level->tiles_x; x++)
-      if (!field->zeros[y * level->tiles_x + x]) return false;
-  return true;
-}
+/* What a level's sums are blurred by its pixels on the way to the buffer (derived: halving takes the mean of two pixels, of
+ * variance 1/4, and the bilinear way back weighs 3/4 and 1/4, of variance 3/4; s^2 in all from s to 2 s, a geometric sum). */
+static double resampled_by(const cascade_level *level) { return ((double)level->scale * level->scale - 1) / 3; }
 
-typedef struct add_task {
-  const cascade_level *level, *level_a, *level_b; /* of to, a and b */
-  const cascade_field *a, *b, *to;
-  field_job job;
-  field_tile_function *function;
-  const unsigned char *wanted; /* [tiles]; null: all */
-} add_task;
-
-static bool sum_is_zeros(const add_task *task, int x, int y) {
-  const cascade_level *levels[2] = {task->level_a, task->level_b};
-  const cascade_field *fields[2] = {task->a, task->b};
-  for (int i = 0; i < 2; i++) {
-    if (fields[i] == NULL) continue;
-    int coarse = levels[i]->scale, own = task->level->scale, x0 = x, y0 = y, x1 = x, y1 = y;
-    if (coarse < own) x0 = 2 * x, x1 = 2 * x + 1, y0 = 2 * y, y1 = 2 * y + 1;
-    if (coarse > own) x0 = (x - 1) / 2, x1 = (x + 1) / 2, y0 = (y - 1) / 2, y1 = (y + 1) / 2;
-    if (!all_zeros(levels[i], fields[i], x0, x1, y0, y1)) return false;
-  }
-  return true;
-}
-
-static void add_row(void *data, size_t index, int worker) {
-  (void)worker;
-  const add_task *task = data;
-  for (int x = 0; x < task->level->tiles_x; x++) {
-    if (task->wanted != NULL && !task->wanted[index * (size_t)task->level->tiles_x + (size_t)x]) continue;
-    unsigned char *zeros = &task->to->zeros[index * (size_t)task->level->tiles_x + (size_t)x];
-    bool skip = sum_is_zeros(task, x, (int)index);
-    if (!skip) task->function(&task->job, x, (int)index);
-    else if (!*zeros) store_zeros(task->to->pixels, task->level->stride, (size_t)x, index);
-    *zeros = skip;
-  }
-}
-
-/* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse; thin,
- * on a's level, may be null; so may b where a is not coarser. */
-static void add(hl_pool *pool, const cascade_functions *functions, const cascade_level *level_a,
-                const cascade_field *a, const cascade_field *thin, const cascade_level *level_b,
-                const cascade_field *b, const cascade_level *level, const cascade_field *to,
-                const unsigned char *wanted) {
-  field_tile_function *function = level_a->scale < level->scale                 ? functions->add_half
-                                  : b != NULL && level_b->scale > level->scale ? functions->add_double
-                                                                               : functions->add;
-  add_task task = {.level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b, .to = to, .function = function,
-                   .wanted = wanted};
-  task.job = (field_job){.a = a->pixels, .b = b == NULL ? NULL : b->pixels, .to = to->pixels,
-                         .stride_in = b == NULL ? level_a->stride : level_b->stride, .stride = level->stride,
-                         .thin = thin == NULL ? NULL : thin->pixels};
-  hl_pool_run(pool, (size_t)level->tiles_y, add_row, &task);
-}
-
-typedef struct blur_task {
-  const cascade_level *level;
-  const cascade_field *from, *a, *to; /* a may be null */
-  blur_add_job job;
-  blur_add_tile_function *function;
-  int reach_x, reach_y; /* tiles */
-  const unsigned char *wanted; /* [tiles]; null: all */
-} blur_task;
-
-static void blur_row(void *data, size_t index, int worker) {
-  (void)worker;
-  const blur_task *task = data;
-  int y = (int)index;
-  for (int x = 0; x < task->level->tiles_x; x++) {
-    size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
-    if (task->wanted != NULL && !task->wanted[tile]) continue;
-    bool skip = (task->a == NULL || task->a->zeros[tile]) &&
-                all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
-    blur_add_job job = task->job;
-    job.u = task->level->boxes[x].box;
-    job.v = task->level->boxes[task->level->tiles_x + y].box;
-    if (!skip) task->function(&job, x, y);
-    else if (!task->to->zeros[tile]) store_zeros(task->to->pixels, task->job.stride, (size_t)x, index);
-    task->to->zeros[tile] = skip;
-  }
-}
-
-/* Boxes of a variance in pixels of the level, times each column's or row's part; returns the greatest reach in tiles. */
-static int fill_boxes(cascade_box *boxes, int count, double variance) {
-  int reach = 0;
-  for (int i = 0; i < count; i++) {
-    boxes[i].box = hl_blur_box_of_variance(variance * boxes[i].part);
-    if (boxes[i].box.reach > reach) reach = boxes[i].box.reach;
-  }
-  return (reach + TILE) / TILE;
-}
-
-/* to = a + blurred from, all on one level. */
-static void blur_add(hl_pool *pool, const cascade_functions *functions, const cascade_level *level,
-                          const cascade_field *from, const cascade_field *a, const cascade_field *thin,
-                          const cascade_field *to, double variance,
-                          const unsigned char *wanted) {
-  blur_task task = {.level = level, .from = from, .a = a, .to = to, .function = functions->blur_add, .wanted = wanted};
-  task.job = (blur_add_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
-                                 .thin = thin == NULL ? NULL : thin->pixels, .stride = level->stride};
-  task.reach_x = fill_boxes(level->boxes, level->tiles_x, variance);
-  task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, variance);
-  hl_pool_run(pool, (size_t)level->tiles_y, blur_row, &task);
-}
-
-/* ---- the cascade ---- */
-
-/* In pixels of a level, where the light is widest. */
-static double variance_between(double wide, double narrow, int scale) {
-  return fmax(wide * wide - narrow * narrow, 0) / 12 / ((double)scale * scale);
-}
-
-typedef struct part_task {
-  const cascade_level *level;
-  const cascade_field *fields[4]; /* absorbed and thin of the first, then of the second */
-  part_job job;
-  part_tile_function *function;
-} part_task;
-
-static void part_row(void *data, size_t index, int worker) {
-  (void)worker;
-  const part_task *task = data;
-  for (int x = 0; x < task->level->tiles_x; x++) {
-    size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
-    bool any = !task->fields[0]->zeros[tile] || !task->fields[1]->zeros[tile];
-    if (any) task->function(&task->job, x, (int)index);
-    for (int i = 2; i < 4; i++) {
-      if (!any && !task->fields[i]->zeros[tile]) store_zeros(task->fields[i]->pixels, task->job.stride, (size_t)x, index);
-      task->fields[i]->zeros[tile] = !any;
-    }
-  }
-}
-
-static void part(hl_pool *pool, const cascade_functions *functions, const cascade_level *level, const cascade_field *absorbed,
-                 const cascade_field *thin, const cascade_field *late_absorbed, const cascade_field *late_thin, double late) {
-  part_task task = {level, {absorbed, thin, late_absorbed, late_thin},
-                    {absorbed->pixels, thin->pixels, {absorbed->pixels, late_absorbed->pixels}, {thin->pixels, late_thin->pixels},
-                     level->stride, (float)late},
-                    functions->part};
-  hl_pool_run(pool, (size_t)level->tiles_y, part_row, &task);
+/* From a level's sum to a place in a level as fine or finer. What resampling blurs too much for this way is owed by the next. */
+static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega, cascade_level *to) {
+  double variance = variance_between(receiver - from->sum_omega, receiver - omega);
+  double resampled = resampled_by(from) - resampled_by(to) + from->owed, pixel = (double)from->scale * from->scale;
+  to->owed = fmax(resampled - variance, 0);
+  return (cascade_blur){variance / pixel, resampled / pixel};
 }
 
 /* The two oldest groups of a level go to the next, where the first has a group at its own place already and the second lies
  * between that and a new one at the third's place: what it took is shared between them by its distances (derived: kernels
  * are then linear between groups, so that what a penumbra's middle should be is kept). */
-static void merge_up(soft_cascade *cascade, int index, hl_pool *pool, const cascade_functions *functions) {
+static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
   cascade_group a = level->group[0], b = level->group[1];
   double late = (b.omega - a.omega) / (level->group[2].omega - a.omega);
@@ -324,14 +192,14 @@ static void merge_up(soft_cascade *cascade, int index, hl_pool *pool, const casc
   cascade_group *first = &next->group[next->count - 1], *second = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++) {
     const cascade_field *late_absorbed = &level->scratch, *late_thin = &level->sum[!level->newest][c];
-    part(pool, functions, level, &b.absorbed[c], &b.thin[c], late_absorbed, late_thin, late);
+    hl_cascade_part(crew, level, &b.absorbed[c], &b.thin[c], late_absorbed, late_thin, late);
     /* what goes to the first, by way of the second's fields */
-    add(pool, functions, level, &b.absorbed[c], &b.thin[c], level, &a.absorbed[c], next, &second->absorbed[c], NULL);
-    add(pool, functions, level, &b.thin[c], &b.thin[c], level, &a.thin[c], next, &second->thin[c], NULL);
-    add(pool, functions, next, &second->absorbed[c], &second->thin[c], next, &first->absorbed[c], next, &first->absorbed[c], NULL);
-    add(pool, functions, next, &second->thin[c], &second->thin[c], next, &first->thin[c], next, &first->thin[c], NULL);
-    add(pool, functions, level, late_absorbed, NULL, NULL, NULL, next, &second->absorbed[c], NULL);
-    add(pool, functions, level, late_thin, NULL, NULL, NULL, next, &second->thin[c], NULL);
+    hl_cascade_add(crew, level, &b.absorbed[c], &b.thin[c], level, &a.absorbed[c], next, &second->absorbed[c], NULL);
+    hl_cascade_add(crew, level, &b.thin[c], &b.thin[c], level, &a.thin[c], next, &second->thin[c], NULL);
+    hl_cascade_add(crew, next, &second->absorbed[c], &second->thin[c], next, &first->absorbed[c], next, &first->absorbed[c], NULL);
+    hl_cascade_add(crew, next, &second->thin[c], &second->thin[c], next, &first->thin[c], next, &first->thin[c], NULL);
+    hl_cascade_add(crew, level, late_absorbed, NULL, NULL, NULL, next, &second->absorbed[c], NULL);
+    hl_cascade_add(crew, level, late_thin, NULL, NULL, NULL, next, &second->thin[c], NULL);
   }
   first->filled = first->filled || a.filled || b.filled;
   second->filled = b.filled;
@@ -362,9 +230,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
                       task->buffer->stride};
   if (touched) task->absorbed(&job, (int)tile_x, (int)tile_y);
   for (int i = 0; i < 2; i++) {
-    if (!touched && !end[i]->zeros[tile]) store_zeros(end[i]->pixels, level->stride, tile_x, tile_y);
-    end[i]->zeros[tile] = !touched;
-    start[i]->zeros[tile] = start[i]->zeros[tile] && !touched;
+    if (!touched) hl_cascade_clear_tile(level, end[i], (int)tile_x, (int)tile_y);
+    else end[i]->zeros[tile] = start[i]->zeros[tile] = 0;
   }
 }
 
@@ -379,20 +246,19 @@ static void absorb_row(void *data, size_t index, int worker) {
   }
 }
 
-static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, double omega, hl_pool *pool,
-                       const cascade_functions *functions) {
+static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, double omega, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0];
   cascade_group *start = &level->group[level->count - 1], *end = &level->group[level->count++];
   end->filled = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
   start->filled = start->filled || end->filled;
   end->omega = omega;
-  absorb_task task = {cascade, buffer, start, end, omega - cascade->chunk_start, functions->absorbed};
-  hl_pool_run(pool, (size_t)level->tiles_y, absorb_row, &task);
+  absorb_task task = {cascade, buffer, start, end, omega - cascade->chunk_start, crew->functions->absorbed};
+  hl_pool_run(crew->pool, (size_t)level->tiles_y, absorb_row, &task);
   level->renewed = true;
   cascade->chunk_start = omega;
   cascade->chunks++;
   for (int i = 0; i + 1 < cascade->level_count && cascade->level[i].count == CASCADE_GROUPS; i++)
-    merge_up(cascade, i, pool, functions);
+    merge_up(cascade, i, crew);
 }
 
 void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
@@ -422,40 +288,41 @@ void hl_soft_cascade_after(soft_cascade *cascade, const shadow_buffer *buffer, s
 
 /* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's thin matter
  * and added to own there (null: zeros). Blurs are done at the farther level, where they are cheap. Levels between have empty groups only: zeros to add. */
-static void bring(cascade_level *from, const cascade_field *sum, double variance, cascade_level *to_level,
-                  const cascade_field *own, const cascade_field *thin, const cascade_field *to, int channel, const unsigned char *wanted, hl_pool *pool,
-                  const cascade_functions *functions) {
+static void bring(cascade_level *from, const cascade_field *sum, cascade_blur blur, cascade_level *to_level,
+                  const cascade_field *own, const cascade_field *thin, const cascade_field *to, int channel,
+                  const unsigned char *wanted, const cascade_crew *crew) {
   if (from->scale == to_level->scale) {
-    blur_add(pool, functions, from, sum, own, thin, to, variance, wanted);
+    hl_cascade_blur_add(crew, from, sum, own, thin, to, blur, wanted);
     return;
   }
-  if (variance > 0) {
-    blur_add(pool, functions, from, sum, NULL, NULL, &from->scratch, variance, NULL);
+  if (blur.variance > blur.resampled) {
+    hl_cascade_blur_add(crew, from, sum, NULL, NULL, &from->scratch, blur, NULL);
     sum = &from->scratch;
   }
   while (from->scale > 2 * to_level->scale) {
     cascade_level *next = from - 1;
-    add(pool, functions, next, &next->group[0].absorbed[channel], NULL, from, sum, next, &next->scratch, NULL);
+    hl_cascade_add(crew, next, &next->group[0].absorbed[channel], NULL, from, sum, next, &next->scratch, NULL);
     sum = &next->scratch;
     from = next;
   }
-  add(pool, functions, to_level, own == NULL ? &to_level->group[0].absorbed[channel] : own, thin, from, sum, to_level, to,
+  hl_cascade_add(crew, to_level, own == NULL ? &to_level->group[0].absorbed[channel] : own, thin, from, sum, to_level, to,
       wanted);
 }
 
 /* What the groups before absorbed, blurred for this group, and what this group did. */
 static void pass_group(int channels, cascade_level *from, cascade_level *level, const cascade_group *group,
-                       double receiver, const unsigned char *wanted, hl_pool *pool, const cascade_functions *functions) {
-  double variance = variance_between(receiver - from->sum_omega, receiver - group->omega, from->scale);
+                       double receiver, const unsigned char *wanted, const cascade_crew *crew) {
+  cascade_blur blur = blur_towards(from, receiver, group->omega, level);
   const cascade_field *sum = from->sum[from->newest];
   level->newest = !level->newest;
   for (int c = 0; c < channels; c++)
-    bring(from, &sum[c], variance, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], c, wanted,
-          pool, functions);
+    bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], c, wanted,
+          crew);
 }
 
 /* Nothing lies before the farthest group. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group) {
+  level->owed = 0;
   for (int c = 0; c < cascade->channels; c++) {
     const cascade_field *from = &group->absorbed[c], *to = &level->sum[level->newest][c];
     memcpy(to->pixels - level->origin, from->pixels - level->origin, level->plane * sizeof(float));
@@ -517,16 +384,16 @@ static int reach_behind(const soft_cascade *cascade, int g, double receiver) {
   int reach = 0;
   for (int later = g + 1; later < level->count; later++) {
     if (!level->group[later].filled) continue;
-    reach += reach_of(level, variance_between(receiver - omega, receiver - level->group[later].omega, 1));
+    reach += reach_of(level, variance_between(receiver - omega, receiver - level->group[later].omega));
     omega = level->group[later].omega;
   }
-  return reach + reach_of(level, variance_between(receiver - omega, 0, 1));
+  return reach + reach_of(level, variance_between(receiver - omega, 0));
 }
 
 /* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. Empty groups are left
  * out, which keeps blurs few and kernels boxes. Returns the nearest level with anything in sum; null if nothing is in
  * the way. */
-static cascade_level *pass_all(soft_cascade *cascade, double receiver, hl_pool *pool, const cascade_functions *functions) {
+static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *sum = NULL;
   bool due = false;
   for (int i = cascade->level_count - 1; i >= 0; i--) {
@@ -542,7 +409,7 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, hl_pool *
       if (sum == NULL) pass_first(cascade, level, group);
       else {
         const unsigned char *wanted = i == 0 ? wanted_within(cascade, reach_behind(cascade, g, receiver)) : NULL;
-        pass_group(cascade->channels, sum, level, group, served, wanted, pool, functions);
+        pass_group(cascade->channels, sum, level, group, served, wanted, crew);
       }
       level->filled = true;
       level->sum_omega = group->omega;
@@ -579,31 +446,31 @@ static void light_row(void *data, size_t index, int worker) {
 }
 
 /* What receivers around omega = receiver lack, where it is wanted; false if nothing is in the way. */
-static bool find_shade(soft_cascade *cascade, double receiver, hl_pool *pool, const cascade_functions *functions) {
-  if (cascade->image != NULL) return hl_soft_cascade_pass_image(cascade, receiver, pool, functions);
-  cascade_level *level = pass_all(cascade, receiver, pool, functions);
+static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
+  if (cascade->image != NULL) return hl_soft_cascade_pass_image(cascade, receiver, crew);
+  cascade_level *level = pass_all(cascade, receiver, crew);
   if (level == NULL) return false;
-  double variance = variance_between(receiver - level->sum_omega, 0, level->scale);
+  cascade_blur blur = blur_towards(level, receiver, receiver, &cascade->level[0]);
   for (int c = 0; c < cascade->channels; c++)
-    bring(level, &level->sum[level->newest][c], variance, &cascade->level[0], NULL, NULL, &cascade->shade[c], c,
-          cascade->wanted[0], pool, functions);
+    bring(level, &level->sum[level->newest][c], blur, &cascade->level[0], NULL, NULL, &cascade->shade[c], c,
+          cascade->wanted[0], crew);
   return true;
 }
 
 /* The buffer that sheets look up, for receivers around omega = receiver. */
-static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, hl_pool *pool,
-                          const cascade_functions *functions) {
-  if (!find_shade(cascade, receiver, pool, functions)) return; /* the buffer is all ones */
-  light_task task = {cascade, buffer, functions->left};
-  hl_pool_run(pool, (size_t)cascade->level[0].tiles_y, light_row, &task);
-  hl_shadow_buffer_find_lit(buffer, cascade->wanted[0], pool, functions->lit_blocks);
+static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, const cascade_crew *crew) {
+  if (!find_shade(cascade, receiver, crew)) return; /* the buffer is all ones */
+  light_task task = {cascade, buffer, crew->functions->left};
+  hl_pool_run(crew->pool, (size_t)cascade->level[0].tiles_y, light_row, &task);
+  hl_shadow_buffer_find_lit(buffer, cascade->wanted[0], crew->pool, crew->functions->lit_blocks);
 }
 
 void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
                              const sheet_stack *sheets, int sheet, hl_pool *pool, const cascade_functions *functions) {
   double omega = omega_at(cascade, hl_sheet_height(sheets, sheet));
   if (!isfinite(omega) || omega - cascade->chunk_start < cascade->chunk) return;
-  push_chunk(cascade, buffer, omega, pool, functions);
+  const cascade_crew crew = {pool, functions};
+  push_chunk(cascade, buffer, omega, &crew);
   find_wanted(cascade, occupancy, sheets, sheet);
-  refill_buffer(cascade, buffer, omega + cascade->chunk / 2, pool, functions);
+  refill_buffer(cascade, buffer, omega + cascade->chunk / 2, &crew);
 }

@@ -56,6 +56,7 @@ typedef struct cascade_level {
   int newest;                        /* which of sum is the newest group's */
   bool filled;                       /* some group of this level is in sum; else see the next farther level */
   double sum_omega;               /* of the newest group in sum */
+  double owed;                       /* what the sum is blurred too much, pixels of the buffer squared */
   bool renewed;                      /* sum is to be found anew */
   cascade_field scratch;
   cascade_field mean[2][HL_CHANNELS]; /* through an image: of one group's absorbed and thin light */
@@ -93,6 +94,12 @@ typedef struct soft_cascade {
   unsigned char *wanted[CASCADE_MASKS]; /* owned with touched; [tiles]; what the next chunk's slabs read; a tile wider each */
 } soft_cascade;
 
+/* Who does a pass over a cascade's fields. */
+typedef struct cascade_crew {
+  hl_pool *pool;
+  const cascade_functions *functions;
+} cascade_crew;
+
 /* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. image: the
  * light's, borrowed until the end; null where it is even. */
 hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
@@ -115,6 +122,6 @@ void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const
 
 /* soft_cascade_image.c: what receivers around omega = receiver lack, through the light's image, in shade where it is
  * wanted; false if nothing is in the way. */
-bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, hl_pool *pool, const cascade_functions *functions);
+bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, const cascade_crew *crew);
 
 #endif

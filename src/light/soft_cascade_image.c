@@ -5,7 +5,7 @@
  * s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel (derived as in soft_cascade.h; without thin matter it is
  * the sum over groups of K(G), which is the light's mean of what its cells see). Nothing is kept from one receiver to the
  * next; far groups are coarse. */
-#include "light/soft_cascade.h"
+#include "light/cascade_passes.h"
 
 #include <string.h>
 
@@ -50,17 +50,7 @@ static void mark_wanted(const soft_cascade *cascade) {
 /* ---- the sum of the farther levels ---- */
 
 static bool any_near(const cascade_level *level, const cascade_field *field, int x, int y, int reach) {
-  for (int j = y < reach ? 0 : y - reach; j <= y + reach && j < level->tiles_y; j++)
-    for (int i = x < reach ? 0 : x - reach; i <= x + reach && i < level->tiles_x; i++)
-      if (!field->zeros[j * level->tiles_x + i]) return true;
-  return false;
-}
-
-static void clear_tile(const cascade_level *level, const cascade_field *field, int x, int y) {
-  unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
-  float *pixels = field->pixels + (size_t)y * TILE * level->stride + (size_t)x * TILE;
-  for (size_t row = 0; row < TILE && !*zeros; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(float));
-  *zeros = 1;
+  return !hl_cascade_all_zeros(level, field, x - reach, x + reach, y - reach, y + reach);
 }
 
 typedef struct start_task {
@@ -73,7 +63,7 @@ static void start_tile(const start_task *task, const cascade_field *from, const 
   const cascade_level *level = task->level, *farther = task->farther;
   int ratio = farther == NULL ? 1 : farther->scale / level->scale;
   if (farther == NULL || !any_near(farther, from, x / ratio, y / ratio, ratio - 1)) {
-    clear_tile(level, to, x, y);
+    hl_cascade_clear_tile(level, to, x, y);
     return;
   }
   field_job job = {.a = from->pixels, .to = to->pixels, .stride_in = farther->stride, .stride = level->stride};
@@ -111,7 +101,7 @@ static void average_row(void *data, size_t index, int worker) {
                           .u = hl_blur_box((float)pass->step[0]), .v = hl_blur_box((float)pass->step[1])};
       for (int x = 0; x < level->tiles_x; x++) {
         if (!any_near(level, from[i], x, (int)index, 1)) {
-          clear_tile(level, to, x, (int)index);
+          hl_cascade_clear_tile(level, to, x, (int)index);
           continue;
         }
         pass->functions->blur_add(&job, x, (int)index);
@@ -169,29 +159,29 @@ static void add_row(void *data, size_t index, int worker) {
 }
 
 static void add_group(const soft_cascade *cascade, cascade_level *level, const cascade_group *group, double receiver,
-                      hl_pool *pool, const cascade_functions *functions) {
-  image_pass pass = {.cascade = cascade, .level = level, .group = group, .functions = functions,
+                      const cascade_crew *crew) {
+  image_pass pass = {.cascade = cascade, .level = level, .group = group, .functions = crew->functions,
                      .width = fmax(receiver - group->omega, 0) / level->scale};
   hl_light_image_steps(cascade->image, pass.width, pass.step);
   pass.averaged = pass.step[0] > 1 || pass.step[1] > 1;
   double reach = cascade->image->reach * pass.width + fmax(pass.step[0], pass.step[1]) + 2;
   pass.reach = (int)fmin(ceil(reach / TILE), fmax(level->tiles_x, level->tiles_y));
-  if (pass.averaged) hl_pool_run(pool, (size_t)level->tiles_y, average_row, &pass);
-  hl_pool_run(pool, (size_t)level->tiles_y, add_row, &pass);
+  if (pass.averaged) hl_pool_run(crew->pool, (size_t)level->tiles_y, average_row, &pass);
+  hl_pool_run(crew->pool, (size_t)level->tiles_y, add_row, &pass);
 }
 
-bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, hl_pool *pool, const cascade_functions *functions) {
+bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *farther = NULL;
   mark_wanted(cascade);
   for (int i = cascade->level_count - 1; i >= 0; i--) {
     cascade_level *level = &cascade->level[i];
-    start_task task = {cascade, level, farther, functions};
+    start_task task = {cascade, level, farther, crew->functions};
     bool any = farther != NULL;
     for (int g = 0; g < level->count; g++) any = any || level->group[g].filled;
     if (!any) continue;
-    hl_pool_run(pool, (size_t)level->tiles_y, start_row, &task);
+    hl_pool_run(crew->pool, (size_t)level->tiles_y, start_row, &task);
     for (int g = 0; g < level->count; g++)
-      if (level->group[g].filled) add_group(cascade, level, &level->group[g], receiver, pool, functions);
+      if (level->group[g].filled) add_group(cascade, level, &level->group[g], receiver, crew);
     farther = level;
   }
   return farther != NULL;

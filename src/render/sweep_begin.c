@@ -3,12 +3,12 @@
 #include "light/light_extent.h"
 #include "render/sweep.h"
 
-/* Pixels of shadow buffers are as coarse as adds nothing to the error that the sheets leave (measured against the
+/* Pixels of shadow buffers are as coarse as adds little to the error that the sheets leave (measured against the
  * reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most, and half a voxel
- * at least; parts of a light, whose pixels are read from those of a slab, suffer more from coarse ones. Hard edges hold
- * at the nearest matter; soft ones are wider than a pixel where it matters. */
-static const double SHADOW_PIXEL_PER_SPACING = 0.75, GREATEST_SHADOW_PIXEL = 0.75;
-static const double LEAST_HARD_PIXEL = 0.5, LEAST_SOFT_PIXEL = 0.6, SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
+ * at least; and somewhat coarser than the image's. Parts of a light, whose pixels are read from those of a slab, suffer
+ * more from coarse ones. */
+static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.5, GREATEST_SHADOW_PIXEL = 0.75, PART_PIXEL = 0.6;
+static const double HARD_PIXEL_PER_IMAGE_PIXEL = 1.4, SOFT_PIXEL_PER_IMAGE_PIXEL = 1.2;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
@@ -44,12 +44,12 @@ static double penumbra_margin(const sweep *sweep, const light_source *source, co
 }
 
 static double shadow_pixel(const sweep *sweep, const light_source *source) {
-  double voxel = sweep->frame->voxel, of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
-  if (source->shadows != HL_SHADOWS_SOFT)
-    return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * sweep->frame->pixel,
-                fmin(fmax(of_sheets, LEAST_HARD_PIXEL * voxel), GREATEST_SHADOW_PIXEL * voxel));
-  if (source->soft_method == HL_SOFT_SUBLIGHTS) of_sheets = 0;
-  return fmin(sweep->frame->middle_pixel, fmin(fmax(of_sheets, LEAST_SOFT_PIXEL * voxel), GREATEST_SHADOW_PIXEL * voxel));
+  const frame *frame = sweep->frame;
+  double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
+  double pixel = fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL * frame->voxel), GREATEST_SHADOW_PIXEL * frame->voxel);
+  if (source->shadows != HL_SHADOWS_SOFT) return fmin(HARD_PIXEL_PER_IMAGE_PIXEL * frame->pixel, pixel);
+  if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(frame->middle_pixel, PART_PIXEL * frame->voxel);
+  return fmin(SOFT_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
 }
 
 /* Places the buffer: perpendicular to the light for hard shadows; parallel to the sheets for soft ones, around the middle

@@ -1,0 +1,153 @@
+/* light/cascade_passes.c - sums, blurs and parts of a cascade's fields. */
+#include "light/cascade_passes.h"
+
+#include <string.h>
+
+void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x, int y) {
+  unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
+  float *pixels = field->pixels + (size_t)y * TILE * level->stride + (size_t)x * TILE;
+  for (size_t row = 0; row < TILE && !*zeros; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(float));
+  *zeros = 1;
+}
+
+bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1) {
+  for (int y = y0 < 0 ? 0 : y0; y <= y1 && y < level->tiles_y; y++)
+    for (int x = x0 < 0 ? 0 : x0; x <= x1 && x < level->tiles_x; x++)
+      if (!field->zeros[y * level->tiles_x + x]) return false;
+  return true;
+}
+
+typedef struct add_task {
+  const cascade_level *level, *level_a, *level_b; /* of to, a and b */
+  const cascade_field *a, *b, *to;
+  field_job job;
+  field_tile_function *function;
+  bool doubled;         /* b is coarser: a of zeros may be left out */
+  const unsigned char *wanted; /* [tiles]; null: all */
+} add_task;
+
+static bool sum_is_zeros(const add_task *task, int x, int y) {
+  const cascade_level *levels[2] = {task->level_a, task->level_b};
+  const cascade_field *fields[2] = {task->a, task->b};
+  for (int i = 0; i < 2; i++) {
+    if (fields[i] == NULL) continue;
+    int coarse = levels[i]->scale, own = task->level->scale, x0 = x, y0 = y, x1 = x, y1 = y;
+    if (coarse < own) x0 = 2 * x, x1 = 2 * x + 1, y0 = 2 * y, y1 = 2 * y + 1;
+    if (coarse > own) x0 = (x - 1) / 2, x1 = (x + 1) / 2, y0 = (y - 1) / 2, y1 = (y + 1) / 2;
+    if (!hl_cascade_all_zeros(levels[i], fields[i], x0, x1, y0, y1)) return false;
+  }
+  return true;
+}
+
+static void add_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const add_task *task = data;
+  for (int x = 0; x < task->level->tiles_x; x++) {
+    if (task->wanted != NULL && !task->wanted[index * (size_t)task->level->tiles_x + (size_t)x]) continue;
+    if (sum_is_zeros(task, x, (int)index)) {
+      hl_cascade_clear_tile(task->level, task->to, x, (int)index);
+      continue;
+    }
+    field_job job = task->job;
+    if (task->doubled && task->a->zeros[index * (size_t)task->level->tiles_x + (size_t)x]) job.a = job.thin = NULL;
+    task->function(&job, x, (int)index);
+    task->to->zeros[index * (size_t)task->level->tiles_x + (size_t)x] = 0;
+  }
+}
+
+void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a, const cascade_field *thin,
+                    const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
+                    const unsigned char *wanted) {
+  const cascade_functions *functions = crew->functions;
+  field_tile_function *function = level_a->scale < level->scale                 ? functions->add_half
+                                  : b != NULL && level_b->scale > level->scale ? functions->add_double
+                                                                               : functions->add;
+  add_task task = {.level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b, .to = to, .function = function,
+                   .doubled = function == functions->add_double, .wanted = wanted};
+  task.job = (field_job){.a = a->pixels, .b = b == NULL ? NULL : b->pixels, .to = to->pixels,
+                         .stride_in = b == NULL ? level_a->stride : level_b->stride, .stride = level->stride,
+                         .thin = thin == NULL ? NULL : thin->pixels};
+  hl_pool_run(crew->pool, (size_t)level->tiles_y, add_row, &task);
+}
+
+typedef struct blur_task {
+  const cascade_level *level;
+  const cascade_field *from, *a, *to; /* a may be null */
+  blur_add_job job;
+  blur_add_tile_function *function;
+  int reach_x, reach_y; /* tiles */
+  const unsigned char *wanted; /* [tiles]; null: all */
+} blur_task;
+
+static void blur_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const blur_task *task = data;
+  int y = (int)index;
+  for (int x = 0; x < task->level->tiles_x; x++) {
+    size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
+    if (task->wanted != NULL && !task->wanted[tile]) continue;
+    bool skip = (task->a == NULL || task->a->zeros[tile]) &&
+                hl_cascade_all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
+    if (skip) {
+      hl_cascade_clear_tile(task->level, task->to, x, y);
+      continue;
+    }
+    blur_add_job job = task->job;
+    job.u = task->level->boxes[x].box;
+    job.v = task->level->boxes[task->level->tiles_x + y].box;
+    if (task->a != NULL && task->a->zeros[tile]) job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
+    task->function(&job, x, y);
+    task->to->zeros[tile] = 0;
+  }
+}
+
+/* Boxes of each column or row; returns the greatest reach in tiles. */
+static int fill_boxes(cascade_box *boxes, int count, cascade_blur blur) {
+  int reach = 0;
+  for (int i = 0; i < count; i++) {
+    boxes[i].box = hl_blur_box_of_variance(fmax(blur.variance * boxes[i].part - blur.resampled, 0));
+    if (boxes[i].box.reach > reach) reach = boxes[i].box.reach;
+  }
+  return (reach + TILE) / TILE;
+}
+
+void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
+                         const cascade_field *a, const cascade_field *thin, const cascade_field *to, cascade_blur blur,
+                         const unsigned char *wanted) {
+  blur_task task = {.level = level, .from = from, .a = a, .to = to, .function = crew->functions->blur_add, .wanted = wanted};
+  task.job = (blur_add_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
+                                 .thin = thin == NULL ? NULL : thin->pixels, .stride = level->stride};
+  task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur);
+  task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur);
+  hl_pool_run(crew->pool, (size_t)level->tiles_y, blur_row, &task);
+}
+
+typedef struct part_task {
+  const cascade_level *level;
+  const cascade_field *fields[4]; /* absorbed and thin of the first, then of the second */
+  part_job job;
+  part_tile_function *function;
+} part_task;
+
+static void part_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const part_task *task = data;
+  for (int x = 0; x < task->level->tiles_x; x++) {
+    size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
+    bool any = !task->fields[0]->zeros[tile] || !task->fields[1]->zeros[tile];
+    if (any) task->function(&task->job, x, (int)index);
+    for (int i = 2; i < 4; i++) {
+      if (any) task->fields[i]->zeros[tile] = 0;
+      else hl_cascade_clear_tile(task->level, task->fields[i], x, (int)index);
+    }
+  }
+}
+
+void hl_cascade_part(const cascade_crew *crew, const cascade_level *level, const cascade_field *absorbed,
+                     const cascade_field *thin, const cascade_field *late_absorbed, const cascade_field *late_thin, double late) {
+  part_task task = {level, {absorbed, thin, late_absorbed, late_thin},
+                    {absorbed->pixels, thin->pixels, {absorbed->pixels, late_absorbed->pixels}, {thin->pixels, late_thin->pixels},
+                     level->stride, (float)late},
+                    crew->functions->part};
+  hl_pool_run(crew->pool, (size_t)level->tiles_y, part_row, &task);
+}

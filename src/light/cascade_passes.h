@@ -1,0 +1,34 @@
+/* light/cascade_passes.h - passes over whole fields of a cascade: a row of tiles a task; tiles of zeros are skipped. */
+#ifndef HL_LIGHT_CASCADE_PASSES_H
+#define HL_LIGHT_CASCADE_PASSES_H
+
+#include "light/soft_cascade.h"
+
+/* How much a pass blurs. */
+typedef struct cascade_blur {
+  double variance;  /* where the light is widest, pixels of the level; columns and rows have their parts of it */
+  double resampled; /* what resampling blurs by itself, and is taken off */
+} cascade_blur;
+
+/* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse; thin,
+ * on a's level, may be null; so may b where a is not coarser. wanted: [tiles]; null: all. */
+void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a, const cascade_field *thin,
+                    const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
+                    const unsigned char *wanted);
+
+/* to = a + (1 - thin) blurred from, all on one level; a and thin may be null. */
+void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
+                         const cascade_field *a, const cascade_field *thin, const cascade_field *to, cascade_blur blur,
+                         const unsigned char *wanted);
+
+/* Matter parted: the part `late` of it goes to the other fields. */
+void hl_cascade_part(const cascade_crew *crew, const cascade_level *level, const cascade_field *absorbed,
+                     const cascade_field *thin, const cascade_field *late_absorbed, const cascade_field *late_thin, double late);
+
+/* True if all tiles of the level's rectangle are zeros; what lies outside is. */
+bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1);
+
+/* Makes a tile zeros, and says so. */
+void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x, int y);
+
+#endif
