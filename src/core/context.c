@@ -1,18 +1,31 @@
 /* core/context.c - creation of contexts, and their callbacks. */
+#define _GNU_SOURCE /* madvise */
 #include "core/context.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 #include "core/cpu.h"
 #include "core/error.h"
 
+/* Large blocks in large pages where the system has them: tiles of a plane lie in as many small pages as they have rows, and
+ * finding those took longer than reading them. */
+enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
+
 static void *default_allocate(void *user_data, size_t size, size_t alignment) {
   (void)user_data;
+  if (size >= LARGE_BLOCK && alignment < LARGE_PAGE) alignment = LARGE_PAGE;
   size_t rounded = (size + alignment - 1) / alignment * alignment;
-  return rounded < size ? NULL : aligned_alloc(alignment, rounded);
+  void *block = rounded < size ? NULL : aligned_alloc(alignment, rounded);
+#ifdef MADV_HUGEPAGE
+  if (block != NULL && size >= LARGE_BLOCK) madvise(block, rounded, MADV_HUGEPAGE);
+#endif
+  return block;
 }
 
 static void default_release(void *user_data, void *memory) {

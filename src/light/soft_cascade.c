@@ -15,13 +15,18 @@ static double omega_at(const soft_cascade *cascade, double height) {
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
 }
 
-/* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give: level j starts at least
- * 4 (2^j - 1) chunks behind the receiver, since every level before it keeps five groups. What resampling blurs is taken off
- * the penumbra (resampled_by), but for an image, which keeps four. */
+/* Chunks between a receiver and a level's groups at least: level 0 keeps three groups, level 1 two, every other five. */
+static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
+
+/* Chunks after which a level's sums are found anew. */
+static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
+
+/* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give. What resampling blurs is
+ * taken off the penumbra (resampled_by), but for an image, which keeps four. */
 static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = cascade->chunk * 4 * (pow(2, level) - 1) * cascade->least_part, own = cascade->image == NULL ? 1.5 : 4;
-  int scale = 1;
-  while (2 * scale * own <= penumbra && scale < 1 << level) scale *= 2;
+  double penumbra = cascade->chunk * chunks_before(level) * cascade->least_part, own = cascade->image == NULL ? 1.5 : 4;
+  int scale = 1, greatest = level < 2 ? 1 << level : 1 << (level - 1); /* coarser ones were less exact, and hardly cheaper */
+  while (2 * scale * own <= penumbra && scale < greatest) scale *= 2;
   return scale;
 }
 
@@ -50,7 +55,8 @@ static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer 
   level->stride = (size_t)level->tiles_x * TILE + 2 * CASCADE_MARGIN;
   level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
-  level->planes = channels * (2 * CASCADE_GROUPS + 2) + 1 + (index == 0 ? 2 * channels : 0);
+  level->capacity = index < 2 ? CASCADE_FEW_GROUPS : CASCADE_GROUPS;
+  level->planes = channels * (2 * (size_t)level->capacity + 2) + 1 + (index == 0 ? 2 * channels : 0);
   if (cascade->image != NULL) level->planes += 2 * channels;
 }
 
@@ -82,8 +88,11 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   memset(level->flags, 1, level->planes * tiles);
   set_parts(cascade, light, 0, level->tiles_x, level->scale, level->boxes);
   set_parts(cascade, light, 1, level->tiles_y, level->scale, level->boxes + level->tiles_x);
+  level->greatest_part = 0;
+  for (int i = 0; i < level->tiles_x + level->tiles_y; i++)
+    level->greatest_part = fmax(level->greatest_part, level->boxes[i].part);
   for (size_t c = 0; c < channels; c++) {
-    for (int g = 0; g < CASCADE_GROUPS; g++) {
+    for (int g = 0; g < level->capacity; g++) {
       level->group[g].absorbed[c] = next_field(level, &used);
       level->group[g].thin[c] = next_field(level, &used);
     }
@@ -117,8 +126,8 @@ static void plan(soft_cascade *cascade, const sheet_light *light, const light_im
   double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
   cascade->chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
   cascade->chunk_start = start;
-  /* level j is first used after 5 * 2^j - 4 chunks (derived: a level keeps five of its seven groups) */
-  int levels = 1 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
+  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels 0 and 1) */
+  int levels = 2 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) lay_out_level(cascade, i, buffer);
 }
@@ -181,6 +190,30 @@ static cascade_blur blur_towards(const cascade_level *from, double receiver, dou
   return (cascade_blur){variance / pixel, resampled / pixel};
 }
 
+/* Moves a level's groups forward by the first `gone`, whose fields the places left free take over. */
+static void forget_oldest(cascade_level *level, int gone) {
+  cascade_group free[2] = {level->group[0], level->group[1]};
+  for (int g = gone; g < level->capacity; g++) level->group[g - gone] = level->group[g];
+  for (int g = 0; g < gone; g++) level->group[level->capacity - gone + g] = free[g];
+  level->count -= gone;
+  level->renewed = true;
+}
+
+/* The oldest group of level 0 goes to level 1 as it is, on that level's pixels. */
+static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
+  cascade_level *level = &cascade->level[0], *next = &cascade->level[1];
+  const cascade_group *from = &level->group[0];
+  cascade_group *to = &next->group[next->count++];
+  for (int c = 0; c < cascade->channels; c++) {
+    hl_cascade_add(crew, level, &from->absorbed[c], NULL, NULL, NULL, next, &to->absorbed[c], NULL);
+    hl_cascade_add(crew, level, &from->thin[c], NULL, NULL, NULL, next, &to->thin[c], NULL);
+  }
+  to->omega = from->omega;
+  to->filled = from->filled;
+  next->renewed = true;
+  forget_oldest(level, 1);
+}
+
 /* The two oldest groups of a level go to the next, where the first has a group at its own place already and the second lies
  * between that and a new one at the third's place: what it took is shared between them by its distances (derived: kernels
  * are then linear between groups, so that what a penumbra's middle should be is kept). */
@@ -204,11 +237,8 @@ static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew)
   first->filled = first->filled || a.filled || b.filled;
   second->filled = b.filled;
   second->omega = level->group[2].omega;
-  next->renewed = level->renewed = true;
-  for (int g = 2; g < CASCADE_GROUPS; g++) level->group[g - 2] = level->group[g];
-  level->group[CASCADE_GROUPS - 2] = a;
-  level->group[CASCADE_GROUPS - 1] = b;
-  level->count -= 2;
+  next->renewed = true;
+  forget_oldest(level, 2);
 }
 
 typedef struct absorb_task {
@@ -257,7 +287,8 @@ static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, doubl
   level->renewed = true;
   cascade->chunk_start = omega;
   cascade->chunks++;
-  for (int i = 0; i + 1 < cascade->level_count && cascade->level[i].count == CASCADE_GROUPS; i++)
+  if (level->count == level->capacity) hand_over(cascade, crew);
+  for (int i = 1; i + 1 < cascade->level_count && cascade->level[i].count == cascade->level[i].capacity; i++)
     merge_up(cascade, i, crew);
 }
 
@@ -296,12 +327,13 @@ static void bring(cascade_level *from, const cascade_field *sum, cascade_blur bl
     return;
   }
   if (blur.variance > blur.resampled) {
-    hl_cascade_blur_add(crew, from, sum, NULL, NULL, &from->scratch, blur, NULL);
+    hl_cascade_blur_add(crew, from, sum, NULL, NULL, &from->scratch, blur, from->masked ? from->wanted : NULL);
     sum = &from->scratch;
   }
   while (from->scale > 2 * to_level->scale) {
     cascade_level *next = from - 1;
-    hl_cascade_add(crew, next, &next->group[0].absorbed[channel], NULL, from, sum, next, &next->scratch, NULL);
+    hl_cascade_add(crew, next, &next->group[0].absorbed[channel], NULL, from, sum, next, &next->scratch,
+                   next->masked ? next->wanted : NULL);
     sum = &next->scratch;
     from = next;
   }
@@ -367,27 +399,40 @@ static const unsigned char *wanted_within(const soft_cascade *cascade, int pixel
   return wider < CASCADE_MASKS ? cascade->wanted[wider] : NULL;
 }
 
-/* How far the boxes of a variance reach on the finest level, pixels. */
-static int reach_of(const cascade_level *level, double variance) {
-  int reach = 0;
-  for (int i = 0; i < level->tiles_x + level->tiles_y; i++) {
-    int own = hl_blur_box_of_variance(variance * level->boxes[i].part).reach + 1;
-    if (own > reach) reach = own;
-  }
-  return reach;
+/* How far what is on the way from one group, or the sum behind it, to the next is blurred and resampled, pixels of the buffer. */
+static int reach_of(const cascade_level *level, double variance, const cascade_level *next) {
+  double own = variance * level->greatest_part / ((double)level->scale * level->scale);
+  return (hl_blur_box_of_variance(own).reach + 1) * level->scale + (next->scale < level->scale ? 2 * level->scale : 0);
 }
 
-/* How far what passed group g of the finest level is still blurred there, pixels. */
-static int reach_behind(const soft_cascade *cascade, int g, double receiver) {
-  const cascade_level *level = &cascade->level[0];
-  double omega = level->group[g].omega;
-  int reach = 0;
-  for (int later = g + 1; later < level->count; later++) {
-    if (!level->group[later].filled) continue;
-    reach += reach_of(level, variance_between(receiver - omega, receiver - level->group[later].omega));
-    omega = level->group[later].omega;
+/* How far what passed group g of a level is still blurred on its way to the buffer, pixels of that. */
+static int reach_behind(const soft_cascade *cascade, int index, int g, double receiver) {
+  const cascade_level *from = &cascade->level[index];
+  double omega = from->group[g].omega;
+  int reach = 0, later = g + 1;
+  for (int i = index; i >= 0; i--, later = 0) {
+    const cascade_level *level = &cascade->level[i];
+    for (; later < level->count; later++) {
+      if (!level->group[later].filled) continue;
+      reach += reach_of(from, variance_between(receiver - omega, receiver - level->group[later].omega), level);
+      from = level;
+      omega = level->group[later].omega;
+    }
   }
-  return reach + reach_of(level, variance_between(receiver - omega, 0));
+  return reach + reach_of(from, variance_between(receiver - omega, 0), &cascade->level[0]);
+}
+
+/* Where levels that are found anew for every chunk are read. */
+static void mask_level(soft_cascade *cascade, int index, double receiver) {
+  cascade_level *level = &cascade->level[index];
+  const cascade_level *finest = &cascade->level[0];
+  const unsigned char *wanted = wanted_within(cascade, reach_behind(cascade, index, 0, receiver));
+  level->masked = wanted != NULL && period_of(index) == 1;
+  if (!level->masked) return;
+  memset(level->wanted, 0, (size_t)level->tiles_x * (size_t)level->tiles_y);
+  for (int y = 0; y < finest->tiles_y; y++)
+    for (int x = 0; x < finest->tiles_x; x++)
+      level->wanted[y / level->scale * level->tiles_x + x / level->scale] |= wanted[y * finest->tiles_x + x];
 }
 
 /* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. Empty groups are left
@@ -398,9 +443,10 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
   bool due = false;
   for (int i = cascade->level_count - 1; i >= 0; i--) {
     cascade_level *level = &cascade->level[i];
-    uint64_t period = i > 0 ? (uint64_t)1 << (i - 1) : 1;
+    uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
+    if (i > 0) mask_level(cascade, i, receiver);
     /* until it is due again receivers go on by a period less one chunk: their mean is served */
     double served = receiver + cascade->chunk * (double)(period - 1) / 2;
     for (int g = 0; g < level->count && due; g++) {
@@ -408,7 +454,9 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
       if (!group->filled) continue;
       if (sum == NULL) pass_first(cascade, level, group);
       else {
-        const unsigned char *wanted = i == 0 ? wanted_within(cascade, reach_behind(cascade, g, receiver)) : NULL;
+        const unsigned char *wanted = i == 0         ? wanted_within(cascade, reach_behind(cascade, 0, g, receiver))
+                                      : level->masked ? level->wanted
+                                                      : NULL;
         pass_group(cascade->channels, sum, level, group, served, wanted, crew);
       }
       level->filled = true;

@@ -4,7 +4,8 @@
  * by a width that is a difference, w = omega(r) - omega(o). What a receiver lacks is what every slab before it took of the
  * light that reached that slab: T(r) = 1 - sum over o of T(o) (1 - t(o)), blurred by w. Each slab's share is counted where
  * light first meets it, so that thick occluders darken once, and sums may be blurred together: the slabs are kept in
- * groups of doubling thickness, the nearest thin, the farthest thick, and from the farthest group o on the sum is blurred
+ * groups of doubling thickness, the nearest thin, the farthest thick (those of levels 0 and 1 a chunk of slabs, of level j
+ * 2^(j-1) chunks), and from the farthest group o on the sum is blurred
  * by the variance (w(o)^2 - w(o')^2) / 12 on the way to the next group o'. The variances telescope, and every group ends
  * with the variance of its own penumbra. Far groups are kept coarser (what is left of them is blurred wide) and renewed
  * more rarely (their widths change slowly).
@@ -26,7 +27,7 @@
 #include "light/shadow_buffer.h"
 
 /* CASCADE_REACH: pixels beyond a tile that the buffer must hold, so that its rows are as long as level 0's. */
-enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_MARGIN = 48, CASCADE_REACH = CASCADE_MARGIN - TILE - 1,
+enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48, CASCADE_REACH = CASCADE_MARGIN - TILE - 1,
        CASCADE_MASKS = 6 };
 
 /* Absorbed light over the pixels of a level, zeros around them. */
@@ -51,7 +52,8 @@ typedef struct cascade_level {
   int tiles_x, tiles_y;
   size_t stride, plane, origin;
   cascade_group group[CASCADE_GROUPS]; /* oldest first */
-  int count;
+  int count, capacity;
+  double greatest_part;              /* of boxes */
   cascade_field sum[2][HL_CHANNELS]; /* of all groups up to one of this level, for a recent receiver */
   int newest;                        /* which of sum is the newest group's */
   bool filled;                       /* some group of this level is in sum; else see the next farther level */
@@ -60,7 +62,8 @@ typedef struct cascade_level {
   bool renewed;                      /* sum is to be found anew */
   cascade_field scratch;
   cascade_field mean[2][HL_CHANNELS]; /* through an image: of one group's absorbed and thin light */
-  unsigned char *wanted;             /* in flags; [tiles]; through an image, of farther levels */
+  unsigned char *wanted;             /* in flags; [tiles]; of farther levels */
+  bool masked;                       /* sums are found where wanted only */
   cascade_box *boxes;                /* owned; [tiles_x], then [tiles_y] */
   float *memory;                     /* the cascade_memory's */
   size_t planes;
