@@ -14,9 +14,9 @@ LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density 
   for (int i = 0; i < slab->count; i++) {
     const block_density *d = &densities[i];
     const shade_volume *volume = d->patch->volume;
-    if (!volume->visible || !volume->phong) continue;
+    if (!d->there || !volume->visible || !volume->phong) continue;
     lanes surface;
-    lanes3 normal = normal_of(volume, slope_of_block(d), d->middle, &surface);
+    lanes3 normal = normal_of(volume, slope_of_block(d), d->way.first + d->way.last, &surface);
     sum = add3(sum, scale3(normal, d->extinction * inverse * surface));
   }
   return sum;
@@ -46,6 +46,7 @@ static void measure_block(const shade_job *job, const shade_patch *patches, int 
   block_slab slab;
   float *alpha = pixels + MEASURE_ALPHA * BLOCK_PIXELS;
   if (slab_of_block(job, patches, patch_count, tile_x, tile_y, block, alpha, densities, &slab) == 0) return;
+  if (find_slab(job, densities, &slab) == 0) return;
   lanes before = lanes_load(alpha), weight = slab.opacity * (1.0f - before), after = before + weight;
   lanes3 normal = normal_of_block(&slab, densities);
   const lanes sums[4] = {depth_of(job, &slab, slab.geometry.position), normal.x, normal.y, normal.z};

@@ -1,64 +1,13 @@
-/* render/shade_lanes.h - one slab's pixels lit and composited, a 4x4 block at a time (steps 12 to 16). */
+/* render/shade_lanes.h - one slab's pixels lit and composited (steps 14 to 16). */
 #ifndef HL_RENDER_SHADE_LANES_H
 #define HL_RENDER_SHADE_LANES_H
 
-#include "light/attenuate_lanes.h"
 #include "light/light_screen_lanes.h"
-#include "render/shade.h"
-#include "splat/slope_lanes.h"
-
-/* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
-static const float OPAQUE = 1.0f - 1.0f / 2048;
+#include "render/pack_lanes.h"
 
 static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
 typedef struct color_lanes { lanes c[3]; } color_lanes;
-
-LANES_INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-LANES_INLINE lanes3 scale3(lanes3 a, lanes s) { return (lanes3){a.x * s, a.y * s, a.z * s}; }
-LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
-LANES_INLINE lanes3 set3(const float v[3]) { return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])}; }
-
-/* What the volumes of a block share: where its pixels are and how they look. */
-typedef struct block_geometry {
-  lanes3 position;       /* frame space, in the slab: where it is lit */
-  lanes3 start;          /* where the ray enters the slab */
-  lanes3 step_sheet;     /* to the next sheet along the ray */
-  lanes3 towards_eye;    /* unit */
-  lanes path;            /* of the eye's ray through the sheet; 0 behind the eye */
-} block_geometry;
-
-/* Derived: on the ray E + s W with s = step / H, H = h.W, moving one sheet gives W ds / H. */
-LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lanes v) {
-  const sheet_rays *rays = &job->rays;
-  block_geometry g;
-  g.position = rays_positions(rays, u, v);
-  g.path = path_through_sheet(rays, job->path, job->spacing * 0.5f, u, v); /* the rays end in the slab's middle */
-  if (!rays->perspective) {
-    g.step_sheet = set3(job->through);
-    g.towards_eye = set3(job->towards_eye);
-    return g;
-  }
-  lanes3 w = rays_directions(rays, u, v);
-  lanes inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
-  g.step_sheet = scale3(w, inverse * job->spacing);
-  g.towards_eye = scale3(w, -1.0f / lanes_sqrt(dot3(w, w)));
-  return g;
-}
-
-/* Step 12. df/dframe = (dindex/dframe)^T df/dindex, at a point of frame space; stored units. */
-LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t active) {
-  lanes at[3];
-  for (int axis = 0; axis < 3; axis++) {
-    const float *row = volume->to_index[axis];
-    at[axis] = point.x * row[0] + point.y * row[1] + (point.z * row[2] + row[3]);
-  }
-  lanes3 slope = slopes_at(volume->grid, volume->kernel, (lanes3){at[0], at[1], at[2]}, active);
-  const float(*m)[4] = volume->to_index;
-  return (lanes3){slope.x * m[0][0] + slope.y * m[1][0] + slope.z * m[2][0],
-                  slope.x * m[0][1] + slope.y * m[1][1] + slope.z * m[2][1],
-                  slope.x * m[0][2] + slope.y * m[1][2] + slope.z * m[2][2]};
-}
 
 /* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1]. */
 LANES_INLINE lanes mean_transmittance(lanes x) {
@@ -115,26 +64,6 @@ LANES_INLINE color_lanes reaching(const shade_light *light, lanes3 position) {
   return sum;
 }
 
-/* One volume's way through the slab: where its covered part starts and ends in the tables, and its mean extinction, the
- * part outside the box counting as none. */
-typedef struct block_density {
-  const shade_patch *patch;
-  lanes middle; /* density */
-  table_place before, after;
-  lanes extinction, undivided; /* averaged over the slab; over its covered part */
-  way_sums sums; /* between the two */
-  covered_part part;
-  lanes seen; /* the part of the way from before to after at which its matter is seen */
-  lanes evenly; /* the part at which it would be seen if its extinction were even */
-  int sloped; /* whether the gradient is known, where the matter is seen */
-  lanes3 slope;
-} block_density;
-
-/* In thinner slabs the gradient makes no difference to the light lost within. */
-static const float THIN_DEPTH = 1.0f / 64;
-
-_Static_assert(sizeof(block_density) <= SHADE_SCRATCH_BYTES, "a volume's scratch holds its block");
-
 /* Steps 14 and 15's first half: what arrives of one light (eqs. 1 and 2), and from where. */
 typedef struct arriving_light {
   lanes3 towards; /* unit */
@@ -171,13 +100,13 @@ typedef struct light_depths { lanes before[HL_CHANNELS], within[HL_CHANNELS]; } 
  * extinction were even, the eye would see another place of the slab: the depths there must agree. */
 LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
-  if (!d->sloped) return d->undivided;
+  if (lanes_bits(d->sloped) == 0) return d->sums.extinction;
   lanes late = lanes_min(d->seen / lanes_max(d->evenly, lanes_set(1e-3f)), lanes_set(4.0f));
-  lanes seen = d->before.x + (d->after.x - d->before.x) * d->seen;
+  lanes seen = d->before + (d->after - d->before) * d->seen;
   lanes start = seen + dot3(d->slope, towards) * (way * classifier->scale);
   way_sums sums = sums_of_way(classifier, place_of_coordinate(lanes_clamp(start, 0, CLASSIFIER_ENTRIES)),
                               place_of_coordinate(seen));
-  return late * sums.extinction;
+  return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geometry *g, const block_density *densities,
@@ -186,11 +115,13 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geom
   for (int c = 0; c < HL_CHANNELS; c++) depths.before[c] = depths.within[c] = lanes_set(0);
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
+    if (!d->there) continue;
     const shade_volume *volume = d->patch->volume;
-    lanes first = d->part.begin * path, last = (d->part.begin + d->part.length) * path;
+    const covered_part *part = &d->way.part;
+    lanes first = part->begin * path, last = (part->begin + part->length) * path;
     if (d->patch->enter != NULL) {
-      ways_in_box ways = ways_of_light(volume, add3(g->start, scale3(g->step_sheet, d->part.begin)),
-                                       scale3(g->step_sheet, d->part.length), towards);
+      ways_in_box ways = ways_of_light(volume, add3(g->start, scale3(g->step_sheet, part->begin)),
+                                       scale3(g->step_sheet, part->length), towards);
       first = lanes_min(first, ways.first);
       last = lanes_max(lanes_min(last, ways.last), first);
     }
@@ -311,162 +242,76 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   return alpha;
 }
 
-/* Step 13 for one volume; false where none of it is there. */
-LANES_INLINE int classify_block(const shade_job *job, const shade_patch *patch, int block, block_density *d) {
-  const shade_volume *volume = patch->volume;
-  lanes before = lanes_load(patch->before + block * BLOCK_PIXELS);
-  lanes after = lanes_load(patch->current + block * BLOCK_PIXELS);
-  d->patch = patch;
-  d->middle = (before + after) * 0.5f;
-  d->before = classify_place(volume->classifier, before);
-  d->after = classify_place(volume->classifier, after);
-  if (lanes_bits(may_be_visible(volume->classifier, d->before, d->after)) == 0) return 0;
-  d->part = covered_block(patch->enter, patch->leave, block, job->height, job->spacing);
-  if (patch->enter != NULL) cut_way(d->part, &d->before, &d->after);
-  d->sums = sums_of_way(volume->classifier, d->before, d->after);
-  d->undivided = d->sums.extinction;
-  d->extinction = d->undivided * d->part.length;
-  return lanes_bits(d->extinction > 0.0f) != 0;
-}
-
-/* base^exponent for base in [0, 1] and exponent >= 0. */
-LANES_INLINE lanes power_of_part(lanes base, lanes exponent) {
-  return lanes_exp2(lanes_max(lanes_log2(lanes_max(base, lanes_set(1e-6f))) * exponent, lanes_set(-100.0f)));
-}
-
-/* Where in its optical depth a slab is seen on average, 0 (first) to 1: int e s exp(-e s) ds / (1 - exp(-e)) =
- * 1 / e - exp(-e) / (1 - exp(-e)) (derived); 1/2 - e / 12 for small e. */
-LANES_INLINE lanes seen_part(lanes e) {
-  lanes safe = lanes_max(e, lanes_set(0.05f)), left = lanes_exp_negative(safe);
-  return lanes_select(e < 0.05f, 0.5f - e * (1.0f / 12), 1.0f / safe - left / (1.0f - left));
-}
-
-/* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
- * with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is reached at
- * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes' mean, in slabs. */
-LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes total, lanes u) {
-  lanes sum = lanes_set(0);
-  for (int i = 0; i < count; i++) {
-    block_density *d = &densities[i];
-    const shade_volume *volume = d->patch->volume;
-    d->seen = lanes_set(0.5f);
-    d->evenly = u;
-    if (!volume->visible) continue;
-    lanes m = part_of_way(d->before, d->after, mean_place(d->before, d->after, &d->sums));
-    lanes_int rising = m >= 0.5f;
-    lanes side = lanes_max(lanes_select(rising, m, 1.0f - m), lanes_set(0.5f));
-    lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), (1.0f - side) / side);
-    d->seen = lanes_select(rising, t, 1.0f - t);
-    sum = sum + d->extinction * (d->part.begin + d->part.length * d->seen);
-  }
-  return sum / lanes_max(total, lanes_set(1e-30f));
-}
-
-/* A volume's gradient where its matter is seen; 0 for a medium. */
-LANES_INLINE lanes3 slope_of_block(const block_density *d) {
-  if (d->patch->volume->phong && d->sloped) return d->slope;
-  return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
-}
-
-/* Step 12 where shading asks for it: surfaces, and dense slabs whose light must be told from the eye's way. */
-LANES_INLINE void find_slopes(const shade_job *job, const block_geometry *g, block_density *densities, int count,
-                              uint32_t seen) {
-  int shadowed = 0;
-  for (int i = 0; i < job->light_count; i++) shadowed |= job->lights[i].shadowed;
-  for (int i = 0; i < count; i++) {
-    block_density *d = &densities[i];
-    const shade_volume *volume = d->patch->volume;
-    uint32_t active = volume->visible ? seen & lanes_bits(d->extinction > 0.0f) : 0;
-    uint32_t dense = shadowed ? active & lanes_bits(d->extinction * g->path > THIN_DEPTH) : 0;
-    d->sloped = (volume->phong ? active : dense) != 0;
-    if (d->sloped)
-      d->slope = gradient(volume, add3(g->start, scale3(g->step_sheet, d->part.begin + d->part.length * d->seen)), active);
-  }
-}
-
 /* Colours of the volumes, lit and averaged weighted by extinction. */
 static color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
                                   const block_density *densities, int count, lanes total) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
   for (int i = 0; i < count; i++) {
-    block_density d = densities[i];
-    const shade_volume *volume = d.patch->volume;
-    if (!volume->visible) continue;
-    table_place place = place_of_coordinate(d.before.x + (d.after.x - d.before.x) * d.seen);
+    const block_density *d = &densities[i];
+    const shade_volume *volume = d->patch->volume;
+    if (!d->there || !volume->visible) continue;
+    table_place place = place_of_coordinate(d->before + (d->after - d->before) * d->seen);
     color_lanes color;
     table_values(volume->classifier->color, place, color.c);
-    color_lanes lit = illuminate(job, volume, g, lights, color, slope_of_block(&d), d.middle);
-    lanes weight = count == 1 ? lanes_set(1.0f) : d.extinction * inverse;
+    color_lanes lit = illuminate(job, volume, g, lights, color, slope_of_block(d), d->way.first + d->way.last);
+    lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
     for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
   }
   return sum;
 }
 
-/* A block's way through the slab: geometry, and how much is seen of it where. */
-typedef struct block_slab {
-  block_geometry geometry; /* its position: where the slab is seen on average, and lit */
-  lanes total, depth;      /* extinction averaged over the slab; optical depth */
-  lanes opacity;           /* 0 where nothing is seen */
-  lanes_int seen;
-  int count;               /* of volumes that are there */
-} block_slab;
-
-/* Returns the pixels in which something is seen, one bit each; the slab is filled if there are any. alpha: of the
- * pixels so far. */
-LANES_INLINE uint32_t slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
-                                    int tile_y, int block, const float *alpha, block_density *densities,
-                                    block_slab *slab) {
-  int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK, count = 0;
-  lanes total = lanes_set(0);
-  for (int i = 0; i < patch_count; i++) {
-    if (!(patches[i].blocks >> block & 1) || !classify_block(job, &patches[i], block, &densities[count])) continue;
-    if (patches[i].volume->visible) total = total + densities[count].extinction;
-    count++;
-  }
-  slab->seen = total > 0.0f;
-  if (!job->back_to_front) slab->seen &= lanes_load(alpha) < OPAQUE;
-  uint32_t bits = lanes_bits(slab->seen);
-  if (bits == 0) return 0;
-  block_geometry *g = &slab->geometry;
-  *g = geometry_of_block(job, block_u(x), block_v(y));
-  slab->count = count;
-  slab->total = total;
-  slab->depth = total * g->path;
-  slab->opacity = lanes_keep(slab->seen, 1.0f - lanes_exp_negative(slab->depth));
-  lanes u = seen_part(slab->depth);
-  if (job->back_to_front) u = 1.0f - u;
-  lanes seen_at = place_of_part(densities, count, total, u);
-  g->start = add3(g->position, scale3(g->step_sheet, lanes_set(-0.5f)));
-  g->position = add3(g->start, scale3(g->step_sheet, seen_at));
-  find_slopes(job, g, densities, count, bits);
-  return bits;
+/* Samples of up to sixteen pixels, lit; 0 where nothing is seen. */
+static color_lanes light_slab(const shade_job *job, const block_slab *slab, const block_density *densities) {
+  arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
+  color_lanes lit = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  if (lanes_bits(slab->seen) == 0) return lit;
+  for (int i = 0; i < job->light_count; i++)
+    lights[i] = light_at(job, &job->lights[i], &slab->geometry, slab->depth, densities, slab->count);
+  lit = color_of_block(job, &slab->geometry, lights, densities, slab->count, slab->total);
+  for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(slab->seen, lit.c[c]);
+  return lit;
 }
 
 /* Returns true while some pixel of the block is not opaque. */
-static int shade_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y, int block,
-                       block_density *densities, float *pixels, uint64_t *samples) {
-  block_slab slab;
-  uint32_t bits = slab_of_block(job, patches, patch_count, tile_x, tile_y, block, pixels + 3 * BLOCK_PIXELS, densities,
-                                &slab);
-  if (bits == 0) return 1;
-  arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
-  for (int i = 0; i < job->light_count; i++)
-    lights[i] = light_at(job, &job->lights[i], &slab.geometry, slab.depth, densities, slab.count);
-  color_lanes lit = color_of_block(job, &slab.geometry, lights, densities, slab.count, slab.total);
-  for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(slab.seen, lit.c[c]);
-  lanes alpha = composite(job->back_to_front, slab.opacity, lit, pixels);
-  *samples += (uint64_t)__builtin_popcount(bits);
+LANES_INLINE int composite_packed(const shade_job *job, const packed_block *block, const block_slab *slab,
+                                  const color_lanes *lit, float *pixels) {
+  lanes_packing packing = lanes_packing_of(block->bits, block->at);
+  color_lanes color;
+  for (int c = 0; c < 3; c++) color.c[c] = lanes_unpack(&packing, lit->c[c]);
+  lanes alpha = composite(job->back_to_front, lanes_unpack(&packing, slab->opacity), color, pixels);
   return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
 }
 
+/* A tile's blocks, so that those that share a slab lie side by side: gradients then share voxels. */
+static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0, 1, 4, 5, 2, 3, 6, 7, 10, 11, 14, 15, 8, 9, 12, 13};
+
 static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
                            uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
-  block_density *densities = scratch;
-  uint32_t open = 0;
-  for (; blocks != 0; blocks &= blocks - 1) {
-    int block = __builtin_ctz(blocks);
-    if (shade_block(job, patches, patch_count, tile_x, tile_y, block, densities, pixels + block * 4 * BLOCK_PIXELS, samples))
+  block_density *ways = scratch, *densities = ways + patch_count;
+  packed_tile tile;
+  color_lanes lit[TILE_BLOCKS];
+  uint32_t seen = 0;
+  tile.slab_count = 0;
+  for (int i = 0; i < TILE_BLOCKS; i++) {
+    int block = NEAR_EACH_OTHER[i];
+    if ((blocks >> block & 1) == 0) continue;
+    block_slab slab;
+    uint32_t bits = slab_of_block(job, patches, patch_count, tile_x, tile_y, block, pixels + (block * 4 + 3) * BLOCK_PIXELS,
+                                  ways, &slab);
+    if (bits == 0) continue;
+    seen |= 1u << block;
+    tile.blocks[block] = pack_block(&tile, &slab, ways, bits, densities);
+  }
+  for (int s = 0; s < tile.slab_count; s++)
+    *samples += (uint64_t)__builtin_popcount(find_slab(job, densities + (size_t)s * (size_t)patch_count, &tile.slabs[s]));
+  for (int s = 0; s < tile.slab_count; s++)
+    lit[s] = light_slab(job, &tile.slabs[s], densities + (size_t)s * (size_t)patch_count);
+  uint32_t open = blocks & ~seen;
+  for (; seen != 0; seen &= seen - 1) {
+    int block = __builtin_ctz(seen);
+    const packed_block *packed = &tile.blocks[block];
+    if (composite_packed(job, packed, &tile.slabs[packed->slab], &lit[packed->slab], pixels + block * 4 * BLOCK_PIXELS))
       open |= 1u << block;
   }
   return open;

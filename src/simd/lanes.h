@@ -247,6 +247,59 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
 #endif
 }
 
+/* Some of sixteen lanes, one bit each, that move together to the lanes `at` and on, in their order. */
+typedef struct lanes_packing {
+#if defined(__AVX512F__)
+  __m512i from;       /* of the packed lanes: where each comes from */
+  __m512i to;         /* of the lanes with a bit: where each goes */
+  __mmask16 packed, bits;
+#else
+  int count, at;
+  unsigned char lane[LANES];
+#endif
+} lanes_packing;
+
+LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
+  lanes_packing packing;
+#if defined(__AVX512F__)
+  const __m512i first = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+  packing.bits = (__mmask16)bits;
+  packing.packed = (__mmask16)(((1u << __builtin_popcount(bits)) - 1) << at);
+  packing.from = _mm512_maskz_expand_epi32(packing.packed, _mm512_maskz_compress_epi32(packing.bits, first));
+  packing.to = _mm512_maskz_expand_epi32(packing.bits, _mm512_add_epi32(first, _mm512_set1_epi32(at)));
+#else
+  packing.count = 0;
+  packing.at = at;
+  for (; bits != 0; bits &= bits - 1) packing.lane[packing.count++] = (unsigned char)__builtin_ctz(bits);
+#endif
+  return packing;
+}
+
+/* The other lanes of `into` stay. */
+LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
+#if defined(__AVX512F__)
+  return (lanes)_mm512_mask_permutexvar_ps((__m512)into, packing->packed, packing->from, (__m512)x);
+#else
+  float from[LANES], to[LANES];
+  lanes_store(from, x);
+  lanes_store(to, into);
+  for (int i = 0; i < packing->count; i++) to[packing->at + i] = from[packing->lane[i]];
+  return lanes_load(to);
+#endif
+}
+
+/* Back to where they came from; the lanes without a bit are 0. */
+LANES_CALL lanes lanes_unpack(const lanes_packing *packing, lanes x) {
+#if defined(__AVX512F__)
+  return (lanes)_mm512_maskz_permutexvar_ps(packing->bits, packing->to, (__m512)x);
+#else
+  float from[LANES], to[LANES] = {0};
+  lanes_store(from, x);
+  for (int i = 0; i < packing->count; i++) to[packing->lane[i]] = from[packing->at + i];
+  return lanes_load(to);
+#endif
+}
+
 /* 2^x for |x| < 126, relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by its Taylor series in
  * f ln 2 to degree 7 (derived; the remainder (0.3466)^8/8! is 5e-9), 2^n by the exponent bits. */
 LANES_CALL lanes lanes_exp2(lanes x) {

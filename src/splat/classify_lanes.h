@@ -51,19 +51,19 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_place 
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
-/* How far along the way from a to b a place lies, 0 to 1; the middle where the way is short. */
-LANES_INLINE lanes part_of_way(table_place a, table_place b, table_place place) {
-  lanes way = b.x - a.x;
+/* How far along the way from coordinate a to b another lies, 0 to 1; the middle where the way is short. */
+LANES_INLINE lanes part_of_way(lanes a, lanes b, lanes coordinate) {
+  lanes way = b - a;
   lanes_int far = lanes_abs(way) > NEAR_ENTRIES;
-  return lanes_select(far, (place.x - a.x) / lanes_select(far, way, lanes_set(1.0f)), lanes_set(0.5f));
+  return lanes_select(far, (coordinate - a) / lanes_select(far, way, lanes_set(1.0f)), lanes_set(0.5f));
 }
 
-/* The place between a and b where, weighted by extinction, the density lies. */
-LANES_INLINE table_place mean_place(table_place a, table_place b, const way_sums *sums) {
-  lanes low = lanes_min(a.x, b.x), high = lanes_max(a.x, b.x), middle = (low + high) * 0.5f;
+/* The coordinate between a and b where, weighted by extinction, the density lies. */
+LANES_INLINE lanes mean_coordinate(lanes a, lanes b, const way_sums *sums) {
+  lanes low = lanes_min(a, b), high = lanes_max(a, b), middle = (low + high) * 0.5f;
   lanes_int usable = lanes_abs(sums->whole) > 0.0f;
   lanes mean = sums->moment / lanes_select(usable, sums->whole, lanes_set(1.0f));
-  return place_of_coordinate(lanes_min(lanes_max(lanes_select(usable, mean, middle), low), high));
+  return lanes_min(lanes_max(lanes_select(usable, mean, middle), low), high);
 }
 
 #endif

@@ -46,18 +46,32 @@ LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_w
   return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
 }
 
+/* Without the last block's lanes. */
+LANES_INLINE uint32_t drop_last_block(uint32_t active, uint32_t starts) {
+  uint32_t below = (2u << (31 - __builtin_clz(active))) - 1; /* up to the last lane */
+  return active & ((1u << (31 - __builtin_clz(starts & below))) - 1);
+}
+
+/* The lanes with a bit are part's. */
+LANES_INLINE void join_slopes(uint32_t bits, lanes3 part, lanes3 *slope) {
+  lanes_int mask = lanes_from_bits(bits);
+  *slope = (lanes3){lanes_select(mask, part.x, slope->x), lanes_select(mask, part.y, slope->y),
+                    lanes_select(mask, part.z, slope->z)};
+}
+
 #ifdef HL_BYTE_WINDOWS
-static __attribute__((noinline)) lanes3 slopes_of_window(const byte_window *window, const tap_slope_weights *w) {
-  whole_weights whole = round_weights(w->weight[0], 1), whole_slopes = round_weights(w->slope[0], 0);
-  byte_weights weights = split_weights(&whole), slopes = split_weights(&whole_slopes);
+typedef struct window_slope_weights { byte_weights weights, slopes; } window_slope_weights;
+
+static __attribute__((noinline)) lanes3 slopes_of_window(const byte_window *window, const window_slope_weights *along,
+                                                         const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int slice = 0; slice < window->slices; slice++) {
     __m512i voxels = window_slice(window, slice);
     lanes value = lanes_set(0), along_x = value, along_y = value;
     for (int y = 0; y < 4; y++) {
       __m512i taps = window_taps(window, voxels, y);
-      lanes plain = weigh_taps(taps, &weights);
-      along_x = along_x + weigh_taps(taps, &slopes) * w->weight[1][y];
+      lanes plain = weigh_taps(taps, &along->weights);
+      along_x = along_x + weigh_taps(taps, &along->slopes) * w->weight[1][y];
       along_y = along_y + plain * w->slope[1][y];
       value = value + plain * w->weight[1][y];
     }
@@ -67,6 +81,27 @@ static __attribute__((noinline)) lanes3 slopes_of_window(const byte_window *wind
     sum.z = sum.z + value * weight_of_slice(window, slice, w->slope[2]);
   }
   return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
+}
+
+/* As many blocks to a window as fit. False where even one does not. */
+static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
+                             const tap_slope_weights *w, lanes3 *slope) {
+  whole_weights whole = round_weights(w->weight[0], 1), whole_slopes = round_weights(w->slope[0], 0);
+  window_slope_weights along = {split_weights(&whole), split_weights(&whole_slopes)};
+  byte_window window;
+  for (uint32_t left = active; left != 0;) {
+    uint32_t together = left;
+    while (!open_window(grid, cell, together, &window))
+      if ((together = drop_last_block(together, starts)) == 0) return 0;
+    lanes3 part = slopes_of_window(&window, &along, w);
+    if (together == active) {
+      *slope = part;
+      return 1;
+    }
+    join_slopes(together, part, slope);
+    left &= ~together;
+  }
+  return 1;
 }
 #endif
 
@@ -78,6 +113,19 @@ static __attribute__((noinline)) lanes3 slopes_u16(const grid *grid, const tap_w
 }
 static __attribute__((noinline)) lanes3 slopes_f32(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
   return sum_slopes(grid, HL_STORAGE_F32, window, w);
+}
+
+static lanes3 slopes_of_taps(const grid *grid, const lanes_int cell[3], uint32_t active, const tap_slope_weights *w) {
+  tap_window window = window_at(grid, cell, active);
+  if (grid->storage == HL_STORAGE_U8) return slopes_u8(grid, &window, w);
+  if (grid->storage == HL_STORAGE_U16) return slopes_u16(grid, &window, w);
+  return slopes_f32(grid, &window, w);
+}
+
+/* Whether 32 bits hold the offsets between any two voxels; in larger grids they hold those within a block. */
+LANES_INLINE int fits_offsets(const grid *grid) {
+  return (uint64_t)grid->dimension[0] * (uint64_t)grid->dimension[1] * (uint64_t)grid->dimension[2] *
+             hl_storage_bytes(grid->storage) <= INT32_MAX;
 }
 
 static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uint32_t active, const tap_slope_weights *w) {
@@ -92,8 +140,10 @@ static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uin
   return slope;
 }
 
-/* Derivatives along the index axes, stored units a voxel, for the active lanes, of which there is one at least. */
-LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point, uint32_t active) {
+/* Derivatives along the index axes, stored units a voxel, for the active lanes, of which there is one at least.
+ * starts: the lanes at which those of one block of pixels follow those of another, the first included. */
+LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point, uint32_t active,
+                                     uint32_t starts) {
   tap_slope_weights w;
   lanes_int cell[3];
   lanes at[3] = {point.x, point.y, point.z};
@@ -112,18 +162,23 @@ LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int
     }
   }
 #ifdef HL_BYTE_WINDOWS
-  byte_window bytes;
-  if (grid->storage == HL_STORAGE_U8 && open_window(grid, cell, active, &bytes)) return slopes_of_window(&bytes, &w);
+  lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  if (grid->storage == HL_STORAGE_U8 && slopes_of_windows(grid, cell, active, starts, &w, &slope)) return slope;
 #endif
-  tap_window window = window_at(grid, cell, active);
-  if (grid->storage == HL_STORAGE_U8) return slopes_u8(grid, &window, &w);
-  if (grid->storage == HL_STORAGE_U16) return slopes_u16(grid, &window, &w);
-  return slopes_f32(grid, &window, &w);
+  if (fits_offsets(grid)) return slopes_of_taps(grid, cell, active, &w);
+  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (uint32_t left = active; left != 0;) {
+    uint32_t block = left;
+    for (uint32_t less = drop_last_block(left, starts); less != 0; less = drop_last_block(less, starts)) block = less;
+    join_slopes(block, slopes_of_taps(grid, cell, block, &w), &sum);
+    left &= ~block;
+  }
+  return sum;
 }
 
-static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active) {
-  return kernel->degree <= 3 ? slopes_of_degree(grid, kernel, 3, point, active)
-                             : slopes_of_degree(grid, kernel, HL_KERNEL_DEGREE, point, active);
+static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active, uint32_t starts) {
+  return kernel->degree <= 3 ? slopes_of_degree(grid, kernel, 3, point, active, starts)
+                             : slopes_of_degree(grid, kernel, HL_KERNEL_DEGREE, point, active, starts);
 }
 
 #endif

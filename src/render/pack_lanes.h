@@ -1,0 +1,62 @@
+/* render/pack_lanes.h - a tile's samples moved together before they are lit: where something may be seen in only some of a
+ * block's pixels, those of several blocks share sixteen lanes. */
+#ifndef HL_RENDER_PACK_LANES_H
+#define HL_RENDER_PACK_LANES_H
+
+#include "render/slab_lanes.h"
+
+/* Where a block's pixels went. */
+typedef struct packed_block { uint16_t bits, slab, at; } packed_block;
+
+typedef struct packed_tile {
+  block_slab slabs[TILE_BLOCKS];
+  int filled[TILE_BLOCKS];    /* lanes of them in use */
+  int slab_count;
+  packed_block blocks[TILE_BLOCKS];
+} packed_tile;
+
+/* A block's volumes before they are packed, and those of the slabs: [1 + TILE_BLOCKS][patches]. */
+_Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES, "a volume's scratch holds its slabs");
+
+/* The first slab with so many lanes left; a new one has nothing in any lane. */
+LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_count, block_density *densities) {
+  int s = 0;
+  while (s < tile->slab_count && tile->filled[s] + lanes_wanted > LANES) s++;
+  if (s < tile->slab_count) return s;
+  tile->slab_count++;
+  tile->filled[s] = 0;
+  tile->slabs[s].u = tile->slabs[s].v = lanes_set(0);
+  tile->slabs[s].starts = 0;
+  tile->slabs[s].count = patch_count;
+  for (int i = 0; i < patch_count; i++) densities[(size_t)s * (size_t)patch_count + (size_t)i].there = 0;
+  return s;
+}
+
+/* A way is lanes throughout. */
+enum { WAY_LANES = sizeof(block_way) / sizeof(lanes) };
+
+LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *from, block_density *into) {
+  const lanes *source = (const lanes *)&from->way;
+  lanes *way = (lanes *)&into->way;
+  for (int i = 0; i < WAY_LANES; i++) way[i] = lanes_pack(packing, into->there ? way[i] : lanes_set(0), source[i]);
+  into->patch = from->patch;
+  into->there = 1;
+}
+
+/* Moves the pixels of a block with a bit to a slab. densities: of all slabs. */
+LANES_INLINE packed_block pack_block(packed_tile *tile, const block_slab *block, const block_density *ways, uint32_t bits,
+                                     block_density *densities) {
+  int count = __builtin_popcount(bits), s = slab_with_room(tile, count, block->count, densities), at = tile->filled[s];
+  block_slab *slab = &tile->slabs[s];
+  lanes_packing packing = lanes_packing_of(bits, at);
+  slab->u = lanes_pack(&packing, slab->u, block->u);
+  slab->v = lanes_pack(&packing, slab->v, block->v);
+  slab->starts |= 1u << at;
+  tile->filled[s] += count;
+  slab->open = lanes_from_bits((1u << tile->filled[s]) - 1);
+  for (int i = 0; i < block->count; i++)
+    if (ways[i].there) pack_way(&packing, &ways[i], &densities[(size_t)s * (size_t)block->count + (size_t)i]);
+  return (packed_block){(uint16_t)bits, (uint16_t)s, (uint16_t)at};
+}
+
+#endif

@@ -1,0 +1,227 @@
+/* render/slab_lanes.h - the slab between two sheets before it is lit (steps 12 and 13): what of the volumes lies on
+ * sixteen rays through it, where it is seen, and its gradient there.
+ *
+ * The sixteen are a 4x4 block of pixels, or those of several blocks in which something is seen (pack_lanes.h). */
+#ifndef HL_RENDER_SLAB_LANES_H
+#define HL_RENDER_SLAB_LANES_H
+
+#include "light/attenuate_lanes.h"
+#include "render/shade.h"
+#include "splat/slope_lanes.h"
+
+/* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
+static const float OPAQUE = 1.0f - 1.0f / 2048;
+
+LANES_INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+LANES_INLINE lanes3 scale3(lanes3 a, lanes s) { return (lanes3){a.x * s, a.y * s, a.z * s}; }
+LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
+LANES_INLINE lanes3 set3(const float v[3]) { return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])}; }
+
+/* What the volumes share: where the pixels' rays are and how they look. */
+typedef struct block_geometry {
+  lanes3 position;       /* frame space, in the slab: where it is lit */
+  lanes3 start;          /* where the ray enters the slab */
+  lanes3 step_sheet;     /* to the next sheet along the ray */
+  lanes3 towards_eye;    /* unit */
+  lanes path;            /* of the eye's ray through the sheet; 0 behind the eye */
+} block_geometry;
+
+/* Derived: on the ray E + s W with s = step / H, H = h.W, moving one sheet gives W ds / H. */
+LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lanes v) {
+  const sheet_rays *rays = &job->rays;
+  block_geometry g;
+  g.position = rays_positions(rays, u, v);
+  g.path = path_through_sheet(rays, job->path, job->spacing * 0.5f, u, v); /* the rays end in the slab's middle */
+  if (!rays->perspective) {
+    g.step_sheet = set3(job->through);
+    g.towards_eye = set3(job->towards_eye);
+    return g;
+  }
+  lanes3 w = rays_directions(rays, u, v);
+  lanes inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
+  g.step_sheet = scale3(w, inverse * job->spacing);
+  g.towards_eye = scale3(w, -1.0f / lanes_sqrt(dot3(w, w)));
+  return g;
+}
+
+/* Step 12. df/dframe = (dindex/dframe)^T df/dindex, at a point of frame space; stored units. */
+LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t active, uint32_t starts) {
+  lanes at[3];
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis];
+    at[axis] = point.x * row[0] + point.y * row[1] + (point.z * row[2] + row[3]);
+  }
+  lanes3 slope = slopes_at(volume->grid, volume->kernel, (lanes3){at[0], at[1], at[2]}, active, starts);
+  const float(*m)[4] = volume->to_index;
+  return (lanes3){slope.x * m[0][0] + slope.y * m[1][0] + slope.z * m[2][0],
+                  slope.x * m[0][1] + slope.y * m[1][1] + slope.z * m[2][1],
+                  slope.x * m[0][2] + slope.y * m[1][2] + slope.z * m[2][2]};
+}
+
+/* One volume's way through the slab: its densities on the two sheets, and the part of the way that is in its box. */
+typedef struct block_way {
+  lanes first, last;
+  covered_part part;
+} block_way;
+
+typedef struct block_density {
+  const shade_patch *patch;
+  int there;           /* whether the volume may be visible in any of the pixels */
+  block_way way;
+  lanes before, after; /* coordinates in the tables: where the covered part starts and ends */
+  way_sums sums;       /* between the two */
+  lanes extinction;    /* averaged over the slab, the part outside the box counting as none */
+  lanes seen;          /* the part of the way at which its matter is seen */
+  lanes evenly;        /* the part at which it would be seen if its extinction were even */
+  lanes_int sloped;    /* where the gradient is known */
+  lanes3 slope;        /* where the matter is seen; elsewhere 0 */
+} block_density;
+
+/* In thinner slabs the gradient makes no difference to the light lost within. */
+static const float THIN_DEPTH = 1.0f / 64;
+
+/* A block's way through one volume; returns the pixels in which any of it may be visible. */
+LANES_INLINE lanes_int way_of_block(const shade_job *job, const shade_patch *patch, int block, block_way *way) {
+  const classifier *classifier = patch->volume->classifier;
+  way->first = lanes_load(patch->before + block * BLOCK_PIXELS);
+  way->last = lanes_load(patch->current + block * BLOCK_PIXELS);
+  way->part = covered_block(patch->enter, patch->leave, block, job->height, job->spacing);
+  return may_be_visible(classifier, classify_place(classifier, way->first), classify_place(classifier, way->last));
+}
+
+/* Step 13 for one volume: its extinction. */
+LANES_INLINE void classify_way(block_density *d) {
+  const classifier *classifier = d->patch->volume->classifier;
+  table_place a = classify_place(classifier, d->way.first), b = classify_place(classifier, d->way.last);
+  if (d->patch->enter != NULL) cut_way(d->way.part, &a, &b);
+  d->before = a.x;
+  d->after = b.x;
+  d->sums = sums_of_way(classifier, a, b);
+  d->extinction = d->sums.extinction * d->way.part.length;
+}
+
+/* base^exponent for base in [0, 1] and exponent >= 0. */
+LANES_INLINE lanes power_of_part(lanes base, lanes exponent) {
+  return lanes_exp2(lanes_max(lanes_log2(lanes_max(base, lanes_set(1e-6f))) * exponent, lanes_set(-100.0f)));
+}
+
+/* Where in its optical depth a slab is seen on average, 0 (first) to 1: int e s exp(-e s) ds / (1 - exp(-e)) =
+ * 1 / e - exp(-e) / (1 - exp(-e)) (derived); 1/2 - e / 12 for small e. left: exp(-e). */
+LANES_INLINE lanes seen_part(lanes e, lanes left) {
+  lanes_int thin = e < 0.05f;
+  lanes safe = lanes_select(thin, lanes_set(0.5f), left);
+  return lanes_select(thin, 0.5f - e * (1.0f / 12), 1.0f / lanes_max(e, lanes_set(0.05f)) - safe / (1.0f - safe));
+}
+
+/* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
+ * with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is reached at
+ * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes' mean, in slabs. */
+LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes total, lanes u) {
+  lanes sum = lanes_set(0);
+  for (int i = 0; i < count; i++) {
+    block_density *d = &densities[i];
+    if (!d->there) continue;
+    d->seen = lanes_set(0.5f);
+    d->evenly = u;
+    if (!d->patch->volume->visible) continue;
+    lanes m = part_of_way(d->before, d->after, mean_coordinate(d->before, d->after, &d->sums));
+    lanes_int rising = m >= 0.5f;
+    lanes side = lanes_max(lanes_select(rising, m, 1.0f - m), lanes_set(0.5f));
+    lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), (1.0f - side) / side);
+    d->seen = lanes_select(rising, t, 1.0f - t);
+    sum = sum + d->extinction * (d->way.part.begin + d->way.part.length * d->seen);
+  }
+  return sum / lanes_max(total, lanes_set(1e-30f));
+}
+
+/* A volume's gradient where its matter is seen; 0 for a medium. */
+LANES_INLINE lanes3 slope_of_block(const block_density *d) {
+  if (d->patch->volume->phong) return d->slope;
+  return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
+}
+
+/* Step 12 where shading asks for it: surfaces, and dense slabs whose light must be told from the eye's way. */
+LANES_INLINE void find_slopes(const shade_job *job, const block_geometry *g, block_density *densities, int count,
+                              lanes_int seen, uint32_t starts) {
+  int shadowed = 0;
+  for (int i = 0; i < job->light_count; i++) shadowed |= job->lights[i].shadowed;
+  for (int i = 0; i < count; i++) {
+    block_density *d = &densities[i];
+    if (!d->there) continue;
+    const shade_volume *volume = d->patch->volume;
+    d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
+    d->sloped = seen & (d->extinction > 0.0f);
+    if (!volume->phong) d->sloped &= d->extinction * g->path > THIN_DEPTH;
+    uint32_t active = volume->visible && (volume->phong || shadowed) ? lanes_bits(d->sloped) : 0;
+    if (active == 0) d->sloped = lanes_set_int(0);
+    else
+      d->slope = gradient(volume, add3(g->start, scale3(g->step_sheet, d->way.part.begin + d->way.part.length * d->seen)),
+                          active, starts);
+  }
+}
+
+/* Sixteen pixels' way through the slab: geometry, and how much is seen of it where. */
+typedef struct block_slab {
+  lanes u, v;              /* the pixels */
+  lanes_int open;          /* those that can still show something */
+  uint32_t starts;         /* lanes at which those of one block follow those of another; the first included */
+  int count;               /* of the tile's volumes */
+  block_geometry geometry; /* its position: where the slab is seen on average, and lit */
+  lanes total, depth;      /* extinction averaged over the slab; optical depth */
+  lanes opacity;           /* 0 where nothing is seen */
+  lanes_int seen;
+} block_slab;
+
+/* A block's ways and pixels. Returns the pixels in which something may be seen, one bit each; if there are none, the rest is
+ * not filled. alpha: of the pixels so far. */
+LANES_INLINE uint32_t slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
+                                    int tile_y, int block, const float *alpha, block_density *densities, block_slab *slab) {
+  lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < OPAQUE, visible = lanes_set_int(0);
+  if (lanes_bits(open) == 0) return 0;
+  for (int i = 0; i < patch_count; i++) {
+    block_density *d = &densities[i];
+    d->patch = &patches[i];
+    d->there = 0;
+    if (!(patches[i].blocks >> block & 1)) continue;
+    lanes_int may_be = way_of_block(job, &patches[i], block, &d->way);
+    d->there = lanes_bits(may_be) != 0;
+    if (patches[i].volume->visible) visible |= may_be;
+  }
+  slab->u = block_u(tile_x * TILE + block % 4 * BLOCK);
+  slab->v = block_v(tile_y * TILE + block / 4 * BLOCK);
+  slab->open = visible & open;
+  slab->starts = 1;
+  slab->count = patch_count;
+  return lanes_bits(slab->open);
+}
+
+/* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which something is
+ * seen, one bit each; if there are none, only the opacity is filled. */
+LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, block_slab *slab) {
+  lanes total = lanes_set(0);
+  for (int i = 0; i < slab->count; i++) {
+    block_density *d = &densities[i];
+    if (!d->there) continue;
+    classify_way(d);
+    if (d->patch->volume->visible) total = total + d->extinction;
+  }
+  slab->seen = slab->open & (total > 0.0f);
+  slab->opacity = lanes_set(0);
+  uint32_t bits = lanes_bits(slab->seen);
+  if (bits == 0) return 0;
+  block_geometry *g = &slab->geometry;
+  *g = geometry_of_block(job, slab->u, slab->v);
+  slab->total = total;
+  slab->depth = total * g->path;
+  lanes left = lanes_exp_negative(slab->depth);
+  slab->opacity = lanes_keep(slab->seen, 1.0f - left);
+  lanes u = seen_part(slab->depth, left);
+  if (job->back_to_front) u = 1.0f - u;
+  lanes seen_at = place_of_part(densities, slab->count, total, u);
+  g->start = add3(g->position, scale3(g->step_sheet, lanes_set(-0.5f)));
+  g->position = add3(g->start, scale3(g->step_sheet, seen_at));
+  find_slopes(job, g, densities, slab->count, slab->seen, slab->starts);
+  return bits;
+}
+
+#endif
