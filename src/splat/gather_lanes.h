@@ -155,7 +155,8 @@ LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uin
   return window;
 }
 
-LANES_INLINE lanes gather_block(const fill_source *source, const block_place *place, uint32_t active, int degree) {
+/* The weighted sum for the active lanes of a block. inside: all lanes are active, and all their taps lie in the grid. */
+LANES_INLINE lanes gather_block(const fill_source *source, const block_place *place, uint32_t active, int degree, int inside) {
   const grid *grid = source->grid;
   lanes weight[3][4];
   lanes_int cell[3] = {place->cell[0], place->cell[1], place->cell[2]};
@@ -163,14 +164,16 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
   tap_weights(source->kernel, degree, place->point.y - lanes_from_int(cell[1]), weight[1]);
   tap_weights(source->kernel, degree, place->point.z - lanes_from_int(cell[2]), weight[2]);
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
-  if ((lanes_bits(taps_inside(grid, cell)) & active) != active) {
+  if (!inside && (lanes_bits(taps_inside(grid, cell)) & active) != active) {
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);
     for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
 #ifdef HL_BYTE_WINDOWS
   byte_window bytes;
-  if (grid->storage == HL_STORAGE_U8 && open_window(grid, cell, active, &bytes)) return sum_window(&bytes, weights);
+  if (grid->storage == HL_STORAGE_U8 &&
+      (inside ? open_window_of_block(grid, cell, &bytes) : open_window(grid, cell, active, &bytes)))
+    return sum_window(&bytes, weights);
 #endif
   tap_window window = window_at(grid, cell, active);
   if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);
@@ -178,20 +181,40 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
   return sum_f32(grid, &window, weights);
 }
 
+/* One block's densities; returns whether any may show. */
+LANES_INLINE int gather_place(const fill_source *source, const block_place *place, int inside, float *density) {
+  uint32_t active = inside ? 0xffff : lanes_bits(place->inside);
+  lanes sum = lanes_set(0);
+  if (active == 0) {
+    lanes_store(density, sum);
+    return 0;
+  }
+  sum = source->kernel->degree <= 3 ? gather_block(source, place, active, 3, inside)
+                                    : gather_block(source, place, active, HL_KERNEL_DEGREE, inside);
+  sum = sum - source->grid->empty;
+  lanes_int shown = may_show(source, sum);
+  if (!inside) {
+    sum = lanes_keep(place->inside, sum);
+    shown = place->inside & may_show(source, sum);
+  }
+  lanes_store(density, sum);
+  return lanes_bits(shown) != 0;
+}
+
 static uint32_t gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {
   uint32_t filled = 0;
+  int inside = tile_is_inside(source, tile_x * TILE, tile_y * TILE);
   for (uint32_t left = need; left != 0; left &= left - 1) {
-    int block = __builtin_ctz(left);
-    block_place place = place_block(source, tile_x * TILE + block % 4 * BLOCK, tile_y * TILE + block / 4 * BLOCK);
-    uint32_t active = lanes_bits(place.inside);
-    lanes sum = lanes_set(0);
-    if (active != 0) {
-      sum = source->kernel->degree <= 3 ? gather_block(source, &place, active, 3)
-                                        : gather_block(source, &place, active, HL_KERNEL_DEGREE);
-      sum = lanes_keep(place.inside, sum - source->grid->empty);
-      if (lanes_bits(place.inside & may_show(source, sum)) != 0) filled |= 1u << block;
+    int block = __builtin_ctz(left), x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK, shows;
+    float *to = density + block * BLOCK_PIXELS;
+    if (inside) {
+      block_place place = place_block_inside(source, x, y);
+      shows = gather_place(source, &place, 1, to);
+    } else {
+      block_place place = place_block(source, x, y);
+      shows = gather_place(source, &place, 0, to);
     }
-    lanes_store(density + block * BLOCK_PIXELS, sum);
+    filled |= (uint32_t)shows << block;
   }
   return filled;
 }

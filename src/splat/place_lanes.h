@@ -43,4 +43,30 @@ LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
   return place;
 }
 
+/* Whether the taps of all pixels of a tile lie in the grid, with room for rounding. A sheet's part that a tile's pixels
+ * cover has straight edges: the pixels lie among those at its corners, unless some of them lie behind the view. */
+LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
+  const sheet_rays *rays = &source->rays;
+  const float spare = 1.0f / 64;
+  lanes u = lanes_load(block_column) * 5.0f + (float)x, v = lanes_load(block_row) * 5.0f + (float)y;
+  lanes3 p = rays_positions(rays, u, v);
+  lanes axis[3] = {p.x, p.y, p.z};
+  lanes_int inside = lanes_set_int(-1);
+  if (rays->perspective) inside = u * rays->hu + (v * rays->hv + rays->h0) > 0.0f;
+  for (int a = 0; a < 3; a++)
+    inside &= (axis[a] > 1.0f + spare) & (axis[a] < (float)source->grid->dimension[a] - 2.0f - spare);
+  return lanes_bits(inside) == 0xffff;
+}
+
+/* As place_block() in such a tile. */
+LANES_INLINE block_place place_block_inside(const fill_source *source, int x, int y) {
+  block_place place;
+  place.point = rays_positions(&source->rays, block_u(x), block_v(y));
+  place.cell[0] = lanes_truncate(place.point.x);
+  place.cell[1] = lanes_truncate(place.point.y);
+  place.cell[2] = lanes_truncate(place.point.z);
+  place.inside = lanes_set_int(-1);
+  return place;
+}
+
 #endif

@@ -45,14 +45,34 @@ typedef struct byte_window {
   int slices;
 } byte_window;
 
-/* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. False where they do not fit a window. */
-LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, byte_window *window) {
+/* The least cell of the active lanes along each axis. */
+LANES_INLINE void lowest_of_lanes(const lanes_int cell[3], uint32_t active, int32_t low[3]) {
+  for (int a = 0; a < 3; a++) low[a] = _mm512_mask_reduce_min_epi32((__mmask16)active, (__m512i)cell[a]);
+}
+
+/* The same of a whole block of pixels, in fewer steps: along a row or a column places rise or fall throughout, so that the
+ * least is at a corner, rounding apart. */
+LANES_INLINE void lowest_of_corners(const lanes_int cell[3], int32_t low[3]) {
+  const __m512i of_two = _mm512_set_epi32(0, 0, 0, 0, 15, 12, 3, 0, 31, 28, 19, 16, 15, 12, 3, 0);
+  __m512i corners = _mm512_permutex2var_epi32((__m512i)cell[0], of_two, (__m512i)cell[1]);
+  corners = _mm512_mask_permutexvar_epi32(corners, 0x0f00, of_two, (__m512i)cell[2]);
+  corners = _mm512_min_epi32(corners, _mm512_shuffle_epi32(corners, _MM_PERM_CDAB));
+  corners = _mm512_min_epi32(corners, _mm512_shuffle_epi32(corners, _MM_PERM_BADC));
+  low[0] = _mm_cvtsi128_si32(_mm512_castsi512_si128(corners));
+  low[1] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 1));
+  low[2] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 2));
+}
+
+/* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each axis. False where they
+ * do not fit a window. */
+LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3], uint32_t active,
+                                byte_window *window) {
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
   int32_t low[3];
   __m512i offset[3];
   if (grid->dimension[0] < WINDOW_SIDE || grid->dimension[1] < WINDOW_SIDE) return 0;
   for (int a = 0; a < 3; a++) {
-    low[a] = _mm512_mask_reduce_min_epi32(lanes_mask, (__m512i)cell[a]) - 1;
+    low[a] = lowest[a] - 1;
     if (a < 2 && low[a] > grid->dimension[a] - WINDOW_SIDE) low[a] = grid->dimension[a] - WINDOW_SIDE;
     offset[a] = _mm512_maskz_sub_epi32(lanes_mask, (__m512i)cell[a], _mm512_set1_epi32(low[a] + 1));
     fits = _mm512_mask_cmple_epu32_mask(fits, offset[a], _mm512_set1_epi32(WINDOW_SPREAD));
@@ -71,6 +91,19 @@ LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t
   window->voxels = (const unsigned char *)grid->voxels + (size_t)low[2] * window->slice_bytes +
                    (size_t)low[1] * window->row_bytes + (size_t)low[0];
   return 1;
+}
+
+LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, byte_window *window) {
+  int32_t lowest[3];
+  lowest_of_lanes(cell, active, lowest);
+  return open_window_at(grid, cell, lowest, active, window);
+}
+
+/* Of a block of neighbouring pixels, all of them active. */
+LANES_INLINE int open_window_of_block(const grid *grid, const lanes_int cell[3], byte_window *window) {
+  int32_t lowest[3];
+  lowest_of_corners(cell, lowest);
+  return open_window_at(grid, cell, lowest, 0xffff, window) || open_window(grid, cell, 0xffff, window);
 }
 
 LANES_INLINE __m128i two_rows(const unsigned char *row, size_t row_bytes) {
