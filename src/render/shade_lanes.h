@@ -9,22 +9,22 @@ static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
 typedef struct color_lanes { lanes c[3]; } color_lanes;
 
-/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1]. */
-LANES_INLINE lanes mean_transmittance(lanes x) {
+/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1]. left: exp(-x). */
+LANES_INLINE lanes mean_transmittance(lanes x, lanes left) {
   lanes near = 1.0f - x * (0.5f - x * (1.0f / 6));
-  lanes safe = lanes_max(x, lanes_set(0.01f));
-  return lanes_select(x < 0.01f, near, (1.0f - lanes_exp_negative(safe)) / safe);
+  return lanes_select(x < 0.01f, near, (1.0f - left) / lanes_max(x, lanes_set(0.01f)));
 }
 
 /* Light left within the slab, averaged as the eye sees it: with e and l the slab's optical depths for the eye and for
  * the light (derived; exact for any extinction that varies along the normal only). Entering on the same side:
  *     int e exp(-e s) exp(-l s) ds / (1 - exp(-e)) = phi(e + l) / phi(e);
  * entering on opposite sides, exp(-l (1 - s)) in place of exp(-l s):
- *     (exp(-l) - exp(-e)) / (e - l) / phi(e) = exp(-min) phi(|e - l|) / phi(e). */
-LANES_INLINE lanes own_transmittance(int back_to_front, lanes e, lanes l) {
-  lanes seen = back_to_front ? lanes_exp_negative(lanes_min(e, l)) * mean_transmittance(lanes_abs(e - l))
-                             : mean_transmittance(e + l);
-  return lanes_min(seen / mean_transmittance(e), lanes_set(1.0f));
+ *     (exp(-l) - exp(-e)) / (e - l) / phi(e) = exp(-min) phi(|e - l|) / phi(e). left: exp(-e). */
+LANES_INLINE lanes own_transmittance(int back_to_front, lanes e, lanes left, lanes l) {
+  lanes both = back_to_front ? lanes_abs(e - l) : e + l;
+  lanes seen = mean_transmittance(both, lanes_exp_negative(both));
+  if (back_to_front) seen = lanes_exp_negative(lanes_min(e, l)) * seen;
+  return lanes_min(seen / mean_transmittance(e, left), lanes_set(1.0f));
 }
 
 /* One channel of a shadow buffer at continuous pixel coordinates, 1 outside it. */
@@ -155,8 +155,9 @@ LANES_INLINE int is_dark(const color_lanes *light) {
   return lanes_bits((light->c[0] > 0.0f) | (light->c[1] > 0.0f) | (light->c[2] > 0.0f)) == 0;
 }
 
-LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_geometry *g,
-                                     lanes depth, const block_density *densities, int count) {
+LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_slab *slab,
+                                     const block_density *densities) {
+  const block_geometry *g = &slab->geometry;
   arriving_light arriving;
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
   if (light->parallel) {
@@ -181,13 +182,13 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   }
   arriving.shadowed = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
-  light_depths depths = depths_of_light(job, g, densities, count, arriving.towards, path);
+  light_depths depths = depths_of_light(job, g, densities, slab->count, arriving.towards, path);
   color_lanes reached = reaching(light, g->position);
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     if (c < light->channels)
       transmittance = reached.c[c] * lanes_exp_negative(depths.before[c]) *
-                      own_transmittance(job->back_to_front, depth, depths.within[c]);
+                      own_transmittance(job->back_to_front, slab->depth, slab->left, depths.within[c]);
     arriving.shadowed.c[c] = arriving.shadowed.c[c] * transmittance;
   }
   return arriving;
@@ -266,8 +267,7 @@ static color_lanes light_slab(const shade_job *job, const block_slab *slab, cons
   arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
   color_lanes lit = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   if (lanes_bits(slab->seen) == 0) return lit;
-  for (int i = 0; i < job->light_count; i++)
-    lights[i] = light_at(job, &job->lights[i], &slab->geometry, slab->depth, densities, slab->count);
+  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], slab, densities);
   lit = color_of_block(job, &slab->geometry, lights, densities, slab->count, slab->total);
   for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(slab->seen, lit.c[c]);
   return lit;

@@ -168,6 +168,7 @@ typedef struct block_slab {
   int count;               /* of the tile's volumes */
   block_geometry geometry; /* its position: where the slab is seen on average, and lit */
   lanes total, depth;      /* extinction averaged over the slab; optical depth */
+  lanes left;              /* exp(-depth) */
   lanes opacity;           /* 0 where nothing is seen */
   lanes_int seen;
 } block_slab;
@@ -213,9 +214,9 @@ LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, 
   *g = geometry_of_block(job, slab->u, slab->v);
   slab->total = total;
   slab->depth = total * g->path;
-  lanes left = lanes_exp_negative(slab->depth);
-  slab->opacity = lanes_keep(slab->seen, 1.0f - left);
-  lanes u = seen_part(slab->depth, left);
+  slab->left = lanes_exp_negative(slab->depth);
+  slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
+  lanes u = seen_part(slab->depth, slab->left);
   if (job->back_to_front) u = 1.0f - u;
   lanes seen_at = place_of_part(densities, slab->count, total, u);
   g->start = add3(g->position, scale3(g->step_sheet, lanes_set(-0.5f)));
