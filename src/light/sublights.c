@@ -9,9 +9,7 @@
 /* More than this is refused beforehand. */
 static const double GREATEST_BYTES = 4294967296.0;
 
-/* How far apart the parts' steps are at worst, as a part of the light: an M-th of it, as a box that a blur closes. */
-static const double CLOSED_PART = 0.4;
-enum { GREATEST_BLURS = 12 };
+enum { MOVED_IMAGES = SLAB_IMAGES - 1 };
 
 /* What part i of side x side sees; the greatest numbers of tiles. */
 static void place_part(const light_source *source, int side, int i, vec3 normal, const shadow_extent *extent, view *view,
@@ -29,32 +27,8 @@ static void place_part(const light_source *source, int side, int i, vec3 normal,
 
 static void place_parts(sublights *sublights, const light_source *source, int side, vec3 normal,
                         const shadow_extent *extent) {
-  for (int i = 0; i < sublights->count; i++) {
-    sublight *part = &sublights->parts[i];
-    place_part(source, side, i, normal, extent, &part->view, &sublights->tiles_x, &sublights->tiles_y);
-    part->pixel = vec3_length(part->view.du);
-  }
-}
-
-/* omega of a unit wide light (soft_cascade.h). */
-static double omega_at(const sublights *sublights, double height) {
-  if (sublights->parallel) return height;
-  double distance = height - sublights->light_height;
-  return distance > 0 ? -1 / distance : -INFINITY;
-}
-
-/* The blurs' variances add up to that of a box over CLOSED_PART of the steps between M parts, for the sweep's widest
- * penumbra; it grows evenly on the way there, and blurs come when one has a pixel's variance or so. */
-static void plan_blurs(sublights *sublights, int side, double first, double last) {
-  double start = omega_at(sublights, first), end = omega_at(sublights, last), pixel = sublights->parts[0].pixel;
-  double widest = fmax(sublights->width_u, sublights->width_v) / pixel;
-  if (!(end - start < 2 * TILE * fmax(sublights->tiles_x, sublights->tiles_y) / widest))
-    start = end - 2 * TILE * fmax(sublights->tiles_x, sublights->tiles_y) / widest;
-  double gap = (end - start) * CLOSED_PART / side, variance = gap * gap / 12;
-  double blurs = fmin(ceil(variance * widest * widest), GREATEST_BLURS);
-  sublights->step = blurs > 0 ? (end - start) / blurs : INFINITY;
-  sublights->variance = blurs > 0 ? variance / blurs : 0;
-  sublights->next = start + sublights->step;
+  for (int i = 0; i < sublights->count; i++)
+    place_part(source, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x, &sublights->tiles_y);
 }
 
 static void lay_out_planes(sublights *sublights) {
@@ -62,42 +36,44 @@ static void lay_out_planes(sublights *sublights) {
   sublights->plane = ((size_t)sublights->tiles_y * TILE + 2 * SUBLIGHT_MARGIN) * sublights->stride;
 }
 
-uint64_t hl_sublights_bytes(const light_source *source, int side, vec3 normal, const shadow_extent *extent, int channels) {
+uint64_t hl_sublights_bytes(const light_source *source, int side, vec3 normal, const shadow_extent *extent, int channels,
+                            const view *slab, int reach) {
   sublights planned = {.channels = channels};
-  uint64_t count = (uint64_t)side * (uint64_t)side;
+  uint64_t count = (uint64_t)side * (uint64_t)side, slab_tiles = (uint64_t)hl_tiles(slab->width) * (uint64_t)hl_tiles(slab->height);
   view view;
   for (int i = 0; i < side * side; i++)
     place_part(source, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
   lay_out_planes(&planned);
   uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
-  return (count + 1) * (uint64_t)channels * planned.plane * sizeof(float) + (2 * count + 1) * tiles +
-         count * (sizeof *planned.parts + sizeof *planned.lookups);
+  return count * (uint64_t)channels * planned.plane * sizeof(float) + count * tiles + slab_tiles * sizeof *planned.rows +
+         count * (sizeof *planned.parts + sizeof *planned.lookups) +
+         hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) - hl_shadow_buffer_bytes(slab, 0, false, reach);
 }
 
-static hl_status allocate(hl_context *context, hl_pool *pool, sublights *sublights, hl_error *error) {
+static hl_status allocate(hl_context *context, hl_pool *pool, sublights *sublights, const shadow_buffer *slab, hl_error *error) {
   size_t count = (size_t)sublights->count, channels = (size_t)sublights->channels;
   size_t tiles = (size_t)sublights->tiles_x * (size_t)sublights->tiles_y;
   lay_out_planes(sublights);
-  size_t floats = (count + 1) * channels * sublights->plane;
+  size_t floats = count * channels * sublights->plane, moved = MOVED_IMAGES * channels * slab->plane;
   if ((double)floats * sizeof(float) > GREATEST_BYTES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "/render/light_samples: %zu parts of a light need %.1f GB of shadow buffers, more than 4.3: use fewer, or a "
                    "lower shadow_resolution", count, (double)floats * sizeof(float) / 1e9);
   sublights->memory = hl_allocate(context, floats, sizeof(float));
-  sublights->flags = hl_allocate_zeroed(context, 2 * count + 1, tiles);
+  sublights->flags = hl_allocate_zeroed(context, count, tiles);
   sublights->lookups = hl_allocate(context, count, sizeof *sublights->lookups);
-  if (sublights->memory == NULL || sublights->flags == NULL || sublights->lookups == NULL)
-    return hl_fail_memory(error, floats * sizeof(float), "the parts of a light");
+  sublights->moved = hl_allocate(context, moved, sizeof(float));
+  sublights->rows = hl_allocate_zeroed(context, (size_t)slab->tiles_x * (size_t)slab->tiles_y, sizeof *sublights->rows);
+  if (sublights->memory == NULL || sublights->flags == NULL || sublights->lookups == NULL || sublights->moved == NULL ||
+      sublights->rows == NULL)
+    return hl_fail_memory(error, (floats + moved) * sizeof(float), "the parts of a light");
   hl_pool_fill(pool, sublights->memory, floats, 1);
-  size_t origin = SUBLIGHT_MARGIN * sublights->stride + SUBLIGHT_MARGIN;
+  hl_pool_fill(pool, sublights->moved, moved, 1);
   for (size_t i = 0; i < count; i++) {
     sublight *part = &sublights->parts[i];
-    part->pixels = sublights->memory + i * channels * sublights->plane + origin;
-    part->touched = sublights->flags + 2 * i * tiles;
-    part->dark = part->touched + tiles;
+    part->pixels = sublights->memory + i * channels * sublights->plane + SUBLIGHT_MARGIN * sublights->stride + SUBLIGHT_MARGIN;
+    part->dark = sublights->flags + i * tiles;
   }
-  sublights->spare = sublights->memory + count * channels * sublights->plane + origin;
-  sublights->spare_touched = sublights->flags + 2 * count * tiles;
   return HL_OK;
 }
 
@@ -113,44 +89,37 @@ static hl_status weigh_parts(hl_context *context, sublights *sublights, const li
   return HL_OK;
 }
 
-/* Where samples find each part's light. */
-static void point_lookups(sublights *sublights) {
-  for (int i = 0; i < sublights->count; i++)
-    for (int c = 0; c < sublights->channels; c++)
-      sublights->lookups[i].transmittance[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
-}
-
 hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *sublights, const light_source *source,
-                             int side, const sheet_light *seen, vec3 normal, const shadow_extent *extent, int channels,
-                             double first, double last, hl_error *error) {
+                             int side, vec3 normal, const shadow_extent *extent, const shadow_buffer *slab, hl_error *error) {
   size_t count = (size_t)side * (size_t)side;
   sublights->parts = hl_allocate_zeroed(context, count, sizeof *sublights->parts);
   if (sublights->parts == NULL) return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
   sublights->count = (int)count;
-  sublights->channels = channels;
-  sublights->parallel = source->parallel;
-  sublights->light_height = vec3_dot(source->position, normal);
-  sublights->width_u = seen->width_u;
-  sublights->width_v = seen->width_v;
+  sublights->channels = slab->channels;
   place_parts(sublights, source, side, normal, extent);
-  plan_blurs(sublights, side, first, last);
-  hl_status status = allocate(context, pool, sublights, error);
+  hl_status status = allocate(context, pool, sublights, slab, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < count; i++) {
     sublights->lookups[i] = hl_lookup_of_view(&sublights->parts[i].view);
     sublights->lookups[i].stride = sublights->stride;
+    for (int c = 0; c < sublights->channels; c++)
+      sublights->lookups[i].transmittance[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
   }
-  point_lookups(sublights);
   return source->light->emission.pixels != NULL ? weigh_parts(context, sublights, source, side, error) : HL_OK;
 }
 
 void hl_sublights_release(hl_context *context, sublights *sublights) {
-  void *owned[] = {sublights->parts, sublights->lookups, sublights->memory, sublights->flags};
+  void *owned[] = {sublights->parts, sublights->lookups, sublights->memory, sublights->flags, sublights->moved, sublights->rows};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(context, owned[i]);
   memset(sublights, 0, sizeof *sublights);
 }
 
 /* ---- compositing ---- */
+
+/* Pixel (0,0) of one of the slab's images but the first. */
+static float *moved_image(const sublights *sublights, const shadow_buffer *slab, int channel, int image) {
+  return sublights->moved + ((size_t)channel * MOVED_IMAGES + (size_t)image - 1) * slab->plane + slab->origin;
+}
 
 /* Where the ray of a part's pixel coordinates meets the sheet, in the slab's; false behind either. */
 static bool slab_place(const sublight *part, const view *slab, vec3 normal, double height, double at, double uv[2]) {
@@ -167,7 +136,8 @@ static void map_part(const sublights *sublights, sublight *part, const shadow_bu
   double zero[2], other[2];
   part->reaches = slab_place(part, &slab->view, normal, height, 0, zero) &&
                   slab_place(part, &slab->view, normal, height, far, other);
-  part->job = (sublight_job){.slab_stride = slab->stride, .slab_width = (float)slab->view.width,
+  part->job = (sublight_job){.slab_stride = slab->stride, .rows = sublights->rows, .slab_tiles_x = slab->tiles_x,
+                             .slab_tiles_y = slab->tiles_y, .slab_width = (float)slab->view.width,
                              .slab_height = (float)slab->view.height, .stride = sublights->stride,
                              .channels = sublights->channels};
   for (int axis = 0; axis < 2 && part->reaches; axis++) {
@@ -177,7 +147,8 @@ static void map_part(const sublights *sublights, sublight *part, const shadow_bu
     part->job.shift[axis] = (float)zero[axis];
   }
   for (int c = 0; c < sublights->channels; c++) {
-    part->job.slab[c] = slab->transmittance[c];
+    part->job.slab[c][0] = slab->transmittance[c];
+    for (int i = 1; i < SLAB_IMAGES; i++) part->job.slab[c][i] = moved_image(sublights, slab, c, i);
     part->job.transmittance[c] = part->pixels + (size_t)c * sublights->plane;
   }
 }
@@ -185,11 +156,8 @@ static void map_part(const sublights *sublights, sublight *part, const shadow_bu
 typedef struct sublight_task {
   sublights *sublights;
   shadow_buffer *slab;
-  sublight *part;
   const sublight_functions *functions;
-  int x0, x1, y0, y1; /* tiles of the slab that were touched lie between these */
-  blur_add_job blur;
-  int reach_x, reach_y;
+  int x0, x1, y0, y1; /* tiles of the slab that are present lie between these */
 } sublight_task;
 
 /* First and last tile of `to` under pixels from x to x + TILE of one axis, scaled and shifted; a pixel to spare. */
@@ -206,15 +174,24 @@ static bool any_marked(const unsigned char *marks, int tiles_x, int x0, int x1, 
   return false;
 }
 
-/* What was touched of the slab; false: nothing. */
-static bool bound_touched(const shadow_buffer *slab, sublight_task *task) {
+/* Whether anything of the slab is in these of its tiles. */
+static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1) {
+  for (int y = y0; y <= y1; y++)
+    for (int x = x0; x <= x1; x++)
+      if (job->rows[(size_t)y * (size_t)job->slab_tiles_x + (size_t)x] != 0) return true;
+  return false;
+}
+
+/* What is present of the slab; false: nothing. */
+static bool bound_present(sublight_task *task) {
+  const shadow_buffer *slab = task->slab;
   task->x0 = slab->tiles_x;
   task->y0 = slab->tiles_y;
   task->x1 = task->y1 = -1;
   for (int y = 0; y < slab->tiles_y; y++) {
-    const unsigned char *row = slab->tile_touched + (size_t)y * (size_t)slab->tiles_x;
+    const uint32_t *row = task->sublights->rows + (size_t)y * (size_t)slab->tiles_x;
     for (int x = 0; x < slab->tiles_x; x++) {
-      if (!row[x]) continue;
+      if (row[x] == 0) continue;
       if (x < task->x0) task->x0 = x;
       if (x > task->x1) task->x1 = x;
       if (y < task->y0) task->y0 = y;
@@ -250,72 +227,48 @@ static void composite_row(void *data, size_t index, int worker) {
     int x0, x1;
     if (part->dark[tile]) continue;
     tiles_under((double)x * TILE, (double)part->job.scale[0], (double)part->job.shift[0], slab->tiles_x, &x0, &x1);
-    if (!any_marked(slab->tile_touched, slab->tiles_x, x0, x1, y0, y1, 1)) continue;
-    part->dark[tile] = !task->functions->composite(&part->job, x, y);
-    part->touched[tile] = 1;
+    if (any_present(&part->job, x0, x1, y0, y1))
+      part->dark[tile] = !task->functions->composite(&part->job, x, y);
   }
-}
-
-/* ---- blurring ---- */
-
-static bool any_touched_near(const sublights *all, const sublight *part, int x, int y, int reach_x, int reach_y) {
-  int x0 = x < reach_x ? 0 : x - reach_x, y0 = y < reach_y ? 0 : y - reach_y;
-  int x1 = x + reach_x < all->tiles_x ? x + reach_x : all->tiles_x - 1;
-  int y1 = y + reach_y < all->tiles_y ? y + reach_y : all->tiles_y - 1;
-  return any_marked(part->touched, all->tiles_x, x0, x1, y0, y1, 1);
-}
-
-static void fill_ones(const sublights *all, float *pixels, int x, int y) {
-  for (size_t row = 0; row < TILE; row++)
-    for (size_t i = 0; i < TILE; i++) pixels[((size_t)y * TILE + row) * all->stride + (size_t)x * TILE + i] = 1;
-}
-
-/* A row of tiles from the part's planes to the spare ones. */
-static void blur_row(void *data, size_t index, int worker) {
-  (void)worker;
-  const sublight_task *task = data;
-  const sublights *all = task->sublights;
-  const sublight *part = task->part;
-  int y = (int)index;
-  for (int x = 0; x < all->tiles_x; x++) {
-    size_t tile = index * (size_t)all->tiles_x + (size_t)x, at = index * TILE * all->stride + (size_t)x * TILE;
-    bool touched = any_touched_near(all, part, x, y, task->reach_x, task->reach_y);
-    const float *left[HL_CHANNELS] = {NULL, NULL, NULL};
-    for (int c = 0; c < all->channels; c++) {
-      size_t plane = (size_t)c * all->plane;
-      blur_add_job job = task->blur;
-      job.from = part->pixels + plane;
-      job.to = all->spare + plane;
-      left[c] = job.to + at;
-      if (touched) task->functions->blur(&job, x, y);
-      else if (all->spare_touched[tile]) fill_ones(all, job.to, x, y);
-    }
-    all->spare_touched[tile] = touched;
-    part->dark[tile] = touched && task->functions->lit_blocks(left, all->channels, all->stride) == 0;
-  }
-}
-
-static void blur_parts(sublights *all, hl_pool *pool, const sublight_functions *functions) {
-  for (int i = 0; i < all->count; i++) {
-    sublight *part = &all->parts[i];
-    double u = all->width_u / part->pixel, v = all->width_v / part->pixel;
-    sublight_task task = {.sublights = all, .part = part, .functions = functions, .blur = {.stride = all->stride}};
-    task.blur.u = hl_blur_box_of_variance(all->variance * u * u);
-    task.blur.v = hl_blur_box_of_variance(all->variance * v * v);
-    task.reach_x = (task.blur.u.reach + TILE) / TILE;
-    task.reach_y = (task.blur.v.reach + TILE) / TILE;
-    hl_pool_run(pool, (size_t)all->tiles_y, blur_row, &task);
-    float *pixels = part->pixels;
-    unsigned char *touched = part->touched;
-    part->pixels = all->spare;
-    part->touched = all->spare_touched;
-    all->spare = pixels;
-    all->spare_touched = touched;
-  }
-  point_lookups(all);
 }
 
 /* ---- the slab ---- */
+
+static void fill_ones(float *pixels, size_t stride) {
+  for (size_t row = 0; row < TILE; row++)
+    for (size_t i = 0; i < TILE; i++) pixels[row * stride + i] = 1;
+}
+
+/* The images of one row of tiles. Those of a tile hold pixels of the next ones too. */
+static void move_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const sublight_task *task = data;
+  const sublights *all = task->sublights;
+  const shadow_buffer *slab = task->slab;
+  int y = (int)index, y1 = y + 1 < slab->tiles_y ? y + 1 : y;
+  for (int x = 0; x < slab->tiles_x; x++) {
+    int x1 = x + 1 < slab->tiles_x ? x + 1 : x;
+    if (!any_marked(slab->tile_touched, slab->tiles_x, x, x1, y, y1, 1)) continue;
+    for (int c = 0; c < all->channels; c++) {
+      half_pixel_job job = {.slab = slab->transmittance[c], .slab_stride = slab->stride};
+      for (int i = 1; i < SLAB_IMAGES; i++) job.moved[i] = moved_image(all, slab, c, i);
+      all->rows[index * (size_t)slab->tiles_x + (size_t)x] |= task->functions->half_pixel(&job, x, y);
+    }
+  }
+}
+
+/* Whether the light of some part reaches a tile. */
+static bool is_lit(const sublights *all, int x, int y) {
+  for (int i = 0; i < all->count; i++) {
+    const sublight *part = &all->parts[i];
+    int x0, x1, y0, y1;
+    if (!part->reaches) continue;
+    part_tiles(part, 0, x, x, all->tiles_x, &x0, &x1);
+    part_tiles(part, 1, y, y, all->tiles_y, &y0, &y1);
+    if (any_marked(part->dark, all->tiles_x, x0, x1, y0, y1, 0)) return true;
+  }
+  return false;
+}
 
 /* Tiles of the slab become ones again; those that no part's light reaches need not be filled. */
 static void clear_row(void *data, size_t index, int worker) {
@@ -324,22 +277,14 @@ static void clear_row(void *data, size_t index, int worker) {
   const sublights *all = task->sublights;
   shadow_buffer *slab = task->slab;
   for (int x = 0; x < slab->tiles_x; x++) {
-    size_t tile = index * (size_t)slab->tiles_x + (size_t)x;
-    for (int c = 0; c < slab->channels && slab->tile_touched[tile]; c++)
-      for (size_t row = 0; row < TILE; row++)
-        for (size_t i = 0; i < TILE; i++)
-          slab->transmittance[c][(index * TILE + row) * slab->stride + (size_t)x * TILE + i] = 1;
-    slab->tile_touched[tile] = 0;
-    bool lit = false;
-    for (int i = 0; i < all->count && !lit; i++) {
-      const sublight *part = &all->parts[i];
-      int x0, x1, y0, y1;
-      if (!part->reaches) continue;
-      part_tiles(part, 0, x, x, all->tiles_x, &x0, &x1);
-      part_tiles(part, 1, (int)index, (int)index, all->tiles_y, &y0, &y1);
-      lit = any_marked(part->dark, all->tiles_x, x0, x1, y0, y1, 0);
+    size_t tile = index * (size_t)slab->tiles_x + (size_t)x, at = index * TILE * slab->stride + (size_t)x * TILE;
+    for (int c = 0; c < slab->channels && all->rows[tile] != 0; c++) {
+      fill_ones(slab->transmittance[c] + at, slab->stride);
+      for (int i = 1; i < SLAB_IMAGES; i++) fill_ones(moved_image(all, slab, c, i) + at, slab->stride);
     }
-    slab->tile_lit[tile] = lit ? ALL_BLOCKS : 0;
+    all->rows[tile] = 0;
+    slab->tile_touched[tile] = 0;
+    slab->tile_lit[tile] = is_lit(all, x, (int)index) ? ALL_BLOCKS : 0;
   }
 }
 
@@ -347,12 +292,8 @@ void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal
                           const sublight_functions *functions) {
   for (int i = 0; i < sublights->count; i++) map_part(sublights, &sublights->parts[i], slab, normal, (from + to) / 2);
   sublight_task task = {.sublights = sublights, .slab = slab, .functions = functions};
-  if (bound_touched(slab, &task))
+  hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
+  if (bound_present(&task))
     hl_pool_run(pool, (size_t)sublights->count * (size_t)sublights->tiles_y, composite_row, &task);
-  double omega = omega_at(sublights, to);
-  if (omega >= sublights->next) {
-    blur_parts(sublights, pool, functions);
-    sublights->next = omega + sublights->step;
-  }
   hl_pool_run(pool, (size_t)slab->tiles_y, clear_row, &task);
 }

@@ -7,7 +7,7 @@
  * reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most, and half a voxel
  * at least; and somewhat coarser than the image's. Parts of a light, whose pixels are read from those of a slab, suffer
  * more from coarse ones. */
-static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.5, GREATEST_SHADOW_PIXEL = 0.75, PART_PIXEL = 0.6;
+static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.5, GREATEST_SHADOW_PIXEL = 0.75;
 static const double HARD_PIXEL_PER_IMAGE_PIXEL = 1.4, SOFT_PIXEL_PER_IMAGE_PIXEL = 1.2;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
@@ -48,7 +48,7 @@ static double shadow_pixel(const sweep *sweep, const light_source *source) {
   double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
   double pixel = fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL * frame->voxel), GREATEST_SHADOW_PIXEL * frame->voxel);
   if (source->shadows != HL_SHADOWS_SOFT) return fmin(HARD_PIXEL_PER_IMAGE_PIXEL * frame->pixel, pixel);
-  if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(frame->middle_pixel, PART_PIXEL * frame->voxel);
+  if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(HARD_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
   return fmin(SOFT_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
 }
 
@@ -101,7 +101,8 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
   bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper, reach);
   bytes->passing += hl_view_sheets_bytes(sweep, &view) + tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
   if (soft && source->soft_method == HL_SOFT_SUBLIGHTS)
-    bytes->passing += hl_sublights_bytes(source, sweep->scene->render.light_samples, sheets->normal, &extent, sweep->channels);
+    bytes->passing += hl_sublights_bytes(source, sweep->scene->render.light_samples, sheets->normal, &extent,
+                                         sweep->channels, &view, reach);
   if (soft && source->soft_method == HL_SOFT_CASCADE)
     hl_soft_cascade_bytes(&seen, image, sheets->normal, sheets->first, last, vec3_length(view.du), &view, sweep->channels,
                           &bytes->cascades[index], &passing);
@@ -151,7 +152,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   double last = sheets->first + (sheets->count - 1) * sheets->spacing;
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
     status = hl_sublights_begin(sweep->context, sweep->pool, &light->sublights, source, sweep->scene->render.light_samples,
-                                &seen, sheets->normal, &extent, sweep->channels, sheets->first, last, error);
+                                sheets->normal, &extent, buffer, error);
   bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
   if (cascade && image != NULL) hl_light_image_see(source, &seen, sheets->normal, image);
   if (status == HL_OK && cascade)

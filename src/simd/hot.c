@@ -28,6 +28,7 @@ const hot_functions HL_HOT_TABLE = {
     .add_half_tile = add_half_tile,
     .add_double_tile = add_double_tile,
     .sublight_tile = sublight_tile,
+    .half_pixel_tile = half_pixel_tile,
     .left_tile = left_tile,
     .absorbed_tile = absorbed_tile,
     .moment_tile = moment_tile,

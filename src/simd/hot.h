@@ -23,6 +23,7 @@ typedef struct hot_functions {
   lit_blocks_function *lit_blocks_tile;
   shade_tile_function *shade_tile, *measure_tile;
   sublight_tile_function *sublight_tile;
+  half_pixel_tile_function *half_pixel_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
   blur_add_tile_function *blur_add_tile;
   field_tile_function *add_tile, *add_half_tile, *add_double_tile, *left_tile;

@@ -366,6 +366,8 @@ typedef struct field_state {
   moment_job moment;
   part_job part;
   sublight_job sublight;
+  half_pixel_job half_pixel;
+  uint32_t rows[16];
   image_job image;
   ptrdiff_t offset[40];
   float a[FIELD][FIELD], b[FIELD][FIELD], out[FIELD][FIELD];
@@ -383,6 +385,7 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 6) hot->left_tile(&s->field, 1, 1);
   if (s->which == 7) hot->absorbed_tile(&s->absorbed, 1, 1);
   if (s->which == 8) s->lit = hot->sublight_tile(&s->sublight, 1, 1);
+  if (s->which == 14) s->lit = (int)hot->half_pixel_tile(&s->half_pixel, 1, 1);
   if (s->which == 9) hot->double_tile(&s->field, 1, 1);
   if (s->which == 10) hot->image_tile(&s->image, 1, 1);
   if (s->which == 13) hot->part_tile(&s->part, 1, 1);
@@ -393,7 +396,7 @@ static void call_field(const hot_functions *hot, void *state) {
 static void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "blur_add_tile", "left_tile", "absorbed_tile", "sublight_tile",
-                                      "double_tile", "image_tile", "image_add_tile", "moment_tile", "part_tile"};
+                                      "double_tile", "image_tile", "image_add_tile", "moment_tile", "part_tile", "half_pixel_tile"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -415,21 +418,25 @@ static void test_fields(void **unused) {
                                           FIELD, hl_blur_box(random_between(&seed, 1, 90)),
                                           hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
     s.sublight = (sublight_job){.slab_stride = FIELD, .slab_width = 60, .slab_height = 50, .stride = FIELD,
+                                .rows = s.rows, .slab_tiles_x = 4, .slab_tiles_y = 4,
                                 .channels = 1 + 2 * (round % 2)};
     for (int axis = 0; axis < 2; axis++) {
       s.sublight.scale[axis] = round % 3 == 0 ? 1 : random_between(&seed, round % 3 == 1 ? 0.8f : 0.3f, round % 3 == 1 ? 1.25f : 3);
       s.sublight.shift[axis] = random_between(&seed, -20, 20);
     }
     for (int c = 0; c < HL_CHANNELS; c++) {
-      s.sublight.slab[c] = &s.a[MARGIN + c][MARGIN];
+      for (int i = 0; i < SLAB_IMAGES; i++) s.sublight.slab[c][i] = &s.a[MARGIN + c][MARGIN + 5 * i];
       s.sublight.transmittance[c] = &s.out[MARGIN][MARGIN];
     }
+    for (int i = 0; i < 16; i++) s.rows[i] = (uint32_t)random_between(&seed, 0, 65535) * 65537u;
+    s.half_pixel = (half_pixel_job){.slab = &s.a[MARGIN][MARGIN], .slab_stride = FIELD};
+    for (int i = 1; i < SLAB_IMAGES; i++) s.half_pixel.moved[i] = &s.out[MARGIN + 16 * i][MARGIN];
     s.image = (image_job){.from = &s.a[MARGIN][MARGIN], .thin = &s.b[MARGIN][MARGIN],
                           .to = &s.out[MARGIN][MARGIN], .stride = FIELD, .count = 1 + round % 40, .offset = s.offset,
                           .weight = &s.b[MARGIN + 30][MARGIN]};
     for (int i = 0; i < 40; i++)
       s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD + (ptrdiff_t)random_between(&seed, -20, 20);
-    for (s.which = 0; s.which < 14; s.which++) {
+    for (s.which = 0; s.which < 15; s.which++) {
       trial trial = {call_field, &s, s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
