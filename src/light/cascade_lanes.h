@@ -149,7 +149,13 @@ static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
     lanes before = lanes_clamp(1.0f - lanes_load(job->lacking + at), 0, 1.0f);
     lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
-    lanes taken = lanes_max(before - now, lanes_set(0)), part = taken / lanes_max(before, lanes_set(1e-3f));
+    lanes taken = lanes_max(before - now, lanes_set(0));
+    if (lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */
+      lanes_store(job->end_absorbed + at, lanes_set(0));
+      lanes_store(job->end_thin + at, lanes_set(0));
+      continue;
+    }
+    lanes part = taken / lanes_max(before, lanes_set(1e-3f));
     lanes place = lanes_clamp(lanes_load(job->moment + at) / lanes_max(taken * job->length, lanes_set(1e-6f)), 0, 1.0f);
     lanes solid = lanes_clamp((part - THIN_MATTER) * (1.0f / (SOLID_MATTER - THIN_MATTER)), 0, 1.0f);
     lanes thin = part * (1.0f - solid);

@@ -102,7 +102,7 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++) level->mean[c % 2][c / 2] = next_field(level, &used);
   level->wanted = level->flags + level->planes * tiles;
   for (size_t c = 0; c < channels && index == 0; c++) {
-    cascade->shade[c] = next_field(level, &used);
+    cascade->shade[c] = cascade->own_shade[c] = next_field(level, &used);
     cascade->moment[c] = next_field(level, &used).pixels;
   }
   return HL_OK;
@@ -493,13 +493,18 @@ static void light_row(void *data, size_t index, int worker) {
   }
 }
 
+/* Less than this, pixels squared, is not worth a blur: bilinear look-ups have 1/6 and more. */
+static const double LEAST_VARIANCE = 0.05;
+
 /* What receivers around omega = receiver lack, where it is wanted; false if nothing is in the way. */
 static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   if (cascade->image != NULL) return hl_soft_cascade_pass_image(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);
   if (level == NULL) return false;
   cascade_blur blur = blur_towards(level, receiver, receiver, &cascade->level[0]);
-  for (int c = 0; c < cascade->channels; c++)
+  bool sharp = level == &cascade->level[0] && blur.variance - blur.resampled < LEAST_VARIANCE;
+  memcpy(cascade->shade, sharp ? level->sum[level->newest] : cascade->own_shade, sizeof cascade->shade);
+  for (int c = 0; c < cascade->channels && !sharp; c++)
     bring(level, &level->sum[level->newest][c], blur, &cascade->level[0], NULL, NULL, &cascade->shade[c], c,
           cascade->wanted[0], crew);
   return true;

@@ -91,7 +91,8 @@ typedef struct soft_cascade {
   int channels;
   int level_count;      /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
-  cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0 */
+  cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0; own_shade or its sum */
+  cascade_field own_shade[HL_CHANNELS];
   float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: what the chunk's slabs took, times their places */
   unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs met light */
   unsigned char *wanted[CASCADE_MASKS]; /* owned with touched; [tiles]; what the next chunk's slabs read; a tile wider each */
