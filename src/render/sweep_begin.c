@@ -49,7 +49,9 @@ static double shadow_pixel(const sweep *sweep, const light_source *source) {
   double pixel = fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL * frame->voxel), GREATEST_SHADOW_PIXEL * frame->voxel);
   if (source->shadows != HL_SHADOWS_SOFT) return fmin(HARD_PIXEL_PER_IMAGE_PIXEL * frame->pixel, pixel);
   if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(HARD_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
-  return fmin(SOFT_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
+  /* a pixel on the sheets is narrower seen along the light: as large as a hard shadow's there */
+  double slant = source->parallel ? fabs(vec3_dot(source->direction, sweep->geometry->sheets.normal)) : 1;
+  return fmin(SOFT_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel) / sqrt(fmax(slant, 0.5));
 }
 
 /* Places the buffer: perpendicular to the light for hard shadows; parallel to the sheets for soft ones, around the middle
