@@ -7,8 +7,8 @@
  * reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most, and half a voxel
  * at least; and somewhat coarser than the image's. Parts of a light, whose pixels are read from those of a slab, suffer
  * more from coarse ones. */
-static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.5, GREATEST_SHADOW_PIXEL = 0.75;
-static const double HARD_PIXEL_PER_IMAGE_PIXEL = 1.4, SOFT_PIXEL_PER_IMAGE_PIXEL = 1.2;
+static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.5, GREATEST_SHADOW_PIXEL = 0.75, PART_PIXEL = 0.6;
+static const double HARD_PIXEL_PER_IMAGE_PIXEL = 1.4, SOFT_PIXEL_PER_IMAGE_PIXEL = 1.4;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
