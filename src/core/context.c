@@ -19,11 +19,12 @@ enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
 
 static void *default_allocate(void *user_data, size_t size, size_t alignment) {
   (void)user_data;
-  if (size >= LARGE_BLOCK && alignment < LARGE_PAGE) alignment = LARGE_PAGE;
   size_t rounded = (size + alignment - 1) / alignment * alignment;
-  void *block = rounded < size ? NULL : aligned_alloc(alignment, rounded);
+  if (rounded < size) return NULL;
+  if (size < LARGE_BLOCK) return aligned_alloc(alignment, rounded);
+  void *block = aligned_alloc(LARGE_PAGE, rounded);
 #ifdef MADV_HUGEPAGE
-  if (block != NULL && size >= LARGE_BLOCK) madvise(block, rounded, MADV_HUGEPAGE);
+  if (block != NULL) madvise(block, rounded, MADV_HUGEPAGE);
 #endif
   return block;
 }

@@ -12,6 +12,7 @@
 #include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -156,7 +157,7 @@ void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, i
     run_part(pool, base, count - base < INDEX_MASK ? count - base : INDEX_MASK, function, data);
 }
 
-enum { FLOATS_A_TASK = 1 << 16 };
+enum { FLOATS_A_TASK = 1 << 16, BYTES_A_TASK = 1 << 18 };
 
 typedef struct fill_job {
   float *floats;
@@ -174,6 +175,23 @@ static void fill_part(void *data, size_t index, int worker) {
 void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value) {
   fill_job job = {floats, count, value};
   hl_pool_run(pool, (count + FLOATS_A_TASK - 1) / FLOATS_A_TASK, fill_part, &job);
+}
+
+typedef struct clear_job {
+  unsigned char *memory;
+  size_t bytes;
+} clear_job;
+
+static void clear_part(void *data, size_t index, int worker) {
+  (void)worker;
+  const clear_job *job = data;
+  size_t first = index * BYTES_A_TASK, left = job->bytes - first;
+  memset(job->memory + first, 0, left < BYTES_A_TASK ? left : BYTES_A_TASK);
+}
+
+void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes) {
+  clear_job job = {memory, bytes};
+  hl_pool_run(pool, (bytes + BYTES_A_TASK - 1) / BYTES_A_TASK, clear_part, &job);
 }
 
 int hl_pool_threads(const hl_pool *pool) { return pool->threads; }

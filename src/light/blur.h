@@ -22,10 +22,14 @@ typedef struct blur_job {
 
 typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
 
+enum { BLUR_GREATEST_REACH = 46 };
+
+/* As far as BLUR_GREATEST_REACH allows. */
+blur_box hl_blur_box_of_variance(double variance);
+
 /* Weighted sums of a field's pixels around each pixel: a penumbra by its taps (light_image.h). */
 typedef struct image_job {
   const float *from;        /* pixel (0,0); rows stride apart */
-  const float *thin;        /* the same */
   float *to;
   size_t stride;
   int count;

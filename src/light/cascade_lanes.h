@@ -5,31 +5,42 @@
 #include "light/blur_lanes.h"
 #include "light/cascade_field.h"
 
-static void blur_add_tile(const blur_add_job *job, int tile_x, int tile_y) {
+/* What thin matter leaves. */
+LANES_INLINE lanes left_by(const field_pixel *thin) { return 1.0f - lanes_load_short(thin) * (1.0f / FIELD_ONE); }
+
+/* As blur_sixteen along a row, of fields. */
+LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) {
+  lanes ends = lanes_load_short(from - (box->reach + 1)) + lanes_load_short(from + (box->reach + 1));
+  lanes sum = lanes_load_short(from) + ends * box->edge;
+  for (int i = 1; i <= box->reach; i++) sum = sum + (lanes_load_short(from - i) + lanes_load_short(from + i));
+  return sum * box->scale;
+}
+
+static void field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
   _Alignas(64) float rows[(TILE + 2 * BLUR_GREATEST_REACH) * TILE];
   int apron = job->v.reach + 1;
-  const float *from = job->from + (ptrdiff_t)(tile_y * TILE - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
+  const field_pixel *from = job->from + (ptrdiff_t)(tile_y * TILE - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
   for (int row = 0; row < TILE + 2 * apron; row++, from += job->stride)
-    lanes_store(rows + row * TILE, blur_sixteen(from, 1, &job->u));
+    lanes_store(rows + row * TILE, blur_field_row(from, &job->u));
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
   for (int row = 0; row < TILE; row++, at += job->stride) {
     lanes blurred = blur_sixteen(rows + (row + apron) * TILE, TILE, &job->v);
-    if (job->thin != NULL) blurred = blurred * (1.0f - lanes_load(job->thin + at));
-    lanes_store(job->to + at, job->a == NULL ? blurred : blurred + lanes_load(job->a + at));
+    if (job->thin != NULL) blurred = blurred * left_by(job->thin + at);
+    lanes_store_short(job->to + at, job->a == NULL ? blurred : blurred + lanes_load_short(job->a + at));
   }
 }
 
 /* a + (1 - thin) b; b and thin may be null: 0. */
 LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
-  lanes a = lanes_load(job->a + at);
+  lanes a = lanes_load_short(job->a + at);
   if (job->b == NULL) return a;
-  lanes b = lanes_load(job->b + at);
-  return a + (job->thin == NULL ? b : b * (1.0f - lanes_load(job->thin + at)));
+  lanes b = lanes_load_short(job->b + at);
+  return a + (job->thin == NULL ? b : b * left_by(job->thin + at));
 }
 
 static void add_tile(const field_job *job, int tile_x, int tile_y) {
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
-  for (int row = 0; row < TILE; row++, at += job->stride) lanes_store(job->to + at, a_and_b(job, at));
+  for (int row = 0; row < TILE; row++, at += job->stride) lanes_store_short(job->to + at, a_and_b(job, at));
 }
 
 /* Sums of neighbours in 32 pixels. */
@@ -40,21 +51,21 @@ LANES_INLINE lanes sums_of_pairs(lanes first, lanes second) {
 
 static void add_half_tile(const field_job *job, int tile_x, int tile_y) {
   size_t from = (size_t)tile_y * TILE * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
-  float *to = job->to + (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  field_pixel *to = job->to + (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
   for (int row = 0; row < TILE; row++, from += 2 * job->stride_in, to += job->stride) {
     size_t below = from + job->stride_in;
     lanes upper = sums_of_pairs(a_and_b(job, from), a_and_b(job, from + TILE));
     lanes lower = sums_of_pairs(a_and_b(job, below), a_and_b(job, below + TILE));
-    lanes_store(to, 0.25f * (upper + lower));
+    lanes_store_short(to, 0.25f * (upper + lower));
   }
 }
 
 /* A row of a tile from a field of half the resolution. Pixel 2i lies a quarter of a coarse pixel before coarse pixel i's
  * centre, pixel 2i+1 a quarter after. */
-LANES_INLINE lanes double_row(const float *from, size_t stride, int tile_x, int y) {
-  const float *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
-  const float *far = y & 1 ? near + stride : near - stride;
-  lanes coarse = 0.75f * lanes_load(near) + 0.25f * lanes_load(far); /* from the coarse pixel before the tile's first */
+LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x, int y) {
+  const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
+  const field_pixel *far = y & 1 ? near + stride : near - stride;
+  lanes coarse = 0.75f * lanes_load_short(near) + 0.25f * lanes_load_short(far); /* from the pixel before the tile's first */
   lanes own = __builtin_shufflevector(coarse, coarse, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8);
   lanes other = __builtin_shufflevector(coarse, coarse, 0, 2, 1, 3, 2, 4, 3, 5, 4, 6, 5, 7, 6, 8, 7, 9);
   return 0.75f * own + 0.25f * other;
@@ -64,14 +75,15 @@ static void add_double_tile(const field_job *job, int tile_x, int tile_y) {
   for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++) {
     size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
     lanes fine = double_row(job->b, job->stride_in, tile_x, y);
-    if (job->thin != NULL) fine = fine * (1.0f - lanes_load(job->thin + at));
-    lanes_store(job->to + at, job->a == NULL ? fine : lanes_load(job->a + at) + fine);
+    if (job->thin != NULL) fine = fine * left_by(job->thin + at);
+    lanes_store_short(job->to + at, job->a == NULL ? fine : lanes_load_short(job->a + at) + fine);
   }
 }
 
 static void double_tile(const field_job *job, int tile_x, int tile_y) {
   for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++)
-    lanes_store(job->to + (size_t)y * job->stride + (size_t)tile_x * TILE, double_row(job->a, job->stride_in, tile_x, y));
+    lanes_store_short(job->to + (size_t)y * job->stride + (size_t)tile_x * TILE,
+                      double_row(job->a, job->stride_in, tile_x, y));
 }
 
 enum { IMAGE_ROWS = 4 };
@@ -86,15 +98,25 @@ LANES_INLINE void weigh_rows(const image_job *job, const float *from, lanes sum[
   }
 }
 
-static void image_add_tile(const image_job *job, int tile_x, int tile_y) {
+LANES_INLINE void weigh_field_rows(const field_image_job *job, const field_pixel *from, lanes sum[IMAGE_ROWS]) {
+  for (int row = 0; row < IMAGE_ROWS; row++) sum[row] = lanes_set(0);
+  for (int tap = 0; tap < job->count; tap++) {
+    const field_pixel *at = from + job->offset[tap];
+    for (int row = 0; row < IMAGE_ROWS; row++)
+      sum[row] = sum[row] + lanes_load_short(at + (size_t)row * job->stride) * job->weight[tap];
+  }
+}
+
+static void field_image_tile(const field_image_job *job, int tile_x, int tile_y) {
   for (int row = 0; row < TILE; row += IMAGE_ROWS) {
     size_t at = (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
     lanes sum[IMAGE_ROWS], thin[IMAGE_ROWS];
-    weigh_rows(job, job->from + at, sum);
-    weigh_rows(job, job->thin + at, thin);
+    weigh_field_rows(job, job->from + at, sum);
+    weigh_field_rows(job, job->thin + at, thin);
     for (int i = 0; i < IMAGE_ROWS; i++) {
-      float *to = job->to + at + (size_t)i * job->stride;
-      lanes_store(to, sum[i] + lanes_load(to) * (1.0f - thin[i]));
+      field_pixel *to = job->to + at + (size_t)i * job->stride;
+      lanes left = lanes_max(1.0f - thin[i] * (1.0f / FIELD_ONE), lanes_set(0));
+      lanes_store_short(to, sum[i] + lanes_load_short(to) * left);
     }
   }
 }
@@ -108,10 +130,10 @@ static void image_tile(const image_job *job, int tile_x, int tile_y) {
   }
 }
 
-static void left_tile(const field_job *job, int tile_x, int tile_y) {
+static void left_tile(const left_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++)
-    lanes_store(job->to + (size_t)row * job->stride_in + (size_t)tile_x * TILE,
-                lanes_clamp(1.0f - lanes_load(job->a + (size_t)row * job->stride + (size_t)tile_x * TILE), 0, 1.0f));
+    lanes_store(job->to + (size_t)row * job->stride_to + (size_t)tile_x * TILE,
+                lanes_clamp(left_by(job->lacking + (size_t)row * job->stride + (size_t)tile_x * TILE), 0, 1.0f));
 }
 
 /* Matter at one place as matter at two, the part `late` of it at the second (derived): of a ray thin matter leaves 1 - F,
@@ -130,13 +152,16 @@ LANES_INLINE parted_matter part_matter(lanes absorbed, lanes thin, lanes late) {
   return to;
 }
 
+LANES_INLINE lanes load_part(const field_pixel *p) { return lanes_load_short(p) * (1.0f / FIELD_ONE); }
+LANES_INLINE void store_part(field_pixel *p, lanes part) { lanes_store_short(p, part * (float)FIELD_ONE); }
+
 static void part_tile(const part_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
-    parted_matter to = part_matter(lanes_load(job->absorbed + at), lanes_load(job->thin + at), lanes_set(job->late));
+    parted_matter to = part_matter(load_part(job->absorbed + at), load_part(job->thin + at), lanes_set(job->late));
     for (int i = 0; i < 2; i++) {
-      lanes_store(job->to_absorbed[i] + at, to.absorbed[i]);
-      lanes_store(job->to_thin[i] + at, to.thin[i]);
+      store_part(job->to_absorbed[i] + at, to.absorbed[i]);
+      store_part(job->to_thin[i] + at, to.thin[i]);
     }
   }
 }
@@ -147,12 +172,12 @@ static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
-    lanes before = lanes_clamp(1.0f - lanes_load(job->lacking + at), 0, 1.0f);
+    lanes before = lanes_clamp(left_by(job->lacking + at), 0, 1.0f);
     lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
     lanes taken = lanes_max(before - now, lanes_set(0));
     if (lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */
-      lanes_store(job->end_absorbed + at, lanes_set(0));
-      lanes_store(job->end_thin + at, lanes_set(0));
+      store_part(job->end_absorbed + at, lanes_set(0));
+      store_part(job->end_thin + at, lanes_set(0));
       continue;
     }
     lanes part = taken / lanes_max(before, lanes_set(1e-3f));
@@ -161,11 +186,11 @@ static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     lanes thin = part * (1.0f - solid);
     parted_matter to = part_matter(taken * solid + thin, thin, place);
     lanes_store(job->moment + at, lanes_set(0));
-    lanes_store(job->end_absorbed + at, to.absorbed[1]);
-    lanes_store(job->end_thin + at, to.thin[1]);
+    store_part(job->end_absorbed + at, to.absorbed[1]);
+    store_part(job->end_thin + at, to.thin[1]);
     lanes left = 1.0f - to.thin[0];
-    lanes_store(job->start_absorbed + at, to.absorbed[0] + lanes_load(job->start_absorbed + at) * left);
-    lanes_store(job->start_thin + at, to.thin[0] + lanes_load(job->start_thin + at) * left);
+    store_part(job->start_absorbed + at, to.absorbed[0] + load_part(job->start_absorbed + at) * left);
+    store_part(job->start_thin + at, to.thin[0] + load_part(job->start_thin + at) * left);
   }
 }
 

@@ -5,8 +5,8 @@
 
 void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x, int y) {
   unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
-  float *pixels = field->pixels + (size_t)y * TILE * level->stride + (size_t)x * TILE;
-  for (size_t row = 0; row < TILE && !*zeros; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(float));
+  field_pixel *pixels = field->pixels + (size_t)y * TILE * level->stride + (size_t)x * TILE;
+  for (size_t row = 0; row < TILE && !*zeros; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(field_pixel));
   *zeros = 1;
 }
 
@@ -73,8 +73,8 @@ void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, cons
 typedef struct blur_task {
   const cascade_level *level;
   const cascade_field *from, *a, *to; /* a may be null */
-  blur_add_job job;
-  blur_add_tile_function *function;
+  field_blur_job job;
+  field_blur_tile_function *function;
   int reach_x, reach_y; /* tiles */
   const unsigned char *wanted; /* [tiles]; null: all */
 } blur_task;
@@ -92,7 +92,7 @@ static void blur_row(void *data, size_t index, int worker) {
       hl_cascade_clear_tile(task->level, task->to, x, y);
       continue;
     }
-    blur_add_job job = task->job;
+    field_blur_job job = task->job;
     job.u = task->level->boxes[x].box;
     job.v = task->level->boxes[task->level->tiles_x + y].box;
     if (task->a != NULL && task->a->zeros[tile]) job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
@@ -102,10 +102,10 @@ static void blur_row(void *data, size_t index, int worker) {
 }
 
 /* Boxes of each column or row; returns the greatest reach in tiles. */
-static int fill_boxes(cascade_box *boxes, int count, cascade_blur blur) {
+static int fill_boxes(cascade_box *boxes, int count, double variance, double resampled) {
   int reach = 0;
   for (int i = 0; i < count; i++) {
-    boxes[i].box = hl_blur_box_of_variance(fmax(blur.variance * boxes[i].part - blur.resampled, 0));
+    boxes[i].box = hl_blur_box_of_variance(fmax(variance * boxes[i].part - resampled, 0));
     if (boxes[i].box.reach > reach) reach = boxes[i].box.reach;
   }
   return (reach + TILE) / TILE;
@@ -115,10 +115,10 @@ void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, c
                          const cascade_field *a, const cascade_field *thin, const cascade_field *to, cascade_blur blur,
                          const unsigned char *wanted) {
   blur_task task = {.level = level, .from = from, .a = a, .to = to, .function = crew->functions->blur_add, .wanted = wanted};
-  task.job = (blur_add_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
+  task.job = (field_blur_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
                                  .thin = thin == NULL ? NULL : thin->pixels, .stride = level->stride};
-  task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur);
-  task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur);
+  task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur.variance, blur.resampled[0]);
+  task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur.variance, blur.resampled[1]);
   hl_pool_run(crew->pool, (size_t)level->tiles_y, blur_row, &task);
 }
 

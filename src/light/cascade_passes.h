@@ -7,7 +7,7 @@
 /* How much a pass blurs. */
 typedef struct cascade_blur {
   double variance;  /* where the light is widest, pixels of the level; columns and rows have their parts of it */
-  double resampled; /* what resampling blurs by itself, and is taken off */
+  double resampled[2]; /* along rows and columns: what resampling blurs by itself, and is taken off */
 } cascade_blur;
 
 /* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse; thin,

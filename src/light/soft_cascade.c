@@ -45,6 +45,9 @@ static void set_parts(const soft_cascade *cascade, const sheet_light *light, int
   }
 }
 
+/* A plane of floats. */
+enum { MOMENT_PLANES = sizeof(float) / sizeof(field_pixel) };
+
 static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer *buffer) {
   cascade_level *level = &cascade->level[index];
   size_t channels = (size_t)cascade->channels;
@@ -56,25 +59,38 @@ static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer 
   level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
   level->capacity = index < 2 ? CASCADE_FEW_GROUPS : CASCADE_GROUPS;
-  level->planes = channels * (2 * (size_t)level->capacity + 2) + 1 + (index == 0 ? 2 * channels : 0);
+  level->planes = channels * (2 * (size_t)level->capacity + 2) + 1 + (index == 0 ? channels * (1 + MOMENT_PLANES) : 0);
   if (cascade->image != NULL) level->planes += 2 * channels;
 }
 
 /* Zeros for all levels, handed out to them. */
 static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade, hl_error *error) {
-  size_t floats = 0;
-  for (int i = 0; i < cascade->level_count; i++) floats += cascade->level[i].planes * cascade->level[i].plane;
-  if (memory->capacity < floats) {
-    hl_release(context, memory->floats);
-    memory->floats = hl_allocate(context, floats, sizeof(float));
-    memory->capacity = memory->floats == NULL ? 0 : floats;
-    if (memory->floats == NULL) return hl_fail_memory(error, floats * sizeof(float), "a cascade of shadows");
+  size_t pixels = 0;
+  for (int i = 0; i < cascade->level_count; i++) pixels += cascade->level[i].planes * cascade->level[i].plane;
+  if (memory->capacity < pixels) {
+    hl_release(context, memory->pixels);
+    memory->pixels = hl_allocate(context, pixels, sizeof *memory->pixels);
+    memory->capacity = memory->pixels == NULL ? 0 : pixels;
+    if (memory->pixels == NULL) return hl_fail_memory(error, pixels * sizeof *memory->pixels, "a cascade of shadows");
   }
-  hl_pool_fill(pool, memory->floats, floats, 0);
-  float *next = memory->floats;
+  hl_pool_clear(pool, memory->pixels, pixels * sizeof *memory->pixels);
+  field_pixel *next = memory->pixels;
   for (int i = 0; i < cascade->level_count; next += cascade->level[i].planes * cascade->level[i].plane, i++)
     cascade->level[i].memory = next;
   return HL_OK;
+}
+
+static void sum_up_parts(cascade_level *level) {
+  const int count[2] = {level->tiles_x, level->tiles_y};
+  const cascade_box *box = level->boxes;
+  level->greatest_part = 0;
+  for (int axis = 0; axis < 2; axis++) {
+    level->part[axis] = 0;
+    for (int i = 0; i < count[axis]; i++, box++) {
+      level->part[axis] += box->part / count[axis];
+      level->greatest_part = fmax(level->greatest_part, box->part);
+    }
+  }
 }
 
 static hl_status open_level(hl_context *context, soft_cascade *cascade, int index, const sheet_light *light,
@@ -88,9 +104,7 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   memset(level->flags, 1, level->planes * tiles);
   set_parts(cascade, light, 0, level->tiles_x, level->scale, level->boxes);
   set_parts(cascade, light, 1, level->tiles_y, level->scale, level->boxes + level->tiles_x);
-  level->greatest_part = 0;
-  for (int i = 0; i < level->tiles_x + level->tiles_y; i++)
-    level->greatest_part = fmax(level->greatest_part, level->boxes[i].part);
+  sum_up_parts(level);
   for (size_t c = 0; c < channels; c++) {
     for (int g = 0; g < level->capacity; g++) {
       level->group[g].absorbed[c] = next_field(level, &used);
@@ -103,7 +117,8 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   level->wanted = level->flags + level->planes * tiles;
   for (size_t c = 0; c < channels && index == 0; c++) {
     cascade->shade[c] = cascade->own_shade[c] = next_field(level, &used);
-    cascade->moment[c] = next_field(level, &used).pixels;
+    cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
+    used += MOMENT_PLANES;
   }
   return HL_OK;
 }
@@ -142,7 +157,7 @@ void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, v
   for (int i = 0; i < cascade.level_count; i++) {
     const cascade_level *level = &cascade.level[i];
     uint64_t tiles_x = (uint64_t)level->tiles_x, tiles_y = (uint64_t)level->tiles_y;
-    *kept += level->planes * level->plane * sizeof(float);
+    *kept += level->planes * level->plane * sizeof(field_pixel);
     *passing += (level->planes + 1) * tiles_x * tiles_y + (tiles_x + tiles_y) * sizeof *level->boxes;
   }
 }
@@ -184,10 +199,14 @@ static double resampled_by(const cascade_level *level) { return ((double)level->
 
 /* From a level's sum to a place in a level as fine or finer. What resampling blurs too much for this way is owed by the next. */
 static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega, cascade_level *to) {
-  double variance = variance_between(receiver - from->sum_omega, receiver - omega);
-  double resampled = resampled_by(from) - resampled_by(to) + from->owed, pixel = (double)from->scale * from->scale;
-  to->owed = fmax(resampled - variance, 0);
-  return (cascade_blur){variance / pixel, resampled / pixel};
+  double variance = variance_between(receiver - from->sum_omega, receiver - omega), pixel = (double)from->scale * from->scale;
+  cascade_blur blur = {.variance = variance / pixel};
+  for (int axis = 0; axis < 2; axis++) {
+    double resampled = resampled_by(from) - resampled_by(to) + from->owed[axis];
+    to->owed[axis] = fmax(resampled - variance * from->part[axis], 0);
+    blur.resampled[axis] = resampled / pixel;
+  }
+  return blur;
 }
 
 /* Moves a level's groups forward by the first `gone`, whose fields the places left free take over. */
@@ -326,7 +345,7 @@ static void bring(cascade_level *from, const cascade_field *sum, cascade_blur bl
     hl_cascade_blur_add(crew, from, sum, own, thin, to, blur, wanted);
     return;
   }
-  if (blur.variance > blur.resampled) {
+  if (blur.variance * from->greatest_part > fmin(blur.resampled[0], blur.resampled[1])) {
     hl_cascade_blur_add(crew, from, sum, NULL, NULL, &from->scratch, blur, from->masked ? from->wanted : NULL);
     sum = &from->scratch;
   }
@@ -354,10 +373,10 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
 
 /* Nothing lies before the farthest group. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group) {
-  level->owed = 0;
+  level->owed[0] = level->owed[1] = 0;
   for (int c = 0; c < cascade->channels; c++) {
     const cascade_field *from = &group->absorbed[c], *to = &level->sum[level->newest][c];
-    memcpy(to->pixels - level->origin, from->pixels - level->origin, level->plane * sizeof(float));
+    memcpy(to->pixels - level->origin, from->pixels - level->origin, level->plane * sizeof(field_pixel));
     memcpy(to->zeros, from->zeros, (size_t)level->tiles_x * (size_t)level->tiles_y);
   }
 }
@@ -472,7 +491,7 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
 typedef struct light_task {
   soft_cascade *cascade;
   shadow_buffer *buffer;
-  field_tile_function *left;
+  left_tile_function *left;
 } light_task;
 
 static void light_row(void *data, size_t index, int worker) {
@@ -486,7 +505,7 @@ static void light_row(void *data, size_t index, int worker) {
     bool shaded = false;
     for (int c = 0; c < buffer->channels; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
-      field_job job = {task->cascade->shade[c].pixels, NULL, buffer->transmittance[c], buffer->stride, level->stride, NULL};
+      left_job job = {task->cascade->shade[c].pixels, buffer->transmittance[c], level->stride, buffer->stride};
       task->left(&job, (int)tile_x, (int)index);
     }
     buffer->tile_touched[tile] = shaded;
@@ -502,7 +521,7 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   cascade_level *level = pass_all(cascade, receiver, crew);
   if (level == NULL) return false;
   cascade_blur blur = blur_towards(level, receiver, receiver, &cascade->level[0]);
-  bool sharp = level == &cascade->level[0] && blur.variance - blur.resampled < LEAST_VARIANCE;
+  bool sharp = level == &cascade->level[0] && blur.variance < LEAST_VARIANCE;
   memcpy(cascade->shade, sharp ? level->sum[level->newest] : cascade->own_shade, sizeof cascade->shade);
   for (int c = 0; c < cascade->channels && !sharp; c++)
     bring(level, &level->sum[level->newest][c], blur, &cascade->level[0], NULL, NULL, &cascade->shade[c], c,

@@ -32,7 +32,7 @@ enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_
 
 /* Absorbed light over the pixels of a level, zeros around them. */
 typedef struct cascade_field {
-  float *pixels;       /* pixel (0,0); in the level's memory */
+  field_pixel *pixels; /* pixel (0,0); in the level's memory */
   unsigned char *zeros; /* [tiles]; 1 where the tile is all zeros: work skips it; in the level's flags */
 } cascade_field;
 
@@ -53,26 +53,26 @@ typedef struct cascade_level {
   size_t stride, plane, origin;
   cascade_group group[CASCADE_GROUPS]; /* oldest first */
   int count, capacity;
-  double greatest_part;              /* of boxes */
+  double part[2], greatest_part;     /* of boxes: means along rows and columns, and the greatest */
   cascade_field sum[2][HL_CHANNELS]; /* of all groups up to one of this level, for a recent receiver */
   int newest;                        /* which of sum is the newest group's */
   bool filled;                       /* some group of this level is in sum; else see the next farther level */
   double sum_omega;               /* of the newest group in sum */
-  double owed;                       /* what the sum is blurred too much, pixels of the buffer squared */
+  double owed[2];                    /* what the sum is blurred too much along rows and columns, pixels of the buffer squared */
   bool renewed;                      /* sum is to be found anew */
   cascade_field scratch;
   cascade_field mean[2][HL_CHANNELS]; /* through an image: of one group's absorbed and thin light */
   unsigned char *wanted;             /* in flags; [tiles]; of farther levels */
   bool masked;                       /* sums are found where wanted only */
   cascade_box *boxes;                /* owned; [tiles_x], then [tiles_y] */
-  float *memory;                     /* the cascade_memory's */
+  field_pixel *memory;               /* the cascade_memory's */
   size_t planes;
   unsigned char *flags;              /* owned */
 } cascade_level;
 
 /* Pixels of all levels; a caller may keep them from frame to frame: fresh memory costs more than clearing it. */
 typedef struct cascade_memory {
-  float *floats;        /* owned; [capacity] */
+  field_pixel *pixels;  /* owned; [capacity] */
   size_t capacity;
 } cascade_memory;
 

@@ -70,7 +70,7 @@ static void start_tile(const start_task *task, const cascade_field *from, const 
   size_t at = (size_t)y * TILE * level->stride + (size_t)x * TILE;
   if (ratio == 2) task->functions->double_tile(&job, x, y);
   for (size_t row = 0; row < TILE && ratio == 1; row++)
-    memcpy(to->pixels + at + row * level->stride, from->pixels + at + row * level->stride, TILE * sizeof(float));
+    memcpy(to->pixels + at + row * level->stride, from->pixels + at + row * level->stride, TILE * sizeof(field_pixel));
   to->zeros[y * level->tiles_x + x] = 0;
 }
 
@@ -97,7 +97,7 @@ static void average_row(void *data, size_t index, int worker) {
     const cascade_field *from[2] = {&pass->group->absorbed[c], &pass->group->thin[c]};
     for (int i = 0; i < 2; i++) {
       const cascade_field *to = &level->mean[i][c];
-      blur_add_job job = {.from = from[i]->pixels, .to = to->pixels, .stride = level->stride,
+      field_blur_job job = {.from = from[i]->pixels, .to = to->pixels, .stride = level->stride,
                           .u = hl_blur_box((float)pass->step[0]), .v = hl_blur_box((float)pass->step[1])};
       for (int x = 0; x < level->tiles_x; x++) {
         if (!any_near(level, from[i], x, (int)index, 1)) {
@@ -134,7 +134,7 @@ static void add_tile(const image_pass *pass, const image_taps *taps, int x, int 
     if (!any_near(level, from, x, y, pass->reach)) continue;
     float weight[IMAGE_TAPS];
     for (int i = 0; i < count; i++) weight[i] = taps->weight[c][kept[i]];
-    image_job job = {.from = from->pixels, .thin = thin->pixels, .to = to->pixels, .stride = level->stride,
+    field_image_job job = {.from = from->pixels, .thin = thin->pixels, .to = to->pixels, .stride = level->stride,
                      .count = count, .offset = offset, .weight = weight};
     pass->functions->image_add(&job, x, y);
     to->zeros[y * level->tiles_x + x] = 0;

@@ -46,7 +46,7 @@ static void release_buffers(hl_renderer *renderer) {
     hl_shadow_buffer_release(renderer->context, &renderer->buffers[i]);
   hl_release(renderer->context, renderer->buffers);
   for (int i = 0; i < FRAME_LIGHTS; i++) {
-    hl_release(renderer->context, renderer->cascades[i].floats);
+    hl_release(renderer->context, renderer->cascades[i].pixels);
     renderer->cascades[i] = (cascade_memory){0};
   }
   renderer->buffers = NULL;

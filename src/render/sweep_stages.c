@@ -214,9 +214,9 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
   const hot_functions *hot = sweep->hot;
   const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile, hot->image_tile};
-  const cascade_functions cascade = {hot->lit_blocks_tile, hot->blur_add_tile, hot->add_tile,
+  const cascade_functions cascade = {hot->lit_blocks_tile, hot->field_blur_tile, hot->add_tile,
                                      hot->add_half_tile, hot->add_double_tile, hot->left_tile, hot->absorbed_tile, hot->part_tile,
-                                     hot->double_tile, hot->image_add_tile};
+                                     hot->double_tile, hot->field_image_tile};
   const sublight_functions parts = {hot->sublight_tile, hot->half_pixel_tile};
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];

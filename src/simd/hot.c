@@ -23,7 +23,7 @@ const hot_functions HL_HOT_TABLE = {
     .measure_tile = measure_tile,
     .blur_rows_tile = blur_rows_tile,
     .blur_columns_tile = blur_columns_tile,
-    .blur_add_tile = blur_add_tile,
+    .field_blur_tile = field_blur_tile,
     .add_tile = add_tile,
     .add_half_tile = add_half_tile,
     .add_double_tile = add_double_tile,
@@ -35,5 +35,5 @@ const hot_functions HL_HOT_TABLE = {
     .part_tile = part_tile,
     .double_tile = double_tile,
     .image_tile = image_tile,
-    .image_add_tile = image_add_tile,
+    .field_image_tile = field_image_tile,
 };

@@ -25,13 +25,15 @@ typedef struct hot_functions {
   sublight_tile_function *sublight_tile;
   half_pixel_tile_function *half_pixel_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
-  blur_add_tile_function *blur_add_tile;
-  field_tile_function *add_tile, *add_half_tile, *add_double_tile, *left_tile;
+  field_blur_tile_function *field_blur_tile;
+  field_tile_function *add_tile, *add_half_tile, *add_double_tile;
+  left_tile_function *left_tile;
   absorbed_tile_function *absorbed_tile;
   moment_tile_function *moment_tile;
   part_tile_function *part_tile;
   field_tile_function *double_tile;
-  image_tile_function *image_tile, *image_add_tile;
+  image_tile_function *image_tile;
+  field_image_tile_function *field_image_tile;
 } hot_functions;
 
 const hot_functions *hl_hot_functions(hl_instruction_set set);

@@ -40,6 +40,14 @@ LANES_INLINE lanes lanes_load(const float *p) {
 }
 LANES_INLINE void lanes_store(float *p, lanes v) { memcpy(p, &v, sizeof v); }
 
+/* Sixteen numbers of 16 bits. */
+typedef uint16_t lanes_short __attribute__((vector_size(32)));
+LANES_INLINE lanes lanes_load_short(const uint16_t *p) {
+  lanes_short v;
+  memcpy(&v, p, sizeof v);
+  return __builtin_convertvector(__builtin_convertvector(v, lanes_int), lanes);
+}
+
 /* A 4x4 block of pixels: lane 4*row + column; rows are stride floats apart. */
 LANES_INLINE lanes lanes_load_block(const float *p, size_t stride) {
   lanes v;
@@ -145,6 +153,11 @@ LANES_INLINE int32_t lanes_word(const unsigned char *p) {
 
 LANES_INLINE lanes lanes_from_int(lanes_int x) { return __builtin_convertvector(x, lanes); }
 LANES_INLINE lanes_int lanes_truncate(lanes x) { return __builtin_convertvector(x, lanes_int); }
+/* Of numbers from 0 on, rounded, 65535 at most. */
+LANES_INLINE void lanes_store_short(uint16_t *p, lanes v) {
+  lanes_short rounded = __builtin_convertvector(lanes_truncate(lanes_min(v, lanes_set(65535.0f)) + 0.5f), lanes_short);
+  memcpy(p, &rounded, sizeof rounded);
+}
 /* Greatest integer not above x; |x| < 2^31. */
 LANES_CALL lanes_int lanes_floor(lanes x) {
   lanes_int i = lanes_truncate(x);

@@ -361,16 +361,20 @@ typedef struct field_state {
   int which;
   blur_job blur;
   field_job field;
-  blur_add_job blur_add;
   absorbed_job absorbed;
   moment_job moment;
   part_job part;
   sublight_job sublight;
   half_pixel_job half_pixel;
   uint32_t rows[16];
+  field_blur_job field_blur;
+  left_job left;
   image_job image;
+  field_image_job field_image;
   ptrdiff_t offset[40];
-  float a[FIELD][FIELD], b[FIELD][FIELD], out[FIELD][FIELD];
+  float a[FIELD][FIELD], b[FIELD][FIELD];
+  field_pixel lacking[FIELD][FIELD], thin[FIELD][FIELD]; /* whole numbers of a and b */
+  struct { float pixels[FIELD][FIELD]; field_pixel lacking[FIELD][FIELD]; } out;
   int lit;
 } field_state;
 
@@ -381,8 +385,8 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 2) hot->add_tile(&s->field, 1, 1);
   if (s->which == 3) hot->add_half_tile(&s->field, 1, 1);
   if (s->which == 4) hot->add_double_tile(&s->field, 1, 1);
-  if (s->which == 5) hot->blur_add_tile(&s->blur_add, 1, 1);
-  if (s->which == 6) hot->left_tile(&s->field, 1, 1);
+  if (s->which == 5) hot->field_blur_tile(&s->field_blur, 1, 1);
+  if (s->which == 6) hot->left_tile(&s->left, 1, 1);
   if (s->which == 7) hot->absorbed_tile(&s->absorbed, 1, 1);
   if (s->which == 8) s->lit = hot->sublight_tile(&s->sublight, 1, 1);
   if (s->which == 14) s->lit = (int)hot->half_pixel_tile(&s->half_pixel, 1, 1);
@@ -390,33 +394,36 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 10) hot->image_tile(&s->image, 1, 1);
   if (s->which == 13) hot->part_tile(&s->part, 1, 1);
   if (s->which == 12) hot->moment_tile(&s->moment, 1, 1);
-  if (s->which == 11) hot->image_add_tile(&s->image, 1, 1);
+  if (s->which == 11) hot->field_image_tile(&s->field_image, 1, 1);
 }
 
 static void test_fields(void **unused) {
   (void)unused;
-  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "blur_add_tile", "left_tile", "absorbed_tile", "sublight_tile",
-                                      "double_tile", "image_tile", "image_add_tile", "moment_tile", "part_tile", "half_pixel_tile"};
+  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "field_blur_tile", "left_tile", "absorbed_tile", "sublight_tile",
+                                      "double_tile", "image_tile", "field_image_tile", "moment_tile", "part_tile", "half_pixel_tile"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
   for (int round = 0; round < ROUNDS; round++) {
     fill_salted(&s.a[0][0], FIELD * FIELD, &seed, 0, 1);
     fill_salted(&s.b[0][0], FIELD * FIELD, &seed, 0, 1);
-    s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD,
+    for (int i = 0; i < FIELD * FIELD; i++) {
+      (&s.lacking[0][0])[i] = (field_pixel)((&s.a[0][0])[i] * (round % 4 ? FIELD_ONE : 65535));
+      (&s.thin[0][0])[i] = (field_pixel)((&s.b[0][0])[i] * FIELD_ONE);
+    }
+    field_pixel *lacking = &s.lacking[MARGIN][MARGIN], *thin = &s.thin[MARGIN][MARGIN], *out = &s.out.lacking[MARGIN][MARGIN];
+    s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], FIELD, FIELD,
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
-    s.field = (field_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], FIELD, FIELD,
-                          round % 2 ? &s.b[MARGIN + 3][MARGIN] : NULL};
-    s.absorbed = (absorbed_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], 0.8f,
-                                &s.out[MARGIN + 16][MARGIN], &s.out[MARGIN + 32][MARGIN], &s.out[MARGIN + 48][MARGIN],
-                                &s.out[MARGIN + 64][MARGIN], FIELD, FIELD};
-    s.part = (part_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], {&s.out[MARGIN][MARGIN], &s.out[MARGIN + 16][MARGIN]},
-                        {&s.out[MARGIN + 32][MARGIN], &s.out[MARGIN + 48][MARGIN]}, FIELD, random_between(&seed, 0, 1)};
-    s.moment = (moment_job){&s.a[MARGIN][MARGIN], &s.out[MARGIN][MARGIN], salted(&seed, 0, 3), FIELD, FIELD};
-    s.blur_add = (blur_add_job){&s.b[MARGIN][MARGIN], round % 3 ? &s.a[MARGIN][MARGIN] : NULL,
-                                round % 2 ? &s.a[MARGIN + 3][MARGIN] : NULL, &s.out[MARGIN][MARGIN],
-                                          FIELD, hl_blur_box(random_between(&seed, 1, 90)),
-                                          hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
+    s.field = (field_job){lacking, thin, out, FIELD, FIELD, round % 2 ? thin + 3 * FIELD : NULL};
+    s.left = (left_job){lacking, &s.out.pixels[MARGIN][MARGIN], FIELD, FIELD};
+    s.absorbed = (absorbed_job){lacking, &s.b[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], 0.8f,
+                                out + 16 * FIELD, out + 32 * FIELD, out + 48 * FIELD, out + 64 * FIELD, FIELD, FIELD};
+    s.part = (part_job){lacking, thin, {out, out + 16 * FIELD}, {out + 32 * FIELD, out + 48 * FIELD}, FIELD,
+                        random_between(&seed, 0, 1)};
+    s.moment = (moment_job){&s.a[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], salted(&seed, 0, 3), FIELD, FIELD};
+    s.field_blur = (field_blur_job){lacking, round % 3 ? thin : NULL, round % 2 ? thin + 3 * FIELD : NULL, out,
+                                    FIELD, hl_blur_box(random_between(&seed, 1, 90)),
+                                    hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
     s.sublight = (sublight_job){.slab_stride = FIELD, .slab_width = 60, .slab_height = 50, .stride = FIELD,
                                 .rows = s.rows, .slab_tiles_x = 4, .slab_tiles_y = 4,
                                 .channels = 1 + 2 * (round % 2)};
@@ -426,18 +433,19 @@ static void test_fields(void **unused) {
     }
     for (int c = 0; c < HL_CHANNELS; c++) {
       for (int i = 0; i < SLAB_IMAGES; i++) s.sublight.slab[c][i] = &s.a[MARGIN + c][MARGIN + 5 * i];
-      s.sublight.transmittance[c] = &s.out[MARGIN][MARGIN];
+      s.sublight.transmittance[c] = &s.out.pixels[MARGIN][MARGIN];
     }
     for (int i = 0; i < 16; i++) s.rows[i] = (uint32_t)random_between(&seed, 0, 65535) * 65537u;
     s.half_pixel = (half_pixel_job){.slab = &s.a[MARGIN][MARGIN], .slab_stride = FIELD};
-    for (int i = 1; i < SLAB_IMAGES; i++) s.half_pixel.moved[i] = &s.out[MARGIN + 16 * i][MARGIN];
-    s.image = (image_job){.from = &s.a[MARGIN][MARGIN], .thin = &s.b[MARGIN][MARGIN],
-                          .to = &s.out[MARGIN][MARGIN], .stride = FIELD, .count = 1 + round % 40, .offset = s.offset,
-                          .weight = &s.b[MARGIN + 30][MARGIN]};
+    for (int i = 1; i < SLAB_IMAGES; i++) s.half_pixel.moved[i] = &s.out.pixels[MARGIN + 16 * i][MARGIN];
+    s.image = (image_job){.from = &s.a[MARGIN][MARGIN], .to = &s.out.pixels[MARGIN][MARGIN], .stride = FIELD,
+                          .count = 1 + round % 40, .offset = s.offset, .weight = &s.b[MARGIN + 30][MARGIN]};
+    s.field_image = (field_image_job){.from = lacking, .thin = thin, .to = out, .stride = FIELD, .count = 1 + round % 40,
+                                      .offset = s.offset, .weight = &s.b[MARGIN + 30][MARGIN]};
     for (int i = 0; i < 40; i++)
       s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD + (ptrdiff_t)random_between(&seed, -20, 20);
     for (s.which = 0; s.which < 15; s.which++) {
-      trial trial = {call_field, &s, s.out, sizeof s.out};
+      trial trial = {call_field, &s, &s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
   }
