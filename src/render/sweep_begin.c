@@ -4,9 +4,9 @@
 #include "render/sweep.h"
 
 /* Pixels of shadow buffers are as coarse as adds little to the error that the sheets leave (measured against the
- * reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most, and half a voxel
+ * reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most and three tenths
  * at least; and somewhat coarser than the image's. */
-static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.5, GREATEST_SHADOW_PIXEL = 0.75;
+static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
