@@ -126,11 +126,6 @@ vec3 hl_light_point(const light_source *source, double a, double b) {
   return point_of_disk(source->direction, light->radius, a, b);
 }
 
-void hl_light_part(int side, int i, int j, double square[2]) {
-  square[0] = (i + (j + 0.5) / side) / side;
-  square[1] = (j + 1 - (i + 0.5) / side) / side;
-}
-
 /* ---- what the sheets see ---- */
 
 /* A symmetric 2x2 matrix along u and v. */
@@ -183,7 +178,7 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   for (int i = 0; i < MOMENT_SIDE; i++)
     for (int j = 0; j < MOMENT_SIDE; j++) {
       double square[2];
-      hl_light_part(MOMENT_SIDE, i, j, square);
+      hl_light_grid_part(MOMENT_SIDE, i, j, square);
       vec3 point = vec3_subtract(seen_on_plane(source, normal, hl_light_point(source, square[0], square[1])), centre);
       double u = vec3_dot(point, seen.u), v = vec3_dot(point, seen.v);
       sum = vec3_add(sum, point);

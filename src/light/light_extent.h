@@ -8,9 +8,12 @@
  * parallel light from its direction (directions are points at distance 1). A sphere is its disk that faces the content. */
 vec3 hl_light_point(const light_source *source, double a, double b);
 
-/* Part (i, j) of side x side parts: its point of the unit square. A turned grid: one point in each cell, and seen along
- * either side of the square the points are side^2 even steps. */
-void hl_light_part(int side, int i, int j, double square[2]);
+/* light_parts.c: part (i, j) of side x side parts, its point of the unit square, of any light. A turned grid: one point in
+ * each cell, and seen along either side of the square the points are side^2 even steps. */
+void hl_light_grid_part(int side, int i, int j, double square[2]);
+
+/* The same of that light, where few points do best; not those of cells of the square, as an image's colours are. */
+void hl_light_part(const light_source *source, int side, int i, int j, double square[2]);
 
 /* The light as the content's middle sees it on a plane parallel to the sheets: through the light's centre, or for parallel
  * light through the end of its direction. */

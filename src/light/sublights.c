@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "light/light_image.h"
 
 /* More than this is refused beforehand. */
 static const double GREATEST_BYTES = 4294967296.0;
@@ -12,11 +11,12 @@ static const double GREATEST_BYTES = 4294967296.0;
 enum { MOVED_IMAGES = SLAB_IMAGES - 1 };
 
 /* What part i of side x side sees; the greatest numbers of tiles. */
-static void place_part(const light_source *source, int side, int i, vec3 normal, const shadow_extent *extent, view *view,
-                       int *tiles_x, int *tiles_y) {
+static void place_part(const light_source *source, const light_image *image, int side, int i, vec3 normal,
+                       const shadow_extent *extent, view *view, int *tiles_x, int *tiles_y) {
   double square[2];
   light_source part = *source;
-  hl_light_part(side, i / side, i % side, square);
+  if (image == NULL) hl_light_part(source, side, i / side, i % side, square);
+  else hl_light_grid_part(side, i / side, i % side, square);
   vec3 offset = hl_light_point(source, square[0], square[1]);
   if (source->parallel) part.direction = vec3_normalise(vec3_add(source->direction, offset));
   else part.position = vec3_add(source->position, offset);
@@ -25,10 +25,10 @@ static void place_part(const light_source *source, int side, int i, vec3 normal,
   if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
 }
 
-static void place_parts(sublights *sublights, const light_source *source, int side, vec3 normal,
+static void place_parts(sublights *sublights, const light_source *source, const light_image *image, int side, vec3 normal,
                         const shadow_extent *extent) {
   for (int i = 0; i < sublights->count; i++)
-    place_part(source, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x, &sublights->tiles_y);
+    place_part(source, image, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x, &sublights->tiles_y);
 }
 
 static void lay_out_planes(sublights *sublights) {
@@ -36,13 +36,13 @@ static void lay_out_planes(sublights *sublights) {
   sublights->plane = ((size_t)sublights->tiles_y * TILE + 2 * SUBLIGHT_MARGIN) * sublights->stride;
 }
 
-uint64_t hl_sublights_bytes(const light_source *source, int side, vec3 normal, const shadow_extent *extent, int channels,
-                            const view *slab, int reach) {
+uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
+                            const shadow_extent *extent, int channels, const view *slab, int reach) {
   sublights planned = {.channels = channels};
   uint64_t count = (uint64_t)side * (uint64_t)side, slab_tiles = (uint64_t)hl_tiles(slab->width) * (uint64_t)hl_tiles(slab->height);
   view view;
   for (int i = 0; i < side * side; i++)
-    place_part(source, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
+    place_part(source, image, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
   lay_out_planes(&planned);
   uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
   return count * (uint64_t)channels * planned.plane * sizeof(float) + count * tiles + slab_tiles * sizeof *planned.rows +
@@ -90,13 +90,14 @@ static hl_status weigh_parts(hl_context *context, sublights *sublights, const li
 }
 
 hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *sublights, const light_source *source,
-                             int side, vec3 normal, const shadow_extent *extent, const shadow_buffer *slab, hl_error *error) {
+                             const light_image *image, int side, vec3 normal, const shadow_extent *extent,
+                             const shadow_buffer *slab, hl_error *error) {
   size_t count = (size_t)side * (size_t)side;
   sublights->parts = hl_allocate_zeroed(context, count, sizeof *sublights->parts);
   if (sublights->parts == NULL) return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
   sublights->count = (int)count;
   sublights->channels = slab->channels;
-  place_parts(sublights, source, side, normal, extent);
+  place_parts(sublights, source, image, side, normal, extent);
   hl_status status = allocate(context, pool, sublights, slab, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < count; i++) {
@@ -105,7 +106,7 @@ hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *subl
     for (int c = 0; c < sublights->channels; c++)
       sublights->lookups[i].transmittance[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
   }
-  return source->light->emission.pixels != NULL ? weigh_parts(context, sublights, source, side, error) : HL_OK;
+  return image != NULL ? weigh_parts(context, sublights, source, side, error) : HL_OK;
 }
 
 void hl_sublights_release(hl_context *context, sublights *sublights) {

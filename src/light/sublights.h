@@ -10,6 +10,7 @@
 
 #include "core/pool.h"
 #include "light/light_extent.h"
+#include "light/light_image.h"
 #include "light/shadow_lookup.h"
 #include "light/sublight_field.h"
 
@@ -40,12 +41,13 @@ typedef struct sublight_functions {
   half_pixel_tile_function *half_pixel;
 } sublight_functions;
 
-/* side: M. slab: the buffer of one slab at a time. */
+/* image: the light's, null where it is even. side: M. slab: the buffer of one slab at a time. */
 hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *sublights, const light_source *source,
-                             int side, vec3 normal, const shadow_extent *extent, const shadow_buffer *slab, hl_error *error);
+                             const light_image *image, int side, vec3 normal, const shadow_extent *extent,
+                             const shadow_buffer *slab, hl_error *error);
 /* The bytes that they then hold. slab, reach: of that buffer. */
-uint64_t hl_sublights_bytes(const light_source *source, int side, vec3 normal, const shadow_extent *extent, int channels,
-                            const view *slab, int reach);
+uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
+                            const shadow_extent *extent, int channels, const view *slab, int reach);
 void hl_sublights_release(hl_context *context, sublights *sublights);
 
 /* After the slab between these heights was composited into slab, a buffer that held ones: composites it into all parts,

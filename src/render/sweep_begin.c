@@ -102,7 +102,7 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
   bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper, reach);
   bytes->passing += hl_view_sheets_bytes(sweep, &view) + tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
   if (soft && source->soft_method == HL_SOFT_SUBLIGHTS)
-    bytes->passing += hl_sublights_bytes(source, sweep->scene->render.light_samples, sheets->normal, &extent,
+    bytes->passing += hl_sublights_bytes(source, image, sweep->scene->render.light_samples, sheets->normal, &extent,
                                          sweep->channels, &view, reach);
   if (soft && source->soft_method == HL_SOFT_CASCADE)
     hl_soft_cascade_bytes(&seen, image, sheets->normal, sheets->first, last, vec3_length(view.du), &view, sweep->channels,
@@ -152,7 +152,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   for (int c = 0; c < sweep->channels; c++) light->lookup.transmittance[c] = buffer->transmittance[c];
   double last = sheets->first + (sheets->count - 1) * sheets->spacing;
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
-    status = hl_sublights_begin(sweep->context, sweep->pool, &light->sublights, source, sweep->scene->render.light_samples,
+    status = hl_sublights_begin(sweep->context, sweep->pool, &light->sublights, source, image, sweep->scene->render.light_samples,
                                 sheets->normal, &extent, buffer, error);
   bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
   if (cascade && image != NULL) hl_light_image_see(source, &seen, sheets->normal, image);
