@@ -12,7 +12,7 @@ METHODS = {  # title: settings
     "sublights 8": {"shadows": "soft", "soft_method": "sublights", "light_samples": 8},
 }
 SPACINGS = [2, 1.5, 1, 0.75, 0.5, 0.35, 0.25]
-COST_SIZE, COST_ROUNDS = "512x512", 2
+COST_SIZE, COST_ROUNDS = "512x512", 3
 
 
 class Errors:
@@ -57,13 +57,11 @@ def scene(name, described, with_costs):
 
 
 def costs(name, described, result):
-    """Processor seconds of rendering by one thread, the least of several rounds in turn. What loading takes, the same for
-    all, is known from a picture of next to no pixels and taken off. Other work on the machine only adds."""
-    seconds = {method: [] for method in ["load", *result.errors]}
+    """Seconds of rendering by one thread, without loading and preparing, the least of several rounds in turn: other work on
+    the machine only adds."""
+    seconds = {method: [] for method in result.errors}
     for _ in range(COST_ROUNDS):
         for method in seconds:
-            settings, size = (METHODS["hard"], "2x2") if method == "load" else (METHODS[method], COST_SIZE)
-            seconds[method].append(scenes.processor_seconds(scenes.changed(described, **settings), f"{name}-cost",
-                                                            "--threads", "1", "--size", size))
-    least = {method: min(times) for method, times in seconds.items()}
-    result.costs = {method: (least[method] - least["load"]) / (least["hard"] - least["load"]) for method in result.errors}
+            done = scenes.run(scenes.changed(described, **METHODS[method]), f"{name}-cost", "--threads", "1", "--size", COST_SIZE)
+            seconds[method].append(done["seconds"]["render"])
+    result.costs = {method: min(times) / min(seconds["hard"]) for method, times in seconds.items()}

@@ -110,7 +110,7 @@ def write(results, truth):
     costs = "" if not all(r.costs for r in results) else f"""
 ## Cost
 
-Processor time of rendering at {measure.COST_SIZE.replace("x", " x ")} with one thread, loading taken off, in units of the hard-shadow frame;
+Time of rendering at {measure.COST_SIZE.replace("x", " x ")} with one thread, by the clock, without loading and preparing, in units of the hard-shadow frame;
 the least of {measure.COST_ROUNDS} rounds in turn.
 
 {cost_table(results)}

@@ -7,7 +7,6 @@ import copy
 import hashlib
 import json
 import pathlib
-import resource
 import subprocess
 
 import numpy
@@ -62,14 +61,6 @@ def run(scene, label, *options):
     if done.returncode != 0:
         raise SystemExit(done.stderr.strip())
     return json.loads(done.stdout)
-
-
-def processor_seconds(scene, label, *options):
-    """What a rendering takes of the processor, whatever else runs."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    run(scene, label, *options)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 class Pictures:
