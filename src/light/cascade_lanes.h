@@ -5,15 +5,24 @@
 #include "light/blur_lanes.h"
 #include "light/cascade_field.h"
 
+/* Blurred sums leave a little light in umbrae: where less than this is left, none is. */
+static const float UMBRA = 1.0f / 128;
+
 /* What thin matter leaves. */
 LANES_INLINE lanes left_by(const field_pixel *thin) { return 1.0f - lanes_load_short(thin) * (1.0f / FIELD_ONE); }
 
-/* As blur_sixteen along a row, of fields. */
+/* What is left of the light where so much is lacking: from twice UMBRA on all of it. */
+LANES_INLINE lanes light_left(const field_pixel *lacking) {
+  lanes left = left_by(lacking);
+  return lanes_clamp(lanes_min(left, 2.0f * (left - UMBRA)), 0, 1.0f);
+}
+
+/* As blur_sixteen along a row, of fields: their whole numbers are summed as such. */
 LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) {
-  lanes ends = lanes_load_short(from - (box->reach + 1)) + lanes_load_short(from + (box->reach + 1));
-  lanes sum = lanes_load_short(from) + ends * box->edge;
-  for (int i = 1; i <= box->reach; i++) sum = sum + (lanes_load_short(from - i) + lanes_load_short(from + i));
-  return sum * box->scale;
+  lanes_int ends = lanes_load_short_int(from - (box->reach + 1)) + lanes_load_short_int(from + (box->reach + 1));
+  lanes_int sum = lanes_load_short_int(from);
+  for (int i = 1; i <= box->reach; i++) sum = sum + (lanes_load_short_int(from - i) + lanes_load_short_int(from + i));
+  return (lanes_from_int(sum) + lanes_from_int(ends) * box->edge) * box->scale;
 }
 
 static void field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
@@ -133,7 +142,7 @@ static void image_tile(const image_job *job, int tile_x, int tile_y) {
 static void left_tile(const left_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++)
     lanes_store(job->to + (size_t)row * job->stride_to + (size_t)tile_x * TILE,
-                lanes_clamp(left_by(job->lacking + (size_t)row * job->stride + (size_t)tile_x * TILE), 0, 1.0f));
+                light_left(job->lacking + (size_t)row * job->stride + (size_t)tile_x * TILE));
 }
 
 /* Matter at one place as matter at two, the part `late` of it at the second (derived): of a ray thin matter leaves 1 - F,
@@ -172,7 +181,7 @@ static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
-    lanes before = lanes_clamp(left_by(job->lacking + at), 0, 1.0f);
+    lanes before = light_left(job->lacking + at);
     lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
     lanes taken = lanes_max(before - now, lanes_set(0));
     if (lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */

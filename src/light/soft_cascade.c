@@ -371,9 +371,12 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
           crew);
 }
 
-/* Nothing lies before the farthest group. */
+/* A bilinear look-up weighs two pixels of the buffer by their distances p and 1 - p: a variance of p (1 - p), 1/6 on average. */
+static const double LOOKUP_VARIANCE = 1.0 / 6;
+
+/* Nothing lies before the farthest group, whose penumbra pays for the look-up. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group) {
-  level->owed[0] = level->owed[1] = 0;
+  level->owed[0] = level->owed[1] = LOOKUP_VARIANCE;
   for (int c = 0; c < cascade->channels; c++) {
     const cascade_field *from = &group->absorbed[c], *to = &level->sum[level->newest][c];
     memcpy(to->pixels - level->origin, from->pixels - level->origin, level->plane * sizeof(field_pixel));

@@ -7,7 +7,7 @@
  * reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most and three tenths
  * at least; and somewhat coarser than the image's. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
-static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
+static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4, PART_PIXEL_PER_IMAGE_PIXEL = 1.5;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
@@ -47,7 +47,7 @@ static double shadow_pixel(const sweep *sweep, const light_source *source) {
   double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
   double pixel = fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL * frame->voxel), GREATEST_SHADOW_PIXEL * frame->voxel);
   if (source->shadows != HL_SHADOWS_SOFT) return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->pixel, pixel);
-  if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
+  if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(PART_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
   /* a pixel on the sheets is narrower seen along the light: as large as a hard shadow's there */
   double slant = source->parallel ? fabs(vec3_dot(source->direction, sweep->geometry->sheets.normal)) : 1;
   return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel / sqrt(fmax(slant, 0.5)));

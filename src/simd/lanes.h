@@ -42,11 +42,12 @@ LANES_INLINE void lanes_store(float *p, lanes v) { memcpy(p, &v, sizeof v); }
 
 /* Sixteen numbers of 16 bits. */
 typedef uint16_t lanes_short __attribute__((vector_size(32)));
-LANES_INLINE lanes lanes_load_short(const uint16_t *p) {
+LANES_INLINE lanes_int lanes_load_short_int(const uint16_t *p) {
   lanes_short v;
   memcpy(&v, p, sizeof v);
-  return __builtin_convertvector(__builtin_convertvector(v, lanes_int), lanes);
+  return __builtin_convertvector(v, lanes_int);
 }
+LANES_INLINE lanes lanes_load_short(const uint16_t *p) { return __builtin_convertvector(lanes_load_short_int(p), lanes); }
 
 /* A 4x4 block of pixels: lane 4*row + column; rows are stride floats apart. */
 LANES_INLINE lanes lanes_load_block(const float *p, size_t stride) {
