@@ -22,9 +22,10 @@ static void *default_allocate(void *user_data, size_t size, size_t alignment) {
   size_t rounded = (size + alignment - 1) / alignment * alignment;
   if (rounded < size) return NULL;
   if (size < LARGE_BLOCK) return aligned_alloc(alignment, rounded);
-  void *block = aligned_alloc(LARGE_PAGE, rounded);
+  void *block = NULL; /* aligned_alloc would take whole pages only */
+  if (posix_memalign(&block, LARGE_PAGE, rounded) != 0) return NULL;
 #ifdef MADV_HUGEPAGE
-  if (block != NULL) madvise(block, rounded, MADV_HUGEPAGE);
+  madvise(block, rounded, MADV_HUGEPAGE);
 #endif
   return block;
 }
