@@ -13,10 +13,9 @@ LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density 
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int i = 0; i < slab->count; i++) {
     const block_density *d = &densities[i];
-    const shade_volume *volume = d->patch->volume;
-    if (!d->there || !volume->visible || !volume->phong) continue;
+    if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
     lanes surface;
-    lanes3 normal = normal_of(volume, slope_of_block(d), d->way.first + d->way.last, &surface);
+    lanes3 normal = normal_of(d->patch->volume, slope_of_block(d), d->way.first + d->way.last, &surface);
     sum = add3(sum, scale3(normal, d->extinction * inverse * surface));
   }
   return sum;

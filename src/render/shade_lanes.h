@@ -250,8 +250,8 @@ static color_lanes color_of_block(const shade_job *job, const block_geometry *g,
   lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
+    if (!d->there || !d->patch->volume->visible) continue;
     const shade_volume *volume = d->patch->volume;
-    if (!d->there || !volume->visible) continue;
     table_place place = place_of_coordinate(d->before + (d->after - d->before) * d->seen);
     color_lanes color;
     table_values(volume->classifier->color, place, color.c);
