@@ -94,6 +94,11 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
  * way is what lies both in the slab and in the box. */
 typedef struct light_depths { lanes before[HL_CHANNELS], within[HL_CHANNELS]; } light_depths;
 
+/* Where in the table a volume is seen; lanes that see nothing may hold anything, and are held within it. */
+LANES_INLINE lanes coordinate_seen(const block_density *d) {
+  return lanes_clamp(d->before + (d->after - d->before) * d->seen, 0, CLASSIFIER_ENTRIES);
+}
+
 /* Even extinction of the light's way through the slab that has the right optical depth down to what is seen of a volume
  * (derived). The eye's ray may run along a surface that the light's crosses: a way s before the point seen, the
  * density is f - s g.l to first order, g the gradient, which gives the mean extinction up to there; and where
@@ -102,7 +107,7 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   const classifier *classifier = d->patch->volume->classifier;
   if (lanes_bits(d->sloped) == 0) return d->sums.extinction;
   lanes late = lanes_min(d->seen / lanes_max(d->evenly, lanes_set(1e-3f)), lanes_set(4.0f));
-  lanes seen = d->before + (d->after - d->before) * d->seen;
+  lanes seen = coordinate_seen(d);
   lanes start = seen + dot3(d->slope, towards) * (way * classifier->scale);
   way_sums sums = sums_of_way(classifier, place_of_coordinate(lanes_clamp(start, 0, CLASSIFIER_ENTRIES)),
                               place_of_coordinate(seen));
@@ -252,7 +257,7 @@ static color_lanes color_of_block(const shade_job *job, const block_geometry *g,
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible) continue;
     const shade_volume *volume = d->patch->volume;
-    table_place place = place_of_coordinate(d->before + (d->after - d->before) * d->seen);
+    table_place place = place_of_coordinate(coordinate_seen(d));
     color_lanes color;
     table_values(volume->classifier->color, place, color.c);
     color_lanes lit = illuminate(job, volume, g, lights, color, slope_of_block(d), d->way.first + d->way.last);
