@@ -12,8 +12,9 @@
 
 static const cli_choice moves[] = {{"camera", MOVE_CAMERA}, {"light", MOVE_LIGHT}, {"tf", MOVE_TF}, {NULL, 0}};
 
-static const cli_choice kinds[] = {{"off", SETTING_OFF}, {"hard", SETTING_HARD}, {"soft_paper", SETTING_PAPER},
-                                   {"soft_cascade", SETTING_CASCADE}, {"soft_sublights", SETTING_SUBLIGHTS}, {NULL, 0}};
+const cli_choice bench_settings[SETTING_COUNT + 1] = {{"off", SETTING_OFF}, {"hard", SETTING_HARD}, {"soft_paper", SETTING_PAPER},
+                                                      {"soft_cascade", SETTING_CASCADE}, {"soft_sublights", SETTING_SUBLIGHTS},
+                                                      {NULL, 0}};
 
 static const cli_option bench_options[BENCH_OPTION_COUNT] = {
     [BENCH_FRAMES] = {.name = "frames",
@@ -27,7 +28,7 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                       .high = 10000},
     [BENCH_ONLY] = {.name = "only",
                     .kind = OPTION_CHOICE,
-                    .choices = kinds,
+                    .choices = bench_settings,
                     .help = "measure one kind of shadows (default: each in turn)"},
     [BENCH_MOVE] = {.name = "move",
                     .kind = OPTION_CHOICE,

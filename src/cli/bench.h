@@ -23,6 +23,7 @@ enum bench_option {
 
 /* What is compared: kinds of shadows. */
 enum bench_setting { SETTING_OFF, SETTING_HARD, SETTING_PAPER, SETTING_CASCADE, SETTING_SUBLIGHTS, SETTING_COUNT };
+extern const cli_choice bench_settings[SETTING_COUNT + 1]; /* their names, in that order */
 
 /* What changes from frame to frame. */
 enum bench_move { MOVE_CAMERA, MOVE_LIGHT, MOVE_TF };

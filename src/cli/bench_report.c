@@ -7,7 +7,6 @@
 #include "bench.h"
 #include "json_writer.h"
 
-static const char *const setting_names[SETTING_COUNT] = {"off", "hard", "soft_paper", "soft_cascade", "soft_sublights"};
 static const char *const move_names[] = {"camera", "light", "tf"};
 static const char *const stage_names[STAGE_COUNT] = {"prepare", "sort", "splat_eye", "splat_light", "shade",
                                                      "composite_light", "soften", "other"};
@@ -78,16 +77,16 @@ static void print_result(json_writer *json, const bench_result *result) {
   json_text(json, "instruction_set", hl_instruction_set_name(statistics->instruction_set));
   json_integer(json, "voxels_total", statistics->voxels_total);
   json_open_object(json, "frame_ms");
-  for (int i = 0; i < SETTING_COUNT; i++) json_number(json, setting_names[i], median_ms(&result->run[i], result->frames, WHOLE_FRAME));
+  for (int i = 0; i < SETTING_COUNT; i++) json_number(json, bench_settings[i].name, median_ms(&result->run[i], result->frames, WHOLE_FRAME));
   json_close(json);
   json_open_object(json, "processor_ms");
   for (int i = 0; i < SETTING_COUNT; i++)
-    json_number(json, setting_names[i], median_ms(&result->run[i], result->frames, PROCESSOR));
+    json_number(json, bench_settings[i].name, median_ms(&result->run[i], result->frames, PROCESSOR));
   json_close(json);
   json_number(json, "first_prepare_ms", 1e3 * first_measured(result)->first.stage[STAGE_PREPARE]);
   json_open_object(json, "stage_ms");
   for (int i = 0; i < SETTING_COUNT; i++) {
-    json_open_object(json, setting_names[i]);
+    json_open_object(json, bench_settings[i].name);
     for (int stage = 0; stage < STAGE_COUNT; stage++)
       json_number(json, stage_names[stage], median_ms(&result->run[i], result->frames, stage));
     json_close(json);
@@ -95,7 +94,7 @@ static void print_result(json_writer *json, const bench_result *result) {
   json_close(json);
   json_open_object(json, "work");
   for (int i = 0; i < SETTING_COUNT; i++)
-    if (result->run[i].supported) print_work(json, setting_names[i], &result->run[i].statistics);
+    if (result->run[i].supported) print_work(json, bench_settings[i].name, &result->run[i].statistics);
   json_close(json);
   json_close(json);
 }
@@ -133,7 +132,7 @@ void bench_print_text(const bench_result *result) {
          result->height, statistics->threads, hl_instruction_set_name(statistics->instruction_set), result->frames,
          move_names[result->move], "");
   for (int i = 0; i < SETTING_COUNT; i++)
-    if (result->run[i].supported) printf(" %15s", setting_names[i]);
+    if (result->run[i].supported) printf(" %15s", bench_settings[i].name);
   putchar('\n');
   print_row("frame", result, WHOLE_FRAME);
   print_row("processor", result, PROCESSOR);

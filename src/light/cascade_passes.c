@@ -49,7 +49,7 @@ static void add_row(void *data, size_t index, int worker) {
       continue;
     }
     field_job job = task->job;
-    if (task->doubled && task->a->zeros[index * (size_t)task->level->tiles_x + (size_t)x]) job.a = job.thin = NULL;
+    if (task->doubled && task->a != NULL && task->a->zeros[index * (size_t)task->level->tiles_x + (size_t)x]) job.a = job.thin = NULL;
     task->function(&job, x, (int)index);
     task->to->zeros[index * (size_t)task->level->tiles_x + (size_t)x] = 0;
   }
@@ -64,7 +64,7 @@ void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, cons
                                                                                : functions->add;
   add_task task = {.level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b, .to = to, .function = function,
                    .doubled = function == functions->add_double, .wanted = wanted};
-  task.job = (field_job){.a = a->pixels, .b = b == NULL ? NULL : b->pixels, .to = to->pixels,
+  task.job = (field_job){.a = a == NULL ? NULL : a->pixels, .b = b == NULL ? NULL : b->pixels, .to = to->pixels,
                          .stride_in = b == NULL ? level_a->stride : level_b->stride, .stride = level->stride,
                          .thin = thin == NULL ? NULL : thin->pixels};
   hl_pool_run(crew->pool, (size_t)level->tiles_y, add_row, &task);

@@ -11,7 +11,7 @@ typedef struct cascade_blur {
 } cascade_blur;
 
 /* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse; thin,
- * on a's level, may be null; so may b where a is not coarser. wanted: [tiles]; null: all. */
+ * on a's level, may be null; so may b where a is not coarser, and a where b is. wanted: [tiles]; null: all. */
 void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a, const cascade_field *thin,
                     const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
                     const unsigned char *wanted);

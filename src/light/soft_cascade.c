@@ -337,9 +337,9 @@ void hl_soft_cascade_after(soft_cascade *cascade, const shadow_buffer *buffer, s
 }
 
 /* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's thin matter
- * and added to own there (null: zeros). Blurs are done at the farther level, where they are cheap. Levels between have empty groups only: zeros to add. */
+ * and added to own there (null: zeros). Blurs are done at the farther level, where they are cheap. */
 static void bring(cascade_level *from, const cascade_field *sum, cascade_blur blur, cascade_level *to_level,
-                  const cascade_field *own, const cascade_field *thin, const cascade_field *to, int channel,
+                  const cascade_field *own, const cascade_field *thin, const cascade_field *to,
                   const unsigned char *wanted, const cascade_crew *crew) {
   if (from->scale == to_level->scale) {
     hl_cascade_blur_add(crew, from, sum, own, thin, to, blur, wanted);
@@ -351,13 +351,13 @@ static void bring(cascade_level *from, const cascade_field *sum, cascade_blur bl
   }
   while (from->scale > 2 * to_level->scale) {
     cascade_level *next = from - 1;
-    hl_cascade_add(crew, next, &next->group[0].absorbed[channel], NULL, from, sum, next, &next->scratch,
-                   next->masked ? next->wanted : NULL);
-    sum = &next->scratch;
+    if (next->scale < from->scale) {
+      hl_cascade_add(crew, next, NULL, NULL, from, sum, next, &next->scratch, next->masked ? next->wanted : NULL);
+      sum = &next->scratch;
+    }
     from = next;
   }
-  hl_cascade_add(crew, to_level, own == NULL ? &to_level->group[0].absorbed[channel] : own, thin, from, sum, to_level, to,
-      wanted);
+  hl_cascade_add(crew, to_level, own, thin, from, sum, to_level, to, wanted);
 }
 
 /* What the groups before absorbed, blurred for this group, and what this group did. */
@@ -367,8 +367,7 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
   const cascade_field *sum = from->sum[from->newest];
   level->newest = !level->newest;
   for (int c = 0; c < channels; c++)
-    bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], c, wanted,
-          crew);
+    bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], wanted, crew);
 }
 
 /* A bilinear look-up weighs two pixels of the buffer by their distances p and 1 - p: a variance of p (1 - p), 1/6 on average. */
@@ -448,8 +447,9 @@ static int reach_behind(const soft_cascade *cascade, int index, int g, double re
 static void mask_level(soft_cascade *cascade, int index, double receiver) {
   cascade_level *level = &cascade->level[index];
   const cascade_level *finest = &cascade->level[0];
+  if (period_of(index) > 1) return;
   const unsigned char *wanted = wanted_within(cascade, reach_behind(cascade, index, 0, receiver));
-  level->masked = wanted != NULL && period_of(index) == 1;
+  level->masked = wanted != NULL;
   if (!level->masked) return;
   memset(level->wanted, 0, (size_t)level->tiles_x * (size_t)level->tiles_y);
   for (int y = 0; y < finest->tiles_y; y++)
@@ -527,7 +527,7 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   bool sharp = level == &cascade->level[0] && blur.variance < LEAST_VARIANCE;
   memcpy(cascade->shade, sharp ? level->sum[level->newest] : cascade->own_shade, sizeof cascade->shade);
   for (int c = 0; c < cascade->channels && !sharp; c++)
-    bring(level, &level->sum[level->newest][c], blur, &cascade->level[0], NULL, NULL, &cascade->shade[c], c,
+    bring(level, &level->sum[level->newest][c], blur, &cascade->level[0], NULL, NULL, &cascade->shade[c],
           cascade->wanted[0], crew);
   return true;
 }

@@ -38,10 +38,11 @@ static uint32_t half_pixel_tile(const half_pixel_job *job, int tile_x, int tile_
   return rows;
 }
 
+static const float LANE_PLACES[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
 /* The nearest halves of sixteen coordinates scale * i + start, counted in halves; held between -2 and size + 1. */
 LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
-  static const float places[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  return lanes_floor(lanes_clamp(lanes_load(places) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
+  return lanes_floor(lanes_clamp(lanes_load(LANE_PLACES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
 }
 
 enum { SUBLIGHT_TAPS = 8 };
@@ -56,11 +57,10 @@ typedef struct row_taps {
 } row_taps;
 
 LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
-  static const float places[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   row_taps taps;
   float scale = job->scale[0], start = scale * ((float)(tile_x * TILE) + 0.5f) + job->shift[0] - 0.5f;
   taps.half = nearest_halves(scale, start, job->slab_width);
-  lanes_int apart = lanes_floor((lanes_load(places) * (scale - 1.0f) + start) * 2.0f + 0.5f);
+  lanes_int apart = lanes_floor((lanes_load(LANE_PLACES) * (scale - 1.0f) + start) * 2.0f + 0.5f);
   int ends[2] = {apart[0], apart[LANES - 1]};
   taps.first = ends[0] < ends[1] ? ends[0] : ends[1];
   taps.count = (ends[0] < ends[1] ? ends[1] : ends[0]) - taps.first + 1;

@@ -24,7 +24,7 @@ static float *allocate_pixels(const pixel_room *room, size_t floats, hl_status *
   if (*status != HL_OK) return NULL;
   float *pixels = hl_allocate(room->context, room->tiles * TILE_PIXELS, floats * sizeof *pixels);
   if (pixels == NULL) *status = hl_fail_memory(error, room->tiles * TILE_PIXELS * floats * sizeof *pixels, "a layer");
-  else hl_pool_fill(room->pool, pixels, room->tiles * TILE_PIXELS * floats, 0);
+  else hl_pool_clear(room->pool, pixels, room->tiles * TILE_PIXELS * floats * sizeof *pixels);
   return pixels;
 }
 

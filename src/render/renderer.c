@@ -266,7 +266,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   if (status != HL_OK) return status;
   work->pixels = hl_allocate(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
   if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
-  hl_pool_fill(renderer->pool, work->pixels, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, 0);
+  hl_pool_clear(renderer->pool, work->pixels, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4 * sizeof *work->pixels);
   return hl_layer_pixels_create(context, renderer->pool, layers, frame, work->tiles, &work->layers, error);
 }
 

@@ -94,10 +94,8 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
  * way is what lies both in the slab and in the box. */
 typedef struct light_depths { lanes before[HL_CHANNELS], within[HL_CHANNELS]; } light_depths;
 
-/* Where in the table a volume is seen; lanes that see nothing may hold anything, and are held within it. */
-LANES_INLINE lanes coordinate_seen(const block_density *d) {
-  return lanes_clamp(d->before + (d->after - d->before) * d->seen, 0, CLASSIFIER_ENTRIES);
-}
+/* Where in the table a volume is seen. */
+LANES_INLINE lanes coordinate_seen(const block_density *d) { return d->before + (d->after - d->before) * d->seen; }
 
 /* Even extinction of the light's way through the slab that has the right optical depth down to what is seen of a volume
  * (derived). The eye's ray may run along a surface that the light's crosses: a way s before the point seen, the

@@ -213,7 +213,7 @@ LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, 
   block_geometry *g = &slab->geometry;
   *g = geometry_of_block(job, slab->u, slab->v);
   slab->total = total;
-  slab->depth = total * g->path;
+  slab->depth = lanes_keep(slab->seen, total * g->path); /* lanes without a pixel have a path of their own */
   slab->left = lanes_exp_negative(slab->depth);
   slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
   lanes u = seen_part(slab->depth, slab->left);

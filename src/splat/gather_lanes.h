@@ -195,7 +195,7 @@ LANES_INLINE int gather_place(const fill_source *source, const block_place *plac
   lanes_int shown = may_show(source, sum);
   if (!inside) {
     sum = lanes_keep(place->inside, sum);
-    shown = place->inside & may_show(source, sum);
+    shown &= place->inside;
   }
   lanes_store(density, sum);
   return lanes_bits(shown) != 0;
