@@ -12,7 +12,8 @@ int hl_cpu_has_instruction_set(hl_instruction_set set) {
   if (set == HL_INSTRUCTION_SET_AVX512)
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
-           __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vnni");
+           __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vbmi2") &&
+           __builtin_cpu_supports("avx512vnni");
 #elif defined(__aarch64__)
   if (set == HL_INSTRUCTION_SET_NEON) return 1;
 #endif

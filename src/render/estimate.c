@@ -7,13 +7,14 @@
 
 enum { SMALL_PARTS = 64 << 10 /* descriptions, sweeps, corners, counts */ };
 
-uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared, int threads) {
+uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared, const grid_functions *functions,
+                          int threads) {
   uint64_t bytes = SMALL_PARTS;
   uint64_t table = (CLASSIFIER_ENTRIES + 2) * (2 * sizeof(*prepared->classifier.sums) + sizeof(int32_t));
   for (size_t i = 0; i < scene->volume_count; i++) {
     const hl_transfer_function *function = &scene->volumes[i].transfer_function;
     if (prepared[i].volume == scene->volumes[i].volume) continue;
-    bytes += hl_grid_bytes(scene->volumes[i].volume, threads) + table + function->opacity_count * sizeof *function->opacity +
+    bytes += hl_grid_bytes(scene->volumes[i].volume, functions, threads) + table + function->opacity_count * sizeof *function->opacity +
              function->color_count * sizeof *function->color;
   }
   return bytes;

@@ -7,7 +7,8 @@
 #include "render/sweep.h"
 
 /* What the volumes that are not prepared yet take, bytes. */
-uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared, int threads);
+uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared, const grid_functions *functions,
+                          int threads);
 
 /* What the picture and its layers take, for sweeps of the frame. */
 uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *layers);

@@ -407,12 +407,13 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   if (status == HL_OK) status = make_room(renderer, scene, error);
   if (status == HL_OK) hl_pool_resume(renderer->pool);
   renderer->estimate = 0;
+  const hot_functions *hot = hl_hot_functions(renderer->context->options.instruction_set);
   if (status == HL_OK)
-    status = hl_check_room(renderer->context, hl_prepare_bytes(scene, renderer->prepared, hl_pool_threads(renderer->pool)),
+    status = hl_check_room(renderer->context,
+                           hl_prepare_bytes(scene, renderer->prepared, &hot->grid, hl_pool_threads(renderer->pool)),
                            &renderer->estimate, error);
   if (status == HL_OK)
-    status = hl_prepare_volumes(renderer->context, renderer->pool,
-                                hl_hot_functions(renderer->context->options.instruction_set), scene, renderer->prepared,
+    status = hl_prepare_volumes(renderer->context, renderer->pool, hot, scene, renderer->prepared,
                                 error);
   if (status == HL_OK) status = set_up_frame(renderer, scene, layers, work, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);

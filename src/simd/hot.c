@@ -11,8 +11,14 @@
 #include "splat/relevant_lanes.h"
 #include "splat/splat_lanes.h"
 
+#ifdef HL_BYTE_WINDOWS
+#define HL_COLUMN_SLICE column_slice
+#else
+#define HL_COLUMN_SLICE NULL
+#endif
+
 const hot_functions HL_HOT_TABLE = {
-    .bound = {{bound_rows_u8, bound_rows_u16, bound_rows_f32}, bound_along, bound_across},
+    .grid = {{bound_rows_u8, bound_rows_u16, bound_rows_f32}, bound_along, bound_across, HL_COLUMN_SLICE},
     .relevant_blocks_tile = relevant_blocks_tile,
     .splat_tile = splat_tile,
     .gather_tile = gather_tile,

@@ -15,7 +15,7 @@
 #include "splat/fill.h"
 
 typedef struct hot_functions {
-  bound_functions bound;
+  grid_functions grid;
   relevant_blocks_function *relevant_blocks_tile;
   fill_tile_function *splat_tile, *gather_tile;
   coverage_tile_function *coverage_tile;

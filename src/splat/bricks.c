@@ -127,14 +127,16 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
-uint64_t hl_grid_bytes(const hl_volume *volume, int threads) {
+uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions, int threads) {
   uint64_t bricks = 1;
   for (int axis = 0; axis < 3; axis++) bricks *= volume->dimension[axis] / HL_BRICK_CELLS + 1;
   uint64_t copied = volume->nonfinite_count > 0 ? hl_volume_voxel_count(volume) * sizeof(float) : 0;
+  int32_t dimension[3] = {(int32_t)volume->dimension[0], (int32_t)volume->dimension[1], (int32_t)volume->dimension[2]};
+  if (functions->column_slice != NULL && hl_columns_wanted(dimension, volume->storage)) copied += hl_columns_bytes(dimension);
   return copied + bricks * (2 * sizeof(float) + 1 + sizeof(uint32_t)) + hl_cell_bounds_bytes(volume->dimension, threads);
 }
 
-hl_status hl_grid_create(hl_context *context, hl_pool *pool, const bound_functions *functions, const kernel *kernel,
+hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions, const kernel *kernel,
                          const hl_scene_volume *scene_volume, affine3 index_to_frame, double empty, grid *grid,
                          hl_error *error) {
   const hl_volume *volume = scene_volume->volume;
@@ -154,6 +156,8 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const bound_functio
   }
   hl_status status = HL_OK;
   if (volume->nonfinite_count > 0) status = replace_nonfinite(context, pool, volume, grid, error);
+  if (status == HL_OK && functions->column_slice != NULL && hl_columns_wanted(grid->dimension, grid->storage))
+    status = hl_columns_build(context, pool, functions->column_slice, grid, error);
   if (status == HL_OK) status = bound_bricks(context, pool, functions->rows[grid->storage], grid, error);
   set_cell_range(volume, grid);
   if (status == HL_OK)
@@ -174,6 +178,7 @@ void hl_grid_release(hl_context *context, grid *grid) {
   }
   hl_release(context, grid->relevant_list);
   hl_release(context, grid->finite_voxels);
+  hl_release(context, grid->columns);
   *grid = (struct grid){0};
 }
 

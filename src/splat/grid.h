@@ -17,6 +17,7 @@
 enum {
   HL_BRICK_CELLS = 4,
   HL_NEAR_CELLS = 2,
+  GRID_COLUMN = 8, /* voxels: the width of its columns (columns.h) */
   GRID_MARGIN = 4 /* voxels outside its box that a grid still continues, for slabs across its faces */
 };
 
@@ -32,6 +33,9 @@ typedef struct cell_level {
 
 typedef struct grid {
   const void *voxels;          /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's */
+  unsigned char *columns;      /* owned; [column][dimension[2]][dimension[1]][GRID_COLUMN], u8 voxels again; null where nothing
+                                  reads them (columns.h) */
+  size_t column_slice_bytes, column_bytes; /* from slice to slice, from column to column */
   hl_storage storage;
   int32_t dimension[3];
   float empty;                 /* stored units */

@@ -8,7 +8,7 @@
 #define HL_SPLAT_WINDOW_LANES_H
 
 #include "simd/lanes.h"
-#include "splat/grid.h"
+#include "splat/columns_lanes.h"
 
 /* Weights along x as whole numbers, so that sums of u8 taps are exact whatever the instruction set. Of this unit, the
  * sum of four taps of 255 times derivatives' weights still fits 32 bits. */
@@ -32,14 +32,15 @@ LANES_INLINE whole_weights round_weights(const lanes weight[4], int total) {
   return whole;
 }
 
-#if defined(__AVX512VBMI__) && defined(__AVX512VNNI__)
+#if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
 #define HL_BYTE_WINDOWS 1
 
-enum { WINDOW_SIDE = 8, WINDOW_SPREAD = WINDOW_SIDE - 4 }; /* voxels; how far lanes' first taps may lie apart */
+enum { WINDOW_SIDE = GRID_COLUMN, WINDOW_SPREAD = WINDOW_SIDE - 4 }; /* voxels; how far lanes' first taps may lie apart */
 
 typedef struct byte_window {
-  const unsigned char *voxels;   /* the window's first voxel */
-  size_t row_bytes, slice_bytes;
+  const unsigned char *left, *right; /* the window's first row in the two columns that it lies in */
+  size_t slice_bytes;
+  __m512i shift;                 /* bits from the left column's first voxel to the window's, in every row */
   __m512i index;                 /* of each lane's taps in the first row of a slice, a byte each */
   __mmask16 starts[WINDOW_SPREAD + 1]; /* lanes whose taps start at this slice */
   int slices;
@@ -70,7 +71,7 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
   int32_t low[3];
   __m512i offset[3];
-  if (grid->dimension[0] < WINDOW_SIDE || grid->dimension[1] < WINDOW_SIDE) return 0;
+  if (grid->columns == NULL) return 0;
   for (int a = 0; a < 3; a++) {
     low[a] = lowest[a] - 1;
     if (a < 2 && low[a] > grid->dimension[a] - WINDOW_SIDE) low[a] = grid->dimension[a] - WINDOW_SIDE;
@@ -86,10 +87,11 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(offset[1], 3), offset[0]);
   const __m512i lowest_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
   window->index = _mm512_add_epi8(_mm512_shuffle_epi8(first, lowest_byte), _mm512_set1_epi32(0x03020100));
-  window->row_bytes = (size_t)grid->dimension[0];
-  window->slice_bytes = window->row_bytes * (size_t)grid->dimension[1];
-  window->voxels = (const unsigned char *)grid->voxels + (size_t)low[2] * window->slice_bytes +
-                   (size_t)low[1] * window->row_bytes + (size_t)low[0];
+  window->slice_bytes = grid->column_slice_bytes;
+  window->left = grid->columns + (size_t)(low[0] / WINDOW_SIDE) * grid->column_bytes +
+                 (size_t)low[2] * grid->column_slice_bytes + (size_t)low[1] * WINDOW_SIDE;
+  window->right = window->left + (low[0] % WINDOW_SIDE != 0 ? grid->column_bytes : 0);
+  window->shift = _mm512_set1_epi64(low[0] % WINDOW_SIDE * 8);
   return 1;
 }
 
@@ -106,18 +108,9 @@ LANES_INLINE int open_window_of_block(const grid *grid, const lanes_int cell[3],
   return open_window_at(grid, cell, lowest, 0xffff, window) || open_window(grid, cell, 0xffff, window);
 }
 
-LANES_INLINE __m128i two_rows(const unsigned char *row, size_t row_bytes) {
-  __m128i first = _mm_loadl_epi64((const __m128i *)row);
-  return _mm_castps_si128(_mm_loadh_pi(_mm_castsi128_ps(first), (const __m64 *)(row + row_bytes)));
-}
-
 LANES_INLINE __m512i window_slice(const byte_window *window, int slice) {
-  const unsigned char *row = window->voxels + (size_t)slice * window->slice_bytes;
-  size_t step = window->row_bytes;
-  __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(two_rows(row, step)), two_rows(row + 2 * step, step), 1);
-  row += 4 * step;
-  __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(two_rows(row, step)), two_rows(row + 2 * step, step), 1);
-  return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+  size_t at = (size_t)slice * window->slice_bytes;
+  return _mm512_shrdv_epi64(_mm512_loadu_si512(window->left + at), _mm512_loadu_si512(window->right + at), window->shift);
 }
 
 /* The four taps of every lane in row y of a slice. */

@@ -7,6 +7,8 @@
 
 #include <cmocka.h>
 
+#include "core/cpu.h"
+
 enum { BENCH_SIDE = 48, BENCH_SHEETS = 5 };
 
 double bench_random(uint32_t *state) {
@@ -52,7 +54,7 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
   bench->color = (hl_color_point){0, {1, 1, 1}};
   bench->scene.transfer_function = (hl_transfer_function){1, &bench->opacity, 1, &bench->color, 1};
   affine3 placement = {axes, vec3_scale(middle, -1)};
-  require(hl_grid_create(bench->context, bench->pool, &hl_hot_scalar.bound, hl_kernel_get(HL_KERNEL_BSPLINE), &bench->scene, placement,
+  require(hl_grid_create(bench->context, bench->pool, &hl_hot_functions(hl_cpu_best_instruction_set())->grid, hl_kernel_get(HL_KERNEL_BSPLINE), &bench->scene, placement,
                          hl_scene_volume_empty_value(&bench->scene), &bench->grid, &error), &error);
   require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error), &error);
   hl_grid_mark_relevant(&bench->grid, &bench->classifier, bench->pool);

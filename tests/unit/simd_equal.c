@@ -118,7 +118,7 @@ typedef struct bound_state {
 
 static void call_bound_rows(const hot_functions *hot, void *state) {
   bound_state *s = state;
-  hot->bound.rows[s->storage](s->rows, s->row_count, s->count, s->out[0], s->out[1]);
+  hot->grid.rows[s->storage](s->rows, s->row_count, s->count, s->out[0], s->out[1]);
 }
 
 static void test_bound_rows(void **unused) {
@@ -147,8 +147,8 @@ typedef struct cells_state {
 
 static void call_bound_cells(const hot_functions *hot, void *state) {
   cells_state *s = state;
-  hot->bound.along(s->storage, s->row, s->count, s->smooth, s->padded, s->out[0], s->out[1]);
-  hot->bound.across(s->low, s->high, (size_t)s->count / 2, s->smooth, s->out[2], s->out[3]);
+  hot->grid.along(s->storage, s->row, s->count, s->smooth, s->padded, s->out[0], s->out[1]);
+  hot->grid.across(s->low, s->high, (size_t)s->count / 2, s->smooth, s->out[2], s->out[3]);
 }
 
 static void test_bound_cells(void **unused) {
