@@ -89,6 +89,87 @@ static void frames_what_is_visible(void **state) {
   parts_release(&p);
 }
 
+enum { LONG = 150, WIDE = 21, HIGH = 37 };
+
+/* A long volume of each type, a few voxels of which are visible, most of those in one part of it. */
+static hl_volume *scattered(hl_context *context, hl_voxel_type type, unsigned seed) {
+  static unsigned char bytes[LONG * WIDE * HIGH];
+  static uint16_t words[LONG * WIDE * HIGH];
+  static float floats[LONG * WIDE * HIGH];
+  for (int v = 0; v < LONG * WIDE * HIGH; v++) {
+    seed = seed * 1664525u + 1013904223u;
+    int near = v % LONG > 30 && v % LONG < 70 && v / LONG % WIDE < 12;
+    bytes[v] = (unsigned char)(seed >> 8) % (near ? 8 : 400) == 0 ? (unsigned char)(seed >> 24) : 10;
+    words[v] = (uint16_t)(256 * bytes[v]);
+    floats[v] = bytes[v] == 77 ? NAN : (float)bytes[v];
+  }
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  d.dimensions[0] = LONG, d.dimensions[1] = WIDE, d.dimensions[2] = HIGH;
+  d.type = type;
+  d.voxels = type == HL_VOXEL_U8 ? (const void *)bytes : type == HL_VOXEL_U16 ? (const void *)words : floats;
+  if (type == HL_VOXEL_U16) d.value_scale = -1.0 / 256, d.value_offset = 300;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  return volume;
+}
+
+/* How far visible voxels reach along a direction, less so many times their depth: of all of them. */
+static double greatest_reach(const hl_scene_volume *scene, vec3 along, vec3 forward, double tangent) {
+  const hl_volume *volume = scene->volume;
+  affine3 placement = hl_scene_volume_index_to_world(scene);
+  double low[3], high[3], greatest = -INFINITY, radius = scene->scale * sqrt(3) / 2;
+  hl_scene_volume_box(scene, low, high);
+  for (int v = 0; v < LONG * WIDE * HIGH; v++) {
+    const size_t i = (size_t)(v % LONG), j = (size_t)(v / LONG % WIDE), k = (size_t)(v / LONG / WIDE);
+    const double at[3] = {(double)i, (double)j, (double)k};
+    bool inside = true;
+    for (int a = 0; a < 3; a++) inside = inside && at[a] >= low[a] && at[a] <= high[a];
+    double value = hl_volume_value(volume, i, j, k);
+    if (!inside || !isfinite(value) || hl_transfer_function_opacity(&scene->transfer_function, value) < 0.02) continue;
+    vec3 p = affine3_apply(placement, (vec3){at[0], at[1], at[2]});
+    greatest = fmax(greatest, vec3_dot(p, along) - tangent * vec3_dot(p, forward) + radius * sqrt(1 + tangent * tangent));
+  }
+  return greatest;
+}
+
+/* What is found by looking at a few voxels is what all of them say. */
+static void frames_by_the_farthest_voxels(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  hl_opacity_point points[] = {{20, 0}, {20, 1}, {120, 1}, {121, 0}, {215, 0}, {216, 0.5}, {218, 0.001}};
+  for (int n = 0; n < 36; n++) {
+    hl_scene_volume *scene = &p.scene_volume;
+    hl_volume_release(p.volume);
+    p.volume = scene->volume = scattered(p.context, n % 3 == 0 ? HL_VOXEL_U8 : n % 3 == 1 ? HL_VOXEL_U16 : HL_VOXEL_F32, (unsigned)n);
+    scene->transfer_function = (hl_transfer_function){1, points, n % 4 ? 4 : 7, NULL, 0};
+    scene->scale = 1 + 0.1 * n;
+    scene->rotate_angle_deg = 23 * n;
+    memcpy(scene->rotate_axis, (double[3]){0.3, 1, 0.2 * n}, sizeof scene->rotate_axis);
+    scene->clipped = n % 5 == 4;
+    memcpy(scene->clip_min, (double[3]){33, 2, -9}, sizeof scene->clip_min);
+    memcpy(scene->clip_max, (double[3]){141, 99, 30}, sizeof scene->clip_max);
+    p.description.width = p.description.height = 100;
+    hl_camera c = {.type = n % 2 ? HL_CAMERA_ORTHOGRAPHIC : HL_CAMERA_PERSPECTIVE, .fovy_deg = n % 4 ? 30 : 140};
+    assert_int_equal(hl_camera_frame(&p.description, n * 31, n * 5 - 90, 1, &c), HL_OK);
+    vec3 right, up, forward;
+    assert_true(hl_camera_basis(&c, &right, &up, &forward));
+    double tangent = n % 2 ? 0 : 0.92 * tan(c.fovy_deg * HL_PI / 360);
+    double reach[4];
+    const vec3 along[4] = {right, vec3_scale(right, -1), up, vec3_scale(up, -1)};
+    for (int side = 0; side < 4; side++) reach[side] = greatest_reach(scene, along[side], forward, tangent);
+    double half = fmax(reach[0] + reach[1], reach[2] + reach[3]) / 2;
+    double near = -greatest_reach(scene, vec3_scale(forward, -1), forward, 0), far = greatest_reach(scene, forward, forward, 0);
+    assert_near(vec3_dot(vec3_of(c.target), right), (reach[0] - reach[1]) / 2, 1e-8);
+    assert_near(vec3_dot(vec3_of(c.target), up), (reach[2] - reach[3]) / 2, 1e-8);
+    assert_near(vec3_dot(vec3_of(c.target), forward), (near + far) / 2, 1e-8);
+    if (n % 2) assert_near(c.height, 2 * half / 0.92, 1e-8);
+    else assert_near(vec3_dot(vec3_of(c.position), forward), -half / tangent, 1e-8);
+  }
+  parts_release(&p);
+}
+
 static void angles_mean_what_they_say(void **state) {
   (void)state;
   parts p;
@@ -180,6 +261,7 @@ int main(void) {
       cmocka_unit_test(basis_is_right_handed_and_falls_back),
       cmocka_unit_test(scene_mends_up),
       cmocka_unit_test(frames_what_is_visible),
+      cmocka_unit_test(frames_by_the_farthest_voxels),
       cmocka_unit_test(angles_mean_what_they_say),
       cmocka_unit_test(fits_along_its_own_direction),
       cmocka_unit_test(frames_boxes_and_several_volumes),
