@@ -19,9 +19,11 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, float 
   return lanes_keep(climb * rays->step + lanes_abs(climb) * reach > 0.0f, length);
 }
 
-/* The part of the slab before the sheet that lies in the volume's box, block by block. */
-LANES_INLINE covered_part covered_block(const float *enter, const float *leave, int block, float height, float spacing) {
+/* The part of the slab before the sheet that lies in the volume's box, block by block. whole: all of it does. */
+LANES_INLINE covered_part covered_block(const float *enter, const float *leave, int whole, int block, float height,
+                                        float spacing) {
   if (enter == NULL) return (covered_part){lanes_set(0), lanes_set(1.0f)};
+  if (whole) return covered(lanes_set(-1e30f), lanes_set(1e30f), height, spacing);
   return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height, spacing);
 }
 
@@ -59,7 +61,7 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
     table_place a = classify_place(volume->classifier, lanes_load(volume->before + block * BLOCK_PIXELS));
     table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
     if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
-    covered_part part = covered_block(volume->enter, volume->leave, block, job->height, job->spacing);
+    covered_part part = covered_block(volume->enter, volume->leave, volume->whole, block, job->height, job->spacing);
     if (volume->enter != NULL) cut_way(part, &a, &b);
     lanes extinction = sums_of_way(volume->classifier, a, b).extinction * part.length;
     for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];

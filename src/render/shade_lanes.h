@@ -122,7 +122,7 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geom
     const shade_volume *volume = d->patch->volume;
     const covered_part *part = &d->way.part;
     lanes first = part->begin * path, last = (part->begin + part->length) * path;
-    if (d->patch->enter != NULL) {
+    if (d->patch->enter != NULL && !d->patch->whole) {
       ways_in_box ways = ways_of_light(volume, add3(g->start, scale3(g->step_sheet, part->begin)),
                                        scale3(g->step_sheet, part->length), towards);
       first = lanes_min(first, ways.first);

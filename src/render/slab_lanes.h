@@ -85,7 +85,7 @@ LANES_INLINE lanes_int way_of_block(const shade_job *job, const shade_patch *pat
   const classifier *classifier = patch->volume->classifier;
   way->first = lanes_load(patch->before + block * BLOCK_PIXELS);
   way->last = lanes_load(patch->current + block * BLOCK_PIXELS);
-  way->part = covered_block(patch->enter, patch->leave, block, job->height, job->spacing);
+  way->part = covered_block(patch->enter, patch->leave, patch->whole, block, job->height, job->spacing);
   return may_be_visible(classifier, classify_place(classifier, way->first), classify_place(classifier, way->last));
 }
 

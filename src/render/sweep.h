@@ -33,11 +33,19 @@ typedef struct kept_patch {
   uint16_t need, blocks;          /* blocks that were filled; those of them with density */
 } kept_patch;
 
+/* Where some slabs in a row may hold something of a patch. */
+typedef struct relevant_patch {
+  int32_t first;                  /* the sheet before them; -1: none */
+  relevant_blocks found;
+} relevant_patch;
+
 /* What one view, the eye's or a light's, sees of the last sheets. */
 typedef struct view_sheets {
   occupancy occupancy;
   voxel_lists *lists;             /* owned; [grids]; splat only */
   fill_source *sources;           /* owned; [RING][grids]; of sheet k at k % RING */
+  slab_run *runs;                 /* owned; [grids]; the slabs that the last one is among */
+  relevant_patch *relevant;       /* owned; [patches] */
   float *enter, *leave;           /* owned; [patches][256]; null where no box cuts anything visible */
   float *density;                 /* owned; [patches][RING][256], block-major */
   kept_patch *kept;               /* owned; [patches][RING]; what is in density */
@@ -73,6 +81,7 @@ typedef struct sweep {
   prepared_volume *volumes;       /* [volume_count] */
   const grid *grids;              /* [volume_count], copies of the volumes' grids */
   int volume_count;
+  double longest_way;             /* of shadowed light through a slab, at most; frame units */
   const kernel *kernel;
   bool splat;                     /* else gather */
   bool first;                     /* the sweep that carries ambient light and opacity */
@@ -147,6 +156,7 @@ void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_
 typedef struct patch_slab {
   const float *before, *current; /* valid in blocks */
   const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible */
+  int whole;                     /* it cuts nothing in this slab, and no light on its way through it to the eye's pixels */
   uint32_t blocks;
 } patch_slab;
 /* pixels: is raised by the pixels filled. */

@@ -253,6 +253,27 @@ static void set_up_jobs(sweep *sweep) {
   }
 }
 
+/* Below this share of its way, light that climbs over the sheets counts as running along them. */
+static const double LEAST_CLIMB = 0.05;
+
+/* Directions within some angle of the normal form a cone: between the content's corners light climbs as at one of them
+ * at least. */
+static double least_climb(const sweep *sweep, const light_source *source) {
+  vec3 normal = sweep->geometry->sheets.normal;
+  if (source->parallel) return vec3_dot(source->direction, normal);
+  double least = 1;
+  for (int i = 0; i < sweep->frame->point_count; i++)
+    least = fmin(least, vec3_dot(vec3_normalise(vec3_subtract(sweep->frame->points[i], source->position)), normal));
+  return least;
+}
+
+static double longest_way(const sweep *sweep) {
+  double least = 1;
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (sweep->lights[i].buffer != NULL) least = fmin(least, least_climb(sweep, sweep->lights[i].source));
+  return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
+}
+
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error) {
   hl_status status = hl_view_sheets_begin(sweep, &sweep->frame->eye, &sweep->image, error);
   if (status == HL_OK) status = allocate_image(sweep, error);
@@ -266,6 +287,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *m
   hl_release(sweep->context, points);
   if (status == HL_OK) status = allocate_stages(sweep, error);
   if (status != HL_OK) return status;
+  sweep->longest_way = longest_way(sweep);
   set_up_shading(sweep);
   set_up_jobs(sweep);
   return hl_sweep_layers_begin(sweep, error);

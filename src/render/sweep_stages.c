@@ -35,7 +35,7 @@ static int fill_image_tile(sweep *sweep, size_t tile, int worker, shade_patch *p
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
     patches[count++] = (shade_patch){&sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter,
-                                     slab.leave};
+                                     slab.leave, slab.whole};
   }
   return count;
 }
@@ -102,7 +102,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
     if (slab.blocks == 0) continue;
     volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = slab.blocks,
                                         .before = slab.before, .density = slab.current,
-                                        .enter = slab.enter, .leave = slab.leave};
+                                        .enter = slab.enter, .leave = slab.leave, .whole = slab.whole};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
     count++;
   }

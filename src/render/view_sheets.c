@@ -57,9 +57,12 @@ static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error 
   sheets->density = hl_allocate(sweep->context, count * TILE_PIXELS, sizeof(float));
   sheets->kept = hl_allocate(sweep->context, count, sizeof *sheets->kept);
   sheets->sources = hl_allocate(sweep->context, RING * (size_t)sweep->volume_count, sizeof *sheets->sources);
-  if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL)
+  sheets->runs = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->runs);
+  sheets->relevant = hl_allocate(sweep->context, sheets->occupancy.patch_count, sizeof *sheets->relevant);
+  if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL || sheets->runs == NULL || sheets->relevant == NULL)
     return hl_fail_memory(error, count * TILE_PIXELS * sizeof(float), "the last sheets");
   for (size_t i = 0; i < count; i++) sheets->kept[i] = (kept_patch){.sheet = -1};
+  for (size_t i = 0; i < sheets->occupancy.patch_count; i++) sheets->relevant[i] = (relevant_patch){.first = -1};
   return HL_OK;
 }
 
@@ -68,11 +71,33 @@ uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view) {
   bool cut = false;
   for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
   uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, &patches);
-  uint64_t a_patch = RING * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + (cut ? 2 * TILE_PIXELS * sizeof(float) : 0);
+  uint64_t a_patch = RING * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(relevant_patch) + (cut ? 2 * TILE_PIXELS * sizeof(float) : 0);
   return bytes + patches * a_patch;
 }
 
+/* The sheet before the run of slabs that has the slab before a sheet. */
+static int first_of_run(int sheet) { return (sheet - 1) / RUN_SLABS * RUN_SLABS; }
+
+/* Box faces cut the eye's part of a slab and the way of light to it, which comes from beside. */
+static void reach_run(const sweep *sweep, const view *view, int first, view_sheets *sheets) {
+  double beside = sheets == &sweep->image ? sweep->longest_way : 0;
+  for (int g = 0; g < sweep->volume_count; g++) {
+    const grid *grid = &sweep->grids[g];
+    slab_run *run = &sheets->runs[g];
+    run->grid = grid;
+    for (int axis = 0; axis < 3; axis++) {
+      double reach = beside * vec3_length(grid->frame_to_index.linear.row[axis]);
+      run->low[axis] = (float)(grid->box_low[axis] + reach);
+      run->high[axis] = (float)(grid->box_high[axis] - reach);
+    }
+    for (int i = 0; i <= RUN_SLABS; i++)
+      hl_view_sheet_rays(view, sweep->geometry->sheets.normal, hl_sheet_height(&sweep->geometry->sheets, first + i),
+                         grid->frame_to_index, &run->rays[i]);
+  }
+}
+
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
+  if (first_of_run(sheet) == sheet - 1) reach_run(sweep, view, sheet - 1, sheets);
   for (int g = 0; g < sweep->volume_count; g++) {
     fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + g];
     *source = (fill_source){.grid = &sweep->grids[g], .kernel = sweep->kernel, .sheet = sheet,
@@ -97,7 +122,8 @@ hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
   for (int g = 0; sheets->lists != NULL && g < sweep->volume_count; g++)
     hl_voxel_lists_release(sweep->context, &sheets->lists[g]);
-  void *owned[] = {sheets->lists, sheets->sources, sheets->enter, sheets->leave, sheets->density, sheets->kept};
+  void *owned[] = {sheets->lists,  sheets->sources, sheets->runs, sheets->relevant,
+                   sheets->enter,  sheets->leave,   sheets->density, sheets->kept};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
   hl_occupancy_release(sweep->context, &sheets->occupancy);
 }
@@ -113,13 +139,19 @@ static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets 
   return &sheets->sources[sheet % RING * sweep->volume_count + (int)sheets->occupancy.patch_grid[patch]];
 }
 
-/* The blocks of a patch in which the slab before a sheet may hold something. */
-static uint32_t relevant_blocks(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet) {
+/* Where the slabs of a sheet's run may hold something of a patch, found for all of them at once. */
+static const relevant_blocks *relevant_in_run(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet) {
   const occupancy *o = &sheets->occupancy;
-  if (!hl_occupancy_has(o, patch, sheet) && !hl_occupancy_has(o, patch, sheet - 1)) return 0;
-  return sweep->hot->relevant_blocks_tile(source_on_sheet(sweep, sheets, patch, sheet - 1),
-                                          source_on_sheet(sweep, sheets, patch, sheet),
-                                          (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x));
+  relevant_patch *relevant = &sheets->relevant[patch];
+  int first = first_of_run(sheet);
+  if (relevant->first == first) return &relevant->found;
+  uint32_t slabs = 0;
+  for (int i = 0; i < RUN_SLABS && first + i + 1 < o->sheets; i++)
+    slabs |= (uint32_t)(hl_occupancy_has(o, patch, first + i) | hl_occupancy_has(o, patch, first + i + 1)) << i;
+  *relevant = (relevant_patch){.first = first};
+  sweep->hot->relevant_blocks_tile(&sheets->runs[o->patch_grid[patch]], (int)(tile % (size_t)o->tiles_x),
+                                   (int)(tile / (size_t)o->tiles_x), slabs, &relevant->found);
+  return &relevant->found;
 }
 
 /* Fills what is missing of the wanted blocks; returns the pixels filled. */
@@ -140,7 +172,9 @@ static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t
 
 patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
                          uint64_t *pixels) {
-  uint32_t wanted = need & relevant_blocks(sweep, sheets, tile, patch, sheet);
+  const relevant_blocks *relevant = relevant_in_run(sweep, sheets, tile, patch, sheet);
+  int slab = sheet - 1 - first_of_run(sheet);
+  uint32_t wanted = need & relevant->blocks[slab];
   if (wanted == 0) return (patch_slab){.blocks = 0};
   kept_patch *before = patch_on_sheet(sheets, patch, sheet - 1), *current = patch_on_sheet(sheets, patch, sheet);
   *pixels += fill_patch(sweep, sheets, tile, patch, before, wanted);
@@ -150,5 +184,6 @@ patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, s
   return (patch_slab){.before = density + (sheet - 1) % RING * TILE_PIXELS, .current = density + sheet % RING * TILE_PIXELS,
                       .enter = cut ? sheets->enter + patch * TILE_PIXELS : NULL,
                       .leave = cut ? sheets->leave + patch * TILE_PIXELS : NULL,
+                      .whole = relevant->whole >> slab & 1,
                       .blocks = wanted & ((uint32_t)before->blocks | current->blocks)};
 }

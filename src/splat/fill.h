@@ -38,7 +38,22 @@ typedef struct fill_source {
  * Returns the blocks in which some pixel may show something, alone or on the way to another density above it. */
 typedef uint32_t fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density);
 
-/* The blocks of a tile outside of which the slab between two sheets of a grid holds nothing that matters. */
-typedef uint32_t relevant_blocks_function(const fill_source *before, const fill_source *after, int tile_x, int tile_y);
+/* A few sheets one after another, and the slabs between them. */
+enum { RUN_SLABS = 4 };
+typedef struct slab_run {
+  const grid *grid;
+  sheet_rays rays[RUN_SLABS + 1]; /* pixels -> index space */
+  float low[3], high[3];          /* what lies between is not cut by the box */
+} slab_run;
+
+/* Of a tile, slab by slab, the blocks outside of which there is nothing of the grid that matters, and whether the box
+ * leaves all of those whole. */
+typedef struct relevant_blocks {
+  uint16_t blocks[RUN_SLABS];
+  uint16_t whole; /* one bit a slab */
+} relevant_blocks;
+
+/* Fills what is asked of the run's slabs, one bit each; others are left alone. */
+typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs, relevant_blocks *found);
 
 #endif

@@ -1,5 +1,5 @@
 /* splat/relevant_lanes.h - which blocks of a tile can hold anything between two sheets: one look at the box around each
- * one's rays, all sixteen at a time. */
+ * one's rays, all sixteen at a time. A few slabs in a row at once: they share boxes and what they read of the cells. */
 #ifndef HL_SPLAT_RELEVANT_LANES_H
 #define HL_SPLAT_RELEVANT_LANES_H
 
@@ -43,18 +43,24 @@ LANES_INLINE lanes_int box_shows(const cell_level *level, int shift, const lanes
   return fits & (((found >> (bit & 7)) & 1) != 0);
 }
 
-static uint32_t relevant_blocks_tile(const fill_source *before, const fill_source *after, int tile_x, int tile_y) {
-  const grid *grid = after->grid;
-  lanes u = lanes_load(block_column) * (float)BLOCK + ((float)(tile_x * TILE) + 1.5f);
-  lanes v = lanes_load(block_row) * (float)BLOCK + ((float)(tile_y * TILE) + 1.5f);
-  lanes_box a = box_on_sheet(&before->rays, u, v), b = box_on_sheet(&after->rays, u, v);
+/* The box around a block's part of a slab, from those on its sheets. */
+LANES_INLINE lanes_box box_of_slab(const lanes_box *a, const lanes_box *b) {
+  lanes_box box;
+  for (int axis = 0; axis < 3; axis++) {
+    box.low[axis] = lanes_min(a->low[axis], b->low[axis]);
+    box.high[axis] = lanes_max(a->high[axis], b->high[axis]);
+  }
+  return box;
+}
+
+/* The blocks whose boxes hold something. */
+LANES_INLINE uint32_t showing_blocks(const grid *grid, const lanes_box *box) {
   lanes_int inside = lanes_set_int(-1), first[3], last[3];
   for (int axis = 0; axis < 3; axis++) {
-    lanes low = lanes_min(a.low[axis], b.low[axis]), high = lanes_max(a.high[axis], b.high[axis]);
     float count = (float)grid->dimension[axis];
-    inside &= (high > -0.5f - GRID_MARGIN) & (low < count - 0.5f + GRID_MARGIN);
-    first[axis] = lanes_floor(lanes_clamp(low, -1.0f, count * (1 - 1e-6f))) + 1;
-    last[axis] = lanes_floor(lanes_clamp(high, -1.0f, count * (1 - 1e-6f))) + 1;
+    inside &= (box->high[axis] > -0.5f - GRID_MARGIN) & (box->low[axis] < count - 0.5f + GRID_MARGIN);
+    first[axis] = lanes_floor(lanes_clamp(box->low[axis], -1.0f, count * (1 - 1e-6f))) + 1;
+    last[axis] = lanes_floor(lanes_clamp(box->high[axis], -1.0f, count * (1 - 1e-6f))) + 1;
   }
   if (lanes_bits(inside) == 0 || grid->level[0].near == NULL) return lanes_bits(inside);
   lanes_int wide, shows = box_shows(&grid->level[0], 1, first, last, inside, &wide);
@@ -62,6 +68,32 @@ static uint32_t relevant_blocks_tile(const fill_source *before, const fill_sourc
   lanes_int too_wide, shows_far = box_shows(&grid->level[1], 2, first, last, inside, &too_wide);
   /* a block too wide for either may hold something anywhere */
   return lanes_bits(inside & (shows | (wide & (shows_far | too_wide))));
+}
+
+/* The blocks whose boxes lie in the run's. */
+LANES_INLINE uint32_t whole_blocks(const slab_run *run, const lanes_box *box) {
+  lanes_int whole = lanes_set_int(-1);
+  for (int axis = 0; axis < 3; axis++) whole &= (box->low[axis] >= run->low[axis]) & (box->high[axis] <= run->high[axis]);
+  return lanes_bits(whole);
+}
+
+static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, uint32_t slabs, relevant_blocks *found) {
+  lanes u = lanes_load(block_column) * (float)BLOCK + ((float)(tile_x * TILE) + 1.5f);
+  lanes v = lanes_load(block_row) * (float)BLOCK + ((float)(tile_y * TILE) + 1.5f);
+  lanes_box before, after;
+  for (int slab = 0; slab < RUN_SLABS; slab++) {
+    const sheet_rays *rays = &run->rays[slab];
+    if ((slabs >> slab & 1) == 0) continue;
+    if (slab == 0 || (slabs >> (slab - 1) & 1) == 0) before = box_on_sheet(rays, u, v);
+    after = box_on_sheet(rays + 1, u, v);
+    lanes_box box = box_of_slab(&before, &after);
+    uint32_t blocks = showing_blocks(run->grid, &box);
+    /* where the eye is in the slab, rays begin there */
+    int whole = rays[0].step * rays[1].step > 0 && (blocks & ~whole_blocks(run, &box)) == 0;
+    found->blocks[slab] = (uint16_t)blocks;
+    found->whole = (uint16_t)((found->whole & ~(1u << slab)) | (uint32_t)whole << slab);
+    before = after;
+  }
 }
 
 #endif

@@ -87,6 +87,18 @@ fill_source bench_source(const bench *bench, hl_kernel which, int sheet) {
   return source;
 }
 
+slab_run bench_run(const bench *bench, double beside) {
+  slab_run run = {.grid = &bench->grid};
+  for (int axis = 0; axis < 3; axis++) {
+    run.low[axis] = (float)(bench->grid.box_low[axis] + beside);
+    run.high[axis] = (float)(bench->grid.box_high[axis] - beside);
+  }
+  for (int sheet = 0; sheet <= RUN_SLABS; sheet++)
+    hl_view_sheet_rays(&bench->view, bench->sheets.normal, bench->sheets.first + sheet * bench->sheets.spacing,
+                       bench->grid.frame_to_index, &run.rays[sheet]);
+  return run;
+}
+
 vec3 bench_position(const bench *bench, int sheet, int x, int y) {
   vec3 start, direction, normal = bench->sheets.normal;
   hl_view_ray(&bench->view, x + 0.5, y + 0.5, &start, &direction);

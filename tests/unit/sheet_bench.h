@@ -29,6 +29,8 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
  * five sheets a third of a world unit apart around it, perpendicular to normal. Sorts the voxels for them. */
 void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double distance, hl_kernel which);
 fill_source bench_source(const bench *bench, hl_kernel which, int sheet);
+/* The slabs between the sheets; beside: by how much more than themselves the box must hold to leave them whole, voxels. */
+slab_run bench_run(const bench *bench, double beside);
 void bench_close(bench *bench);
 
 /* Index-space position of a pixel's centre on the source's sheet, in double precision. */

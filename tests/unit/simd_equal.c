@@ -171,16 +171,17 @@ static void test_bound_cells(void **unused) {
 /* ---- filling ---- */
 
 typedef struct fill_state {
-  fill_source source, before;
+  fill_source source;
+  slab_run run;
   int gather, tile_x, tile_y;
   uint32_t need;
-  struct { float density[TILE_PIXELS]; uint32_t filled, relevant; } out;
+  struct { float density[TILE_PIXELS]; uint32_t filled; relevant_blocks relevant; } out;
 } fill_state;
 
 static void call_fill(const hot_functions *hot, void *state) {
   fill_state *s = state;
   fill_tile_function *fill = s->gather ? hot->gather_tile : hot->splat_tile;
-  s->out.relevant = hot->relevant_blocks_tile(&s->before, &s->source, s->tile_x, s->tile_y);
+  hot->relevant_blocks_tile(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), &s->out.relevant);
   s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->out.density);
 }
 
@@ -209,10 +210,11 @@ static void check_fill(const size_t n[3], hl_storage storage, uint32_t seed) {
     for (int gather = 0; gather < 2; gather++) {
       static fill_state state;
       state = (fill_state){.source = bench_source(&bench, which, round % 5),
-                           .before = bench_source(&bench, which, round % 4), .gather = gather, .tile_x = round == 0 ? 1 : round % 3,
+                           .run = bench_run(&bench, 0.5), .gather = gather, .tile_x = round == 0 ? 1 : round % 3,
                            .tile_y = round == 0 ? 1 : round / 3 % 3, .need = round % 4 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(&seed))};
       if (round == 0) state.need = ALL_BLOCKS;
       spoil_rays(&state.source.rays, round);
+      spoil_rays(&state.run.rays[round / 8 % (RUN_SLABS + 1)], round);
       trial trial = {call_fill, &state, &state.out, sizeof state.out};
       try_it(names[gather][storage], &trial, round);
     }
@@ -334,7 +336,8 @@ static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
     if (round % 8 == 3) s->density[v][0][v] = NAN;
     s->volumes[v] = (attenuate_volume){&classifier_bench.classifier, s->density[v][0], s->density[v][1],
                                        v == round % 3 ? s->density[v][2] : NULL, v == round % 3 ? s->density[v][3] : NULL,
-                                       round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), {0, 0.5f, 1}};
+                                       round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), {0, 0.5f, 1},
+                                       round % 5 == 4};
   }
   for (int c = 0; c < 2 * HL_CHANNELS; c++) {
     fill_salted(&s->out.field[c][0][0], TILE_PIXELS, seed, 0, 1);
@@ -526,7 +529,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}}, {-0.5f, -0.5f, -0.5f},
                                    {8.5f, 9.5f, 10.5f}};
     s->patches[v] = (shade_patch){&s->volumes[v], s->density[2 * v], s->density[2 * v + 1],
-                                  round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL};
+                                  round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL, round % 5 == 4};
   }
   fill_salted(s->cut[0], TILE_PIXELS, seed, 0, 1);
   fill_salted(s->cut[1], TILE_PIXELS, seed, 0.5, 2);

@@ -223,12 +223,15 @@ static void test_relevant_blocks_miss_nothing(void **state) {
   for (int round = 0; round < 2 * ORIENTATIONS; round++) {
     look_at_random(&bench, &seed, round, pixels[round % 4], HL_KERNEL_BSPLINE);
     int at = round % (bench.sheets.count - 1);
-    fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, at), next = bench_source(&bench, HL_KERNEL_BSPLINE, at + 1);
+    fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, at);
+    slab_run run = bench_run(&bench, 0);
     fill_sheet(&source, hl_hot_scalar.gather_tile, sheet);
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
       int tile_x = tile % SIDE_TILES, tile_y = tile / SIDE_TILES;
-      uint32_t relevant = hl_hot_scalar.relevant_blocks_tile(&source, &source, tile_x, tile_y);
-      relevant &= hl_hot_scalar.relevant_blocks_tile(&source, &next, tile_x, tile_y);
+      relevant_blocks found = {0};
+      uint32_t slabs = at > 0 ? 3u << (at - 1) : 1;
+      hl_hot_scalar.relevant_blocks_tile(&run, tile_x, tile_y, slabs, &found);
+      uint32_t relevant = at > 0 ? found.blocks[at - 1] & found.blocks[at] : found.blocks[at];
       left_out += 16 - __builtin_popcount(relevant);
       for (int i = 0; i < TILE_PIXELS; i++) {
         int x = tile % SIDE_TILES * TILE + i % TILE, y = tile / SIDE_TILES * TILE + i / TILE;
@@ -240,6 +243,40 @@ static void test_relevant_blocks_miss_nothing(void **state) {
     }
   }
   assert_true(shown > 1000 && left_out > 1000);
+  bench_close(&bench);
+}
+
+/* The rays of all pixels in the blocks that matter stay in the box through slabs that are said to be whole. */
+static void test_whole_slabs_are_not_cut(void **state) {
+  (void)state;
+  static uint8_t voxels[NOISE_SIDE * NOISE_SIDE * NOISE_SIDE];
+  fill_noise(voxels, 73);
+  bench bench;
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, oblique_axes());
+  uint32_t seed = 8;
+  long whole = 0, cut = 0;
+  for (int round = 0; round < 2 * ORIENTATIONS; round++) {
+    look_at_random(&bench, &seed, round, 0.2, HL_KERNEL_BSPLINE);
+    slab_run run = bench_run(&bench, 0);
+    box_rays rays;
+    hl_box_rays(&bench.view, bench.sheets.normal, bench.sheets.first, bench.grid.frame_to_index, bench.grid.box_low,
+                bench.grid.box_high, &rays);
+    for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
+      relevant_blocks found = {0};
+      _Alignas(64) float enter[TILE_PIXELS], leave[TILE_PIXELS];
+      hl_hot_scalar.coverage_tile(&rays, tile % SIDE_TILES, tile / SIDE_TILES, enter, leave);
+      hl_hot_scalar.relevant_blocks_tile(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1, &found);
+      for (int slab = 0; slab < RUN_SLABS; slab++)
+        for (int i = 0; i < TILE_PIXELS; i++) {
+          if (!(found.blocks[slab] >> (i / BLOCK_PIXELS) & 1)) continue;
+          bool inside = enter[i] <= slab * bench.sheets.spacing && leave[i] >= (slab + 1) * bench.sheets.spacing;
+          if (found.whole >> slab & 1) assert_true(inside);
+          whole += found.whole >> slab & 1;
+          cut += !inside;
+        }
+    }
+  }
+  assert_true(whole > 1000 && cut > 1000);
   bench_close(&bench);
 }
 
@@ -297,6 +334,7 @@ int main(void) {
       cmocka_unit_test(test_other_blocks_are_left_alone),
       cmocka_unit_test(test_cells_bound_the_reconstruction),
       cmocka_unit_test(test_relevant_blocks_miss_nothing),
+      cmocka_unit_test(test_whole_slabs_are_not_cut),
       cmocka_unit_test(test_kernels_sum_to_one),
       cmocka_unit_test(test_projection_inverts_rays),
   };
