@@ -28,11 +28,20 @@ typedef struct attenuate_job {
   int channels;                  /* 1: attenuation is grey; 3 */
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
   size_t stride;
+  float *moment[HL_CHANNELS];    /* the tile's first pixel; rows moment_stride apart; null: none. Raised by what the slab
+                                    takes of the light, times place */
+  size_t moment_stride;
+  float place;
 } attenuate_job;
 
-/* Multiplies the tile's transmittance by exp(-sum of extinction * path) where volumes have density; returns which of
- * those blocks light still reaches. */
-typedef uint32_t attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
+/* Blocks of a tile, a bit each. */
+typedef struct attenuated_blocks {
+  uint32_t lit;   /* of those where volumes have density, the ones that light still reaches */
+  uint32_t taken; /* where some light was taken */
+} attenuated_blocks;
+
+/* Multiplies the tile's transmittance by exp(-sum of extinction * path) where volumes have density. */
+typedef attenuated_blocks attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
 
 /* The blocks of a tile that light reaches. transmittance: the tile's first pixel of each channel. */
 typedef uint32_t lit_blocks_function(const float *const transmittance[HL_CHANNELS], int channels, size_t stride);

@@ -53,7 +53,8 @@ LANES_INLINE void cut_way(covered_part part, table_place *a, table_place *b) {
   *b = place_of_coordinate(from + way * lanes_min(part.begin + part.length, lanes_set(1.0f)));
 }
 
-static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, int block) {
+/* Returns whether it took any light. */
+static int attenuate_block(const attenuate_job *job, int tile_x, int tile_y, int block) {
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int i = 0; i < job->volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
@@ -67,21 +68,30 @@ static void attenuate_block(const attenuate_job *job, int tile_x, int tile_y, in
     for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
   }
   lanes any = depth[0] + depth[1] + depth[2];
-  if (lanes_bits(any > 0.0f) == 0) return;
+  if (lanes_bits(any > 0.0f) == 0) return 0;
   int x = block % 4 * BLOCK, y = block / 4 * BLOCK;
   lanes path = path_through_sheet(&job->rays, job->path, 0, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
   for (int c = 0; c < job->channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;
     lanes passing = lanes_exp_negative(depth[c] * path);
-    lanes_store_block(at, job->stride, lanes_load_block(at, job->stride) * passing);
+    lanes before = lanes_load_block(at, job->stride), after = before * passing;
+    lanes_store_block(at, job->stride, after);
+    if (job->moment[c] == NULL) continue;
+    float *moment = job->moment[c] + (size_t)y * job->moment_stride + x;
+    lanes_store_block(moment, job->moment_stride, lanes_load_block(moment, job->moment_stride) + (before - after) * job->place);
   }
+  return 1;
 }
 
-static uint32_t attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
-  uint32_t blocks = 0;
+static attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
+  uint32_t blocks = 0, taken = 0;
   for (int i = 0; i < job->volume_count; i++) blocks |= job->volumes[i].blocks;
-  for (uint32_t left = blocks; left != 0; left &= left - 1) attenuate_block(job, tile_x, tile_y, __builtin_ctz(left));
-  return lit_blocks((const float *const *)job->transmittance, job->channels, job->stride, blocks);
+  for (uint32_t left = blocks; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    taken |= (uint32_t)attenuate_block(job, tile_x, tile_y, block) << block;
+  }
+  uint32_t lit = lit_blocks((const float *const *)job->transmittance, job->channels, job->stride, taken);
+  return (attenuated_blocks){lit | (blocks & ~taken), taken};
 }
 
 #endif

@@ -72,15 +72,6 @@ typedef struct part_job {
 } part_job;
 typedef void part_tile_function(const part_job *job, int tile_x, int tile_y);
 
-/* to += weight * now */
-typedef struct moment_job {
-  const float *now;      /* rows stride_now apart */
-  float *to;             /* rows stride apart */
-  float weight;
-  size_t stride, stride_now;
-} moment_job;
-typedef void moment_tile_function(const moment_job *job, int tile_x, int tile_y);
-
 typedef struct cascade_functions {
   lit_blocks_function *lit_blocks;
   field_blur_tile_function *blur_add;

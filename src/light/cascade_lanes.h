@@ -203,12 +203,4 @@ static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   }
 }
 
-static void moment_tile(const moment_job *job, int tile_x, int tile_y) {
-  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
-    size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
-    lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
-    lanes_store(job->to + at, lanes_load(job->to + at) + now * job->weight);
-  }
-}
-
 #endif

@@ -316,24 +316,12 @@ void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int
   cascade->slab = isfinite(middle) ? middle - cascade->chunk_start : 0;
 }
 
-/* Adds the buffer's tile, weighted by the slab's place, to the moments: with a minus sign after the slab was composited
- * what is left of the two is what the slab took. */
-static void add_moment(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, double sign,
-                       moment_tile_function *moment) {
+void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_job *job) {
   const cascade_level *level = &cascade->level[0];
-  for (int c = 0; c < cascade->channels; c++) {
-    moment_job job = {buffer->transmittance[c], cascade->moment[c], (float)(sign * cascade->slab), level->stride, buffer->stride};
-    moment(&job, (int)(tile % (size_t)level->tiles_x), (int)(tile / (size_t)level->tiles_x));
-  }
-}
-
-void hl_soft_cascade_before(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, moment_tile_function *moment) {
-  cascade->touched[tile] = 1;
-  add_moment(cascade, buffer, tile, 1, moment);
-}
-
-void hl_soft_cascade_after(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, moment_tile_function *moment) {
-  add_moment(cascade, buffer, tile, -1, moment);
+  size_t tile_x = tile % (size_t)level->tiles_x, tile_y = tile / (size_t)level->tiles_x;
+  for (int c = 0; c < cascade->channels; c++) job->moment[c] = cascade->moment[c] + tile_y * TILE * level->stride + tile_x * TILE;
+  job->moment_stride = level->stride;
+  job->place = (float)cascade->slab;
 }
 
 /* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's thin matter

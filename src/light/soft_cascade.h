@@ -94,7 +94,7 @@ typedef struct soft_cascade {
   cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0; own_shade or its sum */
   cascade_field own_shade[HL_CHANNELS];
   float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: what the chunk's slabs took, times their places */
-  unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs met light */
+  unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs took light */
   unsigned char *wanted[CASCADE_MASKS]; /* owned with touched; [tiles]; what the next chunk's slabs read; a tile wider each */
 } soft_cascade;
 
@@ -114,10 +114,10 @@ void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, v
                            double pixel, const view *view, int channels, uint64_t *kept, uint64_t *passing);
 void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade);
 
-/* Before the slab before the sheet is composited into the buffer, and before and after each of its tiles is. */
+/* Before the slab before the sheet is composited into the buffer, and before each of its tiles is: what it takes is to be
+ * counted. Tiles where it takes some are then to be marked as touched. */
 void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int sheet);
-void hl_soft_cascade_before(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, moment_tile_function *moment);
-void hl_soft_cascade_after(soft_cascade *cascade, const shadow_buffer *buffer, size_t tile, moment_tile_function *moment);
+void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_job *job);
 
 /* After the slab was composited. occupancy: what the light sees; the buffer is found anew only where the next slabs
  * lie. */

@@ -109,18 +109,6 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
   return count;
 }
 
-/* Whether some light is missing in a tile: of sublights' slabs, which are composited many times, only those go on. */
-static bool holds_shade(const attenuate_job *job) {
-  float least = 1;
-  for (int c = 0; c < job->channels; c++)
-    for (size_t row = 0; row < TILE; row++)
-      for (size_t i = 0; i < TILE; i++) {
-        float left = job->transmittance[c][row * job->stride + i];
-        least = left < least ? left : least;
-      }
-  return least < 1;
-}
-
 /* Step 17 for one tile of a light's shadow buffer. */
 static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uint32_t need,
                                  const attenuate_volume *volumes, int count) {
@@ -133,12 +121,14 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   for (int c = 0; c < job.channels; c++)
     job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
   bool cascade = light->cascade.level_count > 0;
-  if (cascade) hl_soft_cascade_before(&light->cascade, buffer, tile, sweep->hot->moment_tile);
+  if (cascade) hl_soft_cascade_count(&light->cascade, tile, &job);
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
-  buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | sweep->hot->attenuate_tile(&job, tile_x, tile_y));
-  if (cascade) hl_soft_cascade_after(&light->cascade, buffer, tile, sweep->hot->moment_tile);
-  buffer->tile_touched[tile] = light->sublights.count == 0 || holds_shade(&job);
+  attenuated_blocks blocks = sweep->hot->attenuate_tile(&job, tile_x, tile_y);
+  buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
+  if (blocks.taken == 0) return;
+  buffer->tile_touched[tile] = 1;
+  if (cascade) light->cascade.touched[tile] = 1;
 }
 
 static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker) {

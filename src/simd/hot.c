@@ -37,7 +37,6 @@ const hot_functions HL_HOT_TABLE = {
     .half_pixel_tile = half_pixel_tile,
     .left_tile = left_tile,
     .absorbed_tile = absorbed_tile,
-    .moment_tile = moment_tile,
     .part_tile = part_tile,
     .double_tile = double_tile,
     .image_tile = image_tile,

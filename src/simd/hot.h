@@ -29,7 +29,6 @@ typedef struct hot_functions {
   field_tile_function *add_tile, *add_half_tile, *add_double_tile;
   left_tile_function *left_tile;
   absorbed_tile_function *absorbed_tile;
-  moment_tile_function *moment_tile;
   part_tile_function *part_tile;
   field_tile_function *double_tile;
   image_tile_function *image_tile;

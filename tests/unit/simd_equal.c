@@ -310,12 +310,12 @@ typedef struct attenuate_state {
   attenuate_job job;
   attenuate_volume volumes[2];
   float density[2][4][TILE_PIXELS];
-  struct { float field[2 * HL_CHANNELS][TILE][TILE]; uint32_t lit; } out;
+  struct { float field[2 * HL_CHANNELS][TILE][TILE]; attenuated_blocks blocks; uint32_t lit; } out;
 } attenuate_state;
 
 static void call_attenuate(const hot_functions *hot, void *state) {
   attenuate_state *s = state;
-  s->out.lit = hot->attenuate_tile(&s->job, 1, 1);
+  s->out.blocks = hot->attenuate_tile(&s->job, 1, 1);
 }
 
 static void call_lit_blocks(const hot_functions *hot, void *state) {
@@ -326,9 +326,10 @@ static void call_lit_blocks(const hot_functions *hot, void *state) {
 static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
   memset(s, 0, sizeof *s);
   s->job = (attenuate_job){.rays = random_rays(seed, round), .path = 1, .height = 1, .spacing = 0.5f, .volumes = s->volumes,
-                           .volume_count = 1 + round % 2, .channels = round % 3 ? 3 : 1, .stride = TILE};
+                           .volume_count = 1 + round % 2, .channels = round % 3 ? 3 : 1, .stride = TILE, .moment_stride = TILE, .place = 0.7f};
   for (int c = 0; c < HL_CHANNELS; c++) {
     s->job.transmittance[c] = &s->out.field[c][0][0];
+    s->job.moment[c] = round % 4 ? &s->out.field[HL_CHANNELS + c][0][0] : NULL;
   }
   for (int v = 0; v < 2; v++) {
     fill_salted(s->density[v][0], 2 * TILE_PIXELS, seed, -0.1, 1.1);
@@ -365,7 +366,6 @@ typedef struct field_state {
   blur_job blur;
   field_job field;
   absorbed_job absorbed;
-  moment_job moment;
   part_job part;
   sublight_job sublight;
   half_pixel_job half_pixel;
@@ -392,18 +392,17 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 6) hot->left_tile(&s->left, 1, 1);
   if (s->which == 7) hot->absorbed_tile(&s->absorbed, 1, 1);
   if (s->which == 8) s->lit = hot->sublight_tile(&s->sublight, 1, 1);
-  if (s->which == 14) s->lit = (int)hot->half_pixel_tile(&s->half_pixel, 1, 1);
+  if (s->which == 13) s->lit = (int)hot->half_pixel_tile(&s->half_pixel, 1, 1);
   if (s->which == 9) hot->double_tile(&s->field, 1, 1);
   if (s->which == 10) hot->image_tile(&s->image, 1, 1);
-  if (s->which == 13) hot->part_tile(&s->part, 1, 1);
-  if (s->which == 12) hot->moment_tile(&s->moment, 1, 1);
+  if (s->which == 12) hot->part_tile(&s->part, 1, 1);
   if (s->which == 11) hot->field_image_tile(&s->field_image, 1, 1);
 }
 
 static void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "field_blur_tile", "left_tile", "absorbed_tile", "sublight_tile",
-                                      "double_tile", "image_tile", "field_image_tile", "moment_tile", "part_tile", "half_pixel_tile"};
+                                      "double_tile", "image_tile", "field_image_tile", "part_tile", "half_pixel_tile"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -423,7 +422,6 @@ static void test_fields(void **unused) {
                                 out + 16 * FIELD, out + 32 * FIELD, out + 48 * FIELD, out + 64 * FIELD, FIELD, FIELD};
     s.part = (part_job){lacking, thin, {out, out + 16 * FIELD}, {out + 32 * FIELD, out + 48 * FIELD}, FIELD,
                         random_between(&seed, 0, 1)};
-    s.moment = (moment_job){&s.a[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], salted(&seed, 0, 3), FIELD, FIELD};
     s.field_blur = (field_blur_job){lacking, round % 3 ? thin : NULL, round % 2 ? thin + 3 * FIELD : NULL, out,
                                     FIELD, hl_blur_box(random_between(&seed, 1, 90)),
                                     hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
@@ -447,7 +445,7 @@ static void test_fields(void **unused) {
                                       .offset = s.offset, .weight = &s.b[MARGIN + 30][MARGIN]};
     for (int i = 0; i < 40; i++)
       s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD + (ptrdiff_t)random_between(&seed, -20, 20);
-    for (s.which = 0; s.which < 15; s.which++) {
+    for (s.which = 0; s.which < 14; s.which++) {
       trial trial = {call_field, &s, &s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
