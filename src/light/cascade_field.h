@@ -20,7 +20,8 @@ typedef struct field_job {
   const field_pixel *thin;  /* beside a: the part of b that a's matter takes; null: none */
 } field_job;
 
-typedef void field_tile_function(const field_job *job, int tile_x, int tile_y);
+/* Returns whether any pixel of the tile is more than zero. */
+typedef int field_tile_function(const field_job *job, int tile_x, int tile_y);
 
 /* to = a + (1 - thin) (from blurred along rows, then along columns), in one pass over memory; a and thin null: 0. */
 typedef struct field_blur_job {
@@ -30,7 +31,8 @@ typedef struct field_blur_job {
   size_t stride;
   blur_box u, v;         /* reach below BLUR_GREATEST_REACH */
 } field_blur_job;
-typedef void field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
+/* Returns as field_tile_function does. */
+typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
 /* The light that is left, 1 - lacking, from 0 to 1. */
 typedef struct left_job {
@@ -49,7 +51,8 @@ typedef struct field_image_job {
   const ptrdiff_t *offset;  /* [count]; from a pixel to the one that is weighed */
   const float *weight;      /* [count] */
 } field_image_job;
-typedef void field_image_tile_function(const field_image_job *job, int tile_x, int tile_y);
+/* Returns as field_tile_function does. */
+typedef int field_image_tile_function(const field_image_job *job, int tile_x, int tile_y);
 
 /* What a chunk's slabs took of the light before it: (1 - lacking) - now, and the part of it that thin matter took. Of
  * either the part moment / (length taken) goes to the group at the chunk's end, the rest to the one at its start. */
@@ -61,7 +64,8 @@ typedef struct absorbed_job {
   field_pixel *start_absorbed, *start_thin, *end_absorbed, *end_thin; /* rows stride apart; raised; written */
   size_t stride, stride_now;
 } absorbed_job;
-typedef void absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
+/* Returns which of the four were given more than zero: a bit each, in their order. */
+typedef uint32_t absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
 
 /* Matter parted in two; the first may take its place. */
 typedef struct part_job {
@@ -70,7 +74,8 @@ typedef struct part_job {
   size_t stride;
   float late;            /* the part of it that is the second's */
 } part_job;
-typedef void part_tile_function(const part_job *job, int tile_x, int tile_y);
+/* Returns which of the four have any pixel of more than zero: absorbed and thin of the first, then of the second, a bit each. */
+typedef uint32_t part_tile_function(const part_job *job, int tile_x, int tile_y);
 
 typedef struct cascade_functions {
   lit_blocks_function *lit_blocks;

@@ -8,6 +8,13 @@
 /* Blurred sums leave a little light in umbrae: where less than this is left, none is. */
 static const float UMBRA = 1.0f / 128;
 
+/* Stores rounded pixels and keeps the greatest so far. */
+LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
+  lanes_store_short(p, pixels);
+  *greatest = lanes_max(*greatest, pixels);
+}
+LANES_INLINE int is_above_zero(lanes greatest) { return lanes_bits(greatest + 0.5f >= 1.0f) != 0; }
+
 /* What thin matter leaves. */
 LANES_INLINE lanes left_by(const field_pixel *thin) { return 1.0f - lanes_load_short(thin) * (1.0f / FIELD_ONE); }
 
@@ -25,18 +32,20 @@ LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) 
   return (lanes_from_int(sum) + lanes_from_int(ends) * box->edge) * box->scale;
 }
 
-static void field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
+static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
   _Alignas(64) float rows[(TILE + 2 * BLUR_GREATEST_REACH) * TILE];
   int apron = job->v.reach + 1;
   const field_pixel *from = job->from + (ptrdiff_t)(tile_y * TILE - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
   for (int row = 0; row < TILE + 2 * apron; row++, from += job->stride)
     lanes_store(rows + row * TILE, blur_field_row(from, &job->u));
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  lanes greatest = lanes_set(0);
   for (int row = 0; row < TILE; row++, at += job->stride) {
     lanes blurred = blur_sixteen(rows + (row + apron) * TILE, TILE, &job->v);
     if (job->thin != NULL) blurred = blurred * left_by(job->thin + at);
-    lanes_store_short(job->to + at, job->a == NULL ? blurred : blurred + lanes_load_short(job->a + at));
+    store_pixels(job->to + at, job->a == NULL ? blurred : blurred + lanes_load_short(job->a + at), &greatest);
   }
+  return is_above_zero(greatest);
 }
 
 /* a + (1 - thin) b; b and thin may be null: 0. */
@@ -47,9 +56,11 @@ LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
   return a + (job->thin == NULL ? b : b * left_by(job->thin + at));
 }
 
-static void add_tile(const field_job *job, int tile_x, int tile_y) {
+static int add_tile(const field_job *job, int tile_x, int tile_y) {
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
-  for (int row = 0; row < TILE; row++, at += job->stride) lanes_store_short(job->to + at, a_and_b(job, at));
+  lanes greatest = lanes_set(0);
+  for (int row = 0; row < TILE; row++, at += job->stride) store_pixels(job->to + at, a_and_b(job, at), &greatest);
+  return is_above_zero(greatest);
 }
 
 /* Sums of neighbours in 32 pixels. */
@@ -58,15 +69,17 @@ LANES_INLINE lanes sums_of_pairs(lanes first, lanes second) {
          __builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
 }
 
-static void add_half_tile(const field_job *job, int tile_x, int tile_y) {
+static int add_half_tile(const field_job *job, int tile_x, int tile_y) {
   size_t from = (size_t)tile_y * TILE * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
   field_pixel *to = job->to + (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  lanes greatest = lanes_set(0);
   for (int row = 0; row < TILE; row++, from += 2 * job->stride_in, to += job->stride) {
     size_t below = from + job->stride_in;
     lanes upper = sums_of_pairs(a_and_b(job, from), a_and_b(job, from + TILE));
     lanes lower = sums_of_pairs(a_and_b(job, below), a_and_b(job, below + TILE));
-    lanes_store_short(to, 0.25f * (upper + lower));
+    store_pixels(to, 0.25f * (upper + lower), &greatest);
   }
+  return is_above_zero(greatest);
 }
 
 /* A row of a tile from a field of half the resolution. Pixel 2i lies a quarter of a coarse pixel before coarse pixel i's
@@ -80,19 +93,22 @@ LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x
   return 0.75f * own + 0.25f * other;
 }
 
-static void add_double_tile(const field_job *job, int tile_x, int tile_y) {
+static int add_double_tile(const field_job *job, int tile_x, int tile_y) {
+  lanes greatest = lanes_set(0);
   for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++) {
     size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
     lanes fine = double_row(job->b, job->stride_in, tile_x, y);
     if (job->thin != NULL) fine = fine * left_by(job->thin + at);
-    lanes_store_short(job->to + at, job->a == NULL ? fine : lanes_load_short(job->a + at) + fine);
+    store_pixels(job->to + at, job->a == NULL ? fine : lanes_load_short(job->a + at) + fine, &greatest);
   }
+  return is_above_zero(greatest);
 }
 
-static void double_tile(const field_job *job, int tile_x, int tile_y) {
+static int double_tile(const field_job *job, int tile_x, int tile_y) {
+  lanes greatest = lanes_set(0);
   for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++)
-    lanes_store_short(job->to + (size_t)y * job->stride + (size_t)tile_x * TILE,
-                      double_row(job->a, job->stride_in, tile_x, y));
+    store_pixels(job->to + (size_t)y * job->stride + (size_t)tile_x * TILE, double_row(job->a, job->stride_in, tile_x, y), &greatest);
+  return is_above_zero(greatest);
 }
 
 enum { IMAGE_ROWS = 4 };
@@ -116,7 +132,8 @@ LANES_INLINE void weigh_field_rows(const field_image_job *job, const field_pixel
   }
 }
 
-static void field_image_tile(const field_image_job *job, int tile_x, int tile_y) {
+static int field_image_tile(const field_image_job *job, int tile_x, int tile_y) {
+  lanes greatest = lanes_set(0);
   for (int row = 0; row < TILE; row += IMAGE_ROWS) {
     size_t at = (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
     lanes sum[IMAGE_ROWS], thin[IMAGE_ROWS];
@@ -125,9 +142,10 @@ static void field_image_tile(const field_image_job *job, int tile_x, int tile_y)
     for (int i = 0; i < IMAGE_ROWS; i++) {
       field_pixel *to = job->to + at + (size_t)i * job->stride;
       lanes left = lanes_max(1.0f - thin[i] * (1.0f / FIELD_ONE), lanes_set(0));
-      lanes_store_short(to, sum[i] + lanes_load_short(to) * left);
+      store_pixels(to, sum[i] + lanes_load_short(to) * left, &greatest);
     }
   }
+  return is_above_zero(greatest);
 }
 
 static void image_tile(const image_job *job, int tile_x, int tile_y) {
@@ -162,31 +180,37 @@ LANES_INLINE parted_matter part_matter(lanes absorbed, lanes thin, lanes late) {
 }
 
 LANES_INLINE lanes load_part(const field_pixel *p) { return lanes_load_short(p) * (1.0f / FIELD_ONE); }
-LANES_INLINE void store_part(field_pixel *p, lanes part) { lanes_store_short(p, part * (float)FIELD_ONE); }
+LANES_INLINE void store_part(field_pixel *p, lanes part, lanes *greatest) { store_pixels(p, part * (float)FIELD_ONE, greatest); }
 
-static void part_tile(const part_job *job, int tile_x, int tile_y) {
+static uint32_t part_tile(const part_job *job, int tile_x, int tile_y) {
+  lanes absorbed[2] = {lanes_set(0), lanes_set(0)}, thin[2] = {lanes_set(0), lanes_set(0)};
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
     parted_matter to = part_matter(load_part(job->absorbed + at), load_part(job->thin + at), lanes_set(job->late));
     for (int i = 0; i < 2; i++) {
-      store_part(job->to_absorbed[i] + at, to.absorbed[i]);
-      store_part(job->to_thin[i] + at, to.thin[i]);
+      store_part(job->to_absorbed[i] + at, to.absorbed[i], &absorbed[i]);
+      store_part(job->to_thin[i] + at, to.thin[i], &thin[i]);
     }
   }
+  uint32_t above_zero = 0;
+  for (int i = 0; i < 2; i++)
+    above_zero |= (uint32_t)(is_above_zero(absorbed[i]) | is_above_zero(thin[i]) << 1) << 2 * i;
+  return above_zero;
 }
 
 /* Where a chunk takes less than the first part of its light it counts as thin, from the second on as solid. */
 static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 
-static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
+static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
+  lanes start[2] = {lanes_set(0), lanes_set(0)}, end[2] = {lanes_set(0), lanes_set(0)};
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
     lanes before = light_left(job->lacking + at);
     lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
     lanes taken = lanes_max(before - now, lanes_set(0));
     if (lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */
-      store_part(job->end_absorbed + at, lanes_set(0));
-      store_part(job->end_thin + at, lanes_set(0));
+      lanes_store_short(job->end_absorbed + at, lanes_set(0));
+      lanes_store_short(job->end_thin + at, lanes_set(0));
       continue;
     }
     lanes part = taken / lanes_max(before, lanes_set(1e-3f));
@@ -195,12 +219,14 @@ static void absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     lanes thin = part * (1.0f - solid);
     parted_matter to = part_matter(taken * solid + thin, thin, place);
     lanes_store(job->moment + at, lanes_set(0));
-    store_part(job->end_absorbed + at, to.absorbed[1]);
-    store_part(job->end_thin + at, to.thin[1]);
+    store_part(job->end_absorbed + at, to.absorbed[1], &end[0]);
+    store_part(job->end_thin + at, to.thin[1], &end[1]);
     lanes left = 1.0f - to.thin[0];
-    store_part(job->start_absorbed + at, to.absorbed[0] + load_part(job->start_absorbed + at) * left);
-    store_part(job->start_thin + at, to.thin[0] + load_part(job->start_thin + at) * left);
+    store_part(job->start_absorbed + at, to.absorbed[0] + load_part(job->start_absorbed + at) * left, &start[0]);
+    store_part(job->start_thin + at, to.thin[0] + load_part(job->start_thin + at) * left, &start[1]);
   }
+  uint32_t to_start = (uint32_t)is_above_zero(start[0]) | (uint32_t)is_above_zero(start[1]) << 1;
+  return to_start | (uint32_t)is_above_zero(end[0]) << 2 | (uint32_t)is_above_zero(end[1]) << 3;
 }
 
 #endif

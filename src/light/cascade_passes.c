@@ -50,8 +50,7 @@ static void add_row(void *data, size_t index, int worker) {
     }
     field_job job = task->job;
     if (task->doubled && task->a != NULL && task->a->zeros[index * (size_t)task->level->tiles_x + (size_t)x]) job.a = job.thin = NULL;
-    task->function(&job, x, (int)index);
-    task->to->zeros[index * (size_t)task->level->tiles_x + (size_t)x] = 0;
+    task->to->zeros[index * (size_t)task->level->tiles_x + (size_t)x] = !task->function(&job, x, (int)index);
   }
 }
 
@@ -96,8 +95,7 @@ static void blur_row(void *data, size_t index, int worker) {
     job.u = task->level->boxes[x].box;
     job.v = task->level->boxes[task->level->tiles_x + y].box;
     if (task->a != NULL && task->a->zeros[tile]) job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
-    task->function(&job, x, y);
-    task->to->zeros[tile] = 0;
+    task->to->zeros[tile] = !task->function(&job, x, y);
   }
 }
 
@@ -134,12 +132,12 @@ static void part_row(void *data, size_t index, int worker) {
   const part_task *task = data;
   for (int x = 0; x < task->level->tiles_x; x++) {
     size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
-    bool any = !task->fields[0]->zeros[tile] || !task->fields[1]->zeros[tile];
-    if (any) task->function(&task->job, x, (int)index);
-    for (int i = 2; i < 4; i++) {
-      if (any) task->fields[i]->zeros[tile] = 0;
-      else hl_cascade_clear_tile(task->level, task->fields[i], x, (int)index);
+    if (task->fields[0]->zeros[tile] && task->fields[1]->zeros[tile]) {
+      for (int i = 2; i < 4; i++) hl_cascade_clear_tile(task->level, task->fields[i], x, (int)index);
+      continue;
     }
+    uint32_t above_zero = task->function(&task->job, x, (int)index);
+    for (int i = 0; i < 4; i++) task->fields[i]->zeros[tile] = (above_zero >> i & 1) == 0;
   }
 }
 

@@ -277,10 +277,14 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
   absorbed_job job = {task->cascade->shade[channel].pixels, task->buffer->transmittance[channel], task->cascade->moment[channel],
                       (float)task->length, start[0]->pixels, start[1]->pixels, end[0]->pixels, end[1]->pixels, level->stride,
                       task->buffer->stride};
-  if (touched) task->absorbed(&job, (int)tile_x, (int)tile_y);
+  if (!touched) {
+    for (int i = 0; i < 2; i++) hl_cascade_clear_tile(level, end[i], (int)tile_x, (int)tile_y);
+    return;
+  }
+  uint32_t above_zero = task->absorbed(&job, (int)tile_x, (int)tile_y);
   for (int i = 0; i < 2; i++) {
-    if (!touched) hl_cascade_clear_tile(level, end[i], (int)tile_x, (int)tile_y);
-    else end[i]->zeros[tile] = start[i]->zeros[tile] = 0;
+    if (above_zero >> i & 1) start[i]->zeros[tile] = 0;
+    end[i]->zeros[tile] = (above_zero >> (2 + i) & 1) == 0;
   }
 }
 

@@ -68,10 +68,10 @@ static void start_tile(const start_task *task, const cascade_field *from, const 
   }
   field_job job = {.a = from->pixels, .to = to->pixels, .stride_in = farther->stride, .stride = level->stride};
   size_t at = (size_t)y * TILE * level->stride + (size_t)x * TILE;
-  if (ratio == 2) task->functions->double_tile(&job, x, y);
+  int above_zero = ratio == 1 || task->functions->double_tile(&job, x, y);
   for (size_t row = 0; row < TILE && ratio == 1; row++)
     memcpy(to->pixels + at + row * level->stride, from->pixels + at + row * level->stride, TILE * sizeof(field_pixel));
-  to->zeros[y * level->tiles_x + x] = 0;
+  to->zeros[y * level->tiles_x + x] = !above_zero;
 }
 
 static void start_row(void *data, size_t index, int worker) {
@@ -104,8 +104,7 @@ static void average_row(void *data, size_t index, int worker) {
           hl_cascade_clear_tile(level, to, x, (int)index);
           continue;
         }
-        pass->functions->blur_add(&job, x, (int)index);
-        to->zeros[index * (size_t)level->tiles_x + (size_t)x] = 0;
+        to->zeros[index * (size_t)level->tiles_x + (size_t)x] = !pass->functions->blur_add(&job, x, (int)index);
       }
     }
   }
@@ -136,8 +135,7 @@ static void add_tile(const image_pass *pass, const image_taps *taps, int x, int 
     for (int i = 0; i < count; i++) weight[i] = taps->weight[c][kept[i]];
     field_image_job job = {.from = from->pixels, .thin = thin->pixels, .to = to->pixels, .stride = level->stride,
                      .count = count, .offset = offset, .weight = weight};
-    pass->functions->image_add(&job, x, y);
-    to->zeros[y * level->tiles_x + x] = 0;
+    to->zeros[y * level->tiles_x + x] = !pass->functions->image_add(&job, x, y);
   }
 }
 
