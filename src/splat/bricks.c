@@ -25,9 +25,29 @@ typedef struct bound_job {
   bound_rows_function *bound_rows;
 } bound_job;
 
-/* Bounds along x of a brick row, from the bounds of its columns. */
-static void reduce_row(const grid *grid, const float *least, const float *greatest, float *brick_least,
-                       float *brick_greatest) {
+/* A float holds the values of every type. */
+static void store_bounds(const grid *grid, size_t brick, float low, float high) {
+  if (grid->storage == HL_STORAGE_U8) {
+    uint8_t *bounds = (uint8_t *)grid->brick_bounds + 2 * brick;
+    bounds[0] = (uint8_t)low, bounds[1] = (uint8_t)high;
+  } else if (grid->storage == HL_STORAGE_U16) {
+    uint16_t *bounds = (uint16_t *)grid->brick_bounds + 2 * brick;
+    bounds[0] = (uint16_t)low, bounds[1] = (uint16_t)high;
+  } else {
+    float *bounds = (float *)grid->brick_bounds + 2 * brick;
+    bounds[0] = low, bounds[1] = high;
+  }
+}
+
+static void load_bounds(const grid *grid, size_t brick, float bounds[2]) {
+  for (size_t i = 0; i < 2; i++)
+    bounds[i] = grid->storage == HL_STORAGE_U8    ? ((const uint8_t *)grid->brick_bounds)[2 * brick + i]
+                : grid->storage == HL_STORAGE_U16 ? ((const uint16_t *)grid->brick_bounds)[2 * brick + i]
+                                                  : ((const float *)grid->brick_bounds)[2 * brick + i];
+}
+
+/* Bounds along x of a brick row that begins at a brick, from the bounds of its columns. */
+static void reduce_row(const grid *grid, const float *least, const float *greatest, size_t brick) {
   for (int32_t b = 0; b < grid->brick_count[0]; b++) {
     int32_t first = clamp_index((int64_t)b * HL_BRICK_CELLS - BEFORE, grid->dimension[0]);
     int32_t last = clamp_index((int64_t)b * HL_BRICK_CELLS + AFTER, grid->dimension[0]);
@@ -36,8 +56,7 @@ static void reduce_row(const grid *grid, const float *least, const float *greate
       if (least[i] < low) low = least[i];
       if (greatest[i] > high) high = greatest[i];
     }
-    brick_least[b] = low;
-    brick_greatest[b] = high;
+    store_bounds(grid, brick + (size_t)b, low, high);
   }
 }
 
@@ -56,7 +75,7 @@ static void bound_brick_row(const bound_job *job, int32_t by, int32_t bz, float 
                           ((size_t)z * (size_t)grid->dimension[1] + (size_t)y) * width * bytes;
   job->bound_rows(rows, row_count, width, least, greatest);
   size_t at = ((size_t)bz * (size_t)grid->brick_count[1] + (size_t)by) * (size_t)grid->brick_count[0];
-  reduce_row(grid, least, greatest, grid->brick_minimum + at, grid->brick_maximum + at);
+  reduce_row(grid, least, greatest, at);
 }
 
 typedef struct bound_scratch {
@@ -102,13 +121,11 @@ static hl_status bound_bricks(hl_context *context, hl_pool *pool, bound_rows_fun
                               hl_error *error) {
   size_t bricks = hl_grid_bricks(grid), width = (size_t)grid->dimension[0];
   size_t column_count = (size_t)hl_pool_threads(pool) * 2 * width;
-  grid->brick_minimum = hl_allocate(context, bricks, sizeof(float));
-  grid->brick_maximum = hl_allocate(context, bricks, sizeof(float));
+  grid->brick_bounds = hl_allocate(context, bricks, 2 * hl_storage_bytes(grid->storage));
   grid->relevant = hl_allocate_zeroed(context, bricks + 4, 1); /* read four bytes at a time */
   grid->relevant_list = hl_allocate(context, bricks, sizeof(uint32_t));
   float *columns = hl_allocate(context, column_count, sizeof(float));
-  if (grid->brick_minimum == NULL || grid->brick_maximum == NULL || grid->relevant == NULL ||
-      grid->relevant_list == NULL || columns == NULL) {
+  if (grid->brick_bounds == NULL || grid->relevant == NULL || grid->relevant_list == NULL || columns == NULL) {
     hl_release(context, columns);
     return hl_fail_memory(error, bricks * 9 + column_count * sizeof(float), "the bricks of a volume");
   }
@@ -133,7 +150,7 @@ uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions,
   uint64_t copied = volume->nonfinite_count > 0 ? hl_volume_voxel_count(volume) * sizeof(float) : 0;
   int32_t dimension[3] = {(int32_t)volume->dimension[0], (int32_t)volume->dimension[1], (int32_t)volume->dimension[2]};
   if (functions->column_slice != NULL && hl_columns_wanted(dimension, volume->storage)) copied += hl_columns_bytes(dimension);
-  return copied + bricks * (2 * sizeof(float) + 1 + sizeof(uint32_t)) + hl_cell_bounds_bytes(volume->dimension, threads);
+  return copied + bricks * (2 * hl_storage_bytes(volume->storage) + 1 + sizeof(uint32_t)) + hl_cell_bounds_bytes(volume->dimension, threads);
 }
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions, const kernel *kernel,
@@ -167,15 +184,9 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
 }
 
 void hl_grid_release(hl_context *context, grid *grid) {
-  hl_release(context, grid->brick_minimum);
-  hl_release(context, grid->brick_maximum);
+  hl_release(context, grid->brick_bounds);
   hl_release(context, grid->relevant);
-  hl_release(context, grid->cell_low);
-  hl_release(context, grid->cell_high);
-  for (int i = 0; i < CELL_LEVELS; i++) {
-    hl_release(context, grid->level[i].visible);
-    hl_release(context, grid->level[i].near);
-  }
+  hl_cell_bounds_release(context, grid);
   hl_release(context, grid->relevant_list);
   hl_release(context, grid->finite_voxels);
   hl_release(context, grid->columns);
@@ -203,10 +214,11 @@ static void mark_slab(void *data, size_t index, int worker) {
   int32_t b[3] = {0, 0, (int32_t)index};
   size_t at = index * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[0];
   for (b[1] = 0; b[1] < grid->brick_count[1]; b[1]++)
-    for (b[0] = 0; b[0] < grid->brick_count[0]; b[0]++, at++)
-      grid->relevant[at] = brick_in_box(grid, b) && hl_classifier_range_visible(job->classifier, grid,
-                                                                              grid->brick_minimum[at],
-                                                                              grid->brick_maximum[at]);
+    for (b[0] = 0; b[0] < grid->brick_count[0]; b[0]++, at++) {
+      float bounds[2];
+      load_bounds(grid, at, bounds);
+      grid->relevant[at] = brick_in_box(grid, b) && hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]);
+    }
 }
 
 /* Voxels of the volume that brick b owns along one axis, so that every voxel has one owner. */
@@ -225,22 +237,10 @@ static bool brick_reaches_faces(const grid *grid, const int32_t b[3]) {
   return false;
 }
 
-/* Whether a brick has a cell that shows something. */
-static bool brick_is_visible(const grid *grid, const int32_t b[3]) {
-  enum { PAIRS = HL_BRICK_CELLS / HL_NEAR_CELLS };
-  if (grid->level[0].near == NULL) return true;
-  for (int32_t z = PAIRS * b[2]; z < PAIRS * b[2] + PAIRS && z < grid->level[0].count[2]; z++)
-    for (int32_t y = PAIRS * b[1]; y < PAIRS * b[1] + PAIRS && y < grid->level[0].count[1]; y++)
-      for (int32_t x = PAIRS * b[0]; x < PAIRS * b[0] + PAIRS && x < grid->level[0].count[0]; x++)
-        if (grid->level[0].visible[((size_t)z * (size_t)grid->level[0].count[1] + (size_t)y) * (size_t)grid->level[0].count[0] + (size_t)x])
-          return true;
-  return false;
-}
-
 void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *pool) {
   mark_job job = {grid, classifier};
   hl_pool_run(pool, (size_t)grid->brick_count[2], mark_slab, &job);
-  hl_cells_mark_near(grid, classifier, pool);
+  hl_cells_mark_visible(grid, classifier, pool);
   grid->kept_voxels = 0;
   grid->relevant_count = 0;
   grid->cut = false;
@@ -254,10 +254,11 @@ void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *po
       if (first || b[axis] > grid->relevant_high[axis]) grid->relevant_high[axis] = b[axis];
     }
     first = false;
-    if (brick_is_visible(grid, b)) grid->relevant_list[grid->relevant_count++] = (uint32_t)at;
+    if (hl_brick_is_visible(grid, at)) grid->relevant_list[grid->relevant_count++] = (uint32_t)at;
     grid->cut = grid->cut || brick_reaches_faces(grid, b);
     grid->kept_voxels += (uint64_t)voxels_along(b[0], grid->dimension[0]) *
                          (uint64_t)voxels_along(b[1], grid->dimension[1]) *
                          (uint64_t)voxels_along(b[2], grid->dimension[2]);
   }
+  hl_cells_mark_near(grid, pool);
 }

@@ -1,20 +1,23 @@
-/* splat/cell_bounds.c - bounds of all cells, once a volume; which of them show something and what is near them, once a
- * transfer function. */
+/* splat/cell_bounds.c - bounds of all cells, once a volume. They are kept until the transfer function changes, packed: most
+ * of a volume is empty, or as even as a brick. */
 #include "splat/cell_bounds.h"
 
 #include <string.h>
 
 #include "core/memory.h"
 
-enum { SLABS_A_TASK = 8 };
+enum { CELL_LAYERS = HL_BRICK_CELLS / HL_NEAR_CELLS, LAYERS_A_TASK = 4 };
 
 typedef struct bound_job {
   grid *grid;
   bound_along_function *along;
   bound_across_function *across;
   bool smooth;
-  float *scratch;     /* [workers][scratch_floats] */
-  size_t scratch_floats, plane;
+  hl_context *context;
+  float *scratch;       /* [workers][scratch_floats] */
+  unsigned char *bytes; /* [workers][scratch_bytes] */
+  size_t scratch_floats, scratch_bytes, plane;
+  bool failed;          /* for lack of memory; atomic */
 } bound_job;
 
 /* Bounds of one slice of voxels along x and y: [2][near y][near x], low and high. */
@@ -42,193 +45,186 @@ static void bound_slice(const bound_job *job, int32_t z, float *rows, float *pad
 
 /* Rounded outwards to 255 steps of the volume's range; sums of floats may err by far less than the ten-thousandth
  * of a step that is forgiven, and a table's entry is sixteen times finer than a step. */
-static void store_bounds(const grid *grid, const float *low, const float *high, size_t count, size_t at) {
+static void round_bounds(const grid *grid, const float *low, const float *high, size_t count, unsigned char *to_low,
+                         unsigned char *to_high) {
   float inverse = 1 / grid->cell_step;
   for (size_t i = 0; i < count; i++) {
     float a = floorf((low[i] - grid->cell_base) * inverse + 1e-4f), b = ceilf((high[i] - grid->cell_base) * inverse - 1e-4f);
-    grid->cell_low[at + i] = (unsigned char)(a < 0 ? 0 : a > 255 ? 255 : a);
-    grid->cell_high[at + i] = (unsigned char)(b < 0 ? 0 : b > 255 ? 255 : b);
+    to_low[i] = (unsigned char)(a < 0 ? 0 : a > 255 ? 255 : a);
+    to_high[i] = (unsigned char)(b < 0 ? 0 : b > 255 ? 255 : b);
   }
 }
 
-static void bound_slabs(void *data, size_t index, int worker) {
-  const bound_job *job = data;
-  const grid *grid = job->grid;
-  float *slices = job->scratch + (size_t)worker * job->scratch_floats, *out = slices + CELL_TAPS * 2 * job->plane;
-  float *rows = out + 2 * job->plane, *padded = rows + 2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0];
-  int32_t held[CELL_TAPS] = {-1, -1, -1, -1, -1}, end = ((int32_t)index + 1) * SLABS_A_TASK;
-  if (end > grid->level[0].count[2]) end = grid->level[0].count[2];
-  for (int32_t f = (int32_t)index * SLABS_A_TASK; f < end; f++) {
-    const float *low[CELL_TAPS], *high[CELL_TAPS];
-    for (int32_t tap = 0; tap < CELL_TAPS; tap++) {
-      int32_t z = 2 * f - 2 + tap;
-      z = z < 0 ? 0 : z >= grid->dimension[2] ? grid->dimension[2] - 1 : z;
-      float *slice = slices + (size_t)(z % CELL_TAPS) * 2 * job->plane;
-      if (held[z % CELL_TAPS] != z) bound_slice(job, z, rows, padded, slice);
-      held[z % CELL_TAPS] = z;
-      low[tap] = slice;
-      high[tap] = slice + job->plane;
+/* ---- packing ---- */
+
+static size_t even_bytes(const grid *grid) { return hl_even_row_bytes(grid) * (size_t)grid->brick_count[1]; }
+
+static size_t greatest_layer_bytes(const grid *grid) {
+  return even_bytes(grid) + UNEVEN_BYTES * (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1];
+}
+
+/* Two rows of cells of each of the two layers in a row of bricks. */
+typedef const unsigned char *cell_rows[2 * CELL_LAYERS];
+
+/* The eight cells of a brick, two along x at a time. */
+static void gather_cells(const cell_rows rows, int32_t x, int32_t count, unsigned char cells[BRICK_CELLS]) {
+  int32_t next = x + 1 < count ? x + 1 : x;
+  for (int row = 0; row < 2 * CELL_LAYERS; row++) {
+    cells[2 * row] = rows[row][x];
+    cells[2 * row + 1] = rows[row][next];
+  }
+}
+
+static bool all_alike(const unsigned char cells[BRICK_CELLS]) { return memcmp(cells, cells + 1, BRICK_CELLS - 1) == 0; }
+
+/* bounds: [CELL_LAYERS][2][plane], lower and upper; returns the bytes of the layer. */
+static size_t pack_layer(const grid *grid, const unsigned char *bounds, size_t plane, unsigned char *to) {
+  const int32_t *count = grid->level[0].count;
+  unsigned char *next = to + even_bytes(grid);
+  memset(to, 0, even_bytes(grid));
+  for (int32_t by = 0; by < grid->brick_count[1]; by++) {
+    cell_rows low, high;
+    for (int row = 0; row < 2 * CELL_LAYERS; row++) {
+      int32_t y = 2 * by + row % 2 < count[1] ? 2 * by + row % 2 : 2 * by;
+      low[row] = bounds + (size_t)(row / 2) * 2 * plane + (size_t)y * (size_t)count[0];
+      high[row] = low[row] + plane;
     }
-    job->across(low, high, job->plane, job->smooth, out, out + job->plane);
-    store_bounds(grid, out, out + job->plane, job->plane, (size_t)f * job->plane);
+    for (int32_t bx = 0; bx < grid->brick_count[0]; bx++) {
+      gather_cells(low, 2 * bx, count[0], next);
+      gather_cells(high, 2 * bx, count[0], next + BRICK_CELLS);
+      if (!all_alike(next) || !all_alike(next + BRICK_CELLS)) {
+        next += UNEVEN_BYTES;
+        continue;
+      }
+      to[(size_t)by * hl_even_row_bytes(grid) + (size_t)bx / 8] |= (unsigned char)(1 << bx % 8);
+      next[1] = next[BRICK_CELLS];
+      next += EVEN_BYTES;
+    }
+  }
+  return (size_t)(next - to);
+}
+
+void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, float *high) {
+  const unsigned char *even = grid->cell_bounds[cell[2] / CELL_LAYERS], *next = even + even_bytes(grid);
+  for (int32_t y = 0;; y++, even += hl_even_row_bytes(grid))
+    for (int32_t x = 0; x < grid->brick_count[0]; x++) {
+      bool same = hl_brick_is_even(even, x);
+      if (x == cell[0] / 2 && y == cell[1] / 2) {
+        int place = same ? 0 : cell[0] % 2 + 2 * (cell[1] % 2) + 4 * (cell[2] % 2);
+        *low = grid->cell_base + grid->cell_step * next[place];
+        *high = grid->cell_base + grid->cell_step * next[place + (same ? 1 : BRICK_CELLS)];
+        return;
+      }
+      next += same ? EVEN_BYTES : UNEVEN_BYTES;
+    }
+}
+
+/* ---- building ---- */
+
+/* One worker's slices of voxels, bounded along x and y. */
+typedef struct bound_slices {
+  float *slices, *out, *rows, *padded; /* [CELL_TAPS][2][plane], [2][plane], of bound_slice */
+  int32_t held[CELL_TAPS];
+} bound_slices;
+
+/* Bounds of a slice of cells. */
+static void bound_cells(const bound_job *job, bound_slices *s, int32_t f, unsigned char *bounds) {
+  const grid *grid = job->grid;
+  const float *low[CELL_TAPS], *high[CELL_TAPS];
+  for (int32_t tap = 0; tap < CELL_TAPS; tap++) {
+    int32_t z = 2 * f - 2 + tap;
+    z = z < 0 ? 0 : z >= grid->dimension[2] ? grid->dimension[2] - 1 : z;
+    float *slice = s->slices + (size_t)(z % CELL_TAPS) * 2 * job->plane;
+    if (s->held[z % CELL_TAPS] != z) bound_slice(job, z, s->rows, s->padded, slice);
+    s->held[z % CELL_TAPS] = z;
+    low[tap] = slice;
+    high[tap] = slice + job->plane;
+  }
+  job->across(low, high, job->plane, job->smooth, s->out, s->out + job->plane);
+  round_bounds(grid, s->out, s->out + job->plane, job->plane, bounds, bounds + job->plane);
+}
+
+static void bound_layers(void *data, size_t index, int worker) {
+  bound_job *job = data;
+  const grid *grid = job->grid;
+  size_t plane = job->plane;
+  bound_slices s = {.slices = job->scratch + (size_t)worker * job->scratch_floats, .held = {-1, -1, -1, -1, -1}};
+  s.out = s.slices + CELL_TAPS * 2 * plane;
+  s.rows = s.out + 2 * plane;
+  s.padded = s.rows + 2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0];
+  unsigned char *bounds = job->bytes + (size_t)worker * job->scratch_bytes, *packed = bounds + CELL_LAYERS * 2 * plane;
+  int32_t end = ((int32_t)index + 1) * LAYERS_A_TASK;
+  for (int32_t layer = (int32_t)index * LAYERS_A_TASK; layer < end && layer < grid->brick_count[2]; layer++) {
+    for (int32_t k = 0; k < CELL_LAYERS; k++) {
+      int32_t f = CELL_LAYERS * layer + k;
+      if (f < grid->level[0].count[2]) bound_cells(job, &s, f, bounds + (size_t)k * 2 * plane);
+      else memcpy(bounds + (size_t)k * 2 * plane, bounds, 2 * plane);
+    }
+    size_t bytes = pack_layer(grid, bounds, plane, packed);
+    grid->cell_bounds[layer] = hl_allocate(job->context, bytes, 1);
+    if (grid->cell_bounds[layer] != NULL) memcpy(grid->cell_bounds[layer], packed, bytes);
+    else __atomic_store_n(&job->failed, true, __ATOMIC_RELAXED);
   }
 }
 
 static hl_status allocate_levels(hl_context *context, grid *grid, hl_error *error) {
+  memcpy(grid->level[1].count, grid->brick_count, sizeof grid->brick_count);
   for (int i = 0; i < CELL_LEVELS; i++) {
     cell_level *level = &grid->level[i];
-    for (int axis = 0; axis < 3 && i > 0; axis++) level->count[axis] = (grid->level[i - 1].count[axis] + 1) / 2;
     size_t cells = (size_t)level->count[0] * (size_t)level->count[1] * (size_t)level->count[2];
-    level->visible = hl_allocate(context, cells, 1);
     level->near = hl_allocate(context, cells + 4, 1); /* read four bytes at a time */
-    if (level->visible == NULL || level->near == NULL)
-      return hl_fail_memory(error, 2 * cells, "the look-up of a volume's cells");
+    if (level->near == NULL) return hl_fail_memory(error, cells, "the look-up of a volume's cells");
   }
   return HL_OK;
 }
 
-uint64_t hl_cell_bounds_bytes(const size_t dimension[3], int threads) {
-  uint64_t count[3], cells = 1, bytes = 0, dimension_0 = dimension[0];
-  for (int axis = 0; axis < 3; axis++) cells *= count[axis] = dimension[axis] / HL_NEAR_CELLS + 1;
-  if (cells >= INT32_MAX) return 0;
-  bytes = 2 * cells;
-  uint64_t scratch = (2 * CELL_TAPS + 2) * count[0] * count[1] + 2 * dimension[1] * count[0] + dimension_0 + 6;
-  for (int i = 0; i < CELL_LEVELS; i++) {
-    bytes += 2 * count[0] * count[1] * count[2] + 4;
-    for (int axis = 0; axis < 3; axis++) count[axis] = (count[axis] + 1) / 2;
-  }
-  return bytes + (uint64_t)threads * scratch * sizeof(float);
-}
-
-hl_status hl_cell_bounds_build(hl_context *context, hl_pool *pool, bound_along_function *along,
-                               bound_across_function *across, bool smooth, grid *grid, hl_error *error) {
+/* Sizes of a grid whose brick_count is known; false where there are more cells than 32 bits can number. */
+static bool size_scratch(grid *grid, bound_job *job) {
   size_t cells = 1;
   for (int axis = 0; axis < 3; axis++) {
     grid->level[0].count[axis] = grid->dimension[axis] / HL_NEAR_CELLS + 1;
     cells *= (size_t)grid->level[0].count[axis];
   }
-  if (cells >= INT32_MAX) return HL_OK; /* more than 32 bits can number: bricks decide alone */
-  size_t plane = (size_t)grid->level[0].count[0] * (size_t)grid->level[0].count[1];
-  bound_job job = {.grid = grid, .along = along, .across = across, .smooth = smooth, .plane = plane};
-  job.scratch_floats = (2 * CELL_TAPS + 2) * plane + 2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0] +
-                       (size_t)grid->dimension[0] + 6;
-  job.scratch = hl_allocate(context, (size_t)hl_pool_threads(pool) * job.scratch_floats, sizeof(float));
-  grid->cell_low = hl_allocate(context, cells, 1);
-  grid->cell_high = hl_allocate(context, cells, 1);
+  job->plane = (size_t)grid->level[0].count[0] * (size_t)grid->level[0].count[1];
+  job->scratch_floats = (2 * CELL_TAPS + 2) * job->plane + 2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0] +
+                        (size_t)grid->dimension[0] + 6;
+  job->scratch_bytes = CELL_LAYERS * 2 * job->plane + greatest_layer_bytes(grid);
+  return cells < INT32_MAX;
+}
+
+uint64_t hl_cell_bounds_bytes(const size_t dimension[3], int threads) {
+  grid sized = {0};
+  bound_job job = {0};
+  for (int axis = 0; axis < 3; axis++) {
+    sized.dimension[axis] = (int32_t)dimension[axis];
+    sized.brick_count[axis] = sized.dimension[axis] / HL_BRICK_CELLS + 1;
+  }
+  if (!size_scratch(&sized, &job)) return 0;
+  uint64_t near = (uint64_t)job.plane * (uint64_t)sized.level[0].count[2] + hl_grid_bricks(&sized) + 8;
+  uint64_t kept = (uint64_t)sized.brick_count[2] * (sizeof *sized.cell_bounds + greatest_layer_bytes(&sized));
+  return near + kept + (uint64_t)threads * (job.scratch_floats * sizeof(float) + job.scratch_bytes);
+}
+
+hl_status hl_cell_bounds_build(hl_context *context, hl_pool *pool, bound_along_function *along,
+                               bound_across_function *across, bool smooth, grid *grid, hl_error *error) {
+  bound_job job = {.grid = grid, .along = along, .across = across, .smooth = smooth, .context = context};
+  size_t threads = (size_t)hl_pool_threads(pool), layers = (size_t)grid->brick_count[2];
+  if (!size_scratch(grid, &job)) return HL_OK; /* bricks decide alone */
+  job.scratch = hl_allocate(context, threads * job.scratch_floats, sizeof(float));
+  job.bytes = hl_allocate(context, threads, job.scratch_bytes);
+  grid->cell_bounds = hl_allocate_zeroed(context, layers, sizeof *grid->cell_bounds);
   hl_status status = allocate_levels(context, grid, error);
-  if (job.scratch == NULL || grid->cell_low == NULL || grid->cell_high == NULL)
-    status = hl_fail_memory(error, 2 * cells, "the bounds of a volume's cells");
-  if (status == HL_OK)
-    hl_pool_run(pool, ((size_t)grid->level[0].count[2] + SLABS_A_TASK - 1) / SLABS_A_TASK, bound_slabs, &job);
+  job.failed = job.scratch == NULL || job.bytes == NULL || grid->cell_bounds == NULL;
+  if (status == HL_OK && !job.failed) hl_pool_run(pool, (layers + LAYERS_A_TASK - 1) / LAYERS_A_TASK, bound_layers, &job);
+  if (status == HL_OK && job.failed) status = hl_fail_memory(error, layers * greatest_layer_bytes(grid), "the bounds of a volume's cells");
   hl_release(context, job.scratch);
+  hl_release(context, job.bytes);
   return status;
 }
 
-/* ---- which cells show something ---- */
-
-typedef struct mark_job {
-  grid *grid;
-  uint16_t least_high[256]; /* of a lower bound: the least upper bound that shows something; 256: none */
-} mark_job;
-
-static void find_least_high(const classifier *classifier, const grid *grid, uint16_t least_high[256]) {
-  for (int low = 255; low >= 0; low--) {
-    int high = low;
-    while (high < 256 && !hl_classifier_span_visible(classifier, grid, grid->cell_base + (float)low * grid->cell_step,
-                                                     grid->cell_base + (float)high * grid->cell_step))
-      high++;
-    least_high[low] = (uint16_t)high;
-  }
-}
-
-static void mark_visible(void *data, size_t index, int worker) {
-  (void)worker;
-  const mark_job *job = data;
-  const grid *grid = job->grid;
-  size_t width = (size_t)grid->level[0].count[0];
-  for (int32_t y = 0; y < grid->level[0].count[1]; y++) {
-    size_t at = (index * (size_t)grid->level[0].count[1] + (size_t)y) * width;
-    const unsigned char *bricks = grid->relevant + (index / 2 * (size_t)grid->brick_count[1] + (size_t)(y / 2)) *
-                                                       (size_t)grid->brick_count[0];
-    memset(grid->level[0].visible + at, 0, width);
-    if (memchr(bricks, 1, (size_t)grid->brick_count[0]) == NULL) continue;
-    for (size_t x = 0; x < width; x++)
-      grid->level[0].visible[at + x] = bricks[x / 2] && grid->cell_high[at + x] >= job->least_high[grid->cell_low[at + x]];
-  }
-}
-
-/* ---- which cells are near those ---- */
-
-typedef struct near_job {
-  const cell_level *fine; /* null for the finest level */
-  cell_level *level;
-} near_job;
-
-/* A cell of a coarser level shows something where one of the eight that it is made of does. */
-static void merge_cells(const cell_level *fine, const cell_level *level, int32_t z) {
-  unsigned char *to = level->visible + (size_t)z * (size_t)level->count[1] * (size_t)level->count[0];
-  memset(to, 0, (size_t)level->count[1] * (size_t)level->count[0]);
-  for (int32_t k = 2 * z; k < 2 * z + 2 && k < fine->count[2]; k++)
-    for (int32_t j = 0; j < fine->count[1]; j++) {
-      const unsigned char *from = fine->visible + ((size_t)k * (size_t)fine->count[1] + (size_t)j) * (size_t)fine->count[0];
-      unsigned char *row = to + (size_t)(j / 2) * (size_t)level->count[0];
-      for (int32_t i = 0; i < fine->count[0]; i++) row[i / 2] |= from[i];
-    }
-}
-
-/* The bits of boxes three cells long along x, y, z (cell_level). */
-enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
-
-/* A row's look-ups along x. */
-static void mark_row(const unsigned char *restrict visible, size_t width, unsigned char *restrict near) {
-  for (size_t x = 0; x + 2 < width; x++)
-    near[x] = (unsigned char)(-(visible[x] | visible[x + 1]) | (-visible[x + 2] & THREE_ALONG_X));
-  for (size_t x = width < 2 ? 0 : width - 2; x < width; x++)
-    near[x] = (unsigned char)-(visible[x] | visible[width - 1]);
-}
-
-/* The look-ups along y or z, in place, from the first cell on. step: from a cell to the next along the axis; there are
- * `width` cells side by side. three: the bits of boxes three cells long along it. */
-static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t width, unsigned char three) {
-  for (int32_t i = 0; i + 2 < count; i++) {
-    unsigned char *cell = cells + (size_t)i * step;
-    for (size_t x = 0; x < width; x++)
-      cell[x] |= (unsigned char)(cell[x + step] | (cell[x + 2 * step] & three));
-  }
-  if (count < 2) return;
-  unsigned char *cell = cells + (size_t)(count - 2) * step;
-  for (size_t x = 0; x < width; x++) cell[x] |= cell[x + step];
-}
-
-/* A slice's look-ups along x and y. */
-static void mark_slice(void *data, size_t index, int worker) {
-  (void)worker;
-  const near_job *job = data;
-  const cell_level *level = job->level;
-  size_t width = (size_t)level->count[0], plane = width * (size_t)level->count[1];
-  if (job->fine != NULL) merge_cells(job->fine, level, (int32_t)index);
-  const unsigned char *visible = level->visible + index * plane;
-  unsigned char *near = level->near + index * plane;
-  for (int32_t y = 0; y < level->count[1]; y++) mark_row(visible + (size_t)y * width, width, near + (size_t)y * width);
-  join_axis(near, width, level->count[1], width, THREE_ALONG_Y);
-}
-
-/* A row's look-ups along z, in all slices. */
-static void mark_across(void *data, size_t index, int worker) {
-  (void)worker;
-  const cell_level *level = ((const near_job *)data)->level;
-  size_t width = (size_t)level->count[0];
-  join_axis(level->near + index * width, width * (size_t)level->count[1], level->count[2], width, THREE_ALONG_Z);
-}
-
-void hl_cells_mark_near(grid *grid, const classifier *classifier, hl_pool *pool) {
-  if (grid->level[0].near == NULL) return;
-  mark_job job = {.grid = grid};
-  find_least_high(classifier, grid, job.least_high);
-  hl_pool_run(pool, (size_t)grid->level[0].count[2], mark_visible, &job);
-  for (int i = 0; i < CELL_LEVELS; i++) {
-    near_job near = {.fine = i > 0 ? &grid->level[i - 1] : NULL, .level = &grid->level[i]};
-    hl_pool_run(pool, (size_t)near.level->count[2], mark_slice, &near);
-    hl_pool_run(pool, (size_t)near.level->count[1], mark_across, &near);
-  }
+void hl_cell_bounds_release(hl_context *context, grid *grid) {
+  for (int32_t layer = 0; grid->cell_bounds != NULL && layer < grid->brick_count[2]; layer++)
+    hl_release(context, grid->cell_bounds[layer]);
+  hl_release(context, grid->cell_bounds);
+  for (int i = 0; i < CELL_LEVELS; i++) hl_release(context, grid->level[i].near);
 }

@@ -27,8 +27,7 @@ enum {
 enum { CELL_LEVELS = 2, CELL_REACH = 3 /* cells along an axis that one look takes in */ };
 typedef struct cell_level {
   int32_t count[3];
-  unsigned char *visible; /* owned; [count z][y][x]; 1 where the transfer function shows something */
-  unsigned char *near;    /* owned; [same]; null where 32 bits cannot number the cells */
+  unsigned char *near; /* owned; [count z][y][x]; null where 32 bits cannot number the cells */
 } cell_level;
 
 typedef struct grid {
@@ -43,12 +42,12 @@ typedef struct grid {
   affine3 index_to_frame, frame_to_index;
   double box_low[3], box_high[3]; /* index space: where the volume exists */
   int32_t brick_count[3];
-  float *brick_minimum, *brick_maximum; /* owned; [bricks z][y][x]; stored units, over the voxels that the
-                                           brick's cells and their neighbours depend on */
+  void *brick_bounds;          /* owned; [bricks z][y][x][2]; least and greatest stored value, of the voxels' type, over the
+                                  voxels that the brick's cells and their neighbours depend on */
   unsigned char *relevant;     /* owned; [bricks z][y][x]; 1 where the volume can matter */
-  cell_level level[CELL_LEVELS];
-  unsigned char *cell_low, *cell_high; /* owned; [level[0].count z][y][x]; bounds in every 2x2x2 cells: cell_base +
-                                          cell_step * value; null where 32 bits cannot number them */
+  cell_level level[CELL_LEVELS]; /* of 2x2x2 cells, and of bricks */
+  unsigned char **cell_bounds; /* owned; [bricks z], each owned: bounds in every 2x2x2 cells of a layer of bricks, packed
+                                  (cell_bounds.c): cell_base + cell_step * value; null where 32 bits cannot number them */
   float cell_base, cell_step;  /* stored units */
   uint32_t *relevant_list;     /* owned; [relevant_count]; relevant bricks with a visible cell, rising */
   uint32_t relevant_count;

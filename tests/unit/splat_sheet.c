@@ -2,6 +2,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -190,17 +191,108 @@ static void test_cells_bound_the_reconstruction(void **state) {
       for (int x = 0; x < SIDE; x++) {
         vec3 p = bench_position(&bench, round % bench.sheets.count, x, y);
         if (!inside(&bench, p, 0.001)) continue;
-        size_t at = ((size_t)cell_pair(grid, p.z, 2) * (size_t)grid->level[0].count[1] + (size_t)cell_pair(grid, p.y, 1)) *
-                        (size_t)grid->level[0].count[0] + (size_t)cell_pair(grid, p.x, 0);
+        const int32_t cell[3] = {cell_pair(grid, p.x, 0), cell_pair(grid, p.y, 1), cell_pair(grid, p.z, 2)};
+        float low, high;
+        hl_cell_bounds_at(grid, cell, &low, &high);
         double value = (double)sheet[y][x] + (double)grid->empty;
-        assert_true(value >= grid->cell_low[at] - 1e-3 && value <= grid->cell_high[at] + 1e-3);
-        width += grid->cell_high[at] - grid->cell_low[at];
+        assert_true(value >= (double)low - 1e-3 && value <= (double)high + 1e-3);
+        width += (double)(high - low);
         checked++;
       }
   }
   assert_true(checked > 10000);
   if (!(width / (double)checked < 180)) fail_msg("bounds are %g apart", width / (double)checked);
   bench_close(&bench);
+}
+
+static size_t place_of(const int32_t count[3], int32_t x, int32_t y, int32_t z) {
+  return ((size_t)z * (size_t)count[1] + (size_t)y) * (size_t)count[0] + (size_t)x;
+}
+
+/* The extremes of the voxels that a cell depends on. */
+static void cell_extremes(const grid *grid, const int32_t cell[3], uint8_t extremes[2]) {
+  extremes[0] = 255, extremes[1] = 0;
+  for (int tap = 0; tap < CELL_TAPS * CELL_TAPS * CELL_TAPS; tap++) {
+    const int32_t taps[3] = {tap % CELL_TAPS, tap / CELL_TAPS % CELL_TAPS, tap / CELL_TAPS / CELL_TAPS};
+    int32_t v[3];
+    for (int axis = 0; axis < 3; axis++) {
+      v[axis] = 2 * cell[axis] - 2 + taps[axis];
+      v[axis] = v[axis] < 0 ? 0 : v[axis] >= grid->dimension[axis] ? grid->dimension[axis] - 1 : v[axis];
+    }
+    uint8_t value = ((const uint8_t *)grid->voxels)[place_of(grid->dimension, v[0], v[1], v[2])];
+    if (value < extremes[0]) extremes[0] = value;
+    if (value > extremes[1]) extremes[1] = value;
+  }
+}
+
+/* What a look at the cells from one on finds, by its bits. */
+static int look_at_cells(const cell_level *level, const unsigned char *visible, const int32_t first[3]) {
+  int bits = 0;
+  for (int bit = 0; bit < 8; bit++)
+    for (int32_t z = first[2]; z < first[2] + 2 + (bit >> 2) && z < level->count[2]; z++)
+      for (int32_t y = first[1]; y < first[1] + 2 + (bit >> 1 & 1) && y < level->count[1]; y++)
+        for (int32_t x = first[0]; x < first[0] + 2 + (bit & 1) && x < level->count[0]; x++)
+          bits |= visible[place_of(level->count, x, y, z)] << bit;
+  return bits;
+}
+
+/* Compares bounds and look-ups of all cells with what their voxels say; returns how many show something. */
+static long check_cells(const bench *bench) {
+  static unsigned char visible[CELL_LEVELS][4096];
+  const grid *grid = &bench->grid;
+  const int32_t *count = grid->level[0].count;
+  long shown = 0;
+  memset(visible, 0, sizeof visible);
+  for (int32_t z = 0; z < count[2]; z++)
+    for (int32_t y = 0; y < count[1]; y++)
+      for (int32_t x = 0; x < count[0]; x++) {
+        uint8_t extremes[2];
+        float low, high;
+        cell_extremes(grid, (const int32_t[3]){x, y, z}, extremes);
+        hl_cell_bounds_at(grid, (const int32_t[3]){x, y, z}, &low, &high);
+        assert_true(low == (float)extremes[0] && high == (float)extremes[1]);
+        size_t brick = place_of(grid->brick_count, x / 2, y / 2, z / 2);
+        if (!grid->relevant[brick] || !hl_classifier_span_visible(&bench->classifier, grid, low, high)) continue;
+        visible[0][place_of(count, x, y, z)] = visible[1][brick] = 1;
+        shown++;
+      }
+  for (int i = 0; i < CELL_LEVELS; i++) {
+    const cell_level *level = &grid->level[i];
+    for (int32_t z = 0; z < level->count[2]; z++)
+      for (int32_t y = 0; y < level->count[1]; y++)
+        for (int32_t x = 0; x < level->count[0]; x++)
+          assert_int_equal(level->near[place_of(level->count, x, y, z)],
+                           look_at_cells(level, visible[i], (const int32_t[3]){x, y, z}));
+  }
+  return shown;
+}
+
+/* Bounds of even and of grainy bricks, whole and cut by the grid's end, and what is looked up of them. */
+static void test_cells_are_what_their_voxels_say(void **state) {
+  (void)state;
+  static const size_t sizes[][3] = {{13, 10, 17}, {8, 12, 5}, {30, 9, 11}, {1, 3, 2}, {16, 16, 16}};
+  static const hl_opacity_point ramp[] = {{168, 0}, {170, 0.9}};
+  for (size_t n = 0; n < sizeof sizes / sizeof *sizes; n++) {
+    uint8_t voxels[16 * 16 * 16];
+    const size_t *size = sizes[n];
+    uint32_t seed = 90 + (uint32_t)n;
+    for (size_t v = 0; v < size[0] * size[1] * size[2]; v++) {
+      bool grainy = v % size[0] < size[0] / 2 && v / size[0] / size[1] <= size[2] / 2, full = v % size[0] == size[0] - 1;
+      voxels[v] = grainy && bench_random(&seed) < 0.1 ? (uint8_t)(256 * bench_random(&seed)) : full ? 200 : 7;
+    }
+    bench bench;
+    bench_open(&bench, size, HL_STORAGE_U8, voxels, oblique_axes());
+    hl_classifier_release(bench.context, &bench.classifier);
+    hl_grid_release(bench.context, &bench.grid);
+    bench.scene.transfer_function.opacity = ramp;
+    bench.scene.transfer_function.opacity_count = 2;
+    assert_int_equal(hl_grid_create(bench.context, bench.pool, &hl_hot_scalar.grid, hl_kernel_get(HL_KERNEL_LINEAR), &bench.scene,
+                                    affine3_identity(), 7, &bench.grid, NULL), HL_OK);
+    assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL), HL_OK);
+    hl_grid_mark_relevant(&bench.grid, &bench.classifier, bench.pool);
+    assert_true(check_cells(&bench) > 0);
+    bench_close(&bench);
+  }
 }
 
 /* No pixel that shows something lies outside the blocks that are said to matter. */
@@ -333,6 +425,7 @@ int main(void) {
       cmocka_unit_test(test_splat_equals_gather),
       cmocka_unit_test(test_other_blocks_are_left_alone),
       cmocka_unit_test(test_cells_bound_the_reconstruction),
+      cmocka_unit_test(test_cells_are_what_their_voxels_say),
       cmocka_unit_test(test_relevant_blocks_miss_nothing),
       cmocka_unit_test(test_whole_slabs_are_not_cut),
       cmocka_unit_test(test_kernels_sum_to_one),
