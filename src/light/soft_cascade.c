@@ -55,18 +55,19 @@ static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer 
   if (index > 0 && level->scale > 2 * cascade->level[index - 1].scale) level->scale = 2 * cascade->level[index - 1].scale;
   level->tiles_x = (buffer->tiles_x + level->scale - 1) / level->scale;
   level->tiles_y = (buffer->tiles_y + level->scale - 1) / level->scale;
-  level->stride = (size_t)level->tiles_x * TILE + 2 * CASCADE_MARGIN;
-  level->plane = ((size_t)level->tiles_y * TILE + 2 * CASCADE_MARGIN) * level->stride;
+  level->stride = (size_t)level->tiles_x * TILE + CASCADE_MARGIN;
+  level->plane = ((size_t)level->tiles_y * TILE + CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
   level->capacity = index < 2 ? CASCADE_FEW_GROUPS : CASCADE_GROUPS;
-  level->planes = channels * (2 * (size_t)level->capacity + 2) + 1 + (index == 0 ? channels * (1 + MOMENT_PLANES) : 0);
+  level->planes = channels * (2 * (size_t)level->capacity + 2) + (index == 0 ? channels * MOMENT_PLANES : 1);
   if (cascade->image != NULL) level->planes += 2 * channels;
+  level->pixels = level->planes * level->plane + (CASCADE_MARGIN + 1) * level->stride;
 }
 
 /* Zeros for all levels, handed out to them. */
 static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade, hl_error *error) {
   size_t pixels = 0;
-  for (int i = 0; i < cascade->level_count; i++) pixels += cascade->level[i].planes * cascade->level[i].plane;
+  for (int i = 0; i < cascade->level_count; i++) pixels += cascade->level[i].pixels;
   if (memory->capacity < pixels) {
     hl_release(context, memory->pixels);
     memory->pixels = hl_allocate(context, pixels, sizeof *memory->pixels);
@@ -75,8 +76,7 @@ static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory 
   }
   hl_pool_clear(pool, memory->pixels, pixels * sizeof *memory->pixels);
   field_pixel *next = memory->pixels;
-  for (int i = 0; i < cascade->level_count; next += cascade->level[i].planes * cascade->level[i].plane, i++)
-    cascade->level[i].memory = next;
+  for (int i = 0; i < cascade->level_count; next += cascade->level[i].pixels, i++) cascade->level[i].memory = next;
   return HL_OK;
 }
 
@@ -112,11 +112,11 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
     }
     for (int i = 0; i < 2; i++) level->sum[i][c] = next_field(level, &used);
   }
-  level->scratch = next_field(level, &used);
+  if (index > 0) level->scratch = next_field(level, &used);
   for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++) level->mean[c % 2][c / 2] = next_field(level, &used);
   level->wanted = level->flags + level->planes * tiles;
   for (size_t c = 0; c < channels && index == 0; c++) {
-    cascade->shade[c] = cascade->own_shade[c] = next_field(level, &used);
+    cascade->shade[c] = level->sum[0][c];
     cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
     used += MOMENT_PLANES;
   }
@@ -157,7 +157,7 @@ void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, v
   for (int i = 0; i < cascade.level_count; i++) {
     const cascade_level *level = &cascade.level[i];
     uint64_t tiles_x = (uint64_t)level->tiles_x, tiles_y = (uint64_t)level->tiles_y;
-    *kept += level->planes * level->plane * sizeof(field_pixel);
+    *kept += level->pixels * sizeof(field_pixel);
     *passing += (level->planes + 1) * tiles_x * tiles_y + (tiles_x + tiles_y) * sizeof *level->boxes;
   }
 }
@@ -515,12 +515,12 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   if (cascade->image != NULL) return hl_soft_cascade_pass_image(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);
   if (level == NULL) return false;
-  cascade_blur blur = blur_towards(level, receiver, receiver, &cascade->level[0]);
-  bool sharp = level == &cascade->level[0] && blur.variance < LEAST_VARIANCE;
-  memcpy(cascade->shade, sharp ? level->sum[level->newest] : cascade->own_shade, sizeof cascade->shade);
+  cascade_level *finest = &cascade->level[0];
+  cascade_blur blur = blur_towards(level, receiver, receiver, finest);
+  bool sharp = level == finest && blur.variance < LEAST_VARIANCE;
+  memcpy(cascade->shade, finest->sum[sharp ? finest->newest : !finest->newest], sizeof cascade->shade);
   for (int c = 0; c < cascade->channels && !sharp; c++)
-    bring(level, &level->sum[level->newest][c], blur, &cascade->level[0], NULL, NULL, &cascade->shade[c],
-          cascade->wanted[0], crew);
+    bring(level, &level->sum[level->newest][c], blur, finest, NULL, NULL, &cascade->shade[c], cascade->wanted[0], crew);
   return true;
 }
 

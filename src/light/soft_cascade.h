@@ -26,11 +26,11 @@
 #include "light/light_image.h"
 #include "light/shadow_buffer.h"
 
-/* CASCADE_REACH: pixels beyond a tile that the buffer must hold, so that its rows are as long as level 0's. */
-enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48, CASCADE_REACH = CASCADE_MARGIN - TILE - 1,
-       CASCADE_MASKS = 6 };
+/* CASCADE_MARGIN: pixels of zeros between rows, and rows of them between planes, that blurs may read. */
+enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48, CASCADE_MASKS = 6 };
 
-/* Absorbed light over the pixels of a level, zeros around them. */
+/* Absorbed light over the pixels of a level, zeros around them: what follows a row, or a field, is the margin before the
+ * next. */
 typedef struct cascade_field {
   field_pixel *pixels; /* pixel (0,0); in the level's memory */
   unsigned char *zeros; /* [tiles]; 1 where the tile is all zeros: work skips it; in the level's flags */
@@ -50,7 +50,7 @@ typedef struct cascade_box { double part; blur_box box; } cascade_box;
 typedef struct cascade_level {
   int scale;                         /* buffer pixels a pixel of this level */
   int tiles_x, tiles_y;
-  size_t stride, plane, origin;
+  size_t stride, plane, origin, pixels; /* of a row, a field, before its pixel (0,0), of all fields and the margin after them */
   cascade_group group[CASCADE_GROUPS]; /* oldest first */
   int count, capacity;
   double part[2], greatest_part;     /* of boxes: means along rows and columns, and the greatest */
@@ -60,7 +60,7 @@ typedef struct cascade_level {
   double sum_omega;               /* of the newest group in sum */
   double owed[2];                    /* what the sum is blurred too much along rows and columns, pixels of the buffer squared */
   bool renewed;                      /* sum is to be found anew */
-  cascade_field scratch;
+  cascade_field scratch;             /* of farther levels */
   cascade_field mean[2][HL_CHANNELS]; /* through an image: of one group's absorbed and thin light */
   unsigned char *wanted;             /* in flags; [tiles]; of farther levels */
   bool masked;                       /* sums are found where wanted only */
@@ -91,8 +91,7 @@ typedef struct soft_cascade {
   int channels;
   int level_count;      /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
-  cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0; own_shade or its sum */
-  cascade_field own_shade[HL_CHANNELS];
+  cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0: one of its sums */
   float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: what the chunk's slabs took, times their places */
   unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs took light */
   unsigned char *wanted[CASCADE_MASKS]; /* owned with touched; [tiles]; what the next chunk's slabs read; a tile wider each */

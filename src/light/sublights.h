@@ -14,7 +14,7 @@
 #include "light/shadow_lookup.h"
 #include "light/sublight_field.h"
 
-enum { SUBLIGHT_MARGIN = 48 };
+enum { SUBLIGHT_MARGIN = 48, SUBLIGHT_REACH = SUBLIGHT_MARGIN - TILE - 1 /* of the slab's buffer, beyond a tile */ };
 
 /* One part's buffer. */
 typedef struct sublight {

@@ -100,7 +100,9 @@ typedef struct frame_work {
   grid *grids;            /* [volumes] */
   frame_sweep *sweeps;    /* [LIGHT_SECTORS * lights + 1] */
   int sweep_count;
-  float *pixels;          /* [sweeps][tiles][16][4][16] */
+  float *pixels;          /* [sweeps][tiles][16][4][16]; owned, or the caller's (in_place) */
+  bool in_place;
+  float *tile_rows;       /* in_place: [threads][tiles_x][16][4][16] */
   size_t tiles_x, tiles;
   layer_pixels layers;
   int measuring_sweep;    /* the one that carries depth and normals */
@@ -112,7 +114,8 @@ static void release_work(hl_context *context, frame_work *work) {
   hl_release(context, work->frame.lights);
   hl_release(context, work->grids);
   hl_release(context, work->sweeps);
-  hl_release(context, work->pixels);
+  if (!work->in_place) hl_release(context, work->pixels);
+  hl_release(context, work->tile_rows);
   hl_layer_pixels_release(context, &work->layers);
 }
 
@@ -232,8 +235,32 @@ static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   }
 }
 
-static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers,
-                              frame_work *work, hl_error *error) {
+/* Where tiles are made: in the caller's pixels if one sweep's fill those, a row of tiles exactly as many rows. */
+static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers, float *pixels,
+                              size_t row_stride, frame_work *work, hl_error *error) {
+  hl_context *context = renderer->context;
+  size_t threads = (size_t)hl_pool_threads(renderer->pool), tile_row = work->tiles_x * TILE_PIXELS * 4;
+  size_t floats = (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4;
+  bool whole = scene->width % TILE == 0 && scene->height % TILE == 0 && row_stride == 4 * (size_t)scene->width;
+  work->in_place = whole && work->sweep_count == 1 && work->frame.oversampling == 1 && (uintptr_t)pixels % 64 == 0;
+  uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, layers);
+  if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
+  hl_status status = hl_check_room(context, bytes, &renderer->estimate, error);
+  if (status != HL_OK) return status;
+  if (work->in_place) {
+    work->pixels = pixels;
+    work->tile_rows = hl_allocate(context, threads * tile_row, sizeof *work->tile_rows);
+  } else {
+    work->pixels = hl_allocate(context, floats, sizeof *work->pixels);
+  }
+  if (work->pixels == NULL || (work->in_place && work->tile_rows == NULL))
+    return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
+  hl_pool_clear(renderer->pool, work->pixels, floats * sizeof *work->pixels);
+  return hl_layer_pixels_create(context, renderer->pool, layers, &work->frame, work->tiles, &work->layers, error);
+}
+
+static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers, float *pixels,
+                              size_t row_stride, frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   frame *frame = &work->frame;
   frame->points = hl_allocate(context, scene->volume_count * 8 + 1, sizeof(vec3));
@@ -262,12 +289,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   if (status != HL_OK) return status;
   work->tiles_x = (size_t)hl_tiles(frame->eye.width);
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
-  status = hl_check_room(context, hl_pixels_bytes(frame, work->sweep_count, layers), &renderer->estimate, error);
-  if (status != HL_OK) return status;
-  work->pixels = hl_allocate(context, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4, sizeof(float));
-  if (work->pixels == NULL) return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
-  hl_pool_clear(renderer->pool, work->pixels, (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4 * sizeof *work->pixels);
-  return hl_layer_pixels_create(context, renderer->pool, layers, frame, work->tiles, &work->layers, error);
+  return place_pixels(renderer, scene, layers, pixels, row_stride, work, error);
 }
 
 static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
@@ -362,12 +384,16 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
   return status;
 }
 
-/* One pixel of the frame, all sweeps: contributions of lights add, opacity is the same in every sweep. */
-static void add_pixel(const frame_work *work, int column, int row, float sum[4]) {
-  size_t tile = (size_t)(row / TILE) * work->tiles_x + (size_t)(column / TILE);
+/* A pixel's red in a row of tiles; the next channels are BLOCK_PIXELS apart. */
+static const float *pixel_of_tiles(const float *tiles, int column, int row) {
   size_t block = (size_t)(row % TILE / BLOCK * 4 + column % TILE / BLOCK);
   size_t lane = (size_t)(row % BLOCK * 4 + column % BLOCK);
-  const float *from = work->pixels + (tile * TILE_BLOCKS + block) * 4 * BLOCK_PIXELS + lane;
+  return tiles + ((size_t)(column / TILE) * TILE_BLOCKS + block) * 4 * BLOCK_PIXELS + lane;
+}
+
+/* One pixel of the frame, all sweeps: contributions of lights add, opacity is the same in every sweep. */
+static void add_pixel(const frame_work *work, int column, int row, float sum[4]) {
+  const float *from = pixel_of_tiles(work->pixels + (size_t)(row / TILE) * work->tiles_x * TILE_PIXELS * 4, column, row);
   for (int c = 0; c < 4; c++) sum[c] += from[c * BLOCK_PIXELS];
   for (int s = 1; s < work->sweep_count; s++)
     for (int c = 0; c < 3; c++) sum[c] += from[(size_t)s * work->tiles * TILE_PIXELS * 4 + (size_t)(c * BLOCK_PIXELS)];
@@ -393,6 +419,19 @@ static void write_row(void *data, size_t row, int worker) {
   }
 }
 
+/* A row of tiles in the caller's pixels becomes sixteen rows of those. */
+static void write_in_place(void *data, size_t index, int worker) {
+  const write_job *job = data;
+  size_t floats = job->work->tiles_x * TILE_PIXELS * 4;
+  float *to = job->pixels + index * floats, *tiles = job->work->tile_rows + (size_t)worker * floats;
+  memcpy(tiles, to, floats * sizeof *tiles);
+  for (int row = 0; row < TILE; row++)
+    for (int column = 0; column < job->width; column++, to += 4) {
+      const float *from = pixel_of_tiles(tiles, column, row);
+      for (int c = 0; c < 4; c++) to[c] = 0 + from[c * BLOCK_PIXELS]; /* as a sum: never -0 */
+    }
+}
+
 static void write_layers(const frame_work *work, const hl_scene_description *scene, hl_pool *pool) {
   const layer_grid grid = {scene->width, scene->height, work->frame.oversampling, work->tiles_x, (float)work->framed.unit};
   hl_layer_pixels_write(&work->layers, &grid, pool);
@@ -415,7 +454,7 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   if (status == HL_OK)
     status = hl_prepare_volumes(renderer->context, renderer->pool, hot, scene, renderer->prepared,
                                 error);
-  if (status == HL_OK) status = set_up_frame(renderer, scene, layers, work, error);
+  if (status == HL_OK) status = set_up_frame(renderer, scene, layers, pixels, row_stride, work, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();
@@ -423,7 +462,8 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
     status = run_sweep(renderer, scene, work, s, statistics, error);
   if (status != HL_OK) return status;
   write_job job = {work, pixels, row_stride, scene->width};
-  hl_pool_run(renderer->pool, (size_t)scene->height, write_row, &job);
+  if (work->in_place) hl_pool_run(renderer->pool, (size_t)scene->height / TILE, write_in_place, &job);
+  else hl_pool_run(renderer->pool, (size_t)scene->height, write_row, &job);
   write_layers(work, scene, renderer->pool);
   if (hl_pool_cancelled(renderer->pool)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   statistics->seconds_render = hl_clock_seconds() - start;

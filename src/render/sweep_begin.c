@@ -91,7 +91,7 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
   sheet_light seen = {0};
   if (source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, points, &extent, &seen, &view)) return;
   bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
-  int reach = soft ? CASCADE_REACH : 0;
+  int reach = soft && source->soft_method == HL_SOFT_SUBLIGHTS ? SUBLIGHT_REACH : 0;
   if (paper) {
     soft_paper begun;
     light_image seen_image = image != NULL ? *image : (light_image){0};
@@ -140,7 +140,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   light->buffer = buffer;
   double edge = vec3_length(view.du);
   bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
-  int reach = soft ? CASCADE_REACH : 0;
+  int reach = soft && source->soft_method == HL_SOFT_SUBLIGHTS ? SUBLIGHT_REACH : 0;
   const sheet_stack *sheets = &sweep->geometry->sheets;
   if (paper) {
     hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, &view, image);
