@@ -26,6 +26,7 @@ typedef struct prepared_volume {
 } prepared_volume;
 
 enum { RING = 2 }; /* sheets k-1 and k */
+#define NO_ENTRY UINT32_MAX
 
 /* A patch of one sheet, kept for the next slab. */
 typedef struct kept_patch {
@@ -46,7 +47,11 @@ typedef struct view_sheets {
   fill_source *sources;           /* owned; [RING][grids]; of sheet k at k % RING */
   slab_run *runs;                 /* owned; [grids]; the slabs that the last one is among */
   relevant_patch *relevant;       /* owned; [patches] */
-  float *enter, *leave;           /* owned; [patches][256]; null where no box cuts anything visible */
+  float *entries;                 /* owned; [entry_count][2][256]; where rays enter a box and leave it; room for all patches;
+                                     null where no box cuts anything visible */
+  uint32_t *entry_of;             /* owned; [patches]; NO_ENTRY where none was asked for */
+  uint32_t entry_count;           /* atomic */
+  box_rays *box_rays;             /* owned; [grids] */
   float *density;                 /* owned; [patches][RING][256], block-major */
   kept_patch *kept;               /* owned; [patches][RING]; what is in density */
 } view_sheets;
@@ -155,7 +160,7 @@ void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_
  * the slab before, or filled now. */
 typedef struct patch_slab {
   const float *before, *current; /* valid in blocks */
-  const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible */
+  const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible, unset where whole */
   int whole;                     /* it cuts nothing in this slab, and no light on its way through it to the eye's pixels */
   uint32_t blocks;
 } patch_slab;

@@ -4,41 +4,38 @@
 #include "render/sweep.h"
 #include "splat/voxel_sort.h"
 
-typedef struct coverage_work {
-  coverage_tile_function *coverage_tile;
-  box_rays rays;
-  view_sheets *sheets;
-  const tile_rectangle *rectangle;
-} coverage_work;
+enum { ENTRY_FLOATS = 2 * TILE_PIXELS };
 
-static void cover_tile(void *data, size_t index, int worker) {
-  (void)worker;
-  const coverage_work *work = data;
-  const tile_rectangle *r = work->rectangle;
-  size_t at = (size_t)work->sheets->occupancy.patch_of[r->first + index] * TILE_PIXELS;
-  work->coverage_tile(&work->rays, r->x + (int)(index % (size_t)r->width), r->y + (int)(index / (size_t)r->width),
-                      work->sheets->enter + at, work->sheets->leave + at);
-}
-
-/* Where the view's rays enter and leave the boxes that cut something visible. */
-static hl_status cover(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
+/* Rays against the boxes that cut something visible: where they enter and leave is found when it is asked for. */
+static hl_status set_up_entries(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
   const sheet_stack *stack = &sweep->geometry->sheets;
-  size_t pixels = sheets->occupancy.patch_count * TILE_PIXELS;
+  size_t patches = sheets->occupancy.patch_count;
   bool any = false;
   for (int g = 0; g < sweep->volume_count; g++) any = any || sweep->grids[g].cut;
   if (!any) return HL_OK;
-  sheets->enter = hl_allocate(sweep->context, pixels, sizeof(float));
-  sheets->leave = hl_allocate(sweep->context, pixels, sizeof(float));
-  if (sheets->enter == NULL || sheets->leave == NULL) return hl_fail_memory(error, pixels * 8, "the rays' entries");
+  sheets->entries = hl_allocate(sweep->context, patches * ENTRY_FLOATS, sizeof(float));
+  sheets->entry_of = hl_allocate(sweep->context, patches, sizeof *sheets->entry_of);
+  sheets->box_rays = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->box_rays);
+  if (sheets->entries == NULL || sheets->entry_of == NULL || sheets->box_rays == NULL)
+    return hl_fail_memory(error, patches * ENTRY_FLOATS * sizeof(float), "the rays' entries");
+  for (size_t i = 0; i < patches; i++) sheets->entry_of[i] = NO_ENTRY;
   for (int g = 0; g < sweep->volume_count; g++) {
     const grid *grid = &sweep->grids[g];
-    const tile_rectangle *r = &sheets->occupancy.rectangle[g];
-    if (!grid->cut) continue;
-    coverage_work work = {.coverage_tile = sweep->hot->coverage_tile, .sheets = sheets, .rectangle = r};
-    hl_box_rays(view, stack->normal, stack->first, grid->frame_to_index, grid->box_low, grid->box_high, &work.rays);
-    hl_pool_run(sweep->pool, (size_t)r->width * (size_t)r->height, cover_tile, &work);
+    hl_box_rays(view, stack->normal, stack->first, grid->frame_to_index, grid->box_low, grid->box_high, &sheets->box_rays[g]);
   }
   return HL_OK;
+}
+
+/* Entries of a patch, which one task has at a time; they fill as much memory as patches need them. */
+static const float *entries_of(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch) {
+  uint32_t *entry = &sheets->entry_of[patch];
+  if (*entry != NO_ENTRY) return sheets->entries + *entry * (size_t)ENTRY_FLOATS;
+  *entry = __atomic_fetch_add(&sheets->entry_count, 1, __ATOMIC_RELAXED);
+  float *enter = sheets->entries + *entry * (size_t)ENTRY_FLOATS;
+  size_t tiles_x = (size_t)sheets->occupancy.tiles_x;
+  sweep->hot->coverage_tile(&sheets->box_rays[sheets->occupancy.patch_grid[patch]], (int)(tile % tiles_x), (int)(tile / tiles_x),
+                            enter, enter + TILE_PIXELS);
+  return enter;
 }
 
 static hl_status sort_voxels(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
@@ -71,7 +68,7 @@ uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view) {
   bool cut = false;
   for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
   uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, &patches);
-  uint64_t a_patch = RING * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(relevant_patch) + (cut ? 2 * TILE_PIXELS * sizeof(float) : 0);
+  uint64_t a_patch = RING * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(relevant_patch) + (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
   return bytes + patches * a_patch;
 }
 
@@ -112,7 +109,7 @@ hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets
   hl_status status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, view,
                                         &sweep->geometry->sheets, &sheets->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sweep, view, sheets, error);
-  if (status == HL_OK) status = cover(sweep, view, sheets, error);
+  if (status == HL_OK) status = set_up_entries(sweep, view, sheets, error);
   if (status == HL_OK) status = keep_patches(sweep, sheets, error);
   if (status != HL_OK) return status;
   hl_view_sheets_reach(sweep, view, 0, sheets);
@@ -122,8 +119,8 @@ hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
   for (int g = 0; sheets->lists != NULL && g < sweep->volume_count; g++)
     hl_voxel_lists_release(sweep->context, &sheets->lists[g]);
-  void *owned[] = {sheets->lists,  sheets->sources, sheets->runs, sheets->relevant,
-                   sheets->enter,  sheets->leave,   sheets->density, sheets->kept};
+  void *owned[] = {sheets->lists,   sheets->sources,  sheets->runs,     sheets->relevant, sheets->entries,
+                   sheets->entry_of, sheets->box_rays, sheets->density, sheets->kept};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
   hl_occupancy_release(sweep->context, &sheets->occupancy);
 }
@@ -180,10 +177,11 @@ patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, s
   *pixels += fill_patch(sweep, sheets, tile, patch, before, wanted);
   *pixels += fill_patch(sweep, sheets, tile, patch, current, wanted);
   const float *density = sheets->density + patch * RING * TILE_PIXELS;
-  bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
+  bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut, whole = relevant->whole >> slab & 1;
+  const float *enter = !cut ? NULL : whole ? sheets->entries : entries_of(sweep, sheets, tile, patch);
   return (patch_slab){.before = density + (sheet - 1) % RING * TILE_PIXELS, .current = density + sheet % RING * TILE_PIXELS,
-                      .enter = cut ? sheets->enter + patch * TILE_PIXELS : NULL,
-                      .leave = cut ? sheets->leave + patch * TILE_PIXELS : NULL,
-                      .whole = relevant->whole >> slab & 1,
+                      .enter = enter,
+                      .leave = cut ? enter + TILE_PIXELS : NULL,
+                      .whole = whole,
                       .blocks = wanted & ((uint32_t)before->blocks | current->blocks)};
 }
