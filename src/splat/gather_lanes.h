@@ -170,10 +170,14 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
     for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
 #ifdef HL_BYTE_WINDOWS
-  byte_window bytes;
-  if (grid->storage == HL_STORAGE_U8 &&
-      (inside ? open_window_of_block(grid, cell, &bytes) : open_window(grid, cell, active, &bytes)))
-    return sum_window(&bytes, weights);
+  byte_window bytes, below;
+  const uint32_t upper = 0x00ff; /* half of a block */
+  if (grid->storage == HL_STORAGE_U8) {
+    if (inside ? open_window_of_block(grid, cell, &bytes) : open_window(grid, cell, active, &bytes))
+      return sum_window(&bytes, weights);
+    if (open_window(grid, cell, active & upper, &bytes) && open_window(grid, cell, active & ~upper, &below))
+      return lanes_select(lanes_from_bits(upper), sum_window(&bytes, weights), sum_window(&below, weights));
+  }
 #endif
   tap_window window = window_at(grid, cell, active);
   if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);

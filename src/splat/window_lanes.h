@@ -97,6 +97,7 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
 
 LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, byte_window *window) {
   int32_t lowest[3];
+  if (active == 0) return 0;
   lowest_of_lanes(cell, active, lowest);
   return open_window_at(grid, cell, lowest, active, window);
 }
