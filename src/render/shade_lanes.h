@@ -247,7 +247,7 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
 }
 
 /* Colours of the volumes, lit and averaged weighted by extinction. */
-static color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
+LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
                                   const block_density *densities, int count, lanes total) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
@@ -265,15 +265,34 @@ static color_lanes color_of_block(const shade_job *job, const block_geometry *g,
   return sum;
 }
 
-/* Samples of up to sixteen pixels, lit; 0 where nothing is seen. */
-static color_lanes light_slab(const shade_job *job, const block_slab *slab, const block_density *densities) {
-  arriving_light lights[MAXIMUM_SWEEP_LIGHTS];
-  color_lanes lit = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
-  if (lanes_bits(slab->seen) == 0) return lit;
-  for (int i = 0; i < job->light_count; i++) lights[i] = light_at(job, &job->lights[i], slab, densities);
-  lit = color_of_block(job, &slab->geometry, lights, densities, slab->count, slab->total);
-  for (int c = 0; c < 3; c++) lit.c[c] = lanes_keep(slab->seen, lit.c[c]);
-  return lit;
+/* A tile's slabs, one step for all of them at a time: their sums are long chains of few numbers each, and the processor
+ * works on one slab's while another's wait. lit: 0 where nothing is seen. */
+LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_density *densities, int patch_count,
+                              color_lanes *lit, uint64_t *samples) {
+  arriving_light lights[TILE_BLOCKS][MAXIMUM_SWEEP_LIGHTS];
+  block_density *of[TILE_BLOCKS];
+  int seen[TILE_BLOCKS], count = 0;
+  for (int s = 0; s < tile->slab_count; s++) {
+    of[s] = densities + (size_t)s * (size_t)patch_count;
+    classify_slab(of[s], &tile->slabs[s]);
+    uint32_t bits = lanes_bits(tile->slabs[s].seen);
+    *samples += (uint64_t)__builtin_popcount(bits);
+    if (bits != 0) seen[count++] = s;
+    else lit[s] = (color_lanes){{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  }
+  for (int k = 0; k < count; k++) place_slab(job, of[seen[k]], &tile->slabs[seen[k]]);
+  for (int k = 0; k < count; k++) {
+    block_slab *slab = &tile->slabs[seen[k]];
+    find_slopes(job, &slab->geometry, of[seen[k]], slab->count, slab->seen, slab->starts);
+  }
+  for (int k = 0; k < count; k++)
+    for (int i = 0; i < job->light_count; i++)
+      lights[k][i] = light_at(job, &job->lights[i], &tile->slabs[seen[k]], of[seen[k]]);
+  for (int k = 0; k < count; k++) {
+    const block_slab *slab = &tile->slabs[seen[k]];
+    color_lanes color = color_of_block(job, &slab->geometry, lights[k], of[seen[k]], slab->count, slab->total);
+    for (int c = 0; c < 3; c++) lit[seen[k]].c[c] = lanes_keep(slab->seen, color.c[c]);
+  }
 }
 
 /* Returns true while some pixel of the block is not opaque. */
@@ -304,12 +323,10 @@ static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int
                                   ways, &slab);
     if (bits == 0) continue;
     seen |= 1u << block;
+    for (int c = 0; c < 3; c++) __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
     tile.blocks[block] = pack_block(&tile, &slab, ways, bits, densities);
   }
-  for (int s = 0; s < tile.slab_count; s++)
-    *samples += (uint64_t)__builtin_popcount(find_slab(job, densities + (size_t)s * (size_t)patch_count, &tile.slabs[s]));
-  for (int s = 0; s < tile.slab_count; s++)
-    lit[s] = light_slab(job, &tile.slabs[s], densities + (size_t)s * (size_t)patch_count);
+  light_slabs(job, &tile, densities, patch_count, lit, samples);
   uint32_t open = blocks & ~seen;
   for (; seen != 0; seen &= seen - 1) {
     int block = __builtin_ctz(seen);

@@ -196,32 +196,41 @@ LANES_INLINE uint32_t slab_of_block(const shade_job *job, const shade_patch *pat
   return lanes_bits(slab->open);
 }
 
-/* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which something is
- * seen, one bit each; if there are none, only the opacity is filled. */
-LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, block_slab *slab) {
-  lanes total = lanes_set(0);
+/* Step 13: what of the slab can be seen. */
+LANES_INLINE void classify_slab(block_density *densities, block_slab *slab) {
+  slab->total = lanes_set(0);
   for (int i = 0; i < slab->count; i++) {
     block_density *d = &densities[i];
     if (!d->there) continue;
     classify_way(d);
-    if (d->patch->volume->visible) total = total + d->extinction;
+    if (d->patch->volume->visible) slab->total = slab->total + d->extinction;
   }
-  slab->seen = slab->open & (total > 0.0f);
+  slab->seen = slab->open & (slab->total > 0.0f);
   slab->opacity = lanes_set(0);
-  uint32_t bits = lanes_bits(slab->seen);
-  if (bits == 0) return 0;
+}
+
+/* How much is seen of a slab in which something is, and where. */
+LANES_INLINE void place_slab(const shade_job *job, block_density *densities, block_slab *slab) {
   block_geometry *g = &slab->geometry;
   *g = geometry_of_block(job, slab->u, slab->v);
-  slab->total = total;
-  slab->depth = lanes_keep(slab->seen, total * g->path); /* lanes without a pixel have a path of their own */
+  slab->depth = lanes_keep(slab->seen, slab->total * g->path); /* lanes without a pixel have a path of their own */
   slab->left = lanes_exp_negative(slab->depth);
   slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
   lanes u = seen_part(slab->depth, slab->left);
   if (job->back_to_front) u = 1.0f - u;
-  lanes seen_at = place_of_part(densities, slab->count, total, u);
+  lanes seen_at = place_of_part(densities, slab->count, slab->total, u);
   g->start = add3(g->position, scale3(g->step_sheet, lanes_set(-0.5f)));
   g->position = add3(g->start, scale3(g->step_sheet, seen_at));
-  find_slopes(job, g, densities, slab->count, slab->seen, slab->starts);
+}
+
+/* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which something is
+ * seen, one bit each; if there are none, only the opacity is filled. */
+LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, block_slab *slab) {
+  classify_slab(densities, slab);
+  uint32_t bits = lanes_bits(slab->seen);
+  if (bits == 0) return 0;
+  place_slab(job, densities, slab);
+  find_slopes(job, &slab->geometry, densities, slab->count, slab->seen, slab->starts);
   return bits;
 }
 

@@ -164,8 +164,10 @@ typedef struct patch_slab {
   int whole;                     /* it cuts nothing in this slab, and no light on its way through it to the eye's pixels */
   uint32_t blocks;
 } patch_slab;
-/* pixels: is raised by the pixels filled. */
-patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
+/* Of the needed blocks, those in which a patch's slab may hold anything. */
+uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need);
+/* Of those, one at least. pixels: is raised by the pixels filled. */
+patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t relevant,
                          uint64_t *pixels);
 
 #endif

@@ -126,7 +126,7 @@ void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
 }
 
 /* What is kept of a patch on a sheet. */
-static kept_patch *patch_on_sheet(view_sheets *sheets, size_t patch, int sheet) {
+static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
   kept_patch *kept = &sheets->kept[patch * RING + (size_t)(sheet % RING)];
   if (kept->sheet != sheet) *kept = (kept_patch){.sheet = sheet};
   return kept;
@@ -167,21 +167,22 @@ static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t
   return (uint64_t)__builtin_popcount(missing) * BLOCK_PIXELS;
 }
 
-patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
+uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
+  return need & relevant_in_run(sweep, sheets, tile, patch, sheet)->blocks[sheet - 1 - first_of_run(sheet)];
+}
+
+patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t relevant,
                          uint64_t *pixels) {
-  const relevant_blocks *relevant = relevant_in_run(sweep, sheets, tile, patch, sheet);
-  int slab = sheet - 1 - first_of_run(sheet);
-  uint32_t wanted = need & relevant->blocks[slab];
-  if (wanted == 0) return (patch_slab){.blocks = 0};
   kept_patch *before = patch_on_sheet(sheets, patch, sheet - 1), *current = patch_on_sheet(sheets, patch, sheet);
-  *pixels += fill_patch(sweep, sheets, tile, patch, before, wanted);
-  *pixels += fill_patch(sweep, sheets, tile, patch, current, wanted);
+  *pixels += fill_patch(sweep, sheets, tile, patch, before, relevant);
+  *pixels += fill_patch(sweep, sheets, tile, patch, current, relevant);
   const float *density = sheets->density + patch * RING * TILE_PIXELS;
-  bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut, whole = relevant->whole >> slab & 1;
+  bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
+  bool whole = sheets->relevant[patch].found.whole >> (sheet - 1 - first_of_run(sheet)) & 1;
   const float *enter = !cut ? NULL : whole ? sheets->entries : entries_of(sweep, sheets, tile, patch);
   return (patch_slab){.before = density + (sheet - 1) % RING * TILE_PIXELS, .current = density + sheet % RING * TILE_PIXELS,
                       .enter = enter,
                       .leave = cut ? enter + TILE_PIXELS : NULL,
                       .whole = whole,
-                      .blocks = wanted & ((uint32_t)before->blocks | current->blocks)};
+                      .blocks = relevant & ((uint32_t)before->blocks | current->blocks)};
 }
