@@ -4,9 +4,9 @@
 #include "render/sweep.h"
 
 /* Pixels of shadow buffers are as coarse as adds little to the error that the sheets leave (measured against the
- * reference, docs/performance.md), which grows with the square of their distance: 3/2 of it in voxels, a voxel at most
- * and three tenths at least; and somewhat coarser than the image's. */
-static const double SHADOW_PIXEL_PER_SQUARE = 1.5, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 1;
+ * reference, docs/performance.md), which grows with the square of their distance: 3/2 of it in voxels, four fifths of a
+ * voxel at most and three tenths at least; and somewhat coarser than the image's. */
+static const double SHADOW_PIXEL_PER_SQUARE = 1.5, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.8;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.75, PART_PIXEL_PER_IMAGE_PIXEL = 1.5;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
