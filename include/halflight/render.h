@@ -42,7 +42,8 @@ HL_API void hl_renderer_destroy(hl_renderer *renderer); /* null is allowed */
 
 /* pixels: the caller's buffer, [height][row_stride] floats, width x 4 of them used in each row: linear
  * premultiplied RGBA of the volumes alone (no background), top row first. row_stride in floats, at
- * least 4 x width. statistics may be null. On an error the buffer's content is undefined. */
+ * least 4 x width. statistics may be null. On an error the buffer's content is undefined. Where it is aligned to 64 bytes,
+ * its rows follow each other and its sides are multiples of 16, the picture can be made in it, in less memory. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float *pixels,
                                                    size_t row_stride, hl_render_statistics *statistics,
                                                    hl_error *error);

@@ -4,10 +4,10 @@
 #include "render/sweep.h"
 
 /* Pixels of shadow buffers are as coarse as adds little to the error that the sheets leave (measured against the
- * reference, docs/performance.md), which grows with the square of their distance: 3/2 of it in voxels, four fifths of a
- * voxel at most and three tenths at least; and somewhat coarser than the image's. */
-static const double SHADOW_PIXEL_PER_SQUARE = 1.5, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.8;
-static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.75, PART_PIXEL_PER_IMAGE_PIXEL = 1.5;
+ * reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most and three tenths
+ * at least; and somewhat coarser than the image's. */
+static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
+static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4, PART_PIXEL_PER_IMAGE_PIXEL = 1.5;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
@@ -44,8 +44,8 @@ static double penumbra_margin(const sweep *sweep, const light_source *source, co
 
 static double shadow_pixel(const sweep *sweep, const light_source *source) {
   const frame *frame = sweep->frame;
-  double spacing = sweep->geometry->sheets.spacing / frame->voxel; /* voxels */
-  double pixel = fmin(fmax(SHADOW_PIXEL_PER_SQUARE * spacing * spacing, LEAST_SHADOW_PIXEL), GREATEST_SHADOW_PIXEL) * frame->voxel;
+  double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
+  double pixel = fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL * frame->voxel), GREATEST_SHADOW_PIXEL * frame->voxel);
   if (source->shadows != HL_SHADOWS_SOFT) return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->pixel, pixel);
   if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(PART_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
   /* a pixel on the sheets is narrower seen along the light: as large as a hard shadow's there */
