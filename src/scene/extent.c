@@ -106,17 +106,11 @@ static bool is_visible(const visibility *visible, double value) {
 typedef struct voxel_row {
   const hl_volume *volume;
   const visibility *visible;
-  size_t start; /* index of its first voxel */
+  ptrdiff_t j, k; /* its indices along y and z */
 } voxel_row;
 
 static bool shows(const voxel_row *row, ptrdiff_t i) {
-  const hl_volume *volume = row->volume;
-  size_t index = row->start + (size_t)i;
-  double stored;
-  if (volume->storage == HL_STORAGE_U8) stored = ((const uint8_t *)volume->voxels)[index];
-  else if (volume->storage == HL_STORAGE_U16) stored = ((const uint16_t *)volume->voxels)[index];
-  else stored = (double)((const float *)volume->voxels)[index];
-  return is_visible(row->visible, volume->value_scale * stored + volume->value_offset);
+  return is_visible(row->visible, hl_volume_value(row->volume, (size_t)i, (size_t)row->j, (size_t)row->k));
 }
 
 static bool any_u8(const uint8_t *values, size_t count, uint8_t least, uint8_t greatest) {
@@ -138,7 +132,7 @@ static bool any_f32(const float *values, size_t count, float least, float greate
 /* Whether any of the voxels from i on may be visible: a quick look at their bounds. */
 static bool any_may_show(const voxel_row *row, ptrdiff_t i, size_t count) {
   const hl_volume *volume = row->volume;
-  size_t index = row->start + (size_t)i;
+  size_t index = ((size_t)row->k * volume->dimension[1] + (size_t)row->j) * volume->dimension[0] + (size_t)i;
   double least = row->visible->least, greatest = row->visible->greatest;
   if (volume->storage == HL_STORAGE_F32)
     return any_f32((const float *)volume->voxels + index, count, nextafterf((float)least, -INFINITY),
@@ -216,16 +210,15 @@ static quiet_span span_without_effect(const extent *e, const voxel_reach *reach,
 }
 
 /* Adds the first and the last visible voxel of a row, unless neither raises a bound. */
-static void extent_add_row(extent *e, const voxel_reach *reach, const voxel_row *row, ptrdiff_t j, ptrdiff_t k,
-                           ptrdiff_t first, ptrdiff_t end) {
-  quiet_span quiet = span_without_effect(e, reach, j, k, first, end);
+static void extent_add_row(extent *e, const voxel_reach *reach, const voxel_row *row, ptrdiff_t first, ptrdiff_t end) {
+  quiet_span quiet = span_without_effect(e, reach, row->j, row->k, first, end);
   ptrdiff_t left = first_visible(row, first, quiet.first), right = last_visible(row, quiet.end, end);
   bool none_left = left == quiet.first, none_right = right < quiet.end;
   if (none_left && none_right) return;
   if (none_left) left = first_visible(row, quiet.first, end);
   if (none_right) right = last_visible(row, left, quiet.end);
-  extent_add(e, affine3_apply(reach->placement, (vec3){(double)left, (double)j, (double)k}), reach->radius);
-  extent_add(e, affine3_apply(reach->placement, (vec3){(double)right, (double)j, (double)k}), reach->radius);
+  extent_add(e, affine3_apply(reach->placement, (vec3){(double)left, (double)row->j, (double)row->k}), reach->radius);
+  extent_add(e, affine3_apply(reach->placement, (vec3){(double)right, (double)row->j, (double)row->k}), reach->radius);
 }
 
 /* Index range along axis a of the voxels whose centres are inside the volume's box; empty: *first >= *end. */
@@ -247,8 +240,8 @@ static void extent_add_voxels(extent *e, const hl_scene_volume *volume, const vi
     ptrdiff_t step = stride * rows_apart[pass];
     for (ptrdiff_t k = first[2]; k < end[2]; k += step)
       for (ptrdiff_t j = first[1]; j < end[1]; j += step) {
-        voxel_row row = {v, visible, ((size_t)k * v->dimension[1] + (size_t)j) * v->dimension[0]};
-        extent_add_row(e, &reach, &row, j, k, first[0], end[0]);
+        voxel_row row = {v, visible, j, k};
+        extent_add_row(e, &reach, &row, first[0], end[0]);
       }
   }
 }

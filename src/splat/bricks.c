@@ -25,6 +25,9 @@ typedef struct bound_job {
   bound_rows_function *bound_rows;
 } bound_job;
 
+/* What every brick takes: its bounds, whether it is relevant, its place in the list of those that are. */
+static size_t brick_bytes(hl_storage storage) { return 2 * hl_storage_bytes(storage) + 1 + sizeof(uint32_t); }
+
 /* A float holds the values of every type. */
 static void store_bounds(const grid *grid, size_t brick, float low, float high) {
   if (grid->storage == HL_STORAGE_U8) {
@@ -127,7 +130,7 @@ static hl_status bound_bricks(hl_context *context, hl_pool *pool, bound_rows_fun
   float *columns = hl_allocate(context, column_count, sizeof(float));
   if (grid->brick_bounds == NULL || grid->relevant == NULL || grid->relevant_list == NULL || columns == NULL) {
     hl_release(context, columns);
-    return hl_fail_memory(error, bricks * 9 + column_count * sizeof(float), "the bricks of a volume");
+    return hl_fail_memory(error, bricks * brick_bytes(grid->storage) + column_count * sizeof(float), "the bricks of a volume");
   }
   bound_scratch scratch = {{grid, bound_rows}, columns};
   hl_pool_run(pool, (size_t)grid->brick_count[2], bound_slab, &scratch);
@@ -149,8 +152,8 @@ uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions,
   for (int axis = 0; axis < 3; axis++) bricks *= volume->dimension[axis] / HL_BRICK_CELLS + 1;
   uint64_t copied = volume->nonfinite_count > 0 ? hl_volume_voxel_count(volume) * sizeof(float) : 0;
   int32_t dimension[3] = {(int32_t)volume->dimension[0], (int32_t)volume->dimension[1], (int32_t)volume->dimension[2]};
-  if (functions->column_slice != NULL && hl_columns_wanted(dimension, volume->storage)) copied += hl_columns_bytes(dimension);
-  return copied + bricks * (2 * hl_storage_bytes(volume->storage) + 1 + sizeof(uint32_t)) + hl_cell_bounds_bytes(volume->dimension, threads);
+  if (hl_columns_wanted(functions->column_slice, dimension, volume->storage)) copied += hl_columns_bytes(dimension);
+  return copied + bricks * brick_bytes(volume->storage) + hl_cell_bounds_bytes(volume->dimension, threads);
 }
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions, const kernel *kernel,
@@ -173,7 +176,7 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
   }
   hl_status status = HL_OK;
   if (volume->nonfinite_count > 0) status = replace_nonfinite(context, pool, volume, grid, error);
-  if (status == HL_OK && functions->column_slice != NULL && hl_columns_wanted(grid->dimension, grid->storage))
+  if (status == HL_OK && hl_columns_wanted(functions->column_slice, grid->dimension, grid->storage))
     status = hl_columns_build(context, pool, functions->column_slice, grid, error);
   if (status == HL_OK) status = bound_bricks(context, pool, functions->rows[grid->storage], grid, error);
   set_cell_range(volume, grid);

@@ -14,8 +14,8 @@ static size_t column_bytes(const int32_t dimension[3]) {
   return odd_lines((size_t)dimension[2] * slice_bytes(dimension));
 }
 
-bool hl_columns_wanted(const int32_t dimension[3], hl_storage storage) {
-  return storage == HL_STORAGE_U8 && dimension[0] >= GRID_COLUMN && dimension[1] >= GRID_COLUMN;
+bool hl_columns_wanted(column_slice_function *slice, const int32_t dimension[3], hl_storage storage) {
+  return slice != NULL && storage == HL_STORAGE_U8 && dimension[0] >= GRID_COLUMN && dimension[1] >= GRID_COLUMN;
 }
 
 uint64_t hl_columns_bytes(const int32_t dimension[3]) {

@@ -10,8 +10,8 @@
 typedef void column_slice_function(const unsigned char *rows, int32_t count_x, int32_t count_y, unsigned char *columns,
                                    size_t column_bytes);
 
-/* Whether windows fit a grid's columns at all. */
-bool hl_columns_wanted(const int32_t dimension[3], hl_storage storage);
+/* Whether something reads a grid's columns, and windows fit them at all. slice: null where nothing does. */
+bool hl_columns_wanted(column_slice_function *slice, const int32_t dimension[3], hl_storage storage);
 /* The bytes that they take. */
 uint64_t hl_columns_bytes(const int32_t dimension[3]);
 hl_status hl_columns_build(hl_context *context, hl_pool *pool, column_slice_function *slice, grid *grid, hl_error *error);
