@@ -28,6 +28,7 @@ const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"scalar", HL_INSTRUCTION_SET_SCALAR},
                                               {"avx2", HL_INSTRUCTION_SET_AVX2},
                                               {"avx512", HL_INSTRUCTION_SET_AVX512},
+                                              {"avx512-vbmi", HL_INSTRUCTION_SET_AVX512_VBMI},
                                               {"neon", HL_INSTRUCTION_SET_NEON},
                                               {NULL, 0}};
 

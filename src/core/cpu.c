@@ -9,10 +9,11 @@ int hl_cpu_has_instruction_set(hl_instruction_set set) {
 #if defined(__x86_64__)
   __builtin_cpu_init();
   if (set == HL_INSTRUCTION_SET_AVX2) return __builtin_cpu_supports("avx2") != 0;
-  if (set == HL_INSTRUCTION_SET_AVX512)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
-           __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vbmi2") &&
+  int wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+  if (set == HL_INSTRUCTION_SET_AVX512) return wide;
+  if (set == HL_INSTRUCTION_SET_AVX512_VBMI)
+    return wide && __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vbmi2") &&
            __builtin_cpu_supports("avx512vnni");
 #elif defined(__aarch64__)
   if (set == HL_INSTRUCTION_SET_NEON) return 1;
@@ -21,8 +22,8 @@ int hl_cpu_has_instruction_set(hl_instruction_set set) {
 }
 
 hl_instruction_set hl_cpu_best_instruction_set(void) {
-  static const hl_instruction_set best_first[] = {HL_INSTRUCTION_SET_AVX512, HL_INSTRUCTION_SET_AVX2,
-                                                  HL_INSTRUCTION_SET_NEON};
+  static const hl_instruction_set best_first[] = {HL_INSTRUCTION_SET_AVX512_VBMI, HL_INSTRUCTION_SET_AVX512,
+                                                  HL_INSTRUCTION_SET_AVX2, HL_INSTRUCTION_SET_NEON};
   for (size_t i = 0; i < sizeof best_first / sizeof best_first[0]; i++)
     if (hl_cpu_has_instruction_set(best_first[i])) return best_first[i];
   return HL_INSTRUCTION_SET_SCALAR;
@@ -41,6 +42,7 @@ const char *hl_instruction_set_name(hl_instruction_set set) {
     case HL_INSTRUCTION_SET_SCALAR: return "scalar";
     case HL_INSTRUCTION_SET_AVX2: return "avx2";
     case HL_INSTRUCTION_SET_AVX512: return "avx512";
+    case HL_INSTRUCTION_SET_AVX512_VBMI: return "avx512-vbmi";
     case HL_INSTRUCTION_SET_NEON: return "neon";
   }
   return "unknown";

@@ -39,7 +39,7 @@ const hot_functions *hl_hot_functions(hl_instruction_set set);
 
 extern const hot_functions hl_hot_scalar;
 #if defined(__x86_64__)
-extern const hot_functions hl_hot_avx2, hl_hot_avx512;
+extern const hot_functions hl_hot_avx2, hl_hot_avx512, hl_hot_avx512_vbmi;
 #elif defined(__aarch64__)
 extern const hot_functions hl_hot_neon;
 #endif

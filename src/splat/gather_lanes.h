@@ -6,6 +6,7 @@
 #define HL_SPLAT_GATHER_LANES_H
 
 #include "splat/place_lanes.h"
+#include "splat/whole_lanes.h"
 #include "splat/window_lanes.h"
 
 /* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t; their sum is 1. */

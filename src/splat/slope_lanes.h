@@ -60,16 +60,16 @@ LANES_INLINE void join_slopes(uint32_t bits, lanes3 part, lanes3 *slope) {
 }
 
 #ifdef HL_BYTE_WINDOWS
-typedef struct window_slope_weights { byte_weights weights, slopes; } window_slope_weights;
+typedef struct window_slope_weights { split_weights weights, slopes; } window_slope_weights;
 
 static __attribute__((noinline)) lanes3 slopes_of_window(const byte_window *window, const window_slope_weights *along,
                                                          const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int slice = 0; slice < window->slices; slice++) {
-    __m512i voxels = window_slice(window, slice);
+    window_slice voxels = slice_of_window(window, slice);
     lanes value = lanes_set(0), along_x = value, along_y = value;
     for (int y = 0; y < 4; y++) {
-      __m512i taps = window_taps(window, voxels, y);
+      __m512i taps = taps_in_row(&voxels, &window->index, y);
       lanes plain = weigh_taps(taps, &along->weights);
       along_x = along_x + weigh_taps(taps, &along->slopes) * w->weight[1][y];
       along_y = along_y + plain * w->slope[1][y];
@@ -87,7 +87,7 @@ static __attribute__((noinline)) lanes3 slopes_of_window(const byte_window *wind
 static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
                              const tap_slope_weights *w, lanes3 *slope) {
   whole_weights whole = round_weights(w->weight[0], 1), whole_slopes = round_weights(w->slope[0], 0);
-  window_slope_weights along = {split_weights(&whole), split_weights(&whole_slopes)};
+  window_slope_weights along = {split_whole(&whole), split_whole(&whole_slopes)};
   byte_window window;
   for (uint32_t left = active; left != 0;) {
     uint32_t together = left;

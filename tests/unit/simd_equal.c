@@ -18,7 +18,7 @@
 #include "core/cpu.h"
 #include "sheet_bench.h"
 
-enum { ROUNDS = 40, SETS = 2, TIMED = 100, TIMED_RUNS = 5, FIELD = 256 /* floats a row and rows, margins included */ };
+enum { ROUNDS = 40, SETS = 3, TIMED = 100, TIMED_RUNS = 5, FIELD = 256 /* floats a row and rows, margins included */ };
 
 typedef struct contender {
   const hot_functions *hot;
@@ -28,7 +28,7 @@ typedef struct contender {
 /* The instruction sets to hold against the scalar one. */
 static int contenders(contender list[SETS]) {
   int count = 0;
-  for (int set = HL_INSTRUCTION_SET_AVX2; set <= HL_INSTRUCTION_SET_NEON; set++)
+  for (int set = HL_INSTRUCTION_SET_AVX2; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++)
     if (hl_cpu_has_instruction_set((hl_instruction_set)set))
       list[count++] = (contender){hl_hot_functions((hl_instruction_set)set),
                                   hl_instruction_set_name((hl_instruction_set)set)};

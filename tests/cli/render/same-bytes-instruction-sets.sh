@@ -6,7 +6,7 @@ for how in splat gather; do
     set -- --size 61x47 --quiet --reconstruction $how --kernel $kernel
     halflight render ball_20x20x20_uint8.raw "$@" --instruction-set scalar -o scalar.npy
     tool coverage scalar.npy >box
-    for set in avx2 avx512 neon; do
+    for set in avx2 avx512 avx512-vbmi neon; do
       code=0
       halflight render ball_20x20x20_uint8.raw "$@" --instruction-set $set -o other.npy 2>message || code=$?
       case $code in
