@@ -11,7 +11,7 @@
 #include "splat/relevant_lanes.h"
 #include "splat/splat_lanes.h"
 
-#ifdef HL_BYTE_WINDOWS
+#ifdef HL_WINDOWS
 #define HL_COLUMN_SLICE column_slice
 #else
 #define HL_COLUMN_SLICE NULL

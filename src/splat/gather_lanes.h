@@ -6,7 +6,7 @@
 #define HL_SPLAT_GATHER_LANES_H
 
 #include "splat/place_lanes.h"
-#include "splat/whole_lanes.h"
+#include "splat/row_lanes.h"
 #include "splat/window_lanes.h"
 
 /* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t; their sum is 1. */
@@ -16,41 +16,6 @@ LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes w
   weight[1] = kernel_piece(kernel->inner, degree, t);
   weight[3] = kernel_piece(kernel->outer, degree, s);
   weight[2] = 1.0f - (weight[0] + weight[1] + weight[3]);
-}
-
-/* Four neighbouring voxels along x for every lane, weighed and added; offsets in bytes. u8 in WHOLE_UNITs. */
-LANES_INLINE lanes row_u8(const unsigned char *row, const lanes_offsets *offsets, const whole_weights *weight) {
-  lanes_int word = lanes_load_words(row, offsets);
-  return lanes_from_int(((word & 255) * weight->tap[0] + ((word >> 8) & 255) * weight->tap[1]) +
-                        (((word >> 16) & 255) * weight->tap[2] + ((word >> 24) & 255) * weight->tap[3]));
-}
-LANES_INLINE lanes row_u16(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
-  lanes_int low = lanes_load_words(row, offsets), high = lanes_load_words(row + 4, offsets);
-  lanes a = lanes_from_int(low & 65535) * weight[0] + lanes_from_int((low >> 16) & 65535) * weight[1];
-  lanes b = lanes_from_int(high & 65535) * weight[2] + lanes_from_int((high >> 16) & 65535) * weight[3];
-  return a + b;
-}
-LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
-  lanes a = (lanes)lanes_load_words(row, offsets) * weight[0] + (lanes)lanes_load_words(row + 4, offsets) * weight[1];
-  lanes b =
-      (lanes)lanes_load_words(row + 8, offsets) * weight[2] + (lanes)lanes_load_words(row + 12, offsets) * weight[3];
-  return a + b;
-}
-
-/* Weights along x in either form: whole for u8. */
-typedef struct row_weights { lanes real[4]; whole_weights whole; } row_weights;
-
-LANES_INLINE lanes sum_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets, const row_weights *weights) {
-  return storage == HL_STORAGE_U8    ? row_u8(row, offsets, &weights->whole)
-         : storage == HL_STORAGE_U16 ? row_u16(row, offsets, weights->real)
-                                     : row_f32(row, offsets, weights->real);
-}
-
-LANES_INLINE row_weights weights_of_row(hl_storage storage, const lanes weight[4], int total) {
-  row_weights weights;
-  for (int tap = 0; tap < 4; tap++) weights.real[tap] = weight[tap];
-  if (storage == HL_STORAGE_U8) weights.whole = round_weights(weight, total);
-  return weights;
 }
 
 /* Where the 64 taps of every lane are: all inside the grid. */
@@ -159,6 +124,7 @@ LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uin
 /* The weighted sum for the active lanes of a block. inside: all lanes are active, and all their taps lie in the grid. */
 LANES_INLINE lanes gather_block(const fill_source *source, const block_place *place, uint32_t active, int degree, int inside) {
   const grid *grid = source->grid;
+  hl_storage storage = grid->storage;
   lanes weight[3][4];
   lanes_int cell[3] = {place->cell[0], place->cell[1], place->cell[2]};
   tap_weights(source->kernel, degree, place->point.x - lanes_from_int(cell[0]), weight[0]);
@@ -170,19 +136,13 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
       return sum_in_thin_grid(grid, cell, active, weights);
     for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
-#ifdef HL_BYTE_WINDOWS
-  byte_window bytes, below;
-  const uint32_t upper = 0x00ff; /* half of a block */
-  if (grid->storage == HL_STORAGE_U8) {
-    if (inside ? open_window_of_block(grid, cell, &bytes) : open_window(grid, cell, active, &bytes))
-      return sum_window(&bytes, weights);
-    if (open_window(grid, cell, active & upper, &bytes) && open_window(grid, cell, active & ~upper, &below))
-      return lanes_select(lanes_from_bits(upper), sum_window(&bytes, weights), sum_window(&below, weights));
-  }
+#ifdef HL_WINDOWS
+  lanes sum;
+  if (sum_of_windows(grid, cell, active, inside, weights, &sum)) return sum;
 #endif
   tap_window window = window_at(grid, cell, active);
-  if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);
-  if (grid->storage == HL_STORAGE_U16) return sum_u16(grid, &window, weights);
+  if (storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);
+  if (storage == HL_STORAGE_U16) return sum_u16(grid, &window, weights);
   return sum_f32(grid, &window, weights);
 }
 

@@ -59,19 +59,17 @@ LANES_INLINE void join_slopes(uint32_t bits, lanes3 part, lanes3 *slope) {
                     lanes_select(mask, part.z, slope->z)};
 }
 
-#ifdef HL_BYTE_WINDOWS
-typedef struct window_slope_weights { split_weights weights, slopes; } window_slope_weights;
-
-static __attribute__((noinline)) lanes3 slopes_of_window(const byte_window *window, const window_slope_weights *along,
-                                                         const tap_slope_weights *w) {
+#ifdef HL_WINDOWS
+LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *window, const tap_slope_weights *w) {
+  window_weights weights = weights_of_window(storage, w->weight[0], 1), slopes = weights_of_window(storage, w->slope[0], 0);
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int slice = 0; slice < window->slices; slice++) {
-    window_slice voxels = slice_of_window(window, slice);
+    window_slice voxels = slice_of_window(storage, window, slice);
     lanes value = lanes_set(0), along_x = value, along_y = value;
     for (int y = 0; y < 4; y++) {
-      __m512i taps = taps_in_row(&voxels, &window->index, y);
-      lanes plain = weigh_taps(taps, &along->weights);
-      along_x = along_x + weigh_taps(taps, &along->slopes) * w->weight[1][y];
+      window_taps taps = taps_in_row(storage, &voxels, window->index, y);
+      lanes plain = weigh_taps(storage, &taps, &weights);
+      along_x = along_x + weigh_taps(storage, &taps, &slopes) * w->weight[1][y];
       along_y = along_y + plain * w->slope[1][y];
       value = value + plain * w->weight[1][y];
     }
@@ -80,20 +78,31 @@ static __attribute__((noinline)) lanes3 slopes_of_window(const byte_window *wind
     sum.y = sum.y + along_y * weight;
     sum.z = sum.z + value * weight_of_slice(window, slice, w->slope[2]);
   }
+  if (storage != HL_STORAGE_U8) return sum;
   return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
+}
+
+static __attribute__((noinline)) lanes3 slopes_of_window_u8(const voxel_window *window, const tap_slope_weights *w) {
+  return slopes_of_window(HL_STORAGE_U8, window, w);
+}
+static __attribute__((noinline)) lanes3 slopes_of_window_u16(const voxel_window *window, const tap_slope_weights *w) {
+  return slopes_of_window(HL_STORAGE_U16, window, w);
+}
+static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window *window, const tap_slope_weights *w) {
+  return slopes_of_window(HL_STORAGE_F32, window, w);
 }
 
 /* As many blocks to a window as fit. False where even one does not. */
 static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
                              const tap_slope_weights *w, lanes3 *slope) {
-  whole_weights whole = round_weights(w->weight[0], 1), whole_slopes = round_weights(w->slope[0], 0);
-  window_slope_weights along = {split_whole(&whole), split_whole(&whole_slopes)};
-  byte_window window;
+  voxel_window window;
   for (uint32_t left = active; left != 0;) {
     uint32_t together = left;
     while (!open_window(grid, cell, together, &window))
       if ((together = drop_last_block(together, starts)) == 0) return 0;
-    lanes3 part = slopes_of_window(&window, &along, w);
+    lanes3 part = grid->storage == HL_STORAGE_U8    ? slopes_of_window_u8(&window, w)
+                  : grid->storage == HL_STORAGE_U16 ? slopes_of_window_u16(&window, w)
+                                                    : slopes_of_window_f32(&window, w);
     if (together == active) {
       *slope = part;
       return 1;
@@ -161,9 +170,9 @@ LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int
       cell[a] = fold_border(cell[a], grid->dimension[a], w.weight[a]);
     }
   }
-#ifdef HL_BYTE_WINDOWS
+#ifdef HL_WINDOWS
   lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  if (grid->storage == HL_STORAGE_U8 && slopes_of_windows(grid, cell, active, starts, &w, &slope)) return slope;
+  if (slopes_of_windows(grid, cell, active, starts, &w, &slope)) return slope;
 #endif
   if (fits_offsets(grid)) return slopes_of_taps(grid, cell, active, &w);
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};

@@ -2,16 +2,12 @@
 #ifndef HL_SPLAT_WINDOW_BYTES_LANES_H
 #define HL_SPLAT_WINDOW_BYTES_LANES_H
 
-#include "splat/grid.h"
-#include "splat/whole_lanes.h"
+#include "splat/window_parts_lanes.h"
 
 enum { WINDOW_WIDTH = GRID_COLUMN }; /* voxels along x that taps are taken from */
 
-typedef __m512i window_slice; /* eight rows of eight voxels */
-typedef __m512i window_index; /* of each lane's taps in the first row of a slice, a byte each */
-
-/* From how far each lane's first tap lies from the window's first voxel. */
-LANES_INLINE window_index window_index_at(__m512i x, __m512i y) {
+/* From how far each lane's first tap lies from the window's first voxel: a byte for each tap's place in the first row. */
+LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(y, 3), x);
   const __m512i lowest_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
   return _mm512_add_epi8(_mm512_shuffle_epi8(first, lowest_byte), _mm512_set1_epi32(0x03020100));
@@ -19,12 +15,16 @@ LANES_INLINE window_index window_index_at(__m512i x, __m512i y) {
 
 /* The rows that begin so many bits after those of the left column. */
 LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shift) {
-  return _mm512_shrdv_epi64(left, right, shift);
+  window_slice slice;
+  slice.part[0] = _mm512_shrdv_epi64(left, right, shift);
+  return slice;
 }
 
 /* The four taps of every lane in row y of a slice. */
-LANES_INLINE __m512i taps_in_row(const window_slice *slice, const window_index *index, int y) {
-  return _mm512_permutexvar_epi8(_mm512_add_epi8(*index, _mm512_set1_epi8((char)(GRID_COLUMN * y))), *slice);
+LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index, int y) {
+  window_taps taps;
+  taps.part[0] = _mm512_permutexvar_epi8(_mm512_add_epi8(index, _mm512_set1_epi8((char)(GRID_COLUMN * y))), slice->part[0]);
+  return taps;
 }
 
 /* A lane's four weights as three signed bytes each, the highest first: whole = (d0 256 + d1) 256 + d2. */
@@ -50,10 +50,10 @@ LANES_INLINE split_weights split_whole(const whole_weights *whole) {
   return weights;
 }
 
-LANES_INLINE lanes weigh_taps(__m512i taps, const split_weights *weights) {
-  __m512i sum = _mm512_dpbusd_epi32(_mm512_setzero_si512(), taps, weights->digit[0]);
-  sum = _mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), taps, weights->digit[1]);
-  sum = _mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), taps, weights->digit[2]);
+LANES_INLINE lanes weigh_u8(const window_taps *taps, const split_weights *weights) {
+  __m512i sum = _mm512_dpbusd_epi32(_mm512_setzero_si512(), taps->part[0], weights->digit[0]);
+  sum = _mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), taps->part[0], weights->digit[1]);
+  sum = _mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), taps->part[0], weights->digit[2]);
   return lanes_from_int((lanes_int)sum);
 }
 

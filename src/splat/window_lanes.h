@@ -1,34 +1,37 @@
-/* splat/window_lanes.h - the voxels around a block of pixels, u8, held in registers.
+/* splat/window_lanes.h - the voxels around a block of pixels, held in registers.
  *
  * Sixteen neighbouring pixels of a sheet draw on few voxels: most often on a window of 8x8 voxels and up to eight
- * slices. One slice of it fills a 512-bit register, from which permutations take four neighbouring taps of every lane, and
- * dot products of whole numbers weigh them: of bytes (window_bytes_lanes.h) or, where the processor has no permutations of
- * bytes, of words (window_words_lanes.h). Lanes whose taps do not reach a slice weigh it by zero, which changes
+ * slices. One slice of it fills one to four 512-bit registers, from which permutations take four neighbouring taps of every
+ * lane. u8 voxels come from the grid's columns and are weighed by dot products of whole numbers: of bytes
+ * (window_bytes_lanes.h) or, where the processor has no permutations of bytes, of words (window_words_lanes.h); others come
+ * from the volume's rows (window_rows_lanes.h). Lanes whose taps do not reach a slice weigh it by zero, which changes
  * no bit of their sums: these are the sums of gather_lanes.h and slope_lanes.h, in the same order. */
 #ifndef HL_SPLAT_WINDOW_LANES_H
 #define HL_SPLAT_WINDOW_LANES_H
 
 #include "splat/columns_lanes.h"
 
+#if defined(__AVX512BW__)
+#define HL_WINDOWS 1
+
 #if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
-#define HL_BYTE_WINDOWS 1
 #include "splat/window_bytes_lanes.h"
-#elif defined(__AVX512BW__)
-#define HL_BYTE_WINDOWS 1
+#else
 #include "splat/window_words_lanes.h"
 #endif
+#include "splat/window_rows_lanes.h"
 
-#ifdef HL_BYTE_WINDOWS
 enum { WINDOW_SIDE = GRID_COLUMN, WINDOW_SPREAD = WINDOW_SIDE - 4 }; /* voxels; how far lanes' first taps may lie apart */
 
-typedef struct byte_window {
-  const unsigned char *left, *right; /* the window's first row in the two columns that it lies in */
-  size_t slice_bytes;
-  __m512i shift;                 /* bits from the left column's first voxel to the window's, in every row */
-  window_index index;            /* of each lane's taps */
+typedef struct voxel_window {
+  const unsigned char *first;    /* the window's first row: of u8 voxels, in their column */
+  size_t row_bytes, slice_bytes;
+  size_t beside;                 /* u8: bytes to the next column, where the window reaches into it */
+  __m512i shift;                 /* u8: bits from the column's first voxel to the window's, in every row */
+  __m512i index;                 /* of each lane's taps in the first row */
   __mmask16 starts[WINDOW_SPREAD + 1]; /* lanes whose taps start at this slice */
   int slices;
-} byte_window;
+} voxel_window;
 
 /* The least cell of the active lanes along each axis. */
 LANES_INLINE void lowest_of_lanes(const lanes_int cell[3], uint32_t active, int32_t low[3]) {
@@ -48,15 +51,45 @@ LANES_INLINE void lowest_of_corners(const lanes_int cell[3], int32_t low[3]) {
   low[2] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 2));
 }
 
+LANES_INLINE __m512i window_index(hl_storage storage, const __m512i offset[3]) {
+  return storage == HL_STORAGE_U8    ? index_u8(offset[0], offset[1])
+         : storage == HL_STORAGE_U16 ? index_u16(offset[0], offset[1])
+                                     : index_f32(offset[0], offset[1]);
+}
+
+/* Where the window's first voxel lies. */
+LANES_INLINE void place_window(const grid *grid, const int32_t low[3], voxel_window *window) {
+  if (grid->storage == HL_STORAGE_U8) {
+    int32_t within = low[0] % GRID_COLUMN;
+    window->slice_bytes = grid->column_slice_bytes;
+    window->first = grid->columns + (size_t)(low[0] / GRID_COLUMN) * grid->column_bytes +
+                    (size_t)low[2] * grid->column_slice_bytes + (size_t)low[1] * GRID_COLUMN;
+    window->beside = within > GRID_COLUMN - WINDOW_WIDTH ? grid->column_bytes : 0;
+    window->shift = _mm512_set1_epi64(within * 8);
+  } else {
+    size_t voxel = hl_storage_bytes(grid->storage);
+    window->row_bytes = (size_t)grid->dimension[0] * voxel;
+    window->slice_bytes = (size_t)grid->dimension[1] * window->row_bytes;
+    window->first = (const unsigned char *)grid->voxels + (size_t)low[2] * window->slice_bytes +
+                    (size_t)low[1] * window->row_bytes + (size_t)low[0] * voxel;
+  }
+}
+
+/* Whether a grid has windows at all. */
+LANES_INLINE int has_windows(const grid *grid) {
+  if (grid->storage == HL_STORAGE_U8) return grid->columns != NULL;
+  return grid->dimension[0] >= WINDOW_SIDE && grid->dimension[1] >= WINDOW_SIDE;
+}
+
 /* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each axis. False where they
  * do not fit a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3], uint32_t active,
-                                byte_window *window) {
+                                voxel_window *window) {
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
-  const int32_t side[3] = {WINDOW_WIDTH, WINDOW_SIDE, WINDOW_SIDE};
+  const int32_t side[3] = {grid->storage == HL_STORAGE_U8 ? WINDOW_WIDTH : WINDOW_SIDE, WINDOW_SIDE, WINDOW_SIDE};
   int32_t low[3];
   __m512i offset[3];
-  if (grid->columns == NULL) return 0;
+  if (!has_windows(grid)) return 0;
   for (int a = 0; a < 3; a++) {
     low[a] = lowest[a] - 1;
     if (a < 2 && low[a] > grid->dimension[a] - side[a]) low[a] = grid->dimension[a] - side[a];
@@ -69,16 +102,12 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
     window->starts[slice] = _mm512_mask_cmpeq_epi32_mask(lanes_mask, offset[2], _mm512_set1_epi32(slice));
     if (window->starts[slice] != 0) window->slices = slice + 4;
   }
-  window->index = window_index_at(offset[0], offset[1]);
-  window->slice_bytes = grid->column_slice_bytes;
-  window->left = grid->columns + (size_t)(low[0] / WINDOW_SIDE) * grid->column_bytes +
-                 (size_t)low[2] * grid->column_slice_bytes + (size_t)low[1] * WINDOW_SIDE;
-  window->right = window->left + (low[0] % WINDOW_SIDE > WINDOW_SIDE - WINDOW_WIDTH ? grid->column_bytes : 0);
-  window->shift = _mm512_set1_epi64(low[0] % WINDOW_SIDE * 8);
+  window->index = window_index(grid->storage, offset);
+  place_window(grid, low, window);
   return 1;
 }
 
-LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, byte_window *window) {
+LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, voxel_window *window) {
   int32_t lowest[3];
   if (active == 0) return 0;
   lowest_of_lanes(cell, active, lowest);
@@ -86,19 +115,45 @@ LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t
 }
 
 /* Of a block of neighbouring pixels, all of them active. */
-LANES_INLINE int open_window_of_block(const grid *grid, const lanes_int cell[3], byte_window *window) {
+LANES_INLINE int open_window_of_block(const grid *grid, const lanes_int cell[3], voxel_window *window) {
   int32_t lowest[3];
   lowest_of_corners(cell, lowest);
   return open_window_at(grid, cell, lowest, 0xffff, window) || open_window(grid, cell, 0xffff, window);
 }
 
-LANES_INLINE window_slice slice_of_window(const byte_window *window, int slice) {
-  size_t at = (size_t)slice * window->slice_bytes;
-  return join_columns(_mm512_loadu_si512(window->left + at), _mm512_loadu_si512(window->right + at), window->shift);
+LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window *window, int slice) {
+  const unsigned char *first = window->first + (size_t)slice * window->slice_bytes;
+  if (storage == HL_STORAGE_U8)
+    return join_columns(_mm512_loadu_si512(first), _mm512_loadu_si512(first + window->beside), window->shift);
+  return storage == HL_STORAGE_U16 ? slice_u16(first, window->row_bytes) : slice_f32(first, window->row_bytes);
+}
+
+/* The four taps of every lane in row y of a slice. */
+LANES_INLINE window_taps taps_in_row(hl_storage storage, const window_slice *slice, __m512i index, int y) {
+  return storage == HL_STORAGE_U8    ? taps_u8(slice, index, y)
+         : storage == HL_STORAGE_U16 ? taps_u16(slice, index, y)
+                                     : taps_f32(slice, index, y);
+}
+
+/* Weights along x in the form that the voxels want. */
+typedef struct window_weights { split_weights split; lanes real[4]; } window_weights;
+
+LANES_INLINE window_weights weights_of_window(hl_storage storage, const lanes weight[4], int total) {
+  row_weights row = weights_of_row(storage, weight, total);
+  window_weights weights;
+  for (int tap = 0; tap < 4; tap++) weights.real[tap] = weight[tap];
+  if (storage == HL_STORAGE_U8) weights.split = split_whole(&row.whole);
+  return weights;
+}
+
+LANES_INLINE lanes weigh_taps(hl_storage storage, const window_taps *taps, const window_weights *weights) {
+  return storage == HL_STORAGE_U8    ? weigh_u8(taps, &weights->split)
+         : storage == HL_STORAGE_U16 ? weigh_u16(taps, weights->real)
+                                     : weigh_f32(taps, weights->real);
 }
 
 /* Every lane's weight of a slice: that of the tap that lies in it, or zero. */
-LANES_INLINE lanes weight_of_slice(const byte_window *window, int slice, const lanes weight[4]) {
+LANES_INLINE lanes weight_of_slice(const voxel_window *window, int slice, const lanes weight[4]) {
   __m512 found = _mm512_setzero_ps();
   for (int tap = 0; tap < 4; tap++) {
     int start = slice - tap;
@@ -107,17 +162,50 @@ LANES_INLINE lanes weight_of_slice(const byte_window *window, int slice, const l
   return (lanes)found;
 }
 
-static __attribute__((noinline)) lanes sum_window(const byte_window *window, const lanes weight[3][4]) {
-  whole_weights whole = round_weights(weight[0], 1);
-  split_weights along = split_whole(&whole);
+LANES_INLINE lanes sum_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
+  window_weights along = weights_of_window(storage, weight[0], 1);
   lanes sum = lanes_set(0);
   for (int slice = 0; slice < window->slices; slice++) {
-    window_slice voxels = slice_of_window(window, slice);
+    window_slice voxels = slice_of_window(storage, window, slice);
     lanes plane = lanes_set(0);
-    for (int y = 0; y < 4; y++) plane = plane + weigh_taps(taps_in_row(&voxels, &window->index, y), &along) * weight[1][y];
+    for (int y = 0; y < 4; y++) {
+      window_taps taps = taps_in_row(storage, &voxels, window->index, y);
+      plane = plane + weigh_taps(storage, &taps, &along) * weight[1][y];
+    }
     sum = sum + plane * weight_of_slice(window, slice, weight[2]);
   }
-  return sum * WHOLE_INVERSE;
+  return storage == HL_STORAGE_U8 ? sum * WHOLE_INVERSE : sum;
+}
+
+static __attribute__((noinline)) lanes sum_window_u8(const voxel_window *window, const lanes weight[3][4]) {
+  return sum_window(HL_STORAGE_U8, window, weight);
+}
+static __attribute__((noinline)) lanes sum_window_u16(const voxel_window *window, const lanes weight[3][4]) {
+  return sum_window(HL_STORAGE_U16, window, weight);
+}
+static __attribute__((noinline)) lanes sum_window_f32(const voxel_window *window, const lanes weight[3][4]) {
+  return sum_window(HL_STORAGE_F32, window, weight);
+}
+LANES_INLINE lanes sum_of_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
+  return storage == HL_STORAGE_U8    ? sum_window_u8(window, weight)
+         : storage == HL_STORAGE_U16 ? sum_window_u16(window, weight)
+                                     : sum_window_f32(window, weight);
+}
+
+/* The sums of a block's active lanes, through one window or one for each half of it. all: every lane is active. False where its
+ * taps lie too far apart. */
+LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, int all,
+                                const lanes weight[3][4], lanes *sum) {
+  hl_storage storage = grid->storage;
+  voxel_window window, below;
+  const uint32_t upper = 0x00ff; /* half of a block */
+  if (all ? open_window_of_block(grid, cell, &window) : open_window(grid, cell, active, &window)) {
+    *sum = sum_of_window(storage, &window, weight);
+    return 1;
+  }
+  if (!open_window(grid, cell, active & upper, &window) || !open_window(grid, cell, active & ~upper, &below)) return 0;
+  *sum = lanes_select(lanes_from_bits(upper), sum_of_window(storage, &window, weight), sum_of_window(storage, &below, weight));
+  return 1;
 }
 #endif
 
