@@ -25,7 +25,6 @@ typedef struct prepared_volume {
   int clipped;
 } prepared_volume;
 
-enum { RING = 2 }; /* sheets k-1 and k */
 #define NO_ENTRY UINT32_MAX
 
 /* A patch of one sheet, kept for the next slab. */
@@ -37,6 +36,8 @@ typedef struct kept_patch {
 /* Where some slabs in a row may hold something of a patch. */
 typedef struct relevant_patch {
   int32_t first;                  /* the sheet before them; -1: none */
+  int32_t end;                    /* of the bundle among them that was filled last */
+  uint16_t need;                  /* in these blocks */
   relevant_blocks found;
 } relevant_patch;
 
@@ -44,7 +45,9 @@ typedef struct relevant_patch {
 typedef struct view_sheets {
   occupancy occupancy;
   voxel_lists *lists;             /* owned; [grids]; splat only */
-  fill_source *sources;           /* owned; [RING][grids]; of sheet k at k % RING */
+  int bundle;                     /* sheets that are filled in one go; a divisor of RUN_SLABS */
+  int ring;                       /* bundle + 1: sheets that are kept; sheet k at k % ring */
+  fill_source *sources;           /* owned; [ring][grids] */
   slab_run *runs;                 /* owned; [grids]; the slabs that the last one is among */
   relevant_patch *relevant;       /* owned; [patches] */
   float *entries;                 /* owned; [entry_count][2][256]; where rays enter a box and leave it; room for all patches;
@@ -52,8 +55,8 @@ typedef struct view_sheets {
   uint32_t *entry_of;             /* owned; [patches]; NO_ENTRY where none was asked for */
   uint32_t entry_count;           /* atomic */
   box_rays *box_rays;             /* owned; [grids] */
-  float *density;                 /* owned; [patches][RING][256], block-major */
-  kept_patch *kept;               /* owned; [patches][RING]; what is in density */
+  float *density;                 /* owned; [patches][ring][256], block-major */
+  kept_patch *kept;               /* owned; [patches][ring]; what is in density */
 } view_sheets;
 
 /* One light of a sweep with its buffer. */
@@ -157,7 +160,7 @@ uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view);
 /* Before patches of a sheet are asked for. */
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets);
 /* A patch's densities on the sheet and the one before, [256] block-major, in the needed blocks that hold any: kept from
- * the slab before, or filled now. */
+ * a slab before, or filled now. */
 typedef struct patch_slab {
   const float *before, *current; /* valid in blocks */
   const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible, unset where whole */
@@ -166,8 +169,8 @@ typedef struct patch_slab {
 } patch_slab;
 /* Of the needed blocks, those in which a patch's slab may hold anything. */
 uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need);
-/* Of those, one at least. pixels: is raised by the pixels filled. */
-patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t relevant,
-                         uint64_t *pixels);
+/* Of those, one at least. need: what the bundle's next slabs may ask for. pixels: is raised by the pixels filled. */
+patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
+                         uint32_t relevant, uint64_t *pixels);
 
 #endif

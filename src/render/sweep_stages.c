@@ -39,7 +39,7 @@ static int fill_image_tile(sweep *sweep, size_t tile, int worker, shade_patch *p
     uint32_t relevant = hl_patch_relevant(sweep, sheets, tile, p, sweep->sheet, need);
     if (relevant == 0) continue;
     fetch_opacities(sweep->pixels + tile * 4 * TILE_PIXELS, relevant);
-    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, relevant, &counts->pixels_image);
+    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, relevant, &counts->pixels_image);
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
     patches[count++] = (shade_patch){&sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter,
@@ -108,7 +108,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
     if (!scene->casts_shadow) continue;
     uint32_t relevant = hl_patch_relevant(sweep, sheets, tile, p, sweep->sheet, need);
     if (relevant == 0) continue;
-    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, relevant, pixels);
+    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, relevant, pixels);
     if (slab.blocks == 0) continue;
     volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = slab.blocks,
                                         .before = slab.before, .density = slab.current,

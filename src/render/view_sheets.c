@@ -49,11 +49,22 @@ static hl_status sort_voxels(const sweep *sweep, const view *view, view_sheets *
   return status;
 }
 
+/* Sheets are filled a few in one go, tile by tile, while their voxels are at hand: as many as a run has slabs, fewer where they
+ * would take more memory than this. */
+enum { BUNDLE_BYTES = 1 << 24, LARGE_BUNDLE = RUN_SLABS, SMALL_BUNDLE = 2 };
+_Static_assert(RUN_SLABS % SMALL_BUNDLE == 0, "a bundle lies within a run");
+
+static int bundle_of_patches(size_t patches) {
+  return patches * (LARGE_BUNDLE + 1) * TILE_PIXELS * sizeof(float) <= BUNDLE_BYTES ? LARGE_BUNDLE : SMALL_BUNDLE;
+}
+
 static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error *error) {
-  size_t count = sheets->occupancy.patch_count * RING;
+  sheets->bundle = bundle_of_patches(sheets->occupancy.patch_count);
+  sheets->ring = sheets->bundle + 1;
+  size_t count = sheets->occupancy.patch_count * (size_t)sheets->ring;
   sheets->density = hl_allocate(sweep->context, count * TILE_PIXELS, sizeof(float));
   sheets->kept = hl_allocate(sweep->context, count, sizeof *sheets->kept);
-  sheets->sources = hl_allocate(sweep->context, RING * (size_t)sweep->volume_count, sizeof *sheets->sources);
+  sheets->sources = hl_allocate(sweep->context, (size_t)sheets->ring * (size_t)sweep->volume_count, sizeof *sheets->sources);
   sheets->runs = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->runs);
   sheets->relevant = hl_allocate(sweep->context, sheets->occupancy.patch_count, sizeof *sheets->relevant);
   if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL || sheets->runs == NULL || sheets->relevant == NULL)
@@ -68,7 +79,8 @@ uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view) {
   bool cut = false;
   for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
   uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, &patches);
-  uint64_t a_patch = RING * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(relevant_patch) + (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
+  size_t ring = (size_t)bundle_of_patches(patches) + 1;
+  uint64_t a_patch = ring * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(relevant_patch) + (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
   return bytes + patches * a_patch;
 }
 
@@ -93,16 +105,27 @@ static void reach_run(const sweep *sweep, const view *view, int first, view_shee
   }
 }
 
-void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
-  if (first_of_run(sheet) == sheet - 1) reach_run(sweep, view, sheet - 1, sheets);
+static void reach_sheet(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
   for (int g = 0; g < sweep->volume_count; g++) {
-    fill_source *source = &sheets->sources[sheet % RING * sweep->volume_count + g];
+    fill_source *source = &sheets->sources[sheet % sheets->ring * sweep->volume_count + g];
     *source = (fill_source){.grid = &sweep->grids[g], .kernel = sweep->kernel, .sheet = sheet,
                             .classifier = &sweep->volumes[g].classifier,
                             .lists = sheets->lists == NULL ? NULL : &sheets->lists[g]};
     hl_view_sheet_rays(view, sweep->geometry->sheets.normal, hl_sheet_height(&sweep->geometry->sheets, sheet),
                        sweep->grids[g].frame_to_index, &source->rays);
   }
+}
+
+/* The sheet after the last one of its bundle. */
+static int end_of_bundle(const view_sheets *sheets, int sheet) {
+  int end = (sheet - 1) / sheets->bundle * sheets->bundle + 1 + sheets->bundle;
+  return end < sheets->occupancy.sheets ? end : sheets->occupancy.sheets;
+}
+
+void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
+  if (first_of_run(sheet) == sheet - 1) reach_run(sweep, view, sheet - 1, sheets);
+  if ((sheet - 1) % sheets->bundle != 0) return;
+  for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++) reach_sheet(sweep, view, ahead, sheets);
 }
 
 hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
@@ -112,7 +135,7 @@ hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets
   if (status == HL_OK) status = set_up_entries(sweep, view, sheets, error);
   if (status == HL_OK) status = keep_patches(sweep, sheets, error);
   if (status != HL_OK) return status;
-  hl_view_sheets_reach(sweep, view, 0, sheets);
+  reach_sheet(sweep, view, 0, sheets);
   return hl_pool_cancelled(sweep->pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
@@ -127,13 +150,13 @@ void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
 
 /* What is kept of a patch on a sheet. */
 static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
-  kept_patch *kept = &sheets->kept[patch * RING + (size_t)(sheet % RING)];
+  kept_patch *kept = &sheets->kept[patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)];
   if (kept->sheet != sheet) *kept = (kept_patch){.sheet = sheet};
   return kept;
 }
 
 static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets *sheets, size_t patch, int sheet) {
-  return &sheets->sources[sheet % RING * sweep->volume_count + (int)sheets->occupancy.patch_grid[patch]];
+  return &sheets->sources[sheet % sheets->ring * sweep->volume_count + (int)sheets->occupancy.patch_grid[patch]];
 }
 
 /* Where the slabs of a sheet's run may hold something of a patch, found for all of them at once. */
@@ -151,38 +174,53 @@ static const relevant_blocks *relevant_in_run(const sweep *sweep, const view_she
   return &relevant->found;
 }
 
+static float *density_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
+  return sheets->density + (patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)) * TILE_PIXELS;
+}
+
 /* Fills what is missing of the wanted blocks; returns the pixels filled. */
-static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, kept_patch *kept,
-                           uint32_t wanted) {
+static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t wanted) {
   const occupancy *o = &sheets->occupancy;
+  kept_patch *kept = patch_on_sheet(sheets, patch, sheet);
   uint32_t missing = wanted & ~(uint32_t)kept->need;
   if (missing == 0) return 0;
-  int slot = kept->sheet % RING;
-  const fill_source *source = source_on_sheet(sweep, sheets, patch, kept->sheet);
+  const fill_source *source = source_on_sheet(sweep, sheets, patch, sheet);
   fill_tile_function *fill = sweep->splat ? sweep->hot->splat_tile : sweep->hot->gather_tile;
   uint32_t filled = fill(source, (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x), missing,
-                         sheets->density + (patch * RING + (size_t)slot) * TILE_PIXELS);
+                         density_on_sheet(sheets, patch, sheet));
   kept->need = (uint16_t)(kept->need | missing);
   kept->blocks = (uint16_t)(kept->blocks | filled);
   return (uint64_t)__builtin_popcount(missing) * BLOCK_PIXELS;
+}
+
+/* Fills a slab's sheets in its relevant blocks, and those that follow in the bundle in the blocks that may be asked for. */
+static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
+  relevant_patch *relevant = &sheets->relevant[patch];
+  int end = end_of_bundle(sheets, sheet), first = first_of_run(sheet);
+  uint32_t before = 0;
+  uint64_t pixels = 0;
+  if (relevant->end == end && (need & ~(uint32_t)relevant->need) == 0) return 0;
+  for (int at = sheet - 1; at < end; at++) {
+    uint32_t after = at + 1 < end ? need & relevant->found.blocks[at - first] : 0; /* of the slab that begins with this sheet */
+    pixels += fill_patch(sweep, sheets, tile, patch, at, before | after);
+    before = after;
+  }
+  relevant->need = (uint16_t)(need | (relevant->end == end ? relevant->need : 0));
+  relevant->end = end;
+  return pixels;
 }
 
 uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
   return need & relevant_in_run(sweep, sheets, tile, patch, sheet)->blocks[sheet - 1 - first_of_run(sheet)];
 }
 
-patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t relevant,
-                         uint64_t *pixels) {
-  kept_patch *before = patch_on_sheet(sheets, patch, sheet - 1), *current = patch_on_sheet(sheets, patch, sheet);
-  *pixels += fill_patch(sweep, sheets, tile, patch, before, relevant);
-  *pixels += fill_patch(sweep, sheets, tile, patch, current, relevant);
-  const float *density = sheets->density + patch * RING * TILE_PIXELS;
+patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
+                         uint32_t relevant, uint64_t *pixels) {
+  *pixels += fill_bundle(sweep, sheets, tile, patch, sheet, need);
   bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
   bool whole = sheets->relevant[patch].found.whole >> (sheet - 1 - first_of_run(sheet)) & 1;
   const float *enter = !cut ? NULL : whole ? sheets->entries : entries_of(sweep, sheets, tile, patch);
-  return (patch_slab){.before = density + (sheet - 1) % RING * TILE_PIXELS, .current = density + sheet % RING * TILE_PIXELS,
-                      .enter = enter,
-                      .leave = cut ? enter + TILE_PIXELS : NULL,
-                      .whole = whole,
-                      .blocks = relevant & ((uint32_t)before->blocks | current->blocks)};
+  uint32_t shown = (uint32_t)patch_on_sheet(sheets, patch, sheet - 1)->blocks | patch_on_sheet(sheets, patch, sheet)->blocks;
+  return (patch_slab){.before = density_on_sheet(sheets, patch, sheet - 1), .current = density_on_sheet(sheets, patch, sheet),
+                      .enter = enter, .leave = cut ? enter + TILE_PIXELS : NULL, .whole = whole, .blocks = relevant & shown};
 }
