@@ -388,12 +388,12 @@ static void grow_by_a_tile(const cascade_level *level, const unsigned char *from
     }
 }
 
-/* Tiles that the sheets up to the next chunk's end can touch, in the first mask, a tile to spare: a slab is lit up to a
- * sheet away from where it was found. Each further mask is a tile wider. */
+/* Tiles that the sheets up to the next chunk's end can touch, in the first mask; there their slabs are looked up. Each further
+ * mask is a tile wider. */
 static void find_wanted(soft_cascade *cascade, const occupancy *occupancy, const sheet_stack *sheets, int sheet) {
   const cascade_level *level = &cascade->level[0];
   size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  unsigned char *touched = cascade->wanted[CASCADE_MASKS - 1];
+  unsigned char *touched = cascade->wanted[0];
   memset(touched, 0, tiles);
   for (bool last = false; sheet < sheets->count && !last; sheet++) {
     const uint64_t *bits = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
@@ -402,7 +402,6 @@ static void find_wanted(soft_cascade *cascade, const occupancy *occupancy, const
         touched[(size_t)word * 64 + (size_t)__builtin_ctzll(left)] = 1;
     last = omega_at(cascade, hl_sheet_height(sheets, sheet)) - cascade->chunk_start >= cascade->chunk;
   }
-  grow_by_a_tile(level, touched, cascade->wanted[0]);
   for (int i = 1; i < CASCADE_MASKS; i++) grow_by_a_tile(level, cascade->wanted[i - 1], cascade->wanted[i]);
 }
 

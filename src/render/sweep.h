@@ -152,11 +152,13 @@ void hl_sweep_layers_sheet(sweep *sweep);
 void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks,
                           int worker, void *scratch);
 
-/* A view's sheets (view_sheets.c). What fails half-way is released by hl_view_sheets_end. */
-hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error);
+/* A view's sheets (view_sheets.c). spare: pixels around what bricks touch that count as touched: PIXEL_TO_SPARE at least. What
+ * fails half-way is released by hl_view_sheets_end. */
+enum { PIXEL_TO_SPARE = 1 };
+hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spare, view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets);
 /* The bytes that they hold, lists of splatted voxels apart. */
-uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view);
+uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view, double spare);
 /* Before patches of a sheet are asked for. */
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets);
 /* A patch's densities on the sheet and the one before, [256] block-major, in the needed blocks that hold any: kept from

@@ -81,6 +81,33 @@ static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *p
   return true;
 }
 
+/* The greatest tangent of a view's rays against the sheets' normal (a quadrangle's rays meet a sheet in one: corners are
+ * farthest). Infinite where some rays run along the sheets. */
+static double steepest_tangent(const view *view, vec3 normal) {
+  double greatest = 0, first = 0;
+  for (int corner = 0; corner < 4; corner++) {
+    vec3 start, way;
+    hl_view_ray(view, corner % 2 * view->width, corner / 2 * view->height, &start, &way);
+    double climb = vec3_dot(way, normal);
+    if (corner == 0) first = climb;
+    if (!(climb * first > 0)) return INFINITY;
+    greatest = fmax(greatest, vec3_length(vec3_subtract(way, vec3_scale(normal, climb))) / fabs(climb));
+  }
+  return greatest;
+}
+
+/* A cascade keeps its buffer where it is looked up. What is seen of a brick is looked up in the middle of the slab, up to half
+ * a slab further along the eye's ray: derived, in a buffer parallel to the sheets that is half their distance times the
+ * difference of the two rays' tangents away. Near a light within the content a tile must do. */
+static double look_up_spare(const sweep *sweep, const light_source *source, const view *view) {
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  if (source->shadows != HL_SHADOWS_SOFT || source->soft_method != HL_SOFT_CASCADE) return PIXEL_TO_SPARE;
+  double nearest = 1, pixel = fmin(vec3_length(view->du), vec3_length(view->dv));
+  if (view->perspective) nearest = fmax(sheets->first - vec3_dot(view->origin, sheets->normal), 1e-9 * pixel);
+  double tangents = steepest_tangent(&sweep->frame->eye, sheets->normal) + steepest_tangent(view, sheets->normal);
+  return PIXEL_TO_SPARE + fmin(0.5 * sheets->spacing * tangents / (pixel * nearest), TILE);
+}
+
 /* One light's part of hl_sweep_bytes; as begin_light takes it. image: null where penumbrae are even. */
 static void add_light_bytes(const sweep *sweep, int index, const light_image *image, vec3 *points, sweep_bytes *bytes) {
   const light_source *source = &sweep->frame->lights[sweep->geometry->light[index]];
@@ -100,7 +127,7 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
   }
   uint64_t tiles = (uint64_t)hl_tiles(view.width) * (uint64_t)hl_tiles(view.height), passing = 0;
   bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper, reach);
-  bytes->passing += hl_view_sheets_bytes(sweep, &view) + tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
+  bytes->passing += hl_view_sheets_bytes(sweep, &view, look_up_spare(sweep, source, &view)) + tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
   if (soft && source->soft_method == HL_SOFT_SUBLIGHTS)
     bytes->passing += hl_sublights_bytes(source, image, sweep->scene->render.light_samples, sheets->normal, &extent,
                                          sweep->channels, &view, reach);
@@ -113,7 +140,7 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
 sweep_bytes hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads) {
   uint64_t a_grid = SHADE_SCRATCH_BYTES + sizeof *sweep->scratch_volumes + 2 * sizeof *sweep->shade_patches;
   uint64_t tiles = (uint64_t)hl_tiles(sweep->frame->width) * (uint64_t)hl_tiles(sweep->frame->height);
-  sweep_bytes bytes = {.passing = hl_view_sheets_bytes(sweep, &sweep->frame->eye)};
+  sweep_bytes bytes = {.passing = hl_view_sheets_bytes(sweep, &sweep->frame->eye, PIXEL_TO_SPARE)};
   bytes.passing += tiles * (sizeof *sweep->tasks + sizeof *sweep->open) + (uint64_t)threads * (uint64_t)sweep->volume_count * a_grid;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     light_image *image = NULL; /* without memory for one, hl_sweep_begin tells */
@@ -159,7 +186,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   if (status == HL_OK && cascade)
     status = hl_soft_cascade_begin(sweep->context, sweep->pool, memory, &light->cascade, &seen, image, sheets->normal,
                                    sheets->first, last, edge, buffer, error);
-  if (status == HL_OK) status = hl_view_sheets_begin(sweep, &view, &light->sheets, error);
+  if (status == HL_OK) status = hl_view_sheets_begin(sweep, &view, look_up_spare(sweep, source, &view), &light->sheets, error);
   return status;
 }
 
@@ -275,7 +302,7 @@ static double longest_way(const sweep *sweep) {
 }
 
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error) {
-  hl_status status = hl_view_sheets_begin(sweep, &sweep->frame->eye, &sweep->image, error);
+  hl_status status = hl_view_sheets_begin(sweep, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image, error);
   if (status == HL_OK) status = allocate_image(sweep, error);
   if (status != HL_OK) return status;
   open_blocks(sweep);

@@ -74,11 +74,11 @@ static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error 
   return HL_OK;
 }
 
-uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view) {
+uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view, double spare) {
   size_t patches;
   bool cut = false;
   for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
-  uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, &patches);
+  uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, spare, &patches);
   size_t ring = (size_t)bundle_of_patches(patches) + 1;
   uint64_t a_patch = ring * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(relevant_patch) + (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
   return bytes + patches * a_patch;
@@ -128,9 +128,9 @@ void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_
   for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++) reach_sheet(sweep, view, ahead, sheets);
 }
 
-hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
+hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spare, view_sheets *sheets, hl_error *error) {
   hl_status status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, view,
-                                        &sweep->geometry->sheets, &sheets->occupancy, error);
+                                        &sweep->geometry->sheets, spare, &sheets->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sweep, view, sheets, error);
   if (status == HL_OK) status = set_up_entries(sweep, view, sheets, error);
   if (status == HL_OK) status = keep_patches(sweep, sheets, error);

@@ -76,10 +76,10 @@ static int last_tile(double high, int tiles) {
   return high < 0 ? -1 : high >= (double)tiles * TILE ? tiles - 1 : (int)(high / TILE);
 }
 
-/* The tiles of some bounds, a pixel to spare; empty where the view does not see them. */
+/* The tiles of some bounds and what is to spare around them; empty where the view does not see them. */
 static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *o) {
-  tile_rectangle r = {.x = first_tile(bounds->low[0] - 1), .y = first_tile(bounds->low[1] - 1)};
-  int x1 = last_tile(bounds->high[0] + 1, o->tiles_x), y1 = last_tile(bounds->high[1] + 1, o->tiles_y);
+  tile_rectangle r = {.x = first_tile(bounds->low[0] - o->spare), .y = first_tile(bounds->low[1] - o->spare)};
+  int x1 = last_tile(bounds->high[0] + o->spare, o->tiles_x), y1 = last_tile(bounds->high[1] + o->spare, o->tiles_y);
   r.width = x1 < r.x ? 0 : x1 - r.x + 1;
   r.height = y1 < r.y ? 0 : y1 - r.y + 1;
   return r;
@@ -185,7 +185,8 @@ static hl_status allocate(hl_context *context, occupancy *o, size_t tiles, hl_er
   return HL_OK;
 }
 
-static void set_size(const view *view, const sheet_stack *sheets, occupancy *o) {
+static void set_size(const view *view, const sheet_stack *sheets, double spare, occupancy *o) {
+  o->spare = spare;
   o->tiles_x = hl_tiles(view->width);
   o->tiles_y = hl_tiles(view->height);
   o->sheets = sheets->count;
@@ -194,10 +195,10 @@ static void set_size(const view *view, const sheet_stack *sheets, occupancy *o) 
 }
 
 /* As allocate() takes it. */
-uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets,
+uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets, double spare,
                             size_t *patch_count) {
   occupancy o = {0};
-  set_size(view, sheets, &o);
+  set_size(view, sheets, spare, &o);
   for (int g = 0; g < grid_count; g++) {
     footprint_map map;
     hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &map);
@@ -210,8 +211,8 @@ uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view,
 }
 
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
-                             const sheet_stack *sheets, occupancy *occupancy, hl_error *error) {
-  set_size(view, sheets, occupancy);
+                             const sheet_stack *sheets, double spare, occupancy *occupancy, hl_error *error) {
+  set_size(view, sheets, spare, occupancy);
   size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
   occupancy->rectangle = hl_allocate(context, (size_t)grid_count, sizeof(tile_rectangle));
   if (occupancy->rectangle == NULL) return hl_fail_memory(error, sizeof(tile_rectangle), "the occupancy of tiles");

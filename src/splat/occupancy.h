@@ -27,6 +27,7 @@ typedef struct occupancy {
   int tiles_x, tiles_y, sheets;
   int words;                 /* 64-bit words of one patch: sheets rounded up */
   int tile_words;            /* 64-bit words of one sheet: tiles rounded up */
+  double spare;              /* pixels */
   tile_rectangle *rectangle; /* owned; [grids] */
   size_t patch_count;
   uint32_t *patch_of;        /* owned; [patches]; the patch of each tile of each grid's rectangle */
@@ -36,13 +37,14 @@ typedef struct occupancy {
   uint64_t *by_sheet;        /* owned; [words * 64][tile_words]; bit = tile, all grids together */
 } occupancy;
 
-/* Builds an empty occupancy for a view of width x height pixels. What fails half-way is released as usual. */
+/* Builds an empty occupancy for a view of width x height pixels. spare: pixels around each brick that it touches too. What
+ * fails half-way is released as usual. */
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
-                             const sheet_stack *sheets, occupancy *occupancy, hl_error *error);
+                             const sheet_stack *sheets, double spare, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
 /* How many patches it would have, and the bytes that it would hold. */
-uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets,
+uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets, double spare,
                             size_t *patch_count);
 
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
