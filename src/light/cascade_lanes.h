@@ -8,6 +8,22 @@
 /* Blurred sums leave a little light in umbrae: where less than this is left, none is. */
 static const float UMBRA = 1.0f / 128;
 
+/* Asks for a tile's rows, which lie on as many lines of the cache, before they are needed. Null: none. */
+LANES_INLINE void fetch_tile(const field_pixel *field, size_t stride, int tile_x, int tile_y, const int to_write) {
+  if (field == NULL) return;
+  const field_pixel *row = field + (size_t)tile_y * TILE * stride + (size_t)tile_x * TILE;
+  for (int i = 0; i < TILE; i++, row += stride) {
+    if (to_write) __builtin_prefetch(row, 1);
+    else __builtin_prefetch(row, 0);
+  }
+}
+
+/* The same of a tile of floats, a line of the cache each if they are aligned so. */
+LANES_INLINE void fetch_float_tile(const float *field, size_t stride, int tile_x, int tile_y) {
+  const float *row = field + (size_t)tile_y * TILE * stride + (size_t)tile_x * TILE;
+  for (int i = 0; i < TILE; i++, row += stride) __builtin_prefetch(row, 0);
+}
+
 /* Stores rounded pixels and keeps the greatest so far. */
 LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
   lanes_store_short(p, pixels);
@@ -35,6 +51,9 @@ LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) 
 static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
   _Alignas(64) float rows[(TILE + 2 * BLUR_GREATEST_REACH) * TILE];
   int apron = job->v.reach + 1;
+  fetch_tile(job->a, job->stride, tile_x, tile_y, 0);
+  fetch_tile(job->thin, job->stride, tile_x, tile_y, 0);
+  fetch_tile(job->to, job->stride, tile_x, tile_y, 1);
   const field_pixel *from = job->from + (ptrdiff_t)(tile_y * TILE - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
   for (int row = 0; row < TILE + 2 * apron; row++, from += job->stride)
     lanes_store(rows + row * TILE, blur_field_row(from, &job->u));
@@ -57,6 +76,9 @@ LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
 }
 
 static int add_tile(const field_job *job, int tile_x, int tile_y) {
+  fetch_tile(job->b, job->stride, tile_x, tile_y, 0);
+  fetch_tile(job->thin, job->stride, tile_x, tile_y, 0);
+  fetch_tile(job->to, job->stride, tile_x, tile_y, 1);
   size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
   lanes greatest = lanes_set(0);
   for (int row = 0; row < TILE; row++, at += job->stride) store_pixels(job->to + at, a_and_b(job, at), &greatest);
@@ -73,6 +95,11 @@ static int add_half_tile(const field_job *job, int tile_x, int tile_y) {
   size_t from = (size_t)tile_y * TILE * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
   field_pixel *to = job->to + (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
   lanes greatest = lanes_set(0);
+  for (int half = 0; half < 2; half++) {
+    fetch_tile(job->b, job->stride_in, 2 * tile_x, 2 * tile_y + half, 0);
+    fetch_tile(job->thin, job->stride_in, 2 * tile_x, 2 * tile_y + half, 0);
+  }
+  fetch_tile(job->to, job->stride, tile_x, tile_y, 1);
   for (int row = 0; row < TILE; row++, from += 2 * job->stride_in, to += job->stride) {
     size_t below = from + job->stride_in;
     lanes upper = sums_of_pairs(a_and_b(job, from), a_and_b(job, from + TILE));
@@ -94,6 +121,9 @@ LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x
 }
 
 static int add_double_tile(const field_job *job, int tile_x, int tile_y) {
+  fetch_tile(job->a, job->stride, tile_x, tile_y, 0);
+  fetch_tile(job->thin, job->stride, tile_x, tile_y, 0);
+  fetch_tile(job->to, job->stride, tile_x, tile_y, 1);
   lanes greatest = lanes_set(0);
   for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++) {
     size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
@@ -169,10 +199,12 @@ static void left_tile(const left_job *job, int tile_x, int tile_y) {
 typedef struct parted_matter { lanes absorbed[2], thin[2]; } parted_matter;
 
 LANES_INLINE parted_matter part_matter(lanes absorbed, lanes thin, lanes late) {
-  parted_matter to;
-  lanes depth = lanes_log2(lanes_max(1.0f - thin, lanes_set(1e-6f)));
-  to.thin[0] = 1.0f - lanes_exp2(depth * (1.0f - late));
-  to.thin[1] = 1.0f - lanes_exp2(depth * late);
+  parted_matter to = {.thin = {lanes_set(0), lanes_set(0)}};
+  if (lanes_bits(thin > 0.0f) != 0) {
+    lanes depth = lanes_log2(lanes_max(1.0f - thin, lanes_set(1e-6f)));
+    to.thin[0] = 1.0f - lanes_exp2(depth * (1.0f - late));
+    to.thin[1] = 1.0f - lanes_exp2(depth * late);
+  }
   lanes solid = (absorbed - thin) / lanes_max(late + (1.0f - to.thin[1]) * (1.0f - late), lanes_set(1e-3f));
   to.absorbed[0] = solid * (1.0f - late) + to.thin[0];
   to.absorbed[1] = solid * late + to.thin[1];
@@ -203,6 +235,10 @@ static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 
 static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   lanes start[2] = {lanes_set(0), lanes_set(0)}, end[2] = {lanes_set(0), lanes_set(0)};
+  const field_pixel *first[] = {job->lacking, job->start_absorbed, job->start_thin, job->end_absorbed, job->end_thin};
+  fetch_float_tile(job->now, job->stride_now, tile_x, tile_y);
+  for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) fetch_tile(first[i], job->stride, tile_x, tile_y, i > 0);
+  fetch_float_tile(job->moment, job->stride, tile_x, tile_y);
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
     lanes before = light_left(job->lacking + at);
