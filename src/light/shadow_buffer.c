@@ -148,30 +148,11 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
   return HL_OK;
 }
 
-typedef struct lit_task {
-  shadow_buffer *buffer;
-  const unsigned char *wanted;
-  lit_blocks_function *lit_blocks;
-} lit_task;
-
-static void find_lit_row(void *data, size_t index, int worker) {
-  (void)worker;
-  const lit_task *task = data;
-  shadow_buffer *buffer = task->buffer;
-  for (int x = 0; x < buffer->tiles_x; x++) {
-    size_t tile = index * (size_t)buffer->tiles_x + (size_t)x;
-    if (task->wanted != NULL && !task->wanted[tile]) continue;
-    const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
-    for (int c = 0; c < buffer->channels; c++)
-      transmittance[c] = buffer->transmittance[c] + index * TILE * buffer->stride + (size_t)x * TILE;
-    buffer->tile_lit[tile] = (uint16_t)task->lit_blocks(transmittance, buffer->channels, buffer->stride);
-  }
-}
-
-void hl_shadow_buffer_find_lit(shadow_buffer *buffer, const unsigned char *wanted, hl_pool *pool,
-                               lit_blocks_function *lit_blocks) {
-  lit_task task = {buffer, wanted, lit_blocks};
-  hl_pool_run(pool, (size_t)buffer->tiles_y, find_lit_row, &task);
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, lit_blocks_function *lit_blocks) {
+  const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
+  for (int c = 0; c < buffer->channels; c++)
+    transmittance[c] = buffer->transmittance[c] + (size_t)y * TILE * buffer->stride + (size_t)x * TILE;
+  buffer->tile_lit[y * buffer->tiles_x + x] = (uint16_t)lit_blocks(transmittance, buffer->channels, buffer->stride);
 }
 
 shadow_lookup hl_lookup_of_view(const view *view) {

@@ -49,9 +49,8 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
                                  bool scratch, int reach, hl_error *error);
 /* The bytes that it then holds. */
 uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool scratch, int reach);
-/* Finds tile_lit anew after a blur, for the wanted tiles ([tiles]; null: all). */
-void hl_shadow_buffer_find_lit(shadow_buffer *buffer, const unsigned char *wanted, hl_pool *pool,
-                               lit_blocks_function *lit_blocks);
+/* Finds a tile's tile_lit anew after a blur. */
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
 
 #endif

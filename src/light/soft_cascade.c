@@ -30,11 +30,13 @@ static int level_scale(const soft_cascade *cascade, int level) {
   return scale;
 }
 
-/* Hands out the next plane of a level's memory. */
-static cascade_field next_field(cascade_level *level, size_t *used) {
-  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y, index = (*used)++;
-  return (cascade_field){level->memory + index * level->plane + level->origin, level->flags + index * tiles};
+static cascade_field field_of_plane(const cascade_level *level, size_t plane) {
+  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
+  return (cascade_field){level->memory + plane * level->plane + level->origin, level->flags + plane * tiles};
 }
+
+/* Hands out the next plane of a level's memory. */
+static cascade_field next_field(const cascade_level *level, size_t *used) { return field_of_plane(level, (*used)++); }
 
 /* How wide each column or row of tiles sees the light. */
 static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
@@ -72,9 +74,11 @@ static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory 
     hl_release(context, memory->pixels);
     memory->pixels = hl_allocate(context, pixels, sizeof *memory->pixels);
     memory->capacity = memory->pixels == NULL ? 0 : pixels;
+    memory->zeros = false;
     if (memory->pixels == NULL) return hl_fail_memory(error, pixels * sizeof *memory->pixels, "a cascade of shadows");
   }
-  hl_pool_clear(pool, memory->pixels, pixels * sizeof *memory->pixels);
+  if (!memory->zeros) hl_pool_clear(pool, memory->pixels, memory->capacity * sizeof *memory->pixels);
+  memory->zeros = false;
   field_pixel *next = memory->pixels;
   for (int i = 0; i < cascade->level_count; next += cascade->level[i].pixels, i++) cascade->level[i].memory = next;
   return HL_OK;
@@ -174,12 +178,39 @@ hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memo
   hl_status status = open_memory(context, pool, memory, cascade, error);
   for (int i = 0; i < cascade->level_count && status == HL_OK; i++)
     status = open_level(context, cascade, i, light, error);
+  if (status == HL_OK) cascade->memory = memory;
   cascade->level[0].count = 1; /* at the first chunk's start */
   cascade->level[0].group[0].omega = cascade->chunk_start;
   return status;
 }
 
-void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade) {
+/* One plane of a level; those of the moments have no flags of their own. */
+static void clear_plane(void *data, size_t index, int worker) {
+  (void)worker;
+  const cascade_level *level = data;
+  const cascade_field field = field_of_plane(level, index);
+  for (int y = 0; y < level->tiles_y; y++)
+    for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
+}
+
+/* What the last, unfinished chunk's slabs took. */
+static void clear_moments(const soft_cascade *cascade) {
+  const cascade_level *level = &cascade->level[0];
+  for (size_t tile = 0; tile < (size_t)level->tiles_x * (size_t)level->tiles_y; tile++) {
+    size_t at = tile / (size_t)level->tiles_x * TILE * level->stride + tile % (size_t)level->tiles_x * TILE;
+    for (int c = 0; c < cascade->channels && cascade->touched[tile]; c++)
+      for (size_t row = 0; row < TILE; row++) memset(cascade->moment[c] + at + row * level->stride, 0, TILE * sizeof(float));
+  }
+}
+
+static void give_back_memory(hl_pool *pool, soft_cascade *cascade) {
+  for (int i = 0; i < cascade->level_count; i++) hl_pool_run(pool, cascade->level[i].planes, clear_plane, &cascade->level[i]);
+  clear_moments(cascade);
+  cascade->memory->zeros = !hl_pool_cancelled(pool);
+}
+
+void hl_soft_cascade_release(hl_context *context, hl_pool *pool, soft_cascade *cascade) {
+  if (cascade->memory != NULL) give_back_memory(pool, cascade);
   for (int i = 0; i < CASCADE_LEVELS; i++) {
     hl_release(context, cascade->level[i].flags);
     hl_release(context, cascade->level[i].boxes);
@@ -485,7 +516,7 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
 typedef struct light_task {
   soft_cascade *cascade;
   shadow_buffer *buffer;
-  left_tile_function *left;
+  const cascade_functions *functions;
 } light_task;
 
 static void light_row(void *data, size_t index, int worker) {
@@ -500,9 +531,10 @@ static void light_row(void *data, size_t index, int worker) {
     for (int c = 0; c < buffer->channels; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
       left_job job = {task->cascade->shade[c].pixels, buffer->transmittance[c], level->stride, buffer->stride};
-      task->left(&job, (int)tile_x, (int)index);
+      task->functions->left(&job, (int)tile_x, (int)index);
     }
     buffer->tile_touched[tile] = shaded;
+    hl_shadow_buffer_find_lit(buffer, (int)tile_x, (int)index, task->functions->lit_blocks);
   }
 }
 
@@ -526,9 +558,8 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
 /* The buffer that sheets look up, for receivers around omega = receiver. */
 static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, const cascade_crew *crew) {
   if (!find_shade(cascade, receiver, crew)) return; /* the buffer is all ones */
-  light_task task = {cascade, buffer, crew->functions->left};
+  light_task task = {cascade, buffer, crew->functions};
   hl_pool_run(crew->pool, (size_t)cascade->level[0].tiles_y, light_row, &task);
-  hl_shadow_buffer_find_lit(buffer, cascade->wanted[0], crew->pool, crew->functions->lit_blocks);
 }
 
 void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,

@@ -70,13 +70,16 @@ typedef struct cascade_level {
   unsigned char *flags;              /* owned */
 } cascade_level;
 
-/* Pixels of all levels; a caller may keep them from frame to frame: fresh memory costs more than clearing it. */
+/* Pixels of all levels; a caller may keep them from frame to frame. A cascade gives them back as zeros, which costs less than
+ * making zeros of all of them: it knows where it wrote. */
 typedef struct cascade_memory {
   field_pixel *pixels;  /* owned; [capacity] */
   size_t capacity;
+  bool zeros;           /* all of them; not while a cascade has them, nor after one that was cancelled */
 } cascade_memory;
 
 typedef struct soft_cascade {
+  cascade_memory *memory; /* the caller's */
   bool parallel;
   double rate;          /* parallel: omega per height; else L in units of a pixel at distance 1 */
   double light_height;
@@ -111,7 +114,7 @@ hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memo
 /* The bytes that it then holds for a buffer of that view: of memory, which stays, and of its own. */
 void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
                            double pixel, const view *view, int channels, uint64_t *kept, uint64_t *passing);
-void hl_soft_cascade_release(hl_context *context, soft_cascade *cascade);
+void hl_soft_cascade_release(hl_context *context, hl_pool *pool, soft_cascade *cascade);
 
 /* Before the slab before the sheet is composited into the buffer, and before each of its tiles is: what it takes is to be
  * counted. Tiles where it takes some are then to be marked as touched. */

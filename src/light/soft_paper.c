@@ -40,61 +40,81 @@ int hl_soft_paper_reach(soft_paper *soft, double first, double spacing, int shee
   return soft->reach;
 }
 
-typedef struct convolve_job {
+/* One convolution: from the buffer to the scratch and back, tile by tile, all channels of a tile in one go. */
+typedef struct convolution {
   shadow_buffer *buffer;
-  blur_job blur;
-  blur_tile_function *blur_tile;
   const unsigned char *wanted; /* [tiles] */
-} convolve_job;
+  const blur_functions *blur;
+  blur_box box;
+  /* the taps of an image in place of a box's rows and columns */
+  int count;
+  const ptrdiff_t *offset; /* [count] */
+  const image_taps *taps;
+} convolution;
 
-static void convolve_tile(void *data, size_t index, int worker) {
+static void blur_rows(void *data, size_t index, int worker) {
   (void)worker;
-  const convolve_job *job = data;
-  for (int x = 0; x < job->buffer->tiles_x; x++)
-    if (job->wanted[index * (size_t)job->buffer->tiles_x + (size_t)x]) job->blur_tile(&job->blur, x, (int)index);
-}
-
-/* The taps of the image in place of a box's rows and columns, from the buffer to the scratch. */
-typedef struct image_convolution {
-  const shadow_buffer *buffer;
-  const unsigned char *wanted; /* [tiles] */
-  image_job job;
-  image_tile_function *image_tile;
-} image_convolution;
-
-static void convolve_image_tile(void *data, size_t index, int worker) {
-  (void)worker;
-  const image_convolution *task = data;
-  for (int x = 0; x < task->buffer->tiles_x; x++)
-    if (task->wanted[index * (size_t)task->buffer->tiles_x + (size_t)x]) task->image_tile(&task->job, x, (int)index);
-}
-
-static void copy_back_tile(void *data, size_t index, int worker) {
-  (void)worker;
-  const image_convolution *task = data;
+  const convolution *task = data;
   const shadow_buffer *buffer = task->buffer;
-  float *to = (float *)task->job.from;
   for (int x = 0; x < buffer->tiles_x; x++)
-    for (size_t row = 0; row < TILE && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; row++) {
-      size_t at = (index * TILE + row) * buffer->stride + (size_t)x * TILE;
-      memcpy(to + at, task->job.to + at, TILE * sizeof(float));
+    for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
+      const blur_job job = {buffer->transmittance[c], buffer->scratch[c], buffer->stride, buffer->stride, task->box};
+      task->blur->rows(&job, x, (int)index);
     }
 }
 
-static void convolve_with_image(const soft_paper *soft, shadow_buffer *buffer, int width, const unsigned char *wanted,
-                                hl_pool *pool, image_tile_function *image_tile) {
+static void blur_columns(void *data, size_t index, int worker) {
+  (void)worker;
+  const convolution *task = data;
+  shadow_buffer *buffer = task->buffer;
+  for (int x = 0; x < buffer->tiles_x; x++) {
+    if (!task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]) continue;
+    for (int c = 0; c < buffer->channels; c++) {
+      const blur_job job = {buffer->scratch[c], buffer->transmittance[c], buffer->stride, buffer->stride, task->box};
+      task->blur->columns(&job, x, (int)index);
+    }
+    hl_shadow_buffer_find_lit(buffer, x, (int)index, task->blur->lit_blocks);
+  }
+}
+
+static void weigh_image(void *data, size_t index, int worker) {
+  (void)worker;
+  const convolution *task = data;
+  const shadow_buffer *buffer = task->buffer;
+  for (int x = 0; x < buffer->tiles_x; x++)
+    for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
+      const image_job job = {.from = buffer->transmittance[c], .to = buffer->scratch[c], .stride = buffer->stride,
+                             .count = task->count, .offset = task->offset, .weight = task->taps->weight[c]};
+      task->blur->image(&job, x, (int)index);
+    }
+}
+
+static void copy_back(void *data, size_t index, int worker) {
+  (void)worker;
+  const convolution *task = data;
+  shadow_buffer *buffer = task->buffer;
+  for (int x = 0; x < buffer->tiles_x; x++) {
+    if (!task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]) continue;
+    for (int c = 0; c < buffer->channels; c++)
+      for (size_t row = 0; row < TILE; row++) {
+        size_t at = (index * TILE + row) * buffer->stride + (size_t)x * TILE;
+        memcpy(buffer->transmittance[c] + at, buffer->scratch[c] + at, TILE * sizeof(float));
+      }
+    hl_shadow_buffer_find_lit(buffer, x, (int)index, task->blur->lit_blocks);
+  }
+}
+
+static void convolve_with_image(const soft_paper *soft, convolution *task, int width, hl_pool *pool) {
   image_taps taps;
   ptrdiff_t offset[IMAGE_TAPS];
   const int step[2] = {1, 1};
   hl_light_image_taps(soft->image, width, step, (const double[2]){0, 0}, &taps);
-  for (int i = 0; i < taps.count; i++) offset[i] = (ptrdiff_t)taps.y[i] * (ptrdiff_t)buffer->stride + taps.x[i];
-  for (int c = 0; c < buffer->channels; c++) {
-    image_convolution task = {buffer, wanted, {.from = buffer->transmittance[c], .to = buffer->scratch[c],
-                              .stride = buffer->stride, .count = taps.count, .offset = offset, .weight = taps.weight[c]},
-                              image_tile};
-    hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_image_tile, &task);
-    hl_pool_run(pool, (size_t)buffer->tiles_y, copy_back_tile, &task);
-  }
+  for (int i = 0; i < taps.count; i++) offset[i] = (ptrdiff_t)taps.y[i] * (ptrdiff_t)task->buffer->stride + taps.x[i];
+  task->count = taps.count;
+  task->offset = offset;
+  task->taps = &taps;
+  hl_pool_run(pool, (size_t)task->buffer->tiles_y, weigh_image, task);
+  hl_pool_run(pool, (size_t)task->buffer->tiles_y, copy_back, task);
 }
 
 /* Tiles within reach of one that light was taken from. */
@@ -110,22 +130,6 @@ static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const u
     }
 }
 
-/* Rows go from the buffer to the scratch, columns back. */
-static void convolve_with_box(shadow_buffer *buffer, blur_box box, const unsigned char *wanted, hl_pool *pool,
-                              const blur_functions *blur) {
-  convolve_job job = {buffer, {NULL, NULL, buffer->stride, buffer->stride, box}, blur->rows, wanted};
-  for (int c = 0; c < buffer->channels; c++) {
-    job.blur.from = buffer->transmittance[c];
-    job.blur.to = buffer->scratch[c];
-    job.blur_tile = blur->rows;
-    hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_tile, &job);
-    job.blur.from = buffer->scratch[c];
-    job.blur.to = buffer->transmittance[c];
-    job.blur_tile = blur->columns;
-    hl_pool_run(pool, (size_t)buffer->tiles_y, convolve_tile, &job);
-  }
-}
-
 /* Only the tiles that can change. Tiles outside hold 1 in the buffer and in the scratch. */
 static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, hl_pool *pool, const blur_functions *blur) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
@@ -133,10 +137,14 @@ static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, h
   blur_box box = hl_blur_box((float)width);
   int reach = soft->image == NULL ? box.reach : (int)(soft->image->reach * width) + 2;
   spread_touched(buffer, (reach + TILE) / TILE, touched, spread);
-  if (soft->image == NULL) convolve_with_box(buffer, box, spread, pool, blur);
-  else convolve_with_image(soft, buffer, width, spread, pool, blur->image);
+  convolution task = {.buffer = buffer, .wanted = spread, .blur = blur, .box = box};
+  if (soft->image != NULL) {
+    convolve_with_image(soft, &task, width, pool);
+  } else {
+    hl_pool_run(pool, (size_t)buffer->tiles_y, blur_rows, &task);
+    hl_pool_run(pool, (size_t)buffer->tiles_y, blur_columns, &task);
+  }
   memcpy(touched, spread, tiles);
-  hl_shadow_buffer_find_lit(buffer, spread, pool, blur->lit_blocks);
 }
 
 /* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest. An image has

@@ -328,7 +328,7 @@ void hl_sweep_end(sweep *sweep) {
     hl_view_sheets_end(sweep, &light->sheets);
     hl_light_screen_release(context, &light->screen);
     hl_release(context, light->image);
-    hl_soft_cascade_release(context, &light->cascade);
+    hl_soft_cascade_release(context, sweep->pool, &light->cascade);
     hl_sublights_release(context, &light->sublights);
   }
   hl_view_sheets_end(sweep, &sweep->image);
