@@ -11,6 +11,10 @@
 typedef uint16_t field_pixel;
 enum { FIELD_ONE = 32768 };
 
+/* Of a tile, those that a pass is to find. */
+typedef struct tile_rows { int first, end; } tile_rows;
+static const tile_rows ALL_ROWS = {0, TILE};
+
 /* A field's pixels: pixel (0,0); rows stride apart; zeros all around it. */
 typedef struct field_job {
   const field_pixel *a, *b; /* inputs; b may be coarser or finer, as the function says; null for zeros where it is not
@@ -18,9 +22,10 @@ typedef struct field_job {
   field_pixel *to;
   size_t stride_in, stride; /* of b and of the rest where they differ */
   const field_pixel *thin;  /* beside a: the part of b that a's matter takes; null: none */
+  tile_rows rows;
 } field_job;
 
-/* Returns whether any pixel of the tile is more than zero. */
+/* Returns whether any pixel of the tile's rows is more than zero. */
 typedef int field_tile_function(const field_job *job, int tile_x, int tile_y);
 
 /* to = a + (1 - thin) (from blurred along rows, then along columns), in one pass over memory; a and thin null: 0. */
@@ -30,6 +35,7 @@ typedef struct field_blur_job {
   field_pixel *to;
   size_t stride;
   blur_box u, v;         /* reach below BLUR_GREATEST_REACH */
+  tile_rows rows;
 } field_blur_job;
 /* Returns as field_tile_function does. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);

@@ -9,10 +9,10 @@
 static const float UMBRA = 1.0f / 128;
 
 /* Asks for a tile's rows, which lie on as many lines of the cache, before they are needed. Null: none. */
-LANES_INLINE void fetch_tile(const field_pixel *field, size_t stride, int tile_x, int tile_y, const int to_write) {
+LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x, int tile_y, tile_rows rows, const int to_write) {
   if (field == NULL) return;
-  const field_pixel *row = field + (size_t)tile_y * TILE * stride + (size_t)tile_x * TILE;
-  for (int i = 0; i < TILE; i++, row += stride) {
+  const field_pixel *row = field + (size_t)(tile_y * TILE + rows.first) * stride + (size_t)tile_x * TILE;
+  for (int i = rows.first; i < rows.end; i++, row += stride) {
     if (to_write) __builtin_prefetch(row, 1);
     else __builtin_prefetch(row, 0);
   }
@@ -50,16 +50,16 @@ LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) 
 
 static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
   _Alignas(64) float rows[(TILE + 2 * BLUR_GREATEST_REACH) * TILE];
-  int apron = job->v.reach + 1;
-  fetch_tile(job->a, job->stride, tile_x, tile_y, 0);
-  fetch_tile(job->thin, job->stride, tile_x, tile_y, 0);
-  fetch_tile(job->to, job->stride, tile_x, tile_y, 1);
-  const field_pixel *from = job->from + (ptrdiff_t)(tile_y * TILE - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
-  for (int row = 0; row < TILE + 2 * apron; row++, from += job->stride)
+  int apron = job->v.reach + 1, top = tile_y * TILE + job->rows.first, count = job->rows.end - job->rows.first;
+  fetch_rows(job->a, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->thin, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->to, job->stride, tile_x, tile_y, job->rows, 1);
+  const field_pixel *from = job->from + (ptrdiff_t)(top - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
+  for (int row = 0; row < count + 2 * apron; row++, from += job->stride)
     lanes_store(rows + row * TILE, blur_field_row(from, &job->u));
-  size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  size_t at = (size_t)top * job->stride + (size_t)tile_x * TILE;
   lanes greatest = lanes_set(0);
-  for (int row = 0; row < TILE; row++, at += job->stride) {
+  for (int row = 0; row < count; row++, at += job->stride) {
     lanes blurred = blur_sixteen(rows + (row + apron) * TILE, TILE, &job->v);
     if (job->thin != NULL) blurred = blurred * left_by(job->thin + at);
     store_pixels(job->to + at, job->a == NULL ? blurred : blurred + lanes_load_short(job->a + at), &greatest);
@@ -76,12 +76,12 @@ LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
 }
 
 static int add_tile(const field_job *job, int tile_x, int tile_y) {
-  fetch_tile(job->b, job->stride, tile_x, tile_y, 0);
-  fetch_tile(job->thin, job->stride, tile_x, tile_y, 0);
-  fetch_tile(job->to, job->stride, tile_x, tile_y, 1);
-  size_t at = (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  fetch_rows(job->b, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->thin, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->to, job->stride, tile_x, tile_y, job->rows, 1);
+  size_t at = (size_t)(tile_y * TILE + job->rows.first) * job->stride + (size_t)tile_x * TILE;
   lanes greatest = lanes_set(0);
-  for (int row = 0; row < TILE; row++, at += job->stride) store_pixels(job->to + at, a_and_b(job, at), &greatest);
+  for (int row = job->rows.first; row < job->rows.end; row++, at += job->stride) store_pixels(job->to + at, a_and_b(job, at), &greatest);
   return is_above_zero(greatest);
 }
 
@@ -92,15 +92,15 @@ LANES_INLINE lanes sums_of_pairs(lanes first, lanes second) {
 }
 
 static int add_half_tile(const field_job *job, int tile_x, int tile_y) {
-  size_t from = (size_t)tile_y * TILE * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
-  field_pixel *to = job->to + (size_t)tile_y * TILE * job->stride + (size_t)tile_x * TILE;
+  size_t from = (size_t)(tile_y * TILE + job->rows.first) * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
+  field_pixel *to = job->to + (size_t)(tile_y * TILE + job->rows.first) * job->stride + (size_t)tile_x * TILE;
   lanes greatest = lanes_set(0);
   for (int half = 0; half < 2; half++) {
-    fetch_tile(job->b, job->stride_in, 2 * tile_x, 2 * tile_y + half, 0);
-    fetch_tile(job->thin, job->stride_in, 2 * tile_x, 2 * tile_y + half, 0);
+    fetch_rows(job->b, job->stride_in, 2 * tile_x, 2 * tile_y + half, ALL_ROWS, 0);
+    fetch_rows(job->thin, job->stride_in, 2 * tile_x, 2 * tile_y + half, ALL_ROWS, 0);
   }
-  fetch_tile(job->to, job->stride, tile_x, tile_y, 1);
-  for (int row = 0; row < TILE; row++, from += 2 * job->stride_in, to += job->stride) {
+  fetch_rows(job->to, job->stride, tile_x, tile_y, job->rows, 1);
+  for (int row = job->rows.first; row < job->rows.end; row++, from += 2 * job->stride_in, to += job->stride) {
     size_t below = from + job->stride_in;
     lanes upper = sums_of_pairs(a_and_b(job, from), a_and_b(job, from + TILE));
     lanes lower = sums_of_pairs(a_and_b(job, below), a_and_b(job, below + TILE));
@@ -121,11 +121,11 @@ LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x
 }
 
 static int add_double_tile(const field_job *job, int tile_x, int tile_y) {
-  fetch_tile(job->a, job->stride, tile_x, tile_y, 0);
-  fetch_tile(job->thin, job->stride, tile_x, tile_y, 0);
-  fetch_tile(job->to, job->stride, tile_x, tile_y, 1);
+  fetch_rows(job->a, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->thin, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->to, job->stride, tile_x, tile_y, job->rows, 1);
   lanes greatest = lanes_set(0);
-  for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++) {
+  for (int y = tile_y * TILE + job->rows.first; y < tile_y * TILE + job->rows.end; y++) {
     size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
     lanes fine = double_row(job->b, job->stride_in, tile_x, y);
     if (job->thin != NULL) fine = fine * left_by(job->thin + at);
@@ -136,7 +136,7 @@ static int add_double_tile(const field_job *job, int tile_x, int tile_y) {
 
 static int double_tile(const field_job *job, int tile_x, int tile_y) {
   lanes greatest = lanes_set(0);
-  for (int y = tile_y * TILE; y < (tile_y + 1) * TILE; y++)
+  for (int y = tile_y * TILE + job->rows.first; y < tile_y * TILE + job->rows.end; y++)
     store_pixels(job->to + (size_t)y * job->stride + (size_t)tile_x * TILE, double_row(job->a, job->stride_in, tile_x, y), &greatest);
   return is_above_zero(greatest);
 }
@@ -237,7 +237,7 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   lanes start[2] = {lanes_set(0), lanes_set(0)}, end[2] = {lanes_set(0), lanes_set(0)};
   const field_pixel *first[] = {job->lacking, job->start_absorbed, job->start_thin, job->end_absorbed, job->end_thin};
   fetch_float_tile(job->now, job->stride_now, tile_x, tile_y);
-  for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) fetch_tile(first[i], job->stride, tile_x, tile_y, i > 0);
+  for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) fetch_rows(first[i], job->stride, tile_x, tile_y, ALL_ROWS, i > 0);
   fetch_float_tile(job->moment, job->stride, tile_x, tile_y);
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;

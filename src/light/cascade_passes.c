@@ -17,13 +17,28 @@ bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field
   return true;
 }
 
+int hl_cascade_doubling_reach(int from, int to) {
+  int reach = 0;
+  for (; from > to; from /= 2) reach += 2 * from;
+  return reach;
+}
+
+/* Says whether a tile is all zeros after some of its rows were found. What the others hold is not read: they may be cleared. */
+static void note_zeros(const cascade_level *level, const cascade_field *field, int x, int y, tile_rows rows, int above_zero) {
+  unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
+  bool whole = rows.end - rows.first == TILE;
+  if (above_zero || whole) *zeros = !above_zero;
+  else hl_cascade_clear_tile(level, field, x, y);
+}
+
 typedef struct add_task {
+  const cascade_reads *reads;
+  int reach;
   const cascade_level *level, *level_a, *level_b; /* of to, a and b */
   const cascade_field *a, *b, *to;
   field_job job;
   field_tile_function *function;
   bool doubled;         /* b is coarser: a of zeros may be left out */
-  const unsigned char *wanted; /* [tiles]; null: all */
 } add_task;
 
 static bool sum_is_zeros(const add_task *task, int x, int y) {
@@ -42,27 +57,30 @@ static bool sum_is_zeros(const add_task *task, int x, int y) {
 static void add_row(void *data, size_t index, int worker) {
   (void)worker;
   const add_task *task = data;
+  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, (int)index, task->reach);
   for (int x = 0; x < task->level->tiles_x; x++) {
-    if (task->wanted != NULL && !task->wanted[index * (size_t)task->level->tiles_x + (size_t)x]) continue;
+    tile_rows rows = hl_cascade_rows_read(&read, x);
+    if (rows.end == 0) continue;
     if (sum_is_zeros(task, x, (int)index)) {
       hl_cascade_clear_tile(task->level, task->to, x, (int)index);
       continue;
     }
     field_job job = task->job;
+    job.rows = rows;
     if (task->doubled && task->a != NULL && task->a->zeros[index * (size_t)task->level->tiles_x + (size_t)x]) job.a = job.thin = NULL;
-    task->to->zeros[index * (size_t)task->level->tiles_x + (size_t)x] = !task->function(&job, x, (int)index);
+    note_zeros(task->level, task->to, x, (int)index, rows, task->function(&job, x, (int)index));
   }
 }
 
 void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a, const cascade_field *thin,
                     const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
-                    const unsigned char *wanted) {
+                    int reach) {
   const cascade_functions *functions = crew->functions;
   field_tile_function *function = level_a->scale < level->scale                 ? functions->add_half
                                   : b != NULL && level_b->scale > level->scale ? functions->add_double
                                                                                : functions->add;
-  add_task task = {.level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b, .to = to, .function = function,
-                   .doubled = function == functions->add_double, .wanted = wanted};
+  add_task task = {.reads = crew->reads, .reach = reach, .level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b, .to = to, .function = function,
+                   .doubled = function == functions->add_double};
   task.job = (field_job){.a = a == NULL ? NULL : a->pixels, .b = b == NULL ? NULL : b->pixels, .to = to->pixels,
                          .stride_in = b == NULL ? level_a->stride : level_b->stride, .stride = level->stride,
                          .thin = thin == NULL ? NULL : thin->pixels};
@@ -70,21 +88,24 @@ void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, cons
 }
 
 typedef struct blur_task {
+  const cascade_reads *reads;
+  int reach;
   const cascade_level *level;
   const cascade_field *from, *a, *to; /* a may be null */
   field_blur_job job;
   field_blur_tile_function *function;
-  int reach_x, reach_y; /* tiles */
-  const unsigned char *wanted; /* [tiles]; null: all */
+  int reach_x, reach_y; /* of the blur; tiles */
 } blur_task;
 
 static void blur_row(void *data, size_t index, int worker) {
   (void)worker;
   const blur_task *task = data;
   int y = (int)index;
+  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
   for (int x = 0; x < task->level->tiles_x; x++) {
     size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
-    if (task->wanted != NULL && !task->wanted[tile]) continue;
+    tile_rows rows = hl_cascade_rows_read(&read, x);
+    if (rows.end == 0) continue;
     bool skip = (task->a == NULL || task->a->zeros[tile]) &&
                 hl_cascade_all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
     if (skip) {
@@ -92,10 +113,11 @@ static void blur_row(void *data, size_t index, int worker) {
       continue;
     }
     field_blur_job job = task->job;
+    job.rows = rows;
     job.u = task->level->boxes[x].box;
     job.v = task->level->boxes[task->level->tiles_x + y].box;
     if (task->a != NULL && task->a->zeros[tile]) job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
-    task->to->zeros[tile] = !task->function(&job, x, y);
+    note_zeros(task->level, task->to, x, y, rows, task->function(&job, x, y));
   }
 }
 
@@ -111,8 +133,8 @@ static int fill_boxes(cascade_box *boxes, int count, double variance, double res
 
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
                          const cascade_field *a, const cascade_field *thin, const cascade_field *to, cascade_blur blur,
-                         const unsigned char *wanted) {
-  blur_task task = {.level = level, .from = from, .a = a, .to = to, .function = crew->functions->blur_add, .wanted = wanted};
+                         int reach) {
+  blur_task task = {.reads = crew->reads, .reach = reach, .level = level, .from = from, .a = a, .to = to, .function = crew->functions->blur_add};
   task.job = (field_blur_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
                                  .thin = thin == NULL ? NULL : thin->pixels, .stride = level->stride};
   task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur.variance, blur.resampled[0]);

@@ -11,19 +11,23 @@ typedef struct cascade_blur {
 } cascade_blur;
 
 /* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse; thin,
- * on a's level, may be null; so may b where a is not coarser, and a where b is. wanted: [tiles]; null: all. */
+ * on a's level, may be null; so may b where a is not coarser, and a where b is. Found where it lies within `reach` pixels of the
+ * buffer of what is read; READ_EVERYWHERE: in all tiles. */
 void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a, const cascade_field *thin,
                     const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
-                    const unsigned char *wanted);
+                    int reach);
 
-/* to = a + (1 - thin) blurred from, all on one level; a and thin may be null. */
+/* to = a + (1 - thin) blurred from, all on one level; a and thin may be null. reach: as above. */
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
                          const cascade_field *a, const cascade_field *thin, const cascade_field *to, cascade_blur blur,
-                         const unsigned char *wanted);
+                         int reach);
 
 /* Matter parted: the part `late` of it goes to the other fields. */
 void hl_cascade_part(const cascade_crew *crew, const cascade_level *level, const cascade_field *absorbed,
                      const cascade_field *thin, const cascade_field *late_absorbed, const cascade_field *late_thin, double late);
+
+/* Pixels of the buffer that doubling reads beyond those that it finds, from pixels of one scale down to another's. */
+int hl_cascade_doubling_reach(int from, int to);
 
 /* True if all tiles of the level's rectangle are zeros; what lies outside is. */
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1);

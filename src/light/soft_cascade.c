@@ -101,7 +101,7 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
                             hl_error *error) {
   cascade_level *level = &cascade->level[index];
   size_t channels = (size_t)cascade->channels, used = 0, tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  level->flags = hl_allocate(context, level->planes + 1, tiles);
+  level->flags = hl_allocate(context, level->planes, tiles);
   level->boxes = hl_allocate(context, (size_t)(level->tiles_x + level->tiles_y), sizeof *level->boxes);
   if (level->flags == NULL || level->boxes == NULL)
     return hl_fail_memory(error, level->planes * tiles, "a cascade of shadows");
@@ -118,7 +118,6 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
   }
   if (index > 0) level->scratch = next_field(level, &used);
   for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++) level->mean[c % 2][c / 2] = next_field(level, &used);
-  level->wanted = level->flags + level->planes * tiles;
   for (size_t c = 0; c < channels && index == 0; c++) {
     cascade->shade[c] = level->sum[0][c];
     cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
@@ -157,12 +156,12 @@ void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, v
   shadow_buffer buffer = {.view = *view, .channels = channels, .tiles_x = hl_tiles(view->width), .tiles_y = hl_tiles(view->height)};
   plan(&cascade, light, image, normal, first, last, pixel, &buffer);
   *kept = 0;
-  *passing = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y * (1 + CASCADE_MASKS);
+  *passing = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y + ((uint64_t)buffer.tiles_x + 1) * ((uint64_t)buffer.tiles_y + 1) * 4;
   for (int i = 0; i < cascade.level_count; i++) {
     const cascade_level *level = &cascade.level[i];
     uint64_t tiles_x = (uint64_t)level->tiles_x, tiles_y = (uint64_t)level->tiles_y;
     *kept += level->pixels * sizeof(field_pixel);
-    *passing += (level->planes + 1) * tiles_x * tiles_y + (tiles_x + tiles_y) * sizeof *level->boxes;
+    *passing += level->planes * tiles_x * tiles_y + (tiles_x + tiles_y) * sizeof *level->boxes;
   }
 }
 
@@ -171,10 +170,10 @@ hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memo
                                 double pixel, shadow_buffer *buffer, hl_error *error) {
   plan(cascade, light, image, normal, first, last, pixel, buffer);
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
-  cascade->touched = hl_allocate_zeroed(context, tiles * (1 + CASCADE_MASKS), 1);
-  for (int i = 0; i < CASCADE_MASKS && cascade->touched != NULL; i++)
-    cascade->wanted[i] = cascade->touched + tiles * (size_t)(1 + i);
-  if (cascade->touched == NULL) return hl_fail_memory(error, tiles, "a cascade of shadows");
+  cascade->touched = hl_allocate_zeroed(context, tiles, 1);
+  cascade->reads = (cascade_reads){buffer->tiles_x, buffer->tiles_y, NULL};
+  cascade->reads.before = hl_allocate(context, (size_t)(buffer->tiles_x + 1) * (size_t)(buffer->tiles_y + 1), sizeof(uint32_t));
+  if (cascade->touched == NULL || cascade->reads.before == NULL) return hl_fail_memory(error, 5 * tiles, "a cascade of shadows");
   hl_status status = open_memory(context, pool, memory, cascade, error);
   for (int i = 0; i < cascade->level_count && status == HL_OK; i++)
     status = open_level(context, cascade, i, light, error);
@@ -216,6 +215,7 @@ void hl_soft_cascade_release(hl_context *context, hl_pool *pool, soft_cascade *c
     hl_release(context, cascade->level[i].boxes);
   }
   hl_release(context, cascade->touched);
+  hl_release(context, cascade->reads.before);
   *cascade = (soft_cascade){0};
 }
 
@@ -255,8 +255,8 @@ static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   const cascade_group *from = &level->group[0];
   cascade_group *to = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++) {
-    hl_cascade_add(crew, level, &from->absorbed[c], NULL, NULL, NULL, next, &to->absorbed[c], NULL);
-    hl_cascade_add(crew, level, &from->thin[c], NULL, NULL, NULL, next, &to->thin[c], NULL);
+    hl_cascade_add(crew, level, &from->absorbed[c], NULL, NULL, NULL, next, &to->absorbed[c], READ_EVERYWHERE);
+    hl_cascade_add(crew, level, &from->thin[c], NULL, NULL, NULL, next, &to->thin[c], READ_EVERYWHERE);
   }
   to->omega = from->omega;
   to->filled = from->filled;
@@ -277,12 +277,12 @@ static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew)
     const cascade_field *late_absorbed = &level->scratch, *late_thin = &level->sum[!level->newest][c];
     hl_cascade_part(crew, level, &b.absorbed[c], &b.thin[c], late_absorbed, late_thin, late);
     /* what goes to the first, by way of the second's fields */
-    hl_cascade_add(crew, level, &b.absorbed[c], &b.thin[c], level, &a.absorbed[c], next, &second->absorbed[c], NULL);
-    hl_cascade_add(crew, level, &b.thin[c], &b.thin[c], level, &a.thin[c], next, &second->thin[c], NULL);
-    hl_cascade_add(crew, next, &second->absorbed[c], &second->thin[c], next, &first->absorbed[c], next, &first->absorbed[c], NULL);
-    hl_cascade_add(crew, next, &second->thin[c], &second->thin[c], next, &first->thin[c], next, &first->thin[c], NULL);
-    hl_cascade_add(crew, level, late_absorbed, NULL, NULL, NULL, next, &second->absorbed[c], NULL);
-    hl_cascade_add(crew, level, late_thin, NULL, NULL, NULL, next, &second->thin[c], NULL);
+    hl_cascade_add(crew, level, &b.absorbed[c], &b.thin[c], level, &a.absorbed[c], next, &second->absorbed[c], READ_EVERYWHERE);
+    hl_cascade_add(crew, level, &b.thin[c], &b.thin[c], level, &a.thin[c], next, &second->thin[c], READ_EVERYWHERE);
+    hl_cascade_add(crew, next, &second->absorbed[c], &second->thin[c], next, &first->absorbed[c], next, &first->absorbed[c], READ_EVERYWHERE);
+    hl_cascade_add(crew, next, &second->thin[c], &second->thin[c], next, &first->thin[c], next, &first->thin[c], READ_EVERYWHERE);
+    hl_cascade_add(crew, level, late_absorbed, NULL, NULL, NULL, next, &second->absorbed[c], READ_EVERYWHERE);
+    hl_cascade_add(crew, level, late_thin, NULL, NULL, NULL, next, &second->thin[c], READ_EVERYWHERE);
   }
   first->filled = first->filled || a.filled || b.filled;
   second->filled = b.filled;
@@ -359,38 +359,42 @@ void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_j
   job->place = (float)cascade->slab;
 }
 
+/* Reaches add up, but for what is read everywhere. */
+static int reach_beyond(int reach, int more) { return reach == READ_EVERYWHERE ? reach : reach + more; }
+
 /* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's thin matter
- * and added to own there (null: zeros). Blurs are done at the farther level, where they are cheap. */
+ * and added to own there (null: zeros), as far as it is read. Blurs are done at the farther level, where they are cheap. */
 static void bring(cascade_level *from, const cascade_field *sum, cascade_blur blur, cascade_level *to_level,
-                  const cascade_field *own, const cascade_field *thin, const cascade_field *to,
-                  const unsigned char *wanted, const cascade_crew *crew) {
+                  const cascade_field *own, const cascade_field *thin, const cascade_field *to, int reach, const cascade_crew *crew) {
   if (from->scale == to_level->scale) {
-    hl_cascade_blur_add(crew, from, sum, own, thin, to, blur, wanted);
+    hl_cascade_blur_add(crew, from, sum, own, thin, to, blur, reach);
     return;
   }
   if (blur.variance * from->greatest_part > fmin(blur.resampled[0], blur.resampled[1])) {
-    hl_cascade_blur_add(crew, from, sum, NULL, NULL, &from->scratch, blur, from->masked ? from->wanted : NULL);
+    hl_cascade_blur_add(crew, from, sum, NULL, NULL, &from->scratch, blur,
+                        reach_beyond(reach, hl_cascade_doubling_reach(from->scale, to_level->scale)));
     sum = &from->scratch;
   }
   while (from->scale > 2 * to_level->scale) {
     cascade_level *next = from - 1;
     if (next->scale < from->scale) {
-      hl_cascade_add(crew, next, NULL, NULL, from, sum, next, &next->scratch, next->masked ? next->wanted : NULL);
+      hl_cascade_add(crew, next, NULL, NULL, from, sum, next, &next->scratch,
+                     reach_beyond(reach, hl_cascade_doubling_reach(next->scale, to_level->scale)));
       sum = &next->scratch;
     }
     from = next;
   }
-  hl_cascade_add(crew, to_level, own, thin, from, sum, to_level, to, wanted);
+  hl_cascade_add(crew, to_level, own, thin, from, sum, to_level, to, reach);
 }
 
 /* What the groups before absorbed, blurred for this group, and what this group did. */
 static void pass_group(int channels, cascade_level *from, cascade_level *level, const cascade_group *group,
-                       double receiver, const unsigned char *wanted, const cascade_crew *crew) {
+                       double receiver, int reach, const cascade_crew *crew) {
   cascade_blur blur = blur_towards(from, receiver, group->omega, level);
   const cascade_field *sum = from->sum[from->newest];
   level->newest = !level->newest;
   for (int c = 0; c < channels; c++)
-    bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], wanted, crew);
+    bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], reach, crew);
 }
 
 /* A bilinear look-up weighs two pixels of the buffer by their distances p and 1 - p: a variance of p (1 - p), 1/6 on average. */
@@ -406,46 +410,19 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
   }
 }
 
-/* ---- which tiles of the finest level the next slabs read ---- */
+/* ---- where the next slabs read ---- */
 
-static void grow_by_a_tile(const cascade_level *level, const unsigned char *from, unsigned char *to) {
-  int width = level->tiles_x, height = level->tiles_y;
-  memset(to, 0, (size_t)width * (size_t)height);
-  for (int y = 0; y < height; y++)
-    for (int x = 0; x < width; x++) {
-      if (!from[y * width + x]) continue;
-      int x0 = x > 0 ? x - 1 : 0, x1 = x + 1 < width ? x + 1 : x, y1 = y + 1 < height ? y + 1 : y;
-      for (int j = y > 0 ? y - 1 : 0; j <= y1; j++) memset(to + j * width + x0, 1, (size_t)(x1 - x0 + 1));
-    }
-}
-
-/* Tiles that the sheets up to the next chunk's end can touch, in the first mask; there their slabs are looked up. Each further
- * mask is a tile wider. */
-static void find_wanted(soft_cascade *cascade, const occupancy *occupancy, const sheet_stack *sheets, int sheet) {
-  const cascade_level *level = &cascade->level[0];
-  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  unsigned char *touched = cascade->wanted[0];
-  memset(touched, 0, tiles);
-  for (bool last = false; sheet < sheets->count && !last; sheet++) {
-    const uint64_t *bits = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
-    for (int word = 0; word < occupancy->tile_words; word++)
-      for (uint64_t left = bits[word]; left != 0; left &= left - 1)
-        touched[(size_t)word * 64 + (size_t)__builtin_ctzll(left)] = 1;
-    last = omega_at(cascade, hl_sheet_height(sheets, sheet)) - cascade->chunk_start >= cascade->chunk;
-  }
-  for (int i = 1; i < CASCADE_MASKS; i++) grow_by_a_tile(level, cascade->wanted[i - 1], cascade->wanted[i]);
-}
-
-/* The mask that is wider by so many pixels; null where none is: then all tiles are wanted. */
-static const unsigned char *wanted_within(const soft_cascade *cascade, int pixels) {
-  int wider = (pixels + TILE - 1) / TILE;
-  return wider < CASCADE_MASKS ? cascade->wanted[wider] : NULL;
+/* In the tiles that sheets up to the next chunk's end can touch. */
+static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const sheet_stack *sheets, int sheet) {
+  int last = sheet;
+  while (last < sheets->count - 1 && omega_at(cascade, hl_sheet_height(sheets, last)) - cascade->chunk_start < cascade->chunk) last++;
+  hl_cascade_reads_find(&cascade->reads, occupancy, sheet, last);
 }
 
 /* How far what is on the way from one group, or the sum behind it, to the next is blurred and resampled, pixels of the buffer. */
 static int reach_of(const cascade_level *level, double variance, const cascade_level *next) {
   double own = variance * level->greatest_part / ((double)level->scale * level->scale);
-  return (hl_blur_box_of_variance(own).reach + 1) * level->scale + (next->scale < level->scale ? 2 * level->scale : 0);
+  return (hl_blur_box_of_variance(own).reach + 1) * level->scale + hl_cascade_doubling_reach(level->scale, next->scale);
 }
 
 /* How far what passed group g of a level is still blurred on its way to the buffer, pixels of that. */
@@ -465,20 +442,6 @@ static int reach_behind(const soft_cascade *cascade, int index, int g, double re
   return reach + reach_of(from, variance_between(receiver - omega, 0), &cascade->level[0]);
 }
 
-/* Where levels that are found anew for every chunk are read. */
-static void mask_level(soft_cascade *cascade, int index, double receiver) {
-  cascade_level *level = &cascade->level[index];
-  const cascade_level *finest = &cascade->level[0];
-  if (period_of(index) > 1) return;
-  const unsigned char *wanted = wanted_within(cascade, reach_behind(cascade, index, 0, receiver));
-  level->masked = wanted != NULL;
-  if (!level->masked) return;
-  memset(level->wanted, 0, (size_t)level->tiles_x * (size_t)level->tiles_y);
-  for (int y = 0; y < finest->tiles_y; y++)
-    for (int x = 0; x < finest->tiles_x; x++)
-      level->wanted[y / level->scale * level->tiles_x + x / level->scale] |= wanted[y * finest->tiles_x + x];
-}
-
 /* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. Empty groups are left
  * out, which keeps blurs few and kernels boxes. Returns the nearest level with anything in sum; null if nothing is in
  * the way. */
@@ -490,7 +453,6 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
-    if (i > 0) mask_level(cascade, i, receiver);
     /* until it is due again receivers go on by a period less one chunk: their mean is served */
     double served = receiver + cascade->chunk * (double)(period - 1) / 2;
     for (int g = 0; g < level->count && due; g++) {
@@ -498,10 +460,8 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
       if (!group->filled) continue;
       if (sum == NULL) pass_first(cascade, level, group);
       else {
-        const unsigned char *wanted = i == 0         ? wanted_within(cascade, reach_behind(cascade, 0, g, receiver))
-                                      : level->masked ? level->wanted
-                                                      : NULL;
-        pass_group(cascade->channels, sum, level, group, served, wanted, crew);
+        int reach = period > 1 ? READ_EVERYWHERE : reach_behind(cascade, i, g, receiver);
+        pass_group(cascade->channels, sum, level, group, served, reach, crew);
       }
       level->filled = true;
       level->sum_omega = group->omega;
@@ -524,9 +484,10 @@ static void light_row(void *data, size_t index, int worker) {
   const light_task *task = data;
   const cascade_level *level = &task->cascade->level[0];
   shadow_buffer *buffer = task->buffer;
+  const read_row read = hl_cascade_read_row(&task->cascade->reads, 1, (int)index, 0);
   for (size_t tile_x = 0; tile_x < (size_t)level->tiles_x; tile_x++) {
     size_t tile = index * (size_t)level->tiles_x + tile_x;
-    if (!task->cascade->wanted[0][tile]) continue;
+    if (hl_cascade_rows_read(&read, (int)tile_x).end == 0) continue;
     bool shaded = false;
     for (int c = 0; c < buffer->channels; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
@@ -541,7 +502,7 @@ static void light_row(void *data, size_t index, int worker) {
 /* Less than this, pixels squared, is not worth a blur: bilinear look-ups have 1/6 and more. */
 static const double LEAST_VARIANCE = 0.05;
 
-/* What receivers around omega = receiver lack, where it is wanted; false if nothing is in the way. */
+/* What receivers around omega = receiver lack, where it is read; false if nothing is in the way. */
 static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   if (cascade->image != NULL) return hl_soft_cascade_pass_image(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);
@@ -551,7 +512,7 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   bool sharp = level == finest && blur.variance < LEAST_VARIANCE;
   memcpy(cascade->shade, finest->sum[sharp ? finest->newest : !finest->newest], sizeof cascade->shade);
   for (int c = 0; c < cascade->channels && !sharp; c++)
-    bring(level, &level->sum[level->newest][c], blur, finest, NULL, NULL, &cascade->shade[c], cascade->wanted[0], crew);
+    bring(level, &level->sum[level->newest][c], blur, finest, NULL, NULL, &cascade->shade[c], 0, crew);
   return true;
 }
 
@@ -566,8 +527,8 @@ void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const
                              const sheet_stack *sheets, int sheet, hl_pool *pool, const cascade_functions *functions) {
   double omega = omega_at(cascade, hl_sheet_height(sheets, sheet));
   if (!isfinite(omega) || omega - cascade->chunk_start < cascade->chunk) return;
-  const cascade_crew crew = {pool, functions};
+  const cascade_crew crew = {pool, functions, &cascade->reads};
   push_chunk(cascade, buffer, omega, &crew);
-  find_wanted(cascade, occupancy, sheets, sheet);
+  find_reads(cascade, occupancy, sheets, sheet);
   refill_buffer(cascade, buffer, omega + cascade->chunk / 2, &crew);
 }

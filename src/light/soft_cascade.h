@@ -22,12 +22,13 @@
 
 #include "core/pool.h"
 #include "light/cascade_field.h"
+#include "light/cascade_reads.h"
 #include "light/light_extent.h"
 #include "light/light_image.h"
 #include "light/shadow_buffer.h"
 
 /* CASCADE_MARGIN: pixels of zeros between rows, and rows of them between planes, that blurs may read. */
-enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48, CASCADE_MASKS = 6 };
+enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48 };
 
 /* Absorbed light over the pixels of a level, zeros around them: what follows a row, or a field, is the margin before the
  * next. */
@@ -62,8 +63,6 @@ typedef struct cascade_level {
   bool renewed;                      /* sum is to be found anew */
   cascade_field scratch;             /* of farther levels */
   cascade_field mean[2][HL_CHANNELS]; /* through an image: of one group's absorbed and thin light */
-  unsigned char *wanted;             /* in flags; [tiles]; of farther levels */
-  bool masked;                       /* sums are found where wanted only */
   cascade_box *boxes;                /* owned; [tiles_x], then [tiles_y] */
   field_pixel *memory;               /* the cascade_memory's */
   size_t planes;
@@ -97,13 +96,14 @@ typedef struct soft_cascade {
   cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0: one of its sums */
   float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: what the chunk's slabs took, times their places */
   unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs took light */
-  unsigned char *wanted[CASCADE_MASKS]; /* owned with touched; [tiles]; what the next chunk's slabs read; a tile wider each */
+  cascade_reads reads;    /* by the next chunk's slabs */
 } soft_cascade;
 
 /* Who does a pass over a cascade's fields. */
 typedef struct cascade_crew {
   hl_pool *pool;
   const cascade_functions *functions;
+  const cascade_reads *reads;
 } cascade_crew;
 
 /* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. image: the
@@ -127,7 +127,7 @@ void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const
                              const sheet_stack *sheets, int sheet, hl_pool *pool, const cascade_functions *functions);
 
 /* soft_cascade_image.c: what receivers around omega = receiver lack, through the light's image, in shade where it is
- * wanted; false if nothing is in the way. */
+ * read; false if nothing is in the way. */
 bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, const cascade_crew *crew);
 
 #endif

@@ -25,26 +25,9 @@ static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_le
   return level == &cascade->level[0] ? &cascade->shade[channel] : &level->sum[0][channel];
 }
 
-static const unsigned char *wanted_of(const soft_cascade *cascade, const cascade_level *level) {
-  return level == &cascade->level[0] ? cascade->wanted[0] : level->wanted;
-}
-
-/* ---- which tiles are read: under those of the next finer level, and their neighbours ---- */
-
-static void mark_wanted(const soft_cascade *cascade) {
-  for (int i = 1; i < cascade->level_count; i++) {
-    const cascade_level *fine = &cascade->level[i - 1], *level = &cascade->level[i];
-    const unsigned char *wanted = wanted_of(cascade, fine);
-    int ratio = level->scale / fine->scale;
-    memset(level->wanted, 0, (size_t)level->tiles_x * (size_t)level->tiles_y);
-    for (int y = 0; y < fine->tiles_y; y++)
-      for (int x = 0; x < fine->tiles_x; x++) {
-        if (!wanted[y * fine->tiles_x + x]) continue;
-        int x0 = (x - 1) / ratio, y0 = (y - 1) / ratio, x1 = (x + 1) / ratio, y1 = (y + 1) / ratio;
-        for (int j = y0; j <= y1 && j < level->tiles_y; j++)
-          for (int k = x0; k <= x1 && k < level->tiles_x; k++) level->wanted[j * level->tiles_x + k] = 1;
-      }
-  }
+/* What is read of a row of tiles: by the next slabs, or for the next finer level, which weighs neighbouring pixels. */
+static read_row row_read(const soft_cascade *cascade, const cascade_level *level, size_t y) {
+  return hl_cascade_read_row(&cascade->reads, level->scale, (int)y, hl_cascade_doubling_reach(level->scale, 1));
 }
 
 /* ---- the sum of the farther levels ---- */
@@ -66,7 +49,7 @@ static void start_tile(const start_task *task, const cascade_field *from, const 
     hl_cascade_clear_tile(level, to, x, y);
     return;
   }
-  field_job job = {.a = from->pixels, .to = to->pixels, .stride_in = farther->stride, .stride = level->stride};
+  field_job job = {.a = from->pixels, .to = to->pixels, .stride_in = farther->stride, .stride = level->stride, .rows = ALL_ROWS};
   size_t at = (size_t)y * TILE * level->stride + (size_t)x * TILE;
   int above_zero = ratio == 1 || task->functions->double_tile(&job, x, y);
   for (size_t row = 0; row < TILE && ratio == 1; row++)
@@ -78,8 +61,9 @@ static void start_row(void *data, size_t index, int worker) {
   (void)worker;
   const start_task *task = data;
   const cascade_level *level = task->level;
+  const read_row read = row_read(task->cascade, level, index);
   for (int x = 0; x < level->tiles_x; x++) {
-    if (!wanted_of(task->cascade, level)[index * (size_t)level->tiles_x + (size_t)x]) continue;
+    if (hl_cascade_rows_read(&read, x).end == 0) continue;
     for (int c = 0; c < task->cascade->channels; c++)
       start_tile(task, task->farther == NULL ? NULL : sum_of(task->cascade, task->farther, c),
                  sum_of(task->cascade, level, c), x, (int)index);
@@ -98,7 +82,7 @@ static void average_row(void *data, size_t index, int worker) {
     for (int i = 0; i < 2; i++) {
       const cascade_field *to = &level->mean[i][c];
       field_blur_job job = {.from = from[i]->pixels, .to = to->pixels, .stride = level->stride,
-                          .u = hl_blur_box((float)pass->step[0]), .v = hl_blur_box((float)pass->step[1])};
+                          .u = hl_blur_box((float)pass->step[0]), .v = hl_blur_box((float)pass->step[1]), .rows = ALL_ROWS};
       for (int x = 0; x < level->tiles_x; x++) {
         if (!any_near(level, from[i], x, (int)index, 1)) {
           hl_cascade_clear_tile(level, to, x, (int)index);
@@ -146,8 +130,9 @@ static void add_row(void *data, size_t index, int worker) {
   const cascade_level *level = pass->level;
   image_taps taps;
   bool known = false;
+  const read_row read = row_read(cascade, level, index);
   for (int x = 0; x < level->tiles_x; x++) {
-    if (!wanted_of(cascade, level)[index * (size_t)level->tiles_x + (size_t)x]) continue;
+    if (hl_cascade_rows_read(&read, x).end == 0) continue;
     const double slope[2] = {cascade->slope_start[0] + cascade->slope_step[0] * (x + 0.5) * TILE * level->scale,
                              cascade->slope_start[1] + cascade->slope_step[1] * ((double)index + 0.5) * TILE * level->scale};
     if (!known || cascade->image->tilted) hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
@@ -170,7 +155,6 @@ static void add_group(const soft_cascade *cascade, cascade_level *level, const c
 
 bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *farther = NULL;
-  mark_wanted(cascade);
   for (int i = cascade->level_count - 1; i >= 0; i--) {
     cascade_level *level = &cascade->level[i];
     start_task task = {cascade, level, farther, crew->functions};

@@ -415,7 +415,7 @@ static void test_fields(void **unused) {
     field_pixel *lacking = &s.lacking[MARGIN][MARGIN], *thin = &s.thin[MARGIN][MARGIN], *out = &s.out.lacking[MARGIN][MARGIN];
     s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], FIELD, FIELD,
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
-    s.field = (field_job){lacking, thin, out, FIELD, FIELD, round % 2 ? thin + 3 * FIELD : NULL};
+    s.field = (field_job){lacking, thin, out, FIELD, FIELD, round % 2 ? thin + 3 * FIELD : NULL, ALL_ROWS};
     s.left = (left_job){lacking, &s.out.pixels[MARGIN][MARGIN], FIELD, FIELD};
     s.absorbed = (absorbed_job){lacking, &s.b[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], 0.8f,
                                 out + 16 * FIELD, out + 32 * FIELD, out + 48 * FIELD, out + 64 * FIELD, FIELD, FIELD};
@@ -423,7 +423,7 @@ static void test_fields(void **unused) {
                         random_between(&seed, 0, 1)};
     s.field_blur = (field_blur_job){lacking, round % 3 ? thin : NULL, round % 2 ? thin + 3 * FIELD : NULL, out,
                                     FIELD, hl_blur_box(random_between(&seed, 1, 90)),
-                                    hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH))};
+                                    hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH)), ALL_ROWS};
     s.sublight = (sublight_job){.slab_stride = FIELD, .slab_width = 60, .slab_height = 50, .stride = FIELD,
                                 .rows = s.rows, .slab_tiles_x = 4, .slab_tiles_y = 4,
                                 .channels = 1 + 2 * (round % 2)};

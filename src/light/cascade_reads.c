@@ -1,0 +1,61 @@
+/* light/cascade_reads.c - which tiles the sheets to come read, and what is near them. */
+#include "light/cascade_reads.h"
+
+#include <string.h>
+
+/* Ones where tiles are read, a row and a column on. */
+static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, int first_sheet, int last_sheet) {
+  size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;
+  memset(reads->before, 0, (width + 1) * ((size_t)reads->tiles_y + 1) * sizeof *reads->before);
+  for (size_t word = 0; word < words; word++) {
+    uint64_t bits = 0;
+    for (int sheet = first_sheet; sheet <= last_sheet; sheet++) bits |= occupancy->by_sheet[(size_t)sheet * words + word];
+    for (; bits != 0; bits &= bits - 1) {
+      size_t tile = word * 64 + (size_t)__builtin_ctzll(bits);
+      reads->before[(tile / width + 1) * (width + 1) + tile % width + 1] = 1;
+    }
+  }
+}
+
+void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int first_sheet, int last_sheet) {
+  mark_tiles(reads, occupancy, first_sheet, last_sheet);
+  size_t stride = (size_t)reads->tiles_x + 1;
+  for (int y = 1; y <= reads->tiles_y; y++) {
+    uint32_t *row = reads->before + (size_t)y * stride, sum = 0;
+    for (size_t x = 1; x < stride; x++) {
+      sum += row[x];
+      row[x] = row[x - stride] + sum;
+    }
+  }
+}
+
+/* Rows `top` to `bottom` of the buffer's pixels, both included. */
+static void find_band(const cascade_reads *reads, int top, int bottom, const uint32_t **upper, const uint32_t **lower) {
+  int y0 = top < 0 ? 0 : top / TILE, y1 = bottom < reads->tiles_y * TILE ? bottom / TILE + 1 : reads->tiles_y;
+  if (y0 > y1) y0 = y1;
+  *upper = reads->before + (size_t)y0 * ((size_t)reads->tiles_x + 1);
+  *lower = reads->before + (size_t)y1 * ((size_t)reads->tiles_x + 1);
+}
+
+read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int reach) {
+  read_row row = {.reads = reads, .scale = scale, .y = y, .reach = reach};
+  if (reach == READ_EVERYWHERE) return row;
+  row.around = (reach + TILE - 1) / TILE;
+  find_band(reads, y * TILE * scale - reach, (y + 1) * TILE * scale - 1 + reach, &row.upper, &row.lower);
+  return row;
+}
+
+tile_rows hl_cascade_rows_of_tile(const read_row *row, int x) {
+  int first = TILE, end = 0, x0 = x * row->scale - row->around, x1 = (x + 1) * row->scale + row->around;
+  if (x0 < 0) x0 = 0;
+  if (x1 > row->reads->tiles_x) x1 = row->reads->tiles_x;
+  for (int i = 0; i < TILE; i += BLOCK) {
+    int top = (row->y * TILE + i) * row->scale;
+    const uint32_t *upper, *lower;
+    find_band(row->reads, top - row->reach, top + BLOCK * row->scale - 1 + row->reach, &upper, &lower);
+    if (lower[x1] - lower[x0] == upper[x1] - upper[x0]) continue;
+    if (first == TILE) first = i;
+    end = i + BLOCK;
+  }
+  return (tile_rows){first, end};
+}
