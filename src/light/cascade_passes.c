@@ -72,18 +72,25 @@ static void add_row(void *data, size_t index, int worker) {
   }
 }
 
-void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a, const cascade_field *thin,
-                    const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
-                    int reach) {
+static add_task task_of_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
+                            const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
+                            const cascade_level *level, const cascade_field *to, int reach) {
   const cascade_functions *functions = crew->functions;
   field_tile_function *function = level_a->scale < level->scale                 ? functions->add_half
                                   : b != NULL && level_b->scale > level->scale ? functions->add_double
                                                                                : functions->add;
-  add_task task = {.reads = crew->reads, .reach = reach, .level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b, .to = to, .function = function,
-                   .doubled = function == functions->add_double};
+  add_task task = {.reads = crew->reads, .reach = reach, .level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b,
+                   .to = to, .function = function, .doubled = function == functions->add_double};
   task.job = (field_job){.a = a == NULL ? NULL : a->pixels, .b = b == NULL ? NULL : b->pixels, .to = to->pixels,
                          .stride_in = b == NULL ? level_a->stride : level_b->stride, .stride = level->stride,
                          .thin = thin == NULL ? NULL : thin->pixels};
+  return task;
+}
+
+void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a, const cascade_field *thin,
+                    const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
+                    int reach) {
+  add_task task = task_of_add(crew, level_a, a, thin, level_b, b, level, to, reach);
   hl_pool_run(crew->pool, (size_t)level->tiles_y, add_row, &task);
 }
 
@@ -91,7 +98,7 @@ typedef struct blur_task {
   const cascade_reads *reads;
   int reach;
   const cascade_level *level;
-  const cascade_field *from, *a, *to; /* a may be null */
+  const cascade_field *from, *a, *thin, *to; /* a and thin may be null */
   field_blur_job job;
   field_blur_tile_function *function;
   int reach_x, reach_y; /* of the blur; tiles */
@@ -117,6 +124,7 @@ static void blur_row(void *data, size_t index, int worker) {
     job.u = task->level->boxes[x].box;
     job.v = task->level->boxes[task->level->tiles_x + y].box;
     if (task->a != NULL && task->a->zeros[tile]) job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
+    if (task->thin != NULL && task->thin->zeros[tile]) job.thin = NULL;
     note_zeros(task->level, task->to, x, y, rows, task->function(&job, x, y));
   }
 }
@@ -134,7 +142,8 @@ static int fill_boxes(cascade_box *boxes, int count, double variance, double res
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
                          const cascade_field *a, const cascade_field *thin, const cascade_field *to, cascade_blur blur,
                          int reach) {
-  blur_task task = {.reads = crew->reads, .reach = reach, .level = level, .from = from, .a = a, .to = to, .function = crew->functions->blur_add};
+  blur_task task = {.reads = crew->reads, .reach = reach, .level = level, .from = from, .a = a, .thin = thin, .to = to,
+                    .function = crew->functions->blur_add};
   task.job = (field_blur_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
                                  .thin = thin == NULL ? NULL : thin->pixels, .stride = level->stride};
   task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur.variance, blur.resampled[0]);
@@ -163,11 +172,38 @@ static void part_row(void *data, size_t index, int worker) {
   }
 }
 
-void hl_cascade_part(const cascade_crew *crew, const cascade_level *level, const cascade_field *absorbed,
-                     const cascade_field *thin, const cascade_field *late_absorbed, const cascade_field *late_thin, double late) {
-  part_task task = {level, {absorbed, thin, late_absorbed, late_thin},
-                    {absorbed->pixels, thin->pixels, {absorbed->pixels, late_absorbed->pixels}, {thin->pixels, late_thin->pixels},
-                     level->stride, (float)late},
-                    crew->functions->part};
-  hl_pool_run(crew->pool, (size_t)level->tiles_y, part_row, &task);
+enum { MERGE_SUMS = 6 };
+
+typedef struct merge_task {
+  const cascade_level *level;
+  int ratio;            /* of the levels' scales */
+  part_task part;
+  add_task sums[MERGE_SUMS];
+} merge_task;
+
+/* A row of tiles of the farther level, and those of the nearer one below it. */
+static void merge_row(void *data, size_t index, int worker) {
+  merge_task *task = data;
+  size_t first = index * (size_t)task->ratio, end = first + (size_t)task->ratio;
+  for (size_t row = first; row < end && row < (size_t)task->level->tiles_y; row++) part_row(&task->part, row, worker);
+  for (int i = 0; i < MERGE_SUMS; i++) add_row(&task->sums[i], index, worker);
+}
+
+void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a, const cascade_matter *b,
+                      double late, const cascade_matter *spare, const cascade_level *next, const cascade_matter *first,
+                      const cascade_matter *second) {
+  merge_task task = {.level = level, .ratio = next->scale / level->scale};
+  task.part = (part_task){level, {b->absorbed, b->thin, spare->absorbed, spare->thin},
+                          {b->absorbed->pixels, b->thin->pixels, {b->absorbed->pixels, spare->absorbed->pixels},
+                           {b->thin->pixels, spare->thin->pixels}, level->stride, (float)late},
+                          crew->functions->part};
+  const cascade_field *of_a[2] = {a->absorbed, a->thin}, *of_b[2] = {b->absorbed, b->thin}, *of_spare[2] = {spare->absorbed, spare->thin};
+  const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
+  for (int i = 0; i < 2; i++) {
+    /* what goes to the first, by way of the second's fields */
+    task.sums[i] = task_of_add(crew, level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE);
+    task.sums[2 + i] = task_of_add(crew, next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE);
+    task.sums[4 + i] = task_of_add(crew, level, of_spare[i], NULL, NULL, NULL, next, to[i], READ_EVERYWHERE);
+  }
+  hl_pool_run(crew->pool, (size_t)next->tiles_y, merge_row, &task);
 }

@@ -22,9 +22,15 @@ void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, c
                          const cascade_field *a, const cascade_field *thin, const cascade_field *to, cascade_blur blur,
                          int reach);
 
-/* Matter parted: the part `late` of it goes to the other fields. */
-void hl_cascade_part(const cascade_crew *crew, const cascade_level *level, const cascade_field *absorbed,
-                     const cascade_field *thin, const cascade_field *late_absorbed, const cascade_field *late_thin, double late);
+/* One channel of what a group holds. */
+typedef struct cascade_matter { const cascade_field *absorbed, *thin; } cascade_matter;
+
+/* Two groups' matter to the next level, which may be twice as coarse: a's and b's, but for the part `late` of b's, are added to the
+ * first there, that part becomes the second; b is changed, spare fields of its level are used. One row of tiles after the other
+ * goes all the way. */
+void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a, const cascade_matter *b,
+                      double late, const cascade_matter *spare, const cascade_level *next, const cascade_matter *first,
+                      const cascade_matter *second);
 
 /* Pixels of the buffer that doubling reads beyond those that it finds, from pixels of one scale down to another's. */
 int hl_cascade_doubling_reach(int from, int to);

@@ -274,15 +274,10 @@ static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew)
   if (next->count == 0) next->group[next->count++].omega = a.omega;
   cascade_group *first = &next->group[next->count - 1], *second = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++) {
-    const cascade_field *late_absorbed = &level->scratch, *late_thin = &level->sum[!level->newest][c];
-    hl_cascade_part(crew, level, &b.absorbed[c], &b.thin[c], late_absorbed, late_thin, late);
-    /* what goes to the first, by way of the second's fields */
-    hl_cascade_add(crew, level, &b.absorbed[c], &b.thin[c], level, &a.absorbed[c], next, &second->absorbed[c], READ_EVERYWHERE);
-    hl_cascade_add(crew, level, &b.thin[c], &b.thin[c], level, &a.thin[c], next, &second->thin[c], READ_EVERYWHERE);
-    hl_cascade_add(crew, next, &second->absorbed[c], &second->thin[c], next, &first->absorbed[c], next, &first->absorbed[c], READ_EVERYWHERE);
-    hl_cascade_add(crew, next, &second->thin[c], &second->thin[c], next, &first->thin[c], next, &first->thin[c], READ_EVERYWHERE);
-    hl_cascade_add(crew, level, late_absorbed, NULL, NULL, NULL, next, &second->absorbed[c], READ_EVERYWHERE);
-    hl_cascade_add(crew, level, late_thin, NULL, NULL, NULL, next, &second->thin[c], READ_EVERYWHERE);
+    const cascade_matter spare = {&level->scratch, &level->sum[!level->newest][c]};
+    hl_cascade_merge(crew, level, &(cascade_matter){&a.absorbed[c], &a.thin[c]}, &(cascade_matter){&b.absorbed[c], &b.thin[c]}, late,
+                     &spare, next, &(cascade_matter){&first->absorbed[c], &first->thin[c]},
+                     &(cascade_matter){&second->absorbed[c], &second->thin[c]});
   }
   first->filled = first->filled || a.filled || b.filled;
   second->filled = b.filled;

@@ -127,7 +127,8 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
   }
   uint64_t tiles = (uint64_t)hl_tiles(view.width) * (uint64_t)hl_tiles(view.height), passing = 0;
   bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper, reach);
-  bytes->passing += hl_view_sheets_bytes(sweep, &view, look_up_spare(sweep, source, &view)) + tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
+  bytes->passing += hl_view_sheets_bytes(sweep, &view, look_up_spare(sweep, source, &view));
+  bytes->passing += tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
   if (soft && source->soft_method == HL_SOFT_SUBLIGHTS)
     bytes->passing += hl_sublights_bytes(source, image, sweep->scene->render.light_samples, sheets->normal, &extent,
                                          sweep->channels, &view, reach);
