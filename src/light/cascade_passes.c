@@ -3,11 +3,9 @@
 
 #include <string.h>
 
-void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x, int y) {
-  unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
+void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *field, int x, int y) {
   field_pixel *pixels = field->pixels + (size_t)y * TILE * level->stride + (size_t)x * TILE;
-  for (size_t row = 0; row < TILE && !*zeros; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(field_pixel));
-  *zeros = 1;
+  for (size_t row = 0; row < TILE; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(field_pixel));
 }
 
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1) {
@@ -46,6 +44,10 @@ static bool sum_is_zeros(const add_task *task, int x, int y) {
   const cascade_field *fields[2] = {task->a, task->b};
   for (int i = 0; i < 2; i++) {
     if (fields[i] == NULL) continue;
+    if (levels[i]->scale == task->level->scale) {
+      if (!fields[i]->zeros[y * task->level->tiles_x + x]) return false;
+      continue;
+    }
     int coarse = levels[i]->scale, own = task->level->scale, x0 = x, y0 = y, x1 = x, y1 = y;
     if (coarse < own) x0 = 2 * x, x1 = 2 * x + 1, y0 = 2 * y, y1 = 2 * y + 1;
     if (coarse > own) x0 = (x - 1) / 2, x1 = (x + 1) / 2, y0 = (y - 1) / 2, y1 = (y + 1) / 2;
@@ -59,16 +61,15 @@ static void add_row(void *data, size_t index, int worker) {
   const add_task *task = data;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, (int)index, task->reach);
   for (int x = 0; x < task->level->tiles_x; x++) {
-    tile_rows rows = hl_cascade_rows_read(&read, x);
-    if (rows.end == 0) continue;
+    if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     if (sum_is_zeros(task, x, (int)index)) {
       hl_cascade_clear_tile(task->level, task->to, x, (int)index);
       continue;
     }
     field_job job = task->job;
-    job.rows = rows;
+    job.rows = hl_cascade_rows_read(&read, x);
     if (task->doubled && task->a != NULL && task->a->zeros[index * (size_t)task->level->tiles_x + (size_t)x]) job.a = job.thin = NULL;
-    note_zeros(task->level, task->to, x, (int)index, rows, task->function(&job, x, (int)index));
+    note_zeros(task->level, task->to, x, (int)index, job.rows, task->function(&job, x, (int)index));
   }
 }
 
@@ -111,8 +112,7 @@ static void blur_row(void *data, size_t index, int worker) {
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
   for (int x = 0; x < task->level->tiles_x; x++) {
     size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
-    tile_rows rows = hl_cascade_rows_read(&read, x);
-    if (rows.end == 0) continue;
+    if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     bool skip = (task->a == NULL || task->a->zeros[tile]) &&
                 hl_cascade_all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
     if (skip) {
@@ -120,12 +120,12 @@ static void blur_row(void *data, size_t index, int worker) {
       continue;
     }
     field_blur_job job = task->job;
-    job.rows = rows;
+    job.rows = hl_cascade_rows_read(&read, x);
     job.u = task->level->boxes[x].box;
     job.v = task->level->boxes[task->level->tiles_x + y].box;
     if (task->a != NULL && task->a->zeros[tile]) job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
     if (task->thin != NULL && task->thin->zeros[tile]) job.thin = NULL;
-    note_zeros(task->level, task->to, x, y, rows, task->function(&job, x, y));
+    note_zeros(task->level, task->to, x, y, job.rows, task->function(&job, x, y));
   }
 }
 

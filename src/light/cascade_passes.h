@@ -38,7 +38,14 @@ int hl_cascade_doubling_reach(int from, int to);
 /* True if all tiles of the level's rectangle are zeros; what lies outside is. */
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1);
 
-/* Makes a tile zeros, and says so. */
-void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x, int y);
+/* Makes a tile's pixels zeros. */
+void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *field, int x, int y);
+
+/* Makes a tile zeros, and says so; most are already. */
+static inline void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x, int y) {
+  unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
+  if (!*zeros) hl_cascade_clear_pixels(level, field, x, y);
+  *zeros = 1;
+}
 
 #endif

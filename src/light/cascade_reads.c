@@ -29,33 +29,20 @@ void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int
   }
 }
 
-/* Rows `top` to `bottom` of the buffer's pixels, both included. */
-static void find_band(const cascade_reads *reads, int top, int bottom, const uint32_t **upper, const uint32_t **lower) {
+/* Around rows `top` to `bottom` of the buffer's pixels, both included. */
+static read_band band_of(const cascade_reads *reads, int top, int bottom) {
   int y0 = top < 0 ? 0 : top / TILE, y1 = bottom < reads->tiles_y * TILE ? bottom / TILE + 1 : reads->tiles_y;
   if (y0 > y1) y0 = y1;
-  *upper = reads->before + (size_t)y0 * ((size_t)reads->tiles_x + 1);
-  *lower = reads->before + (size_t)y1 * ((size_t)reads->tiles_x + 1);
+  size_t stride = (size_t)reads->tiles_x + 1;
+  return (read_band){reads->before + (size_t)y0 * stride, reads->before + (size_t)y1 * stride};
 }
 
 read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int reach) {
-  read_row row = {.reads = reads, .scale = scale, .y = y, .reach = reach};
+  read_row row = {.scale = scale, .reach = reach, .tiles_x = reads->tiles_x};
   if (reach == READ_EVERYWHERE) return row;
+  int top = y * TILE * scale - reach, step = BLOCK * scale;
   row.around = (reach + TILE - 1) / TILE;
-  find_band(reads, y * TILE * scale - reach, (y + 1) * TILE * scale - 1 + reach, &row.upper, &row.lower);
+  row.all = band_of(reads, top, top + TILE * scale - 1 + 2 * reach);
+  for (int i = 0; i < TILE / BLOCK; i++) row.blocks[i] = band_of(reads, top + i * step, top + (i + 1) * step - 1 + 2 * reach);
   return row;
-}
-
-tile_rows hl_cascade_rows_of_tile(const read_row *row, int x) {
-  int first = TILE, end = 0, x0 = x * row->scale - row->around, x1 = (x + 1) * row->scale + row->around;
-  if (x0 < 0) x0 = 0;
-  if (x1 > row->reads->tiles_x) x1 = row->reads->tiles_x;
-  for (int i = 0; i < TILE; i += BLOCK) {
-    int top = (row->y * TILE + i) * row->scale;
-    const uint32_t *upper, *lower;
-    find_band(row->reads, top - row->reach, top + BLOCK * row->scale - 1 + row->reach, &upper, &lower);
-    if (lower[x1] - lower[x0] == upper[x1] - upper[x0]) continue;
-    if (first == TILE) first = i;
-    end = i + BLOCK;
-  }
-  return (tile_rows){first, end};
 }

@@ -17,27 +17,35 @@ enum { READ_EVERYWHERE = -1 };
 /* Tiles that sheets of the light's occupancy touch: there their slabs are looked up. */
 void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int first_sheet, int last_sheet);
 
+/* Rows of the table around some rows of tiles: at the first of them, and after the last. */
+typedef struct read_band { const uint32_t *upper, *lower; } read_band;
+
 /* A row of tiles of a level with pixels `scale` wide, and what is read within `reach` pixels of the buffer of it. */
 typedef struct read_row {
-  const cascade_reads *reads;
-  int scale, y, reach;
-  int around;                   /* reach in tiles */
-  const uint32_t *upper, *lower; /* of before: at the first row of tiles within reach, and after the last */
+  int scale, reach, tiles_x;
+  int around;                     /* reach in tiles */
+  read_band all;                  /* of the whole row */
+  read_band blocks[TILE / BLOCK]; /* of each four of its pixels' rows */
 } read_row;
 
 read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int reach);
 
-/* The rows of a tile that is read, in steps of four. */
-tile_rows hl_cascade_rows_of_tile(const read_row *row, int x);
-
-/* The rows of the x-th tile that lie within reach of what is read; ends at 0 where none does. */
-static inline tile_rows hl_cascade_rows_read(const read_row *row, int x) {
-  if (row->reach == READ_EVERYWHERE) return ALL_ROWS;
+/* Whether anything is read within reach of the x-th tile. Sideways whole tiles count. */
+static inline bool hl_cascade_is_read(const read_row *row, const read_band *band, int x) {
+  if (row->reach == READ_EVERYWHERE) return true;
   int x0 = x * row->scale - row->around, x1 = (x + 1) * row->scale + row->around;
   if (x0 < 0) x0 = 0;
-  if (x1 > row->reads->tiles_x) x1 = row->reads->tiles_x;
-  if (row->lower[x1] - row->lower[x0] == row->upper[x1] - row->upper[x0]) return (tile_rows){0, 0};
-  return hl_cascade_rows_of_tile(row, x);
+  if (x1 > row->tiles_x) x1 = row->tiles_x;
+  return band->lower[x1] - band->lower[x0] != band->upper[x1] - band->upper[x0];
+}
+
+/* The rows, in steps of four, of a tile that is read. */
+static inline tile_rows hl_cascade_rows_read(const read_row *row, int x) {
+  tile_rows rows = ALL_ROWS;
+  if (row->reach == READ_EVERYWHERE) return rows;
+  while (!hl_cascade_is_read(row, &row->blocks[rows.first / BLOCK], x)) rows.first += BLOCK;
+  while (!hl_cascade_is_read(row, &row->blocks[rows.end / BLOCK - 1], x)) rows.end -= BLOCK;
+  return rows;
 }
 
 #endif

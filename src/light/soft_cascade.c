@@ -482,7 +482,7 @@ static void light_row(void *data, size_t index, int worker) {
   const read_row read = hl_cascade_read_row(&task->cascade->reads, 1, (int)index, 0);
   for (size_t tile_x = 0; tile_x < (size_t)level->tiles_x; tile_x++) {
     size_t tile = index * (size_t)level->tiles_x + tile_x;
-    if (hl_cascade_rows_read(&read, (int)tile_x).end == 0) continue;
+    if (!hl_cascade_is_read(&read, &read.all, (int)tile_x)) continue;
     bool shaded = false;
     for (int c = 0; c < buffer->channels; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {

@@ -63,7 +63,7 @@ static void start_row(void *data, size_t index, int worker) {
   const cascade_level *level = task->level;
   const read_row read = row_read(task->cascade, level, index);
   for (int x = 0; x < level->tiles_x; x++) {
-    if (hl_cascade_rows_read(&read, x).end == 0) continue;
+    if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     for (int c = 0; c < task->cascade->channels; c++)
       start_tile(task, task->farther == NULL ? NULL : sum_of(task->cascade, task->farther, c),
                  sum_of(task->cascade, level, c), x, (int)index);
@@ -132,7 +132,7 @@ static void add_row(void *data, size_t index, int worker) {
   bool known = false;
   const read_row read = row_read(cascade, level, index);
   for (int x = 0; x < level->tiles_x; x++) {
-    if (hl_cascade_rows_read(&read, x).end == 0) continue;
+    if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     const double slope[2] = {cascade->slope_start[0] + cascade->slope_step[0] * (x + 0.5) * TILE * level->scale,
                              cascade->slope_start[1] + cascade->slope_step[1] * ((double)index + 0.5) * TILE * level->scale};
     if (!known || cascade->image->tilted) hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
