@@ -131,7 +131,9 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
       const float *const *images = &job->slab[c][2 * (halves[row] & 1)];
       const float *const rows[2] = {images[0] + line, images[1] + line};
       float *at = job->transmittance[c] + corner + (size_t)row * job->stride;
-      lanes passing = lanes_load(at) * slab_row(&taps, rows);
+      lanes left_by_slab = slab_row(&taps, rows);
+      if (lanes_bits(left_by_slab < 1.0f) == 0) continue; /* the part's row need not come from memory */
+      lanes passing = lanes_load(at) * left_by_slab;
       lanes_store(at, passing);
       greatest = lanes_max(greatest, passing);
     }

@@ -235,9 +235,10 @@ static void composite_row(void *data, size_t index, int worker) {
 
 /* ---- the slab ---- */
 
-static void fill_ones(float *pixels, size_t stride) {
-  for (size_t row = 0; row < TILE; row++)
-    for (size_t i = 0; i < TILE; i++) pixels[row * stride + i] = 1;
+/* Rows of a tile, a bit each. */
+static void fill_ones(float *pixels, size_t stride, uint32_t rows) {
+  for (; rows != 0; rows &= rows - 1)
+    for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
 }
 
 /* The images of one row of tiles. Those of a tile hold pixels of the next ones too. */
@@ -279,9 +280,10 @@ static void clear_row(void *data, size_t index, int worker) {
   shadow_buffer *slab = task->slab;
   for (int x = 0; x < slab->tiles_x; x++) {
     size_t tile = index * (size_t)slab->tiles_x + (size_t)x, at = index * TILE * slab->stride + (size_t)x * TILE;
-    for (int c = 0; c < slab->channels && all->rows[tile] != 0; c++) {
-      fill_ones(slab->transmittance[c] + at, slab->stride);
-      for (int i = 1; i < SLAB_IMAGES; i++) fill_ones(moved_image(all, slab, c, i) + at, slab->stride);
+    uint32_t even = all->rows[tile] & ((1u << TILE) - 1), between = all->rows[tile] >> TILE;
+    for (int c = 0; c < slab->channels; c++) {
+      fill_ones(slab->transmittance[c] + at, slab->stride, even);
+      for (int i = 1; i < SLAB_IMAGES; i++) fill_ones(moved_image(all, slab, c, i) + at, slab->stride, i < 2 ? even : between);
     }
     all->rows[tile] = 0;
     slab->tile_touched[tile] = 0;
