@@ -177,22 +177,25 @@ void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value) {
   hl_pool_run(pool, (count + FLOATS_A_TASK - 1) / FLOATS_A_TASK, fill_part, &job);
 }
 
-typedef struct clear_job {
+typedef struct set_job {
   unsigned char *memory;
   size_t bytes;
-} clear_job;
+  int value;
+} set_job;
 
-static void clear_part(void *data, size_t index, int worker) {
+static void set_part(void *data, size_t index, int worker) {
   (void)worker;
-  const clear_job *job = data;
+  const set_job *job = data;
   size_t first = index * BYTES_A_TASK, left = job->bytes - first;
-  memset(job->memory + first, 0, left < BYTES_A_TASK ? left : BYTES_A_TASK);
+  memset(job->memory + first, job->value, left < BYTES_A_TASK ? left : BYTES_A_TASK);
 }
 
-void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes) {
-  clear_job job = {memory, bytes};
-  hl_pool_run(pool, (bytes + BYTES_A_TASK - 1) / BYTES_A_TASK, clear_part, &job);
+void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value) {
+  set_job job = {memory, bytes, value};
+  hl_pool_run(pool, (bytes + BYTES_A_TASK - 1) / BYTES_A_TASK, set_part, &job);
 }
+
+void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes) { hl_pool_set(pool, memory, bytes, 0); }
 
 int hl_pool_threads(const hl_pool *pool) { return pool->threads; }
 

@@ -32,7 +32,8 @@ void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_
 
 /* floats[0 .. count) = value, shared out. */
 void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
-/* Zero bytes. */
+/* Bytes of one value; of zero. */
+void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
 void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 
 /* Whether to stop: asks anew, from the calling thread between runs. */

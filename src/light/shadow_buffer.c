@@ -155,13 +155,13 @@ void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, lit_blocks_f
   buffer->tile_lit[y * buffer->tiles_x + x] = (uint16_t)lit_blocks(transmittance, buffer->channels, buffer->stride);
 }
 
-shadow_lookup hl_lookup_of_view(const view *view) {
-  shadow_lookup lookup = {.width = view->width, .height = view->height, .weight = {1, 1, 1}};
+shadow_map hl_map_of_view(const view *view) {
+  shadow_map map = {.width = view->width, .height = view->height};
   double rows[3][4];
   hl_view_homogeneous(view, affine3_identity(), rows);
   for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 4; column++) lookup.map[row][column] = (float)rows[row][column];
-  return lookup;
+    for (int column = 0; column < 4; column++) map.rows[row][column] = (float)rows[row][column];
+  return map;
 }
 
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer) {

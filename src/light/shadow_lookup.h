@@ -1,18 +1,30 @@
-/* light/shadow_lookup.h - what a sample needs to know of a shadow buffer: where it is in it, and the light that is left. */
+/* light/shadow_lookup.h - what a sample needs to know of shadow buffers: where it is in them, and the light that is left. */
 #ifndef HL_LIGHT_SHADOW_LOOKUP_H
 #define HL_LIGHT_SHADOW_LOOKUP_H
 
 #include "light/shadow_buffer.h"
+#include "light/sublight_field.h"
+
+/* Where samples are in a buffer. */
+typedef struct shadow_map {
+  float rows[3][4];               /* frame space -> (w, w u, w v) of the buffer */
+  size_t stride;                  /* of its pixels' rows */
+  int width, height;
+} shadow_map;
 
 typedef struct shadow_lookup {
-  float map[3][4];                /* frame space -> (w, w u, w v) of the buffer */
-  const float *transmittance[HL_CHANNELS]; /* pixel (0,0); rows stride apart */
-  float weight[HL_CHANNELS];      /* in the mean over several lookups; 1 but for lights with an image */
-  size_t stride;
-  int width, height;
+  shadow_map map;
+  const float *transmittance[HL_CHANNELS]; /* pixel (0,0) */
 } shadow_lookup;
 
-/* Of a view; transmittance and stride are the caller's. */
-shadow_lookup hl_lookup_of_view(const view *view);
+/* The buffer of one part of a light. */
+typedef struct part_lookup {
+  shadow_map map;
+  const part_pixel *left[HL_CHANNELS]; /* pixel (0,0) */
+  float weight[HL_CHANNELS];      /* in the mean over all parts; 1 but for lights with an image */
+} part_lookup;
+
+/* Of a view; the stride is the caller's. */
+shadow_map hl_map_of_view(const view *view);
 
 #endif

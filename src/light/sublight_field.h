@@ -10,27 +10,42 @@ enum { SLAB_IMAGES = 4 };
 
 typedef struct half_pixel_job {
   const float *slab;
-  float *moved[SLAB_IMAGES]; /* written but for the first, which is not read */
+  float *moved[SLAB_IMAGES]; /* written but for the first, which is not used */
   size_t slab_stride;
 } half_pixel_job;
 
-/* A tile's pixels of all that are moved. Returns where they or the slab's are below 1: bit i for row i of the slab or of the
- * first moved one, bit 16 + i for that of the other two. */
-typedef uint32_t half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
+/* Rows of a tile in which pixels of the slab or of its moved images are below 1: bit TILE * image + row. */
+typedef uint64_t slab_rows;
+
+/* A tile's pixels of all that are moved, in rows where some are below 1; in others they are ones already. */
+typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
+
+/* Light that is left, in PART_ONEths: half as much memory to go through as floats. */
+typedef uint16_t part_pixel;
+enum { PART_ONE = 65535 };
 
 typedef struct sublight_job {
   const float *slab[HL_CHANNELS][SLAB_IMAGES];
   size_t slab_stride;
-  const uint32_t *rows;              /* [slab_tiles_y][slab_tiles_x]; as half_pixel_tile_function tells */
+  const slab_rows *rows;             /* [slab_tiles_y][slab_tiles_x] */
   int slab_tiles_x, slab_tiles_y;
   float slab_width, slab_height;     /* with ones further out, up to 32 pixels */
   float scale[2], shift[2];          /* continuous pixel coordinates u and v of the slab: scale * the part's + shift */
-  float *transmittance[HL_CHANNELS]; /* pixel (0,0) of the part's buffer; rows stride apart */
-  size_t stride;
+  int half[2];                       /* the nearest half of shift, in halves */
+  part_pixel *left[HL_CHANNELS];     /* pixel (0,0) of the part's buffer; rows stride apart */
+  size_t stride;                     /* a tile's margin on either side */
+  int tiles_x;
+  float carry;                       /* above 0 and below 1: added before the fraction of a pixel's new value is cut off.
+                                        Where it takes all values in turn from slab to slab, haze of which each takes
+                                        less than 1/PART_ONE is counted in the end */
   int channels;
 } sublight_job;
 
 /* Multiplies a tile by the slab; returns whether light may be left in it. */
 typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile_y);
+
+/* Multiplies a row of tiles by those of the slab's from first to last, where scale is 1. dark: [tiles_x], whether no light is
+ * left; such tiles need nothing. */
+typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last, unsigned char *dark);
 
 #endif

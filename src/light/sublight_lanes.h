@@ -1,4 +1,4 @@
-/* light/sublight_lanes.h - one tile of one part's buffer times the slab, a row of sixteen pixels at a time.
+/* light/sublight_lanes.h - one tile of one part's buffer times the slab, scaled and shifted, a row of sixteen pixels at a time.
  *
  * What a part's pixel gets is the slab's value at the nearest half pixel. Values between pixels are those of cubic
  * convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image processing", 1981): weights -1/8, 5/8,
@@ -10,6 +10,8 @@
 #include "light/attenuate_lanes.h"
 #include "light/sublight_field.h"
 
+enum { EVERY_ROW = (1 << TILE) - 1 };
+
 /* In the middle of the two inner ones, within what a transmittance can be. */
 LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
   return lanes_clamp((b + c) * 0.625f - (a + d) * 0.125f, 0, 1);
@@ -19,21 +21,34 @@ LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
   return middle_of_four(lanes_load(at - step), lanes_load(at), lanes_load(at + step), lanes_load(at + 2 * step));
 }
 
-LANES_INLINE uint32_t any_below_one(lanes a, lanes b) { return lanes_bits(lanes_min(a, b) < 1.0f) != 0; }
+LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
 
-static uint32_t half_pixel_tile(const half_pixel_job *job, int tile_x, int tile_y) {
-  lanes across[TILE + 3];
-  ptrdiff_t stride = (ptrdiff_t)job->slab_stride, corner = tile_y * TILE * stride + tile_x * TILE;
+/* The rows of a tile and the next one in which it or its right neighbour's first pixel is below 1. Pixels further out, weighed by
+ * less than nothing, bring none in the middle below 1. */
+LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
   uint32_t rows = 0;
-  for (int row = 0; row < TILE + 3; row++) across[row] = middle_along(job->slab + corner + (row - 1) * stride, 1);
-  for (int row = 0; row < TILE; row++) {
+  for (int row = 0; row <= TILE; row++) {
+    const float *at = corner + row * stride;
+    rows |= (uint32_t)any_below_one(lanes_min(lanes_load(at), lanes_load(at + 1))) << row;
+  }
+  return rows;
+}
+
+static slab_rows half_pixel_tile(const half_pixel_job *job, int tile_x, int tile_y) {
+  ptrdiff_t stride = (ptrdiff_t)job->slab_stride, corner = tile_y * TILE * stride + tile_x * TILE;
+  uint32_t below = rows_below_one(job->slab + corner, stride);
+  slab_rows rows = 0;
+  for (uint32_t left = (below | below >> 1) & EVERY_ROW; left != 0; left &= left - 1) {
+    int row = __builtin_ctz(left);
     ptrdiff_t at = corner + row * stride;
-    lanes down = middle_along(job->slab + at, stride);
-    lanes both = middle_of_four(across[row], across[row + 1], across[row + 2], across[row + 3]);
-    lanes_store(job->moved[1] + at, across[row + 1]);
+    const float *from = job->slab + at;
+    lanes across = middle_along(from, 1), down = middle_along(from, stride);
+    lanes both = middle_of_four(middle_along(from - stride, 1), across, middle_along(from + stride, 1), middle_along(from + 2 * stride, 1));
+    lanes_store(job->moved[1] + at, across);
     lanes_store(job->moved[2] + at, down);
     lanes_store(job->moved[3] + at, both);
-    rows |= any_below_one(lanes_load(job->slab + at), across[row + 1]) << row | any_below_one(down, both) << (TILE + row);
+    rows |= (any_below_one(lanes_load(from)) | any_below_one(across) << TILE | any_below_one(down) << 2 * TILE |
+             any_below_one(both) << 3 * TILE) << row;
   }
   return rows;
 }
@@ -92,27 +107,43 @@ LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, in
   if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
 }
 
+/* Where any of the images in the same rows is below 1. */
+LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
+  rows >>= 2 * TILE * between;
+  return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;
+}
+
 /* The rows of a tile, one bit each, in which some of the slab's pixels are below 1. half: of each row. */
 LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[TILE], int first, int last) {
   int y0 = half[0] < 0 ? 0 : half[0] / (2 * TILE), y1 = half[TILE - 1] < 0 ? -1 : half[TILE - 1] / (2 * TILE);
-  uint32_t present = 0, of_tiles[4] = {0, 0, 0, 0};
+  uint32_t present = 0;
+  slab_rows of_tiles[4] = {0, 0, 0, 0};
   if (y1 >= job->slab_tiles_y) y1 = job->slab_tiles_y - 1;
-  if (y1 > y0 + 3) return (1u << TILE) - 1;
+  if (y1 > y0 + 3) return EVERY_ROW;
   for (int y = y0; y <= y1; y++)
     for (int x = first; x <= last; x++) of_tiles[y - y0] |= job->rows[(ptrdiff_t)y * job->slab_tiles_x + x];
   if ((of_tiles[0] | of_tiles[1] | of_tiles[2] | of_tiles[3]) == 0) return 0;
   for (int row = 0; row < TILE; row++) {
     int line = half[row] >> 1, y = line / TILE - y0;
-    if (line >= 0 && y <= y1 - y0) present |= (of_tiles[y] >> (line % TILE + (half[row] & 1) * TILE) & 1) << row;
+    if (line >= 0 && y <= y1 - y0) present |= (rows_of_either(of_tiles[y], half[row] & 1) >> line % TILE & 1) << row;
   }
   return present;
 }
 
+static const float DARK_PART = DARK * PART_ONE;
+
 LANES_INLINE int may_be_lit(const sublight_job *job, size_t at) {
   for (int row = 0; row < TILE; row++)
     for (int c = 0; c < job->channels; c++)
-      if (lanes_bits(lanes_load(job->transmittance[c] + at + (size_t)row * job->stride) >= DARK) != 0) return 1;
+      if (lanes_bits(lanes_load_short(job->left[c] + at + (size_t)row * job->stride) >= DARK_PART) != 0) return 1;
   return 0;
+}
+
+/* Sixteen of a part's pixels times the slab's; what it then may hold. */
+LANES_INLINE lanes composite_part(const sublight_job *job, part_pixel *at, lanes left_by_slab) {
+  lanes passing = lanes_load_short(at) * left_by_slab;
+  lanes_store_short_int(at, lanes_truncate(passing + job->carry));
+  return passing;
 }
 
 static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
@@ -130,15 +161,13 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
     for (int c = 0; c < job->channels; c++) {
       const float *const *images = &job->slab[c][2 * (halves[row] & 1)];
       const float *const rows[2] = {images[0] + line, images[1] + line};
-      float *at = job->transmittance[c] + corner + (size_t)row * job->stride;
+      part_pixel *at = job->left[c] + corner + (size_t)row * job->stride;
       lanes left_by_slab = slab_row(&taps, rows);
       if (lanes_bits(left_by_slab < 1.0f) == 0) continue; /* the part's row need not come from memory */
-      lanes passing = lanes_load(at) * left_by_slab;
-      lanes_store(at, passing);
-      greatest = lanes_max(greatest, passing);
+      greatest = lanes_max(greatest, composite_part(job, at, left_by_slab));
     }
   }
-  return lanes_bits(greatest >= DARK) != 0 || may_be_lit(job, corner);
+  return lanes_bits(greatest >= DARK_PART) != 0 || may_be_lit(job, corner);
 }
 
 #endif

@@ -31,9 +31,10 @@ static void place_parts(sublights *sublights, const light_source *source, const 
     place_part(source, image, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x, &sublights->tiles_y);
 }
 
+/* A margin of a tile on either side, where tiles of the slab reach across the edges; look-ups read a row beyond the last. */
 static void lay_out_planes(sublights *sublights) {
-  sublights->stride = (size_t)sublights->tiles_x * TILE + 2 * SUBLIGHT_MARGIN;
-  sublights->plane = ((size_t)sublights->tiles_y * TILE + 2 * SUBLIGHT_MARGIN) * sublights->stride;
+  sublights->stride = (size_t)(sublights->tiles_x + 3) / 2 * 2 * TILE; /* whole lines of the cache */
+  sublights->plane = ((size_t)sublights->tiles_y * TILE + 1) * sublights->stride;
 }
 
 uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
@@ -45,7 +46,7 @@ uint64_t hl_sublights_bytes(const light_source *source, const light_image *image
     place_part(source, image, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
   lay_out_planes(&planned);
   uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
-  return count * (uint64_t)channels * planned.plane * sizeof(float) + count * tiles + slab_tiles * sizeof *planned.rows +
+  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) + count * tiles + slab_tiles * sizeof *planned.rows +
          count * (sizeof *planned.parts + sizeof *planned.lookups) +
          hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) - hl_shadow_buffer_bytes(slab, 0, false, reach);
 }
@@ -54,24 +55,24 @@ static hl_status allocate(hl_context *context, hl_pool *pool, sublights *subligh
   size_t count = (size_t)sublights->count, channels = (size_t)sublights->channels;
   size_t tiles = (size_t)sublights->tiles_x * (size_t)sublights->tiles_y;
   lay_out_planes(sublights);
-  size_t floats = count * channels * sublights->plane, moved = MOVED_IMAGES * channels * slab->plane;
-  if ((double)floats * sizeof(float) > GREATEST_BYTES)
+  size_t pixels = count * channels * sublights->plane, moved = MOVED_IMAGES * channels * slab->plane;
+  if ((double)pixels * sizeof(part_pixel) > GREATEST_BYTES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "/render/light_samples: %zu parts of a light need %.1f GB of shadow buffers, more than 4.3: use fewer, or a "
-                   "lower shadow_resolution", count, (double)floats * sizeof(float) / 1e9);
-  sublights->memory = hl_allocate(context, floats, sizeof(float));
+                   "lower shadow_resolution", count, (double)pixels * sizeof(part_pixel) / 1e9);
+  sublights->memory = hl_allocate(context, pixels, sizeof(part_pixel));
   sublights->flags = hl_allocate_zeroed(context, count, tiles);
   sublights->lookups = hl_allocate(context, count, sizeof *sublights->lookups);
   sublights->moved = hl_allocate(context, moved, sizeof(float));
   sublights->rows = hl_allocate_zeroed(context, (size_t)slab->tiles_x * (size_t)slab->tiles_y, sizeof *sublights->rows);
   if (sublights->memory == NULL || sublights->flags == NULL || sublights->lookups == NULL || sublights->moved == NULL ||
       sublights->rows == NULL)
-    return hl_fail_memory(error, (floats + moved) * sizeof(float), "the parts of a light");
-  hl_pool_fill(pool, sublights->memory, floats, 1);
+    return hl_fail_memory(error, pixels * sizeof(part_pixel) + moved * sizeof(float), "the parts of a light");
+  hl_pool_set(pool, sublights->memory, pixels * sizeof(part_pixel), 0xff); /* PART_ONE */
   hl_pool_fill(pool, sublights->moved, moved, 1);
   for (size_t i = 0; i < count; i++) {
     sublight *part = &sublights->parts[i];
-    part->pixels = sublights->memory + i * channels * sublights->plane + SUBLIGHT_MARGIN * sublights->stride + SUBLIGHT_MARGIN;
+    part->pixels = sublights->memory + i * channels * sublights->plane + TILE;
     part->dark = sublights->flags + i * tiles;
   }
   return HL_OK;
@@ -101,10 +102,10 @@ hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *subl
   hl_status status = allocate(context, pool, sublights, slab, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < count; i++) {
-    sublights->lookups[i] = hl_lookup_of_view(&sublights->parts[i].view);
-    sublights->lookups[i].stride = sublights->stride;
+    sublights->lookups[i] = (part_lookup){.map = hl_map_of_view(&sublights->parts[i].view), .weight = {1, 1, 1}};
+    sublights->lookups[i].map.stride = sublights->stride;
     for (int c = 0; c < sublights->channels; c++)
-      sublights->lookups[i].transmittance[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
+      sublights->lookups[i].left[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
   }
   return image != NULL ? weigh_parts(context, sublights, source, side, error) : HL_OK;
 }
@@ -131,6 +132,15 @@ static bool slab_place(const sublight *part, const view *slab, vec3 normal, doub
   return hl_view_project(slab, vec3_add(start, vec3_scale(way, distance)), uv);
 }
 
+/* Multiples of the golden ratio, less their whole part, are spread evenly however many there are. */
+static float carry_of_slab(const sublights *sublights, const sublight *part) {
+  double turn = sublights->slabs * 0.6180339887498949 + (double)(part - sublights->parts) / sublights->count;
+  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64); /* so far from 0 and 1 that whole numbers stay */
+}
+
+/* In pixels. Light that grazes the sheets shifts them further; it is clamped where pixels are scaled as well. */
+static const double FARTHEST_SHIFT = 1 << 20;
+
 /* Both views lie parallel to the sheets with the same axes: from one to the other pixels are scaled and shifted. */
 static void map_part(const sublights *sublights, sublight *part, const shadow_buffer *slab, vec3 normal, double height) {
   const double far = 1024;
@@ -139,18 +149,21 @@ static void map_part(const sublights *sublights, sublight *part, const shadow_bu
                   slab_place(part, &slab->view, normal, height, far, other);
   part->job = (sublight_job){.slab_stride = slab->stride, .rows = sublights->rows, .slab_tiles_x = slab->tiles_x,
                              .slab_tiles_y = slab->tiles_y, .slab_width = (float)slab->view.width,
-                             .slab_height = (float)slab->view.height, .stride = sublights->stride,
-                             .channels = sublights->channels};
+                             .slab_height = (float)slab->view.height, .stride = sublights->stride, .tiles_x = sublights->tiles_x,
+                             .carry = carry_of_slab(sublights, part), .channels = sublights->channels};
   for (int axis = 0; axis < 2 && part->reaches; axis++) {
     double scale = (other[axis] - zero[axis]) / far;
     if (fabs(scale - 1) < 1e-6) scale = 1;
     part->job.scale[axis] = (float)scale;
     part->job.shift[axis] = (float)zero[axis];
   }
+  part->shifted = part->reaches && part->job.scale[0] == 1 && part->job.scale[1] == 1 &&
+                  fmax(fabs(zero[0]), fabs(zero[1])) < FARTHEST_SHIFT;
+  for (int axis = 0; axis < 2 && part->shifted; axis++) part->job.half[axis] = (int)floor(2 * zero[axis] + 0.5);
   for (int c = 0; c < sublights->channels; c++) {
     part->job.slab[c][0] = slab->transmittance[c];
     for (int i = 1; i < SLAB_IMAGES; i++) part->job.slab[c][i] = moved_image(sublights, slab, c, i);
-    part->job.transmittance[c] = part->pixels + (size_t)c * sublights->plane;
+    part->job.left[c] = part->pixels + (size_t)c * sublights->plane;
   }
 }
 
@@ -190,7 +203,7 @@ static bool bound_present(sublight_task *task) {
   task->y0 = slab->tiles_y;
   task->x1 = task->y1 = -1;
   for (int y = 0; y < slab->tiles_y; y++) {
-    const uint32_t *row = task->sublights->rows + (size_t)y * (size_t)slab->tiles_x;
+    const slab_rows *row = task->sublights->rows + (size_t)y * (size_t)slab->tiles_x;
     for (int x = 0; x < slab->tiles_x; x++) {
       if (row[x] == 0) continue;
       if (x < task->x0) task->x0 = x;
@@ -216,11 +229,15 @@ static void composite_row(void *data, size_t index, int worker) {
   const sublight_task *task = data;
   const sublights *all = task->sublights;
   const shadow_buffer *slab = task->slab;
-  sublight *part = &all->parts[index / (size_t)all->tiles_y];
-  int y = (int)(index % (size_t)all->tiles_y), y0, y1, first, last;
+  sublight *part = &all->parts[index % (size_t)all->count]; /* parts in turn: what the slab holds under a row stays near */
+  int y = (int)(index / (size_t)all->count), y0, y1, first, last;
   if (!part->reaches) return;
   part_tiles(part, 1, task->y0, task->y1, all->tiles_y, &first, &last);
   if (y < first || y > last) return;
+  if (part->shifted) {
+    task->functions->composite_row(&part->job, y, task->x0, task->x1, part->dark + (size_t)y * (size_t)all->tiles_x);
+    return;
+  }
   part_tiles(part, 0, task->x0, task->x1, all->tiles_x, &first, &last);
   tiles_under((double)y * TILE, (double)part->job.scale[1], (double)part->job.shift[1], slab->tiles_y, &y0, &y1);
   for (int x = first; x <= last; x++) {
@@ -235,9 +252,9 @@ static void composite_row(void *data, size_t index, int worker) {
 
 /* ---- the slab ---- */
 
-/* Rows of a tile, a bit each. */
-static void fill_ones(float *pixels, size_t stride, uint32_t rows) {
-  for (; rows != 0; rows &= rows - 1)
+/* Rows of a tile, bits 0 to 15. */
+static void fill_ones(float *pixels, size_t stride, slab_rows of_images) {
+  for (uint32_t rows = of_images & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
 }
 
@@ -280,11 +297,9 @@ static void clear_row(void *data, size_t index, int worker) {
   shadow_buffer *slab = task->slab;
   for (int x = 0; x < slab->tiles_x; x++) {
     size_t tile = index * (size_t)slab->tiles_x + (size_t)x, at = index * TILE * slab->stride + (size_t)x * TILE;
-    uint32_t even = all->rows[tile] & ((1u << TILE) - 1), between = all->rows[tile] >> TILE;
-    for (int c = 0; c < slab->channels; c++) {
-      fill_ones(slab->transmittance[c] + at, slab->stride, even);
-      for (int i = 1; i < SLAB_IMAGES; i++) fill_ones(moved_image(all, slab, c, i) + at, slab->stride, i < 2 ? even : between);
-    }
+    for (int c = 0; c < slab->channels; c++)
+      for (int i = 0; i < SLAB_IMAGES; i++)
+        fill_ones((i == 0 ? slab->transmittance[c] : moved_image(all, slab, c, i)) + at, slab->stride, all->rows[tile] >> TILE * i);
     all->rows[tile] = 0;
     slab->tile_touched[tile] = 0;
     slab->tile_lit[tile] = is_lit(all, x, (int)index) ? ALL_BLOCKS : 0;
@@ -294,6 +309,7 @@ static void clear_row(void *data, size_t index, int worker) {
 void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to, hl_pool *pool,
                           const sublight_functions *functions) {
   for (int i = 0; i < sublights->count; i++) map_part(sublights, &sublights->parts[i], slab, normal, (from + to) / 2);
+  sublights->slabs++;
   sublight_task task = {.sublights = sublights, .slab = slab, .functions = functions};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
   if (bound_present(&task))

@@ -3,7 +3,7 @@
  * The light is cut into M x M parts; each part is a point (or a direction) with a buffer of its own, seen from it on a plane
  * parallel to the sheets. A slab is classified once, in the view of the light's centre; seen from a part its image is only
  * scaled and shifted, so for the parts the composite alone repeats: each reads the slab's transmittance at the nearest half
- * pixel, and what a buffer has gathered is never resampled. A sample takes the mean over all buffers, each through its own
+ * pixel, and what a buffer has gathered, in 16 bits, is never resampled. A sample takes the mean over all buffers, each through its own
  * map. The parts are a turned grid: along either side of the light they are M^2 even steps. */
 #ifndef HL_LIGHT_SUBLIGHTS_H
 #define HL_LIGHT_SUBLIGHTS_H
@@ -14,30 +14,33 @@
 #include "light/shadow_lookup.h"
 #include "light/sublight_field.h"
 
-enum { SUBLIGHT_MARGIN = 48, SUBLIGHT_REACH = SUBLIGHT_MARGIN - TILE - 1 /* of the slab's buffer, beyond a tile */ };
+enum { SUBLIGHT_REACH = 31 /* of the slab's buffer, beyond a tile */ };
 
 /* One part's buffer. */
 typedef struct sublight {
   view view;
-  float *pixels;          /* pixel (0,0) of the first channel; the others a plane apart; in memory */
+  part_pixel *pixels;     /* pixel (0,0) of the first channel; the others a plane apart; in memory */
   unsigned char *dark;    /* [tiles]; 1 where no light is left; in flags */
   sublight_job job;       /* of the slab now composited */
   bool reaches;           /* the part lies before the slab */
+  bool shifted;           /* the job's scale is 1 */
 } sublight;
 
 typedef struct sublights {
   int count, channels, tiles_x, tiles_y;
   size_t stride, plane;
+  int slabs;              /* composited so far */
   sublight *parts;        /* owned; [count] */
-  shadow_lookup *lookups; /* owned; [count] */
-  float *memory;          /* owned; [count][channels] planes */
+  part_lookup *lookups;   /* owned; [count] */
+  part_pixel *memory;     /* owned; [count][channels] planes */
   unsigned char *flags;   /* owned; [count][tiles] */
   float *moved;           /* owned; [channels][SLAB_IMAGES - 1] planes of the slab, half a pixel further along u, v and both */
-  uint32_t *rows;         /* owned; [tiles of the slab]; where its images are below 1 (half_pixel_tile_function) */
+  slab_rows *rows;        /* owned; [tiles of the slab] */
 } sublights;
 
 typedef struct sublight_functions {
   sublight_tile_function *composite;
+  sublight_row_function *composite_row; /* where pixels are only shifted */
   half_pixel_tile_function *half_pixel;
 } sublight_functions;
 

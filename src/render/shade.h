@@ -41,8 +41,9 @@ typedef struct shade_light {
   int inverse_square;
   int shadowed;
   float path;                     /* parallel: sheet spacing / |l.h|; else sheet spacing */
-  const shadow_lookup *lookups;   /* [lookup_count]; where shadowed: the light that reaches a sample is their mean */
-  int lookup_count, channels;
+  const shadow_lookup *lookup;    /* where shadowed: the light that reaches a sample */
+  const part_lookup *parts;       /* [part_count]; where there are any, it is their mean instead */
+  int part_count, channels;
   light_screen screen;            /* the image that the light projects */
   light_cone cone;                /* of a spot light */
   light_share share;              /* of a light within the content */

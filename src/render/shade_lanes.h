@@ -27,41 +27,77 @@ LANES_INLINE lanes own_transmittance(int back_to_front, lanes e, lanes left, lan
   return lanes_min(seen / mean_transmittance(e, left), lanes_set(1.0f));
 }
 
-/* One channel of a shadow buffer at continuous pixel coordinates, 1 outside it. */
-LANES_INLINE lanes look_up(const shadow_lookup *lookup, int nearest, const float *buffer, lanes u, lanes v) {
-  lanes_int inside = (u > 0.0f) & (v > 0.0f) & (u < (float)lookup->width) & (v < (float)lookup->height);
-  lanes x = lanes_clamp(u - 0.5f, 0, (float)(lookup->width - 1)), y = lanes_clamp(v - 0.5f, 0, (float)(lookup->height - 1));
+/* Where samples are in a shadow buffer: the first of two by two pixels, and how far they are on the way to the others. */
+typedef struct shadow_taps {
+  lanes_int inside, at;
+  lanes fx, fy;
+} shadow_taps;
+
+/* At continuous pixel coordinates. */
+LANES_INLINE shadow_taps taps_of_place(const shadow_map *map, int nearest, lanes u, lanes v) {
+  shadow_taps taps;
+  taps.inside = (u > 0.0f) & (v > 0.0f) & (u < (float)map->width) & (v < (float)map->height);
+  lanes x = lanes_clamp(u - 0.5f, 0, (float)(map->width - 1)), y = lanes_clamp(v - 0.5f, 0, (float)(map->height - 1));
   if (nearest) {
     x = lanes_from_int(lanes_truncate(x + 0.5f));
     y = lanes_from_int(lanes_truncate(y + 0.5f));
   }
   lanes_int column = lanes_truncate(x), row = lanes_truncate(y);
-  lanes fx = x - lanes_from_int(column), fy = y - lanes_from_int(row);
-  lanes_int at = row * (int32_t)lookup->stride + column;
+  taps.fx = x - lanes_from_int(column);
+  taps.fy = y - lanes_from_int(row);
+  taps.at = row * (int32_t)map->stride + column;
+  return taps;
+}
+
+LANES_INLINE shadow_taps taps_of_position(const shadow_map *map, int nearest, lanes3 position) {
+  lanes place[3];
+  for (int row = 0; row < 3; row++)
+    place[row] = position.x * map->rows[row][0] + position.y * map->rows[row][1] + (position.z * map->rows[row][2] + map->rows[row][3]);
+  lanes_int ahead = place[0] > 0.0f;
+  lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
+  return taps_of_place(map, nearest, lanes_select(ahead, place[1] / safe, outside), lanes_select(ahead, place[2] / safe, outside));
+}
+
+/* Between the pixels a b and, in the next row, c d; `beyond` outside the buffer. */
+LANES_INLINE lanes between_taps(const shadow_taps *taps, lanes a, lanes b, lanes c, lanes d, float beyond) {
+  lanes top = a + (b - a) * taps->fx, bottom = c + (d - c) * taps->fx;
+  return lanes_select(taps->inside, top + (bottom - top) * taps->fy, lanes_set(beyond));
+}
+
+LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const float *buffer) {
   lanes a, b, c, d;
-  lanes_gather_pairs(buffer, at, &a, &b);
-  lanes_gather_pairs(buffer + lookup->stride, at, &c, &d);
-  lanes top = a + (b - a) * fx, bottom = c + (d - c) * fx;
-  return lanes_select(inside, top + (bottom - top) * fy, lanes_set(1.0f));
+  lanes_gather_pairs(buffer, taps->at, &a, &b);
+  lanes_gather_pairs(buffer + map->stride, taps->at, &c, &d);
+  return between_taps(taps, a, b, c, d, 1);
+}
+
+LANES_INLINE lanes look_up_part(const shadow_map *map, const shadow_taps *taps, const part_pixel *buffer) {
+  lanes_int a, b, c, d;
+  lanes_gather_short_pairs(buffer, taps->at, &a, &b);
+  lanes_gather_short_pairs(buffer + map->stride, taps->at, &c, &d);
+  return between_taps(taps, lanes_from_int(a), lanes_from_int(b), lanes_from_int(c), lanes_from_int(d), PART_ONE);
+}
+
+LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position) {
+  color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  for (int i = 0; i < light->part_count; i++) {
+    const part_lookup *part = &light->parts[i];
+    shadow_taps taps = taps_of_position(&part->map, light->nearest, position);
+    for (int c = 0; c < light->channels; c++)
+      sum.c[c] = sum.c[c] + look_up_part(&part->map, &taps, part->left[c]) * part->weight[c];
+  }
+  for (int c = 0; c < light->channels; c++) sum.c[c] = sum.c[c] / ((float)PART_ONE * (float)light->part_count);
+  return sum;
 }
 
 /* Light reaching the slab: the shadow buffers' transmittance at its first sheet. */
 LANES_INLINE color_lanes reaching(const shade_light *light, lanes3 position) {
-  color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
-  for (int i = 0; i < light->lookup_count; i++) {
-    const shadow_lookup *lookup = &light->lookups[i];
-    lanes place[3];
-    for (int row = 0; row < 3; row++)
-      place[row] = position.x * lookup->map[row][0] + position.y * lookup->map[row][1] +
-                   (position.z * lookup->map[row][2] + lookup->map[row][3]);
-    lanes_int ahead = place[0] > 0.0f;
-    lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
-    lanes u = lanes_select(ahead, place[1] / safe, outside), v = lanes_select(ahead, place[2] / safe, outside);
-    for (int c = 0; c < light->channels; c++)
-      sum.c[c] = sum.c[c] + look_up(lookup, light->nearest, lookup->transmittance[c], u, v) * lookup->weight[c];
-  }
-  for (int c = 0; c < light->channels && light->lookup_count > 1; c++) sum.c[c] = sum.c[c] / (float)light->lookup_count;
-  return sum;
+  if (light->part_count > 0) return mean_of_parts(light, position);
+  color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  const shadow_map *map = &light->lookup->map;
+  shadow_taps taps = taps_of_position(map, light->nearest, position);
+  for (int c = 0; c < light->channels; c++) reached.c[c] = look_up(map, &taps, light->lookup->transmittance[c]);
+  return reached;
 }
 
 /* Steps 14 and 15's first half: what arrives of one light (eqs. 1 and 2), and from where. */

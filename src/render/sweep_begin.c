@@ -175,8 +175,8 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
     reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
   }
   status = hl_shadow_buffer_reset(sweep->context, sweep->pool, buffer, &view, sweep->channels, paper, reach, error);
-  light->lookup = hl_lookup_of_view(&view);
-  light->lookup.stride = buffer->stride;
+  light->lookup.map = hl_map_of_view(&view);
+  light->lookup.map.stride = buffer->stride;
   for (int c = 0; c < sweep->channels; c++) light->lookup.transmittance[c] = buffer->transmittance[c];
   double last = sheets->first + (sheets->count - 1) * sheets->spacing;
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
@@ -252,8 +252,9 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   if (from->source->parallel) light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
   if (from->buffer == NULL) return;
   light->channels = from->buffer->channels;
-  light->lookups = from->sublights.count > 0 ? from->sublights.lookups : &from->lookup;
-  light->lookup_count = from->sublights.count > 0 ? from->sublights.count : 1;
+  light->lookup = &from->lookup;
+  light->parts = from->sublights.lookups;
+  light->part_count = from->sublights.count;
 }
 
 static void set_up_jobs(sweep *sweep) {

@@ -4,6 +4,7 @@
 #include "light/blur_lanes.h"
 #include "light/cascade_lanes.h"
 #include "light/sublight_lanes.h"
+#include "light/sublight_shift_lanes.h"
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
@@ -34,6 +35,7 @@ const hot_functions HL_HOT_TABLE = {
     .add_half_tile = add_half_tile,
     .add_double_tile = add_double_tile,
     .sublight_tile = sublight_tile,
+    .sublight_row = sublight_row,
     .half_pixel_tile = half_pixel_tile,
     .left_tile = left_tile,
     .absorbed_tile = absorbed_tile,

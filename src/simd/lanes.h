@@ -154,10 +154,14 @@ LANES_INLINE int32_t lanes_word(const unsigned char *p) {
 
 LANES_INLINE lanes lanes_from_int(lanes_int x) { return __builtin_convertvector(x, lanes); }
 LANES_INLINE lanes_int lanes_truncate(lanes x) { return __builtin_convertvector(x, lanes_int); }
+/* From 0 to 65535. */
+LANES_INLINE void lanes_store_short_int(uint16_t *p, lanes_int v) {
+  lanes_short narrow = __builtin_convertvector(v, lanes_short);
+  memcpy(p, &narrow, sizeof narrow);
+}
 /* Of numbers from 0 on, rounded, 65535 at most. */
 LANES_INLINE void lanes_store_short(uint16_t *p, lanes v) {
-  lanes_short rounded = __builtin_convertvector(lanes_truncate(lanes_min(v, lanes_set(65535.0f)) + 0.5f), lanes_short);
-  memcpy(p, &rounded, sizeof rounded);
+  lanes_store_short_int(p, lanes_truncate(lanes_min(v, lanes_set(65535.0f)) + 0.5f));
 }
 /* Greatest integer not above x; |x| < 2^31. */
 LANES_CALL lanes_int lanes_floor(lanes x) {
@@ -259,6 +263,13 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
   *first = lanes_gather(table, index);
   *second = lanes_gather(table + 1, index);
 #endif
+}
+
+/* The same of numbers of 16 bits: one load of four bytes a lane. */
+LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int index, lanes_int *first, lanes_int *second) {
+  lanes_int pair = lanes_gather_bytes((const unsigned char *)table, index * 2);
+  *first = pair & 0xffff;
+  *second = pair >> 16 & 0xffff;
 }
 
 /* Some of sixteen lanes, one bit each, that move together to the lanes `at` and on, in their order. */

@@ -369,7 +369,8 @@ typedef struct field_state {
   part_job part;
   sublight_job sublight;
   half_pixel_job half_pixel;
-  uint32_t rows[16];
+  slab_rows rows[16];
+  unsigned char dark[4];
   field_blur_job field_blur;
   left_job left;
   image_job image;
@@ -377,7 +378,7 @@ typedef struct field_state {
   ptrdiff_t offset[40];
   float a[FIELD][FIELD], b[FIELD][FIELD];
   field_pixel lacking[FIELD][FIELD], thin[FIELD][FIELD]; /* whole numbers of a and b */
-  struct { float pixels[FIELD][FIELD]; field_pixel lacking[FIELD][FIELD]; int lit; } out;
+  struct { float pixels[FIELD][FIELD]; field_pixel lacking[FIELD][FIELD]; int lit; unsigned char dark[4]; } out;
 } field_state;
 
 static void call_field(const hot_functions *hot, void *state) {
@@ -391,7 +392,14 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 6) hot->left_tile(&s->left, 1, 1);
   if (s->which == 7) s->out.lit = (int)hot->absorbed_tile(&s->absorbed, 1, 1);
   if (s->which == 8) s->out.lit = hot->sublight_tile(&s->sublight, 1, 1);
-  if (s->which == 13) s->out.lit = (int)hot->half_pixel_tile(&s->half_pixel, 1, 1);
+  if (s->which == 13) {
+    slab_rows rows = hot->half_pixel_tile(&s->half_pixel, 1, 1);
+    s->out.lit = (int)(rows ^ rows >> 32);
+  }
+  if (s->which == 14) {
+    memcpy(s->out.dark, s->dark, sizeof s->dark);
+    hot->sublight_row(&s->sublight, 1, 0, 3, s->out.dark);
+  }
   if (s->which == 9) s->out.lit = hot->double_tile(&s->field, 1, 1);
   if (s->which == 10) hot->image_tile(&s->image, 1, 1);
   if (s->which == 12) s->out.lit = (int)hot->part_tile(&s->part, 1, 1);
@@ -401,7 +409,7 @@ static void call_field(const hot_functions *hot, void *state) {
 static void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "field_blur_tile", "left_tile", "absorbed_tile", "sublight_tile",
-                                      "double_tile", "image_tile", "field_image_tile", "part_tile", "half_pixel_tile"};
+                                      "double_tile", "image_tile", "field_image_tile", "part_tile", "half_pixel_tile", "sublight_row"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -425,17 +433,19 @@ static void test_fields(void **unused) {
                                     FIELD, hl_blur_box(random_between(&seed, 1, 90)),
                                     hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH)), ALL_ROWS};
     s.sublight = (sublight_job){.slab_stride = FIELD, .slab_width = 60, .slab_height = 50, .stride = FIELD,
-                                .rows = s.rows, .slab_tiles_x = 4, .slab_tiles_y = 4,
-                                .channels = 1 + 2 * (round % 2)};
+                                .rows = s.rows, .slab_tiles_x = 4, .slab_tiles_y = 4, .tiles_x = 4,
+                                .carry = random_between(&seed, 0.01f, 0.99f), .channels = 1 + 2 * (round % 2)};
     for (int axis = 0; axis < 2; axis++) {
       s.sublight.scale[axis] = round % 3 == 0 ? 1 : random_between(&seed, round % 3 == 1 ? 0.8f : 0.3f, round % 3 == 1 ? 1.25f : 3);
       s.sublight.shift[axis] = random_between(&seed, -20, 20);
+      s.sublight.half[axis] = (int)(2 * s.sublight.shift[axis]);
     }
     for (int c = 0; c < HL_CHANNELS; c++) {
       for (int i = 0; i < SLAB_IMAGES; i++) s.sublight.slab[c][i] = &s.a[MARGIN + c][MARGIN + 5 * i];
-      s.sublight.transmittance[c] = &s.out.pixels[MARGIN][MARGIN];
+      s.sublight.left[c] = out;
     }
-    for (int i = 0; i < 16; i++) s.rows[i] = (uint32_t)random_between(&seed, 0, 65535) * 65537u;
+    for (int i = 0; i < 16; i++) s.rows[i] = (uint64_t)random_between(&seed, 0, 65535) * 0x1000100010001u;
+    for (int i = 0; i < 4; i++) s.dark[i] = random_between(&seed, 0, 1) < 0.3f;
     s.half_pixel = (half_pixel_job){.slab = &s.a[MARGIN][MARGIN], .slab_stride = FIELD};
     for (int i = 1; i < SLAB_IMAGES; i++) s.half_pixel.moved[i] = &s.out.pixels[MARGIN + 16 * i][MARGIN];
     s.image = (image_job){.from = &s.a[MARGIN][MARGIN], .to = &s.out.pixels[MARGIN][MARGIN], .stride = FIELD,
@@ -444,7 +454,7 @@ static void test_fields(void **unused) {
                                       .offset = s.offset, .weight = &s.b[MARGIN + 30][MARGIN]};
     for (int i = 0; i < 40; i++)
       s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD + (ptrdiff_t)random_between(&seed, -20, 20);
-    for (s.which = 0; s.which < 14; s.which++) {
+    for (s.which = 0; s.which < 15; s.which++) {
       trial trial = {call_field, &s, &s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
@@ -459,11 +469,13 @@ typedef struct shade_state {
   shade_patch patches[2];
   int patch_count;
   shade_light lights[3];
-  shadow_lookup lookups[3][3];
+  shadow_lookup lookups[3];
+  part_lookup parts[3][3];
   uint32_t blocks;
   float density[4][TILE_PIXELS];
   float cut[2][TILE_PIXELS];
   float buffer[HL_CHANNELS][64][64];
+  part_pixel left[HL_CHANNELS][64][64]; /* whole numbers of buffer */
   struct { float pixels[4 * TILE_PIXELS]; uint64_t samples; uint32_t open; } out;
 } shade_state;
 
@@ -474,23 +486,30 @@ static void call_shade(const hot_functions *hot, void *state) {
   s->out.open = hot->shade_tile(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels, &s->out.samples);
 }
 
+static shadow_map random_map(uint32_t *seed) {
+  shadow_map map = {.stride = 64, .width = 60, .height = 50};
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 4; column++) map.rows[row][column] = random_between(seed, -9, 9);
+  map.rows[0][3] = 10;
+  map.rows[1][3] = map.rows[2][3] = 250;
+  return map;
+}
+
 static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
   fill_salted(&s->buffer[0][0][0], sizeof s->buffer / 4, seed, 0, 1);
+  for (int i = 0; i < HL_CHANNELS * 64 * 64; i++) (&s->left[0][0][0])[i] = (part_pixel)((&s->buffer[0][0][0])[i] * PART_ONE);
   for (int i = 0; i < 3; i++) {
     shade_light *light = &s->lights[i];
     vec3 towards = bench_random_direction(seed);
     *light = (shade_light){.parallel = (round + i) % 2, .towards = {(float)towards.x, (float)towards.y, (float)towards.z},
                            .position = {3, -2, (float)i}, .color = {1, 0.5f, salted(seed, 0, 1)}, .inverse_square = i == 1,
-                           .shadowed = i < 2, .path = 0.7f, .lookups = s->lookups[i], .lookup_count = 1 + round % 3,
+                           .shadowed = i < 2, .path = 0.7f, .lookup = &s->lookups[i], .parts = s->parts[i], .part_count = round % 4,
                            .channels = s->job.channels, .nearest = round % 5 == 4};
+    s->lookups[i].map = random_map(seed);
+    for (int c = 0; c < HL_CHANNELS; c++) s->lookups[i].transmittance[c] = &s->buffer[c][2][2];
     for (int part = 0; part < 3; part++) {
-      shadow_lookup *lookup = &s->lookups[i][part];
-      *lookup = (shadow_lookup){.stride = 64, .width = 60, .height = 50, .weight = {1, 0.7f, salted(seed, 0, 1)}};
-      for (int c = 0; c < HL_CHANNELS; c++) lookup->transmittance[c] = &s->buffer[c][2][2];
-      for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 4; column++) lookup->map[row][column] = random_between(seed, -9, 9);
-      lookup->map[0][3] = 10;
-      lookup->map[1][3] = lookup->map[2][3] = 250;
+      s->parts[i][part] = (part_lookup){.map = random_map(seed), .weight = {1, 0.7f, salted(seed, 0, 1)}};
+      for (int c = 0; c < HL_CHANNELS; c++) s->parts[i][part].left[c] = &s->left[c][2][2];
     }
     if (round % 4 == 3) light->cone = (light_cone){{-light->towards[0], 0.6f, -light->towards[2]}, 0.3f, 4};
     if ((round + i) % 3 == 0) {
