@@ -1,10 +1,12 @@
 /* core/pool.c - the thread team. Jobs come in quick succession (two a sheet), so workers spin a while for the
  * next one before they sleep; with more threads than processors they sleep at once.
  *
- * A job is one 64-bit ticket: generation, count, next index. Indices are claimed by compare-and-swap, and the
- * caller waits for claimed indices only, never for a worker that the system has not woken: on a busy machine it
- * does the work alone. A job's description stays in its slot (by the generation's parity) while an index of it is
- * claimed, since a later job of the same parity cannot start before that. */
+ * Each thread has a share of a job's indices, one after another: in job after job of the same kind it meets the same part
+ * of the memory. A share is one 64-bit word on its own line of the cache: generation, end, next index. Its owner claims the first
+ * index by compare-and-swap; who has none left takes the last ones of others. So nobody waits for a worker that the system
+ * has not woken: on a busy machine the caller does the work alone. A job's description stays in its slot (by the
+ * generation's parity) until all that claimed of it have said so, since a later job of the same parity cannot start
+ * before that. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
@@ -34,12 +36,16 @@ typedef struct worker {
 typedef struct job {
   void (*function)(void *, size_t, int);
   void *data;
-  size_t base;           /* of the ticket's indices */
-  atomic_size_t done;    /* indices finished */
+  size_t base;           /* of the shares' indices */
+  _Alignas(64) atomic_size_t done; /* indices finished, as far as their workers have said so */
 } job;
 
-enum { INDEX_BITS = 20 }; /* of a ticket's index and count; longer jobs run in parts */
-static const uint64_t INDEX_MASK = ((uint64_t)1 << INDEX_BITS) - 1;
+enum { INDEX_BITS = 20 }; /* of a share's next index and end; longer jobs run in parts */
+static const uint64_t INDEX_MASK = ((uint64_t)1 << INDEX_BITS) - 1, ONE_OF_END = (uint64_t)1 << INDEX_BITS;
+
+typedef struct share {
+  _Alignas(64) atomic_uint_least64_t range; /* generation << 40 | end << 20 | next index */
+} share;
 
 struct hl_pool {
   hl_context *context;
@@ -48,14 +54,16 @@ struct hl_pool {
   worker *workers; /* owned; [threads]; entry 0 (the caller) unused */
   int started;     /* threads running, the caller included */
   pid_t process;   /* whose threads they are */
+  share *shares;   /* owned; [share_count] */
+  int share_count; /* threads that were asked for: some may not have started */
   job jobs[2];
-  atomic_uint_least64_t ticket; /* generation << 40 | count << 20 | next index */
+  atomic_uint_least64_t generation; /* of the last job, once its shares are there */
   atomic_bool stop;
   atomic_bool cancelled;        /* indices are passed over */
   int64_t asked;                /* when the calling thread last asked, nanoseconds */
   atomic_int sleepers;
   pthread_mutex_t mutex;
-  pthread_cond_t wake;       /* ticket or stop changed */
+  pthread_cond_t wake;       /* generation or stop changed */
 };
 
 static inline void relax(void) {
@@ -63,8 +71,6 @@ static inline void relax(void) {
   __builtin_ia32_pause();
 #endif
 }
-
-static bool has_work(uint64_t ticket) { return (ticket & INDEX_MASK) < (ticket >> INDEX_BITS & INDEX_MASK); }
 
 static int64_t now_nanoseconds(void) {
   struct timespec now;
@@ -88,22 +94,57 @@ bool hl_pool_stops(hl_pool *pool, int worker) {
 
 void hl_pool_resume(hl_pool *pool) { atomic_store(&pool->cancelled, false); }
 
-/* Works on whatever is to be done until nothing is. */
+static uint64_t next_of(uint64_t range) { return range & INDEX_MASK; }
+static uint64_t end_of(uint64_t range) { return range >> INDEX_BITS & INDEX_MASK; }
+static uint64_t generation_of(uint64_t range) { return range >> (2 * INDEX_BITS); }
+
+typedef struct claim {
+  uint64_t generation, index;
+} claim;
+
+/* The first index of one's own share, or the last one of another's. */
+static bool claim_of_share(share *share, bool own, claim *claimed) {
+  uint64_t range = atomic_load(&share->range);
+  while (next_of(range) < end_of(range)) {
+    uint64_t left = own ? range + 1 : range - ONE_OF_END;
+    if (!atomic_compare_exchange_weak(&share->range, &range, left)) continue;
+    *claimed = (claim){generation_of(range), own ? next_of(range) : end_of(left)};
+    return true;
+  }
+  return false;
+}
+
+static bool claim_index(hl_pool *pool, int number, claim *claimed) {
+  for (int i = 0; i < pool->share_count; i++) {
+    int whose = number + i < pool->share_count ? number + i : number + i - pool->share_count;
+    if (claim_of_share(&pool->shares[whose], i == 0, claimed)) return true;
+  }
+  return false;
+}
+
+/* Works on whatever is to be done until nothing is. A job does not end before its workers have said what they did, so that all
+ * that one claims before it does are of the same job. */
 static void work(hl_pool *pool, int number) {
-  uint64_t ticket = atomic_load(&pool->ticket);
-  while (has_work(ticket)) {
-    if (!atomic_compare_exchange_weak(&pool->ticket, &ticket, ticket + 1)) continue;
-    job *job = &pool->jobs[ticket >> (2 * INDEX_BITS) & 1];
-    if (!hl_pool_stops(pool, number)) job->function(job->data, job->base + (size_t)(ticket & INDEX_MASK), number);
-    atomic_fetch_add(&job->done, 1);
-    ticket = atomic_load(&pool->ticket);
+  claim claimed;
+  while (claim_index(pool, number, &claimed)) {
+    job *job = &pool->jobs[claimed.generation & 1];
+    size_t done = 0;
+    do {
+      if (!hl_pool_stops(pool, number)) job->function(job->data, job->base + (size_t)claimed.index, number);
+      done++;
+    } while (claim_index(pool, number, &claimed));
+    atomic_fetch_add(&job->done, done);
   }
 }
 
-static void sleep_until_work(hl_pool *pool) {
+static bool is_idle(hl_pool *pool, uint64_t generation) {
+  return atomic_load(&pool->generation) == generation && !atomic_load(&pool->stop);
+}
+
+static void sleep_until_work(hl_pool *pool, uint64_t generation) {
   pthread_mutex_lock(&pool->mutex);
   atomic_fetch_add(&pool->sleepers, 1);
-  while (!has_work(atomic_load(&pool->ticket)) && !atomic_load(&pool->stop)) pthread_cond_wait(&pool->wake, &pool->mutex);
+  while (is_idle(pool, generation)) pthread_cond_wait(&pool->wake, &pool->mutex);
   atomic_fetch_sub(&pool->sleepers, 1);
   pthread_mutex_unlock(&pool->mutex);
 }
@@ -112,10 +153,11 @@ static void *worker_main(void *argument) {
   worker *self = argument;
   hl_pool *pool = self->pool;
   while (!atomic_load(&pool->stop)) {
+    uint64_t generation = atomic_load(&pool->generation);
     work(pool, self->number);
     int spin = 0;
-    for (; spin < pool->spins && !has_work(atomic_load(&pool->ticket)); spin++) relax();
-    if (spin == pool->spins) sleep_until_work(pool);
+    for (; spin < pool->spins && is_idle(pool, generation); spin++) relax();
+    if (spin == pool->spins) sleep_until_work(pool, generation);
   }
   return NULL;
 }
@@ -136,13 +178,15 @@ static void wait_until_done(hl_pool *pool, const job *job, size_t count) {
 }
 
 static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(void *, size_t, int), void *data) {
-  uint64_t generation = (atomic_load(&pool->ticket) >> (2 * INDEX_BITS)) + 1;
+  uint64_t generation = atomic_load(&pool->generation) + 1, threads = (uint64_t)pool->threads;
   job *job = &pool->jobs[generation & 1];
   job->function = function;
   job->data = data;
   job->base = base;
   atomic_store(&job->done, 0);
-  atomic_store(&pool->ticket, generation << (2 * INDEX_BITS) | (uint64_t)count << INDEX_BITS);
+  for (uint64_t i = 0; i < threads; i++)
+    atomic_store(&pool->shares[i].range, generation << (2 * INDEX_BITS) | count * (i + 1) / threads << INDEX_BITS | count * i / threads);
+  atomic_store(&pool->generation, generation);
   wake_sleepers(pool);
   work(pool, 0);
   wait_until_done(pool, job, count);
@@ -221,7 +265,9 @@ hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_er
   if (threads > MAXIMUM_THREADS) threads = MAXIMUM_THREADS;
   hl_pool *made = hl_allocate_zeroed(context, 1, sizeof *made);
   worker *workers = hl_allocate_zeroed(context, (size_t)threads, sizeof *workers);
-  if (made == NULL || workers == NULL) {
+  share *shares = hl_allocate_zeroed(context, (size_t)threads, sizeof *shares);
+  if (made == NULL || workers == NULL || shares == NULL) {
+    hl_release(context, shares);
     hl_release(context, workers);
     hl_release(context, made);
     return hl_fail_memory(error, sizeof *made, "the thread pool");
@@ -230,6 +276,8 @@ hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_er
   made->threads = threads;
   made->spins = threads <= hl_cpu_count() ? SPINS : 0;
   made->workers = workers;
+  made->shares = shares;
+  made->share_count = threads;
   pthread_mutex_init(&made->mutex, NULL);
   pthread_cond_init(&made->wake, NULL);
   made->process = getpid();
@@ -254,6 +302,7 @@ static void stop_workers(hl_pool *pool) {
 void hl_pool_destroy(hl_pool *pool) {
   if (pool == NULL) return;
   if (hl_pool_is_own(pool)) stop_workers(pool);
+  hl_release(pool->context, pool->shares);
   hl_release(pool->context, pool->workers);
   hl_release(pool->context, pool);
 }
