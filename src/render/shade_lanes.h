@@ -49,13 +49,14 @@ LANES_INLINE shadow_taps taps_of_place(const shadow_map *map, int nearest, lanes
   return taps;
 }
 
-LANES_INLINE shadow_taps taps_of_position(const shadow_map *map, int nearest, lanes3 position) {
+LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow_map *map, lanes3 position) {
   lanes place[3];
   for (int row = 0; row < 3; row++)
     place[row] = position.x * map->rows[row][0] + position.y * map->rows[row][1] + (position.z * map->rows[row][2] + map->rows[row][3]);
+  if (light->parallel) return taps_of_place(map, light->nearest, place[1], place[2]); /* place[0] is 1 everywhere */
   lanes_int ahead = place[0] > 0.0f;
   lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
-  return taps_of_place(map, nearest, lanes_select(ahead, place[1] / safe, outside), lanes_select(ahead, place[2] / safe, outside));
+  return taps_of_place(map, light->nearest, lanes_select(ahead, place[1] / safe, outside), lanes_select(ahead, place[2] / safe, outside));
 }
 
 /* Between the pixels a b and, in the next row, c d; `beyond` outside the buffer. */
@@ -82,7 +83,7 @@ LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   for (int i = 0; i < light->part_count; i++) {
     const part_lookup *part = &light->parts[i];
-    shadow_taps taps = taps_of_position(&part->map, light->nearest, position);
+    shadow_taps taps = taps_of_position(light, &part->map, position);
     for (int c = 0; c < light->channels; c++)
       sum.c[c] = sum.c[c] + look_up_part(&part->map, &taps, part->left[c]) * part->weight[c];
   }
@@ -95,7 +96,7 @@ LANES_INLINE color_lanes reaching(const shade_light *light, lanes3 position) {
   if (light->part_count > 0) return mean_of_parts(light, position);
   color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   const shadow_map *map = &light->lookup->map;
-  shadow_taps taps = taps_of_position(map, light->nearest, position);
+  shadow_taps taps = taps_of_position(light, map, position);
   for (int c = 0; c < light->channels; c++) reached.c[c] = look_up(map, &taps, light->lookup->transmittance[c]);
   return reached;
 }
