@@ -129,6 +129,23 @@ LANES_INLINE lanes lanes_clamp(lanes x, float low, float high) {
 }
 LANES_INLINE lanes lanes_abs(lanes x) { return (lanes)((lanes_int)x & lanes_set_int(0x7fffffff)); }
 
+#if defined(__AVX2__)
+/* Each lane is two signed numbers of 16 bits: the sum of the products of both. */
+LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
+#if defined(__AVX512BW__)
+  return (lanes_int)_mm512_madd_epi16((__m512i)a, (__m512i)b);
+#else
+  __m256i x[2], y[2];
+  memcpy(x, &a, sizeof x);
+  memcpy(y, &b, sizeof y);
+  x[0] = _mm256_madd_epi16(x[0], y[0]);
+  x[1] = _mm256_madd_epi16(x[1], y[1]);
+  memcpy(&a, x, sizeof a);
+  return a;
+#endif
+}
+#endif
+
 LANES_CALL lanes lanes_sqrt(lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_sqrt_ps((__m512)x);

@@ -28,9 +28,9 @@ LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index, int y
 }
 
 /* A lane's four weights as three signed bytes each, the highest first: whole = (d0 256 + d1) 256 + d2. */
-typedef struct split_weights { __m512i digit[3]; } split_weights;
+typedef struct slice_weights { __m512i digit[3]; } slice_weights;
 
-LANES_INLINE split_weights split_whole(const whole_weights *whole) {
+LANES_INLINE slice_weights weights_of_slices(const whole_weights *whole) {
   __m512i biased[4];
   const __m512i bias = _mm512_set1_epi32(0x808080), sign = _mm512_set1_epi32((int)0x80808080);
   for (int tap = 0; tap < 4; tap++) biased[tap] = _mm512_add_epi32((__m512i)whole->tap[tap], bias);
@@ -43,14 +43,14 @@ LANES_INLINE split_weights split_whole(const whole_weights *whole) {
   __m512i low = _mm512_permutex2var_epi8(biased[0], lower, biased[1]), high = _mm512_permutex2var_epi8(biased[2], lower, biased[3]);
   __m512i low_top = _mm512_permutex2var_epi8(biased[0], highest, biased[1]);
   __m512i high_top = _mm512_permutex2var_epi8(biased[2], highest, biased[3]);
-  split_weights weights;
+  slice_weights weights;
   weights.digit[2] = _mm512_xor_si512(_mm512_permutex2var_epi8(low, first, high), sign);
   weights.digit[1] = _mm512_xor_si512(_mm512_permutex2var_epi8(low, second, high), sign);
   weights.digit[0] = _mm512_xor_si512(_mm512_permutex2var_epi8(low_top, first, high_top), sign);
   return weights;
 }
 
-LANES_INLINE lanes weigh_u8(const window_taps *taps, const split_weights *weights) {
+LANES_INLINE lanes weigh_u8(const window_taps *taps, const slice_weights *weights) {
   __m512i sum = _mm512_dpbusd_epi32(_mm512_setzero_si512(), taps->part[0], weights->digit[0]);
   sum = _mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), taps->part[0], weights->digit[1]);
   sum = _mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), taps->part[0], weights->digit[2]);

@@ -136,18 +136,19 @@ LANES_INLINE window_taps taps_in_row(hl_storage storage, const window_slice *sli
 }
 
 /* Weights along x in the form that the voxels want. */
-typedef struct window_weights { split_weights split; lanes real[4]; } window_weights;
+typedef struct window_weights { slice_weights whole; lanes real[4]; } window_weights;
 
 LANES_INLINE window_weights weights_of_window(hl_storage storage, const lanes weight[4], int total) {
-  row_weights row = weights_of_row(storage, weight, total);
   window_weights weights;
   for (int tap = 0; tap < 4; tap++) weights.real[tap] = weight[tap];
-  if (storage == HL_STORAGE_U8) weights.split = split_whole(&row.whole);
+  if (storage != HL_STORAGE_U8) return weights;
+  whole_weights whole = round_weights(weight, total);
+  weights.whole = weights_of_slices(&whole);
   return weights;
 }
 
 LANES_INLINE lanes weigh_taps(hl_storage storage, const window_taps *taps, const window_weights *weights) {
-  return storage == HL_STORAGE_U8    ? weigh_u8(taps, &weights->split)
+  return storage == HL_STORAGE_U8    ? weigh_u8(taps, &weights->whole)
          : storage == HL_STORAGE_U16 ? weigh_u16(taps, weights->real)
                                      : weigh_f32(taps, weights->real);
 }

@@ -1,4 +1,4 @@
-/* splat/window_words_lanes.h - a window's taps by permutations of 32-bit words, weighed by dot products of 16-bit words. */
+/* splat/window_words_lanes.h - a window's taps by permutations of 32-bit words, weighed as those loaded one by one. */
 #ifndef HL_SPLAT_WINDOW_WORDS_LANES_H
 #define HL_SPLAT_WINDOW_WORDS_LANES_H
 
@@ -30,31 +30,12 @@ LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index, int y
   return taps;
 }
 
-/* A lane's four weights as two signed numbers of 16 bits each: whole = high 2^11 + low. Those of the taps 0 and 2 share a word, and
- * those of 1 and 3. */
-typedef struct split_weights { __m512i high[2], low[2]; } split_weights;
+typedef byte_weights slice_weights;
 
-LANES_INLINE __m512i two_words(__m512i first, __m512i second) {
-  return _mm512_mask_blend_epi16(0xaaaaaaaau, first, _mm512_slli_epi32(second, 16));
-}
+LANES_INLINE slice_weights weights_of_slices(const whole_weights *whole) { return split_weights(whole); }
 
-LANES_INLINE split_weights split_whole(const whole_weights *whole) {
-  const __m512i below = _mm512_set1_epi32((1 << 11) - 1);
-  split_weights weights;
-  for (int i = 0; i < 2; i++) {
-    __m512i first = (__m512i)whole->tap[i], second = (__m512i)whole->tap[i + 2];
-    weights.high[i] = two_words(_mm512_srai_epi32(first, 11), _mm512_srai_epi32(second, 11));
-    weights.low[i] = two_words(_mm512_and_si512(first, below), _mm512_and_si512(second, below));
-  }
-  return weights;
-}
-
-LANES_INLINE lanes weigh_u8(const window_taps *taps, const split_weights *weights) {
-  const __m512i even_bytes = _mm512_set1_epi32(0x00ff00ff);
-  __m512i even = _mm512_and_si512(taps->part[0], even_bytes), odd = _mm512_and_si512(_mm512_srli_epi32(taps->part[0], 8), even_bytes);
-  __m512i high = _mm512_add_epi32(_mm512_madd_epi16(even, weights->high[0]), _mm512_madd_epi16(odd, weights->high[1]));
-  __m512i low = _mm512_add_epi32(_mm512_madd_epi16(even, weights->low[0]), _mm512_madd_epi16(odd, weights->low[1]));
-  return lanes_from_int((lanes_int)_mm512_add_epi32(_mm512_slli_epi32(high, 11), low));
+LANES_INLINE lanes weigh_u8(const window_taps *taps, const slice_weights *weights) {
+  return lanes_from_int(weigh_bytes((lanes_int)taps->part[0], weights));
 }
 
 #endif
