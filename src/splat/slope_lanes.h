@@ -61,7 +61,7 @@ LANES_INLINE void join_slopes(uint32_t bits, lanes3 part, lanes3 *slope) {
 
 #ifdef HL_WINDOWS
 LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *window, const tap_slope_weights *w) {
-  window_weights weights = weights_of_window(storage, w->weight[0], 1), slopes = weights_of_window(storage, w->slope[0], 0);
+  row_weights weights = weights_of_row(storage, w->weight[0], 1), slopes = weights_of_row(storage, w->slope[0], 0);
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int slice = 0; slice < window->slices; slice++) {
     window_slice voxels = slice_of_window(storage, window, slice);

@@ -2,19 +2,19 @@
  *
  * Sixteen neighbouring pixels of a sheet draw on few voxels: most often on a window of 8x8 voxels and up to eight
  * slices. One slice of it fills one to four 512-bit registers, from which permutations take four neighbouring taps of every
- * lane. u8 voxels come from the grid's columns and are weighed by dot products of whole numbers: of bytes
- * (window_bytes_lanes.h) or, where the processor has no permutations of bytes, of words (window_words_lanes.h); others come
- * from the volume's rows (window_rows_lanes.h). Lanes whose taps do not reach a slice weigh it by zero, which changes
+ * lane. u8 voxels come from the grid's columns, permuted as bytes (window_bytes_lanes.h) or, where the processor cannot, as
+ * words (window_words_lanes.h); others come from the volume's rows (window_rows_lanes.h). Lanes whose taps do not reach a slice weigh it by zero, which changes
  * no bit of their sums: these are the sums of gather_lanes.h and slope_lanes.h, in the same order. */
 #ifndef HL_SPLAT_WINDOW_LANES_H
 #define HL_SPLAT_WINDOW_LANES_H
 
 #include "splat/columns_lanes.h"
+#include "splat/row_lanes.h"
 
 #if defined(__AVX512BW__)
 #define HL_WINDOWS 1
 
-#if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
+#if defined(HL_PERMUTES_BYTES)
 #include "splat/window_bytes_lanes.h"
 #else
 #include "splat/window_words_lanes.h"
@@ -135,20 +135,8 @@ LANES_INLINE window_taps taps_in_row(hl_storage storage, const window_slice *sli
                                      : taps_f32(slice, index, y);
 }
 
-/* Weights along x in the form that the voxels want. */
-typedef struct window_weights { slice_weights whole; lanes real[4]; } window_weights;
-
-LANES_INLINE window_weights weights_of_window(hl_storage storage, const lanes weight[4], int total) {
-  window_weights weights;
-  for (int tap = 0; tap < 4; tap++) weights.real[tap] = weight[tap];
-  if (storage != HL_STORAGE_U8) return weights;
-  whole_weights whole = round_weights(weight, total);
-  weights.whole = weights_of_slices(&whole);
-  return weights;
-}
-
-LANES_INLINE lanes weigh_taps(hl_storage storage, const window_taps *taps, const window_weights *weights) {
-  return storage == HL_STORAGE_U8    ? weigh_u8(taps, &weights->whole)
+LANES_INLINE lanes weigh_taps(hl_storage storage, const window_taps *taps, const row_weights *weights) {
+  return storage == HL_STORAGE_U8    ? lanes_from_int(weigh_bytes((lanes_int)taps->part[0], &weights->bytes))
          : storage == HL_STORAGE_U16 ? weigh_u16(taps, weights->real)
                                      : weigh_f32(taps, weights->real);
 }
@@ -164,7 +152,7 @@ LANES_INLINE lanes weight_of_slice(const voxel_window *window, int slice, const 
 }
 
 LANES_INLINE lanes sum_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
-  window_weights along = weights_of_window(storage, weight[0], 1);
+  row_weights along = weights_of_row(storage, weight[0], 1);
   lanes sum = lanes_set(0);
   for (int slice = 0; slice < window->slices; slice++) {
     window_slice voxels = slice_of_window(storage, window, slice);

@@ -1,4 +1,4 @@
-/* splat/window_words_lanes.h - a window's taps by permutations of 32-bit words, weighed as those loaded one by one. */
+/* splat/window_words_lanes.h - a window's taps of u8 voxels by permutations of 32-bit words. */
 #ifndef HL_SPLAT_WINDOW_WORDS_LANES_H
 #define HL_SPLAT_WINDOW_WORDS_LANES_H
 
@@ -28,14 +28,6 @@ LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index, int y
   window_taps taps;
   taps.part[0] = _mm512_permutex2var_epi32(slice->part[0], _mm512_add_epi32(index, _mm512_set1_epi32(2 * y)), slice->part[1]);
   return taps;
-}
-
-typedef byte_weights slice_weights;
-
-LANES_INLINE slice_weights weights_of_slices(const whole_weights *whole) { return split_weights(whole); }
-
-LANES_INLINE lanes weigh_u8(const window_taps *taps, const slice_weights *weights) {
-  return lanes_from_int(weigh_bytes((lanes_int)taps->part[0], weights));
 }
 
 #endif
