@@ -178,7 +178,8 @@ static void test_instruction_sets(void **state) {
   static float scalar[MOST_FLOATS], other[MOST_FLOATS];
   if (hl_cpu_best_instruction_set() == HL_INSTRUCTION_SET_SCALAR) skip();
   for (int index = 0; index < SETTING_COUNT; index++)
-    for (int set_index = HL_INSTRUCTION_SET_SCALAR; set_index <= (int)hl_cpu_best_instruction_set(); set_index++) {
+    for (int set_index = HL_INSTRUCTION_SET_SCALAR; set_index <= HL_INSTRUCTION_SET_AVX512_VBMI; set_index++) {
+      if (!hl_cpu_has_instruction_set((hl_instruction_set)set_index)) continue;
       stage set;
       watch w;
       open_watched(&set, &w, (hl_instruction_set)set_index);
