@@ -115,7 +115,8 @@ static int open_renderers(bench_job *job) {
   result->height = description->height;
   result->frames = job->values[BENCH_FRAMES].given ? (int)job->values[BENCH_FRAMES].number[0] : 9;
   result->move = job->values[BENCH_MOVE].given ? job->values[BENCH_MOVE].choice : MOVE_CAMERA;
-  job->pixels = malloc(4 * sizeof(float) * (size_t)result->width * (size_t)result->height);
+  size_t lines = ((size_t)result->width * (size_t)result->height + 3) / 4; /* of a cache, as those of hl_image */
+  job->pixels = aligned_alloc(64, 64 * lines);
   if (job->pixels == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for a picture of %dx%d pixels", result->width, result->height);
   hl_error error = {0};
   for (int setting = 0; setting < SETTING_COUNT; setting++) {

@@ -51,7 +51,7 @@ uint64_t hl_sublights_bytes(const light_source *source, const light_image *image
          hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) - hl_shadow_buffer_bytes(slab, 0, false, reach);
 }
 
-static hl_status allocate(hl_context *context, hl_pool *pool, sublights *sublights, const shadow_buffer *slab, hl_error *error) {
+static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const shadow_buffer *slab, hl_error *error) {
   size_t count = (size_t)sublights->count, channels = (size_t)sublights->channels;
   size_t tiles = (size_t)sublights->tiles_x * (size_t)sublights->tiles_y;
   lay_out_planes(sublights);
@@ -60,10 +60,11 @@ static hl_status allocate(hl_context *context, hl_pool *pool, sublights *subligh
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "/render/light_samples: %zu parts of a light need %.1f GB of shadow buffers, more than 4.3: use fewer, or a "
                    "lower shadow_resolution", count, (double)pixels * sizeof(part_pixel) / 1e9);
-  sublights->memory = hl_allocate(context, pixels, sizeof(part_pixel));
+  hl_context *context = reserve->context;
+  sublights->memory = hl_reserve_take(reserve, pixels, sizeof(part_pixel));
   sublights->flags = hl_allocate_zeroed(context, count, tiles);
   sublights->lookups = hl_allocate(context, count, sizeof *sublights->lookups);
-  sublights->moved = hl_allocate(context, moved, sizeof(float));
+  sublights->moved = hl_reserve_take(reserve, moved, sizeof(float));
   sublights->rows = hl_allocate_zeroed(context, (size_t)slab->tiles_x * (size_t)slab->tiles_y, sizeof *sublights->rows);
   if (sublights->memory == NULL || sublights->flags == NULL || sublights->lookups == NULL || sublights->moved == NULL ||
       sublights->rows == NULL)
@@ -90,16 +91,17 @@ static hl_status weigh_parts(hl_context *context, sublights *sublights, const li
   return HL_OK;
 }
 
-hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *sublights, const light_source *source,
+hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const light_source *source,
                              const light_image *image, int side, vec3 normal, const shadow_extent *extent,
                              const shadow_buffer *slab, hl_error *error) {
+  hl_context *context = reserve->context;
   size_t count = (size_t)side * (size_t)side;
   sublights->parts = hl_allocate_zeroed(context, count, sizeof *sublights->parts);
   if (sublights->parts == NULL) return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
   sublights->count = (int)count;
   sublights->channels = slab->channels;
   place_parts(sublights, source, image, side, normal, extent);
-  hl_status status = allocate(context, pool, sublights, slab, error);
+  hl_status status = allocate(reserve, pool, sublights, slab, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < count; i++) {
     sublights->lookups[i] = (part_lookup){.map = hl_map_of_view(&sublights->parts[i].view), .weight = {1, 1, 1}};
@@ -110,9 +112,11 @@ hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *subl
   return image != NULL ? weigh_parts(context, sublights, source, side, error) : HL_OK;
 }
 
-void hl_sublights_release(hl_context *context, sublights *sublights) {
-  void *owned[] = {sublights->parts, sublights->lookups, sublights->memory, sublights->flags, sublights->moved, sublights->rows};
-  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(context, owned[i]);
+void hl_sublights_release(hl_reserve *reserve, sublights *sublights) {
+  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags, sublights->rows};
+  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(reserve->context, owned[i]);
+  hl_reserve_return(reserve, sublights->memory);
+  hl_reserve_return(reserve, sublights->moved);
   memset(sublights, 0, sizeof *sublights);
 }
 

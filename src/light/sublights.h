@@ -9,6 +9,7 @@
 #define HL_LIGHT_SUBLIGHTS_H
 
 #include "core/pool.h"
+#include "core/reserve.h"
 #include "light/light_extent.h"
 #include "light/light_image.h"
 #include "light/shadow_lookup.h"
@@ -32,9 +33,9 @@ typedef struct sublights {
   int slabs;              /* composited so far */
   sublight *parts;        /* owned; [count] */
   part_lookup *lookups;   /* owned; [count] */
-  part_pixel *memory;     /* owned; [count][channels] planes */
+  part_pixel *memory;     /* lent; [count][channels] planes */
   unsigned char *flags;   /* owned; [count][tiles] */
-  float *moved;           /* owned; [channels][SLAB_IMAGES - 1] planes of the slab, half a pixel further along u, v and both */
+  float *moved;           /* lent; [channels][SLAB_IMAGES - 1] planes of the slab, half a pixel further along u, v and both */
   slab_rows *rows;        /* owned; [tiles of the slab] */
 } sublights;
 
@@ -45,13 +46,13 @@ typedef struct sublight_functions {
 } sublight_functions;
 
 /* image: the light's, null where it is even. side: M. slab: the buffer of one slab at a time. */
-hl_status hl_sublights_begin(hl_context *context, hl_pool *pool, sublights *sublights, const light_source *source,
+hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const light_source *source,
                              const light_image *image, int side, vec3 normal, const shadow_extent *extent,
                              const shadow_buffer *slab, hl_error *error);
 /* The bytes that they then hold. slab, reach: of that buffer. */
 uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
                             const shadow_extent *extent, int channels, const view *slab, int reach);
-void hl_sublights_release(hl_context *context, sublights *sublights);
+void hl_sublights_release(hl_reserve *reserve, sublights *sublights);
 
 /* After the slab between these heights was composited into slab, a buffer that held ones: composites it into all parts,
  * and makes slab ones again; its lit tiles are those that some part's light still reaches. */

@@ -20,6 +20,7 @@ struct hl_renderer {
   shadow_buffer *buffers;      /* owned; [buffer_count]; one per light of a frame, of which a scene's light is some */
   size_t buffer_count;
   cascade_memory cascades[FRAME_LIGHTS]; /* owned; of a sweep's lights */
+  hl_reserve reserve;          /* owned; what frames and sweeps give back */
   uint64_t estimate;           /* bytes; see render/estimate.h */
 };
 
@@ -30,7 +31,7 @@ hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_err
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_create: context or renderer is null");
   *renderer = hl_allocate_zeroed(context, 1, sizeof **renderer);
   if (*renderer == NULL) return hl_fail_memory(error, sizeof **renderer, "a renderer");
-  (*renderer)->context = context;
+  (*renderer)->context = (*renderer)->reserve.context = context;
   return HL_OK;
 }
 
@@ -57,6 +58,7 @@ void hl_renderer_destroy(hl_renderer *renderer) {
   if (renderer == NULL) return;
   release_volumes(renderer);
   release_buffers(renderer);
+  hl_reserve_release(&renderer->reserve);
   hl_pool_destroy(renderer->pool);
   hl_release(renderer->context, renderer);
 }
@@ -108,13 +110,14 @@ typedef struct frame_work {
   int measuring_sweep;    /* the one that carries depth and normals */
 } frame_work;
 
-static void release_work(hl_context *context, frame_work *work) {
+static void release_work(hl_renderer *renderer, frame_work *work) {
+  hl_context *context = renderer->context;
   hl_framed_scene_release(context, &work->framed);
   hl_release(context, work->frame.points);
   hl_release(context, work->frame.lights);
   hl_release(context, work->grids);
   hl_release(context, work->sweeps);
-  if (!work->in_place) hl_release(context, work->pixels);
+  if (!work->in_place) hl_reserve_return(&renderer->reserve, work->pixels);
   hl_release(context, work->tile_rows);
   hl_layer_pixels_release(context, &work->layers);
 }
@@ -235,6 +238,13 @@ static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   }
 }
 
+/* Several sweeps would leave one another blocks that do not fit, and below a limit each byte counts. */
+static void choose_what_is_kept(hl_renderer *renderer, const frame_work *work) {
+  hl_reserve *reserve = &renderer->reserve;
+  reserve->keeps = work->sweep_count == 1 && renderer->context->options.memory_limit == 0;
+  if (!reserve->keeps) hl_reserve_release(reserve);
+}
+
 /* Where tiles are made: in the caller's pixels if one sweep's fill those, a row of tiles exactly as many rows. */
 static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers, float *pixels,
                               size_t row_stride, frame_work *work, hl_error *error) {
@@ -245,13 +255,14 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
   work->in_place = whole && work->sweep_count == 1 && work->frame.oversampling == 1 && (uintptr_t)pixels % 64 == 0;
   uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, layers);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
+  choose_what_is_kept(renderer, work);
   hl_status status = hl_check_room(context, bytes, &renderer->estimate, error);
   if (status != HL_OK) return status;
   if (work->in_place) {
     work->pixels = pixels;
     work->tile_rows = hl_allocate(context, threads * tile_row, sizeof *work->tile_rows);
   } else {
-    work->pixels = hl_allocate(context, floats, sizeof *work->pixels);
+    work->pixels = hl_reserve_take(&renderer->reserve, floats, sizeof *work->pixels);
   }
   if (work->pixels == NULL || (work->in_place && work->tile_rows == NULL))
     return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
@@ -330,8 +341,8 @@ static int attenuation_channels(const hl_scene_description *scene) {
   return 1;
 }
 
-static sweep sweep_of(const hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work, int index) {
-  return (sweep){.context = renderer->context, .pool = renderer->pool, .scene = scene, .frame = &work->frame,
+static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work, int index) {
+  return (sweep){.context = renderer->context, .pool = renderer->pool, .reserve = &renderer->reserve, .scene = scene, .frame = &work->frame,
                  .hot = hl_hot_functions(renderer->context->options.instruction_set),
                  .geometry = &work->sweeps[index], .volumes = renderer->prepared, .grids = work->grids,
                  .volume_count = (int)scene->volume_count, .kernel = hl_kernel_get(scene->render.kernel),
@@ -426,9 +437,10 @@ static void write_in_place(void *data, size_t index, int worker) {
   float *to = job->pixels + index * floats, *tiles = job->work->tile_rows + (size_t)worker * floats;
   memcpy(tiles, to, floats * sizeof *tiles);
   for (int row = 0; row < TILE; row++)
-    for (int column = 0; column < job->width; column++, to += 4) {
+    for (int column = 0; column < job->width; column += BLOCK, to += 4 * BLOCK) {
       const float *from = pixel_of_tiles(tiles, column, row);
-      for (int c = 0; c < 4; c++) to[c] = 0 + from[c * BLOCK_PIXELS]; /* as a sum: never -0 */
+      for (int pixel = 0; pixel < BLOCK; pixel++)
+        for (int c = 0; c < 4; c++) to[4 * pixel + c] = 0 + from[c * BLOCK_PIXELS + pixel]; /* as a sum: never -0 */
     }
 }
 
@@ -499,7 +511,8 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   hl_render_statistics counted = {.struct_size = sizeof counted};
   frame_work work = {0};
   status = render_frame(renderer, hl_scene_describe(scene), layers, &work, pixels, row_stride, &counted, error);
-  release_work(renderer->context, &work);
+  release_work(renderer, &work);
+  hl_reserve_trim(&renderer->reserve);
   if (status == HL_OK && statistics != NULL) *statistics = counted;
   return status;
 }

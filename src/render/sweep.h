@@ -5,6 +5,7 @@
 #ifndef HL_RENDER_SWEEP_H
 #define HL_RENDER_SWEEP_H
 
+#include "core/reserve.h"
 #include "light/soft_cascade.h"
 #include "light/soft_paper.h"
 #include "light/sublights.h"
@@ -50,12 +51,12 @@ typedef struct view_sheets {
   fill_source *sources;           /* owned; [ring][grids] */
   slab_run *runs;                 /* owned; [grids]; the slabs that the last one is among */
   relevant_patch *relevant;       /* owned; [patches] */
-  float *entries;                 /* owned; [entry_count][2][256]; where rays enter a box and leave it; room for all patches;
+  float *entries;                 /* lent; [entry_count][2][256]; where rays enter a box and leave it; room for all patches;
                                      null where no box cuts anything visible */
   uint32_t *entry_of;             /* owned; [patches]; NO_ENTRY where none was asked for */
   uint32_t entry_count;           /* atomic */
   box_rays *box_rays;             /* owned; [grids] */
-  float *density;                 /* owned; [patches][ring][256], block-major */
+  float *density;                 /* lent; [patches][ring][256], block-major */
   kept_patch *kept;               /* owned; [patches][ring]; what is in density */
 } view_sheets;
 
@@ -82,6 +83,7 @@ typedef struct sweep_counts {
 typedef struct sweep {
   hl_context *context;
   hl_pool *pool;
+  hl_reserve *reserve;            /* the renderer's */
   const hot_functions *hot;
   const hl_scene_description *scene;
   const frame *frame;

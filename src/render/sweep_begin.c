@@ -180,7 +180,7 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   for (int c = 0; c < sweep->channels; c++) light->lookup.transmittance[c] = buffer->transmittance[c];
   double last = sheets->first + (sheets->count - 1) * sheets->spacing;
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
-    status = hl_sublights_begin(sweep->context, sweep->pool, &light->sublights, source, image, sweep->scene->render.light_samples,
+    status = hl_sublights_begin(sweep->reserve, sweep->pool, &light->sublights, source, image, sweep->scene->render.light_samples,
                                 sheets->normal, &extent, buffer, error);
   bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
   if (cascade && image != NULL) hl_light_image_see(source, &seen, sheets->normal, image);
@@ -331,7 +331,7 @@ void hl_sweep_end(sweep *sweep) {
     hl_light_screen_release(context, &light->screen);
     hl_release(context, light->image);
     hl_soft_cascade_release(context, sweep->pool, &light->cascade);
-    hl_sublights_release(context, &light->sublights);
+    hl_sublights_release(sweep->reserve, &light->sublights);
   }
   hl_view_sheets_end(sweep, &sweep->image);
   void *owned[] = {sweep->open, sweep->tasks, sweep->shade_volumes, sweep->shade_patches,

@@ -13,7 +13,7 @@ static hl_status set_up_entries(const sweep *sweep, const view *view, view_sheet
   bool any = false;
   for (int g = 0; g < sweep->volume_count; g++) any = any || sweep->grids[g].cut;
   if (!any) return HL_OK;
-  sheets->entries = hl_allocate(sweep->context, patches * ENTRY_FLOATS, sizeof(float));
+  sheets->entries = hl_reserve_take(sweep->reserve, patches * ENTRY_FLOATS, sizeof(float));
   sheets->entry_of = hl_allocate(sweep->context, patches, sizeof *sheets->entry_of);
   sheets->box_rays = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->box_rays);
   if (sheets->entries == NULL || sheets->entry_of == NULL || sheets->box_rays == NULL)
@@ -62,7 +62,7 @@ static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error 
   sheets->bundle = bundle_of_patches(sheets->occupancy.patch_count);
   sheets->ring = sheets->bundle + 1;
   size_t count = sheets->occupancy.patch_count * (size_t)sheets->ring;
-  sheets->density = hl_allocate(sweep->context, count * TILE_PIXELS, sizeof(float));
+  sheets->density = hl_reserve_take(sweep->reserve, count * TILE_PIXELS, sizeof(float));
   sheets->kept = hl_allocate(sweep->context, count, sizeof *sheets->kept);
   sheets->sources = hl_allocate(sweep->context, (size_t)sheets->ring * (size_t)sweep->volume_count, sizeof *sheets->sources);
   sheets->runs = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->runs);
@@ -142,8 +142,9 @@ hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spar
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
   for (int g = 0; sheets->lists != NULL && g < sweep->volume_count; g++)
     hl_voxel_lists_release(sweep->context, &sheets->lists[g]);
-  void *owned[] = {sheets->lists,   sheets->sources,  sheets->runs,     sheets->relevant, sheets->entries,
-                   sheets->entry_of, sheets->box_rays, sheets->density, sheets->kept};
+  hl_reserve_return(sweep->reserve, sheets->entries);
+  hl_reserve_return(sweep->reserve, sheets->density);
+  void *owned[] = {sheets->lists, sheets->sources, sheets->runs, sheets->relevant, sheets->entry_of, sheets->box_rays, sheets->kept};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
   hl_occupancy_release(sweep->context, &sheets->occupancy);
 }
