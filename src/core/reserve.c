@@ -13,62 +13,37 @@ static void drop(reserve_block *block, hl_context *context) {
   *block = (reserve_block){0};
 }
 
-/* The smallest idle block that fits; null: none. */
-static reserve_block *find_idle(hl_reserve *reserve, size_t bytes) {
-  reserve_block *best = NULL;
-  for (int i = 0; i < RESERVE_BLOCKS; i++) {
-    reserve_block *block = &reserve->block[i];
-    if (block->memory == NULL || block->lent || !fits(block->bytes, bytes)) continue;
-    if (best == NULL || block->bytes < best->bytes) best = block;
-  }
-  return best;
-}
-
-/* A place for a new block: the largest idle block that is too small makes room, as it is what grew. Null: all are lent. */
-static reserve_block *make_place(hl_reserve *reserve, size_t bytes) {
-  reserve_block *outgrown = NULL, *place = NULL;
-  for (int i = 0; i < RESERVE_BLOCKS; i++) {
-    reserve_block *block = &reserve->block[i];
-    if (block->memory == NULL) place = block;
-    else if (!block->lent && block->bytes < bytes && (outgrown == NULL || block->bytes > outgrown->bytes)) outgrown = block;
-  }
-  if (outgrown == NULL) return place;
-  drop(outgrown, reserve->context);
-  return outgrown;
-}
-
 void *hl_reserve_take(hl_reserve *reserve, size_t count, size_t size) {
   size_t bytes;
-  if (!hl_multiply(count, size, &bytes) || bytes < LEAST_KEPT || !reserve->keeps)
+  if (!reserve->keeps || reserve->taken == RESERVE_BLOCKS || !hl_multiply(count, size, &bytes) || bytes < LEAST_KEPT)
     return hl_allocate(reserve->context, count, size);
-  reserve_block *block = find_idle(reserve, bytes);
-  if (block == NULL) {
-    block = make_place(reserve, bytes);
-    void *memory = hl_allocate(reserve->context, count, size);
-    if (memory == NULL || block == NULL) return memory;
-    *block = (reserve_block){.memory = memory, .bytes = bytes};
+  reserve_block *block = &reserve->block[reserve->taken];
+  if (!fits(block->bytes, bytes)) {
+    drop(block, reserve->context);
+    block->memory = hl_allocate(reserve->context, count, size);
+    if (block->memory == NULL) return NULL;
+    block->bytes = bytes;
   }
-  block->lent = block->wanted = true;
+  reserve->taken++;
   return block->memory;
 }
 
 void hl_reserve_return(hl_reserve *reserve, void *memory) {
-  for (int i = 0; i < RESERVE_BLOCKS && memory != NULL; i++) {
-    if (reserve->block[i].memory != memory) continue;
-    reserve->block[i].lent = false;
-    return;
-  }
+  for (int i = 0; i < reserve->taken; i++)
+    if (reserve->block[i].memory == memory) return;
   hl_release(reserve->context, memory);
 }
 
-void hl_reserve_trim(hl_reserve *reserve) {
-  for (int i = 0; i < RESERVE_BLOCKS; i++) {
-    reserve_block *block = &reserve->block[i];
-    if (!block->lent && !block->wanted) drop(block, reserve->context);
-    block->wanted = block->lent;
-  }
+void hl_reserve_drop_idle(hl_reserve *reserve) {
+  for (int i = reserve->taken; i < RESERVE_BLOCKS; i++) drop(&reserve->block[i], reserve->context);
+}
+
+void hl_reserve_end_frame(hl_reserve *reserve) {
+  hl_reserve_drop_idle(reserve);
+  reserve->taken = 0;
 }
 
 void hl_reserve_release(hl_reserve *reserve) {
-  for (int i = 0; i < RESERVE_BLOCKS; i++) drop(&reserve->block[i], reserve->context);
+  reserve->taken = 0;
+  hl_reserve_end_frame(reserve);
 }

@@ -88,6 +88,13 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
   return HL_OK;
 }
 
+/* Nothing is kept for later where this frame would not fit beside it. */
+static hl_status check_room(hl_renderer *renderer, uint64_t bytes, hl_error *error) {
+  uint64_t limit = renderer->context->options.memory_limit;
+  if (limit != 0 && hl_context_memory_held(renderer->context) + bytes > limit) hl_reserve_drop_idle(&renderer->reserve);
+  return hl_check_room(renderer->context, bytes, &renderer->estimate, error);
+}
+
 static double smallest_edge(const hl_renderer *renderer) {
   double edge = INFINITY;
   for (size_t i = 0; i < renderer->prepared_count; i++)
@@ -238,13 +245,6 @@ static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   }
 }
 
-/* Several sweeps would leave one another blocks that do not fit, and below a limit each byte counts. */
-static void choose_what_is_kept(hl_renderer *renderer, const frame_work *work) {
-  hl_reserve *reserve = &renderer->reserve;
-  reserve->keeps = work->sweep_count == 1 && renderer->context->options.memory_limit == 0;
-  if (!reserve->keeps) hl_reserve_release(reserve);
-}
-
 /* Where tiles are made: in the caller's pixels if one sweep's fill those, a row of tiles exactly as many rows. */
 static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers, float *pixels,
                               size_t row_stride, frame_work *work, hl_error *error) {
@@ -255,8 +255,9 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
   work->in_place = whole && work->sweep_count == 1 && work->frame.oversampling == 1 && (uintptr_t)pixels % 64 == 0;
   uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, layers);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
-  choose_what_is_kept(renderer, work);
-  hl_status status = hl_check_room(context, bytes, &renderer->estimate, error);
+  renderer->reserve.keeps = work->sweep_count == 1; /* several would leave one another blocks that do not fit */
+  if (!renderer->reserve.keeps) hl_reserve_release(&renderer->reserve);
+  hl_status status = check_room(renderer, bytes, error);
   if (status != HL_OK) return status;
   if (work->in_place) {
     work->pixels = pixels;
@@ -380,7 +381,7 @@ static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_descrip
   hl_release(context, points);
   hl_release(context, bytes);
   if (status != HL_OK) return status;
-  return hl_check_room(context, needed > kept ? needed - kept : 0, &renderer->estimate, error);
+  return check_room(renderer, needed > kept ? needed - kept : 0, error);
 }
 
 static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work, int index,
@@ -460,9 +461,7 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   renderer->estimate = 0;
   const hot_functions *hot = hl_hot_functions(renderer->context->options.instruction_set);
   if (status == HL_OK)
-    status = hl_check_room(renderer->context,
-                           hl_prepare_bytes(scene, renderer->prepared, &hot->grid, hl_pool_threads(renderer->pool)),
-                           &renderer->estimate, error);
+    status = check_room(renderer, hl_prepare_bytes(scene, renderer->prepared, &hot->grid, hl_pool_threads(renderer->pool)), error);
   if (status == HL_OK)
     status = hl_prepare_volumes(renderer->context, renderer->pool, hot, scene, renderer->prepared,
                                 error);
@@ -512,7 +511,7 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   frame_work work = {0};
   status = render_frame(renderer, hl_scene_describe(scene), layers, &work, pixels, row_stride, &counted, error);
   release_work(renderer, &work);
-  hl_reserve_trim(&renderer->reserve);
+  hl_reserve_end_frame(&renderer->reserve);
   if (status == HL_OK && statistics != NULL) *statistics = counted;
   return status;
 }
