@@ -20,11 +20,22 @@ LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shif
   return slice;
 }
 
-/* The four taps of every lane in row y of a slice. */
-LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index, int y) {
-  window_taps taps;
-  taps.part[0] = _mm512_permutexvar_epi8(_mm512_add_epi8(index, _mm512_set1_epi8((char)(GRID_COLUMN * y))), slice->part[0]);
-  return taps;
+/* The same in row y of a slice. */
+LANES_INLINE __m512i index_in_row_u8(__m512i index, int y) {
+  return _mm512_add_epi8(index, _mm512_set1_epi8((char)(GRID_COLUMN * y)));
+}
+
+/* The four taps of every lane. */
+LANES_INLINE __m512i taps_u8(const window_slice *slice, __m512i index) { return _mm512_permutexvar_epi8(index, slice->part[0]); }
+
+/* Some lanes: a bit for each of their taps. */
+typedef __mmask64 window_lanes;
+
+LANES_INLINE window_lanes lanes_with_taps(__mmask16 bits) { return _mm512_movepi8_mask(_mm512_movm_epi32(bits)); }
+
+/* Those lanes' taps from another slice. */
+LANES_INLINE __m512i replace_taps_u8(__m512i taps, window_lanes some, const window_slice *slice, __m512i index) {
+  return _mm512_mask_permutexvar_epi8(taps, some, index, slice->part[0]);
 }
 
 #endif
