@@ -60,15 +60,56 @@ LANES_INLINE void join_slopes(uint32_t bits, lanes3 part, lanes3 *slope) {
 }
 
 #ifdef HL_WINDOWS
+LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window *window, int spread, const tap_slope_weights *w) {
+  own_slices own;
+  window_taps taps[4];
+  row_weights weights = weights_of_row(storage, w->weight[0], 1), slopes = weights_of_row(storage, w->slope[0], 0);
+  lanes none = lanes_set(0), value[4] = {none, none, none, none}, along_x[4] = {none, none, none, none}, along_y[4] = {none, none, none, none};
+  lanes3 sum = {none, none, none};
+  load_own_slices(storage, window, spread, &own);
+  for (int y = 0; y < 4; y++) {
+    own_taps(storage, &own, spread, window->index, y, taps);
+    for (int z = 0; z < 4; z++) {
+      lanes plain = weigh_taps(storage, &taps[z], &weights);
+      along_x[z] = along_x[z] + weigh_taps(storage, &taps[z], &slopes) * w->weight[1][y];
+      along_y[z] = along_y[z] + plain * w->slope[1][y];
+      value[z] = value[z] + plain * w->weight[1][y];
+    }
+  }
+  for (int z = 0; z < 4; z++) {
+    sum.x = sum.x + along_x[z] * w->weight[2][z];
+    sum.y = sum.y + along_y[z] * w->weight[2][z];
+    sum.z = sum.z + value[z] * w->slope[2][z];
+  }
+  if (storage != HL_STORAGE_U8) return sum;
+  return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
+}
+
 LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *window, const tap_slope_weights *w) {
+  switch (window->slices - 4) {
+    case 0: return slopes_of_own_slices(storage, window, 0, w);
+    case 1: return slopes_of_own_slices(storage, window, 1, w);
+    case 2: return slopes_of_own_slices(storage, window, 2, w);
+    case 3: return slopes_of_own_slices(storage, window, 3, w);
+    default: return slopes_of_own_slices(storage, window, WINDOW_SPREAD, w);
+  }
+}
+
+static __attribute__((noinline)) lanes3 slopes_of_window_u8(const voxel_window *window, const tap_slope_weights *w) {
+  return slopes_of_window(HL_STORAGE_U8, window, w);
+}
+static __attribute__((noinline)) lanes3 slopes_of_window_u16(const voxel_window *window, const tap_slope_weights *w) {
+  return slopes_of_window(HL_STORAGE_U16, window, w);
+}
+static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window *window, const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int slice = 0; slice < window->slices; slice++) {
-    window_slice voxels = slice_of_window(storage, window, slice);
+    window_slice voxels = slice_of_window(HL_STORAGE_F32, window, slice);
     lanes value = lanes_set(0), along_x = value, along_y = value;
     for (int y = 0; y < 4; y++) {
-      window_taps taps = taps_in_row(storage, &voxels, window->index, y);
-      lanes plain = weigh_taps(storage, &taps, w->weight[0]);
-      along_x = along_x + weigh_taps(storage, &taps, w->slope[0]) * w->weight[1][y];
+      window_taps taps = taps_f32(&voxels, window->index, y);
+      lanes plain = weigh_f32(&taps, w->weight[0]);
+      along_x = along_x + weigh_f32(&taps, w->slope[0]) * w->weight[1][y];
       along_y = along_y + plain * w->slope[1][y];
       value = value + plain * w->weight[1][y];
     }
@@ -78,43 +119,6 @@ LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *win
     sum.z = sum.z + value * weight_of_slice(window, slice, w->slope[2]);
   }
   return sum;
-}
-
-LANES_INLINE lanes3 slopes_of_own_slices(const voxel_window *window, int spread, const tap_slope_weights *w) {
-  own_slices own;
-  row_weights weights = weights_of_row(HL_STORAGE_U8, w->weight[0], 1), slopes = weights_of_row(HL_STORAGE_U8, w->slope[0], 0);
-  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  load_own_slices(window, spread, &own);
-  for (int z = 0; z < 4; z++) {
-    lanes value = lanes_set(0), along_x = value, along_y = value;
-    for (int y = 0; y < 4; y++) {
-      lanes_int taps = own_taps(&own, spread, y, z);
-      lanes plain = lanes_from_int(weigh_bytes(taps, &weights.bytes));
-      along_x = along_x + lanes_from_int(weigh_bytes(taps, &slopes.bytes)) * w->weight[1][y];
-      along_y = along_y + plain * w->slope[1][y];
-      value = value + plain * w->weight[1][y];
-    }
-    sum.x = sum.x + along_x * w->weight[2][z];
-    sum.y = sum.y + along_y * w->weight[2][z];
-    sum.z = sum.z + value * w->slope[2][z];
-  }
-  return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
-}
-
-static __attribute__((noinline)) lanes3 slopes_of_window_u8(const voxel_window *window, const tap_slope_weights *w) {
-  switch (window->slices - 4) {
-    case 0: return slopes_of_own_slices(window, 0, w);
-    case 1: return slopes_of_own_slices(window, 1, w);
-    case 2: return slopes_of_own_slices(window, 2, w);
-    case 3: return slopes_of_own_slices(window, 3, w);
-    default: return slopes_of_own_slices(window, WINDOW_SPREAD, w);
-  }
-}
-static __attribute__((noinline)) lanes3 slopes_of_window_u16(const voxel_window *window, const tap_slope_weights *w) {
-  return slopes_of_window(HL_STORAGE_U16, window, w);
-}
-static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window *window, const tap_slope_weights *w) {
-  return slopes_of_window(HL_STORAGE_F32, window, w);
 }
 
 /* As many blocks to a window as fit. False where even one does not. */

@@ -26,16 +26,17 @@ LANES_INLINE __m512i index_in_row_u8(__m512i index, int y) {
 }
 
 /* The four taps of every lane. */
-LANES_INLINE __m512i taps_u8(const window_slice *slice, __m512i index) { return _mm512_permutexvar_epi8(index, slice->part[0]); }
+LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index) {
+  window_taps taps;
+  taps.part[0] = _mm512_permutexvar_epi8(index, slice->part[0]);
+  return taps;
+}
 
-/* Some lanes: a bit for each of their taps. */
-typedef __mmask64 window_lanes;
+LANES_INLINE window_lanes some_lanes_u8(__mmask16 bits) { return _mm512_movepi8_mask(_mm512_movm_epi32(bits)); }
 
-LANES_INLINE window_lanes lanes_with_taps(__mmask16 bits) { return _mm512_movepi8_mask(_mm512_movm_epi32(bits)); }
-
-/* Those lanes' taps from another slice. */
-LANES_INLINE __m512i replace_taps_u8(__m512i taps, window_lanes some, const window_slice *slice, __m512i index) {
-  return _mm512_mask_permutexvar_epi8(taps, some, index, slice->part[0]);
+/* Some lanes' taps from another slice. */
+LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice, __m512i index) {
+  taps->part[0] = _mm512_mask_permutexvar_epi8(taps->part[0], some, index, slice->part[0]);
 }
 
 #endif

@@ -86,7 +86,8 @@ LANES_INLINE int has_windows(const grid *grid) {
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3], uint32_t active,
                                 voxel_window *window) {
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
-  const int32_t side[3] = {grid->storage == HL_STORAGE_U8 ? WINDOW_WIDTH : WINDOW_SIDE, WINDOW_SIDE, WINDOW_SIDE};
+  const int32_t side[3] = {grid->storage == HL_STORAGE_U8 ? WINDOW_WIDTH : WINDOW_SIDE,
+                           grid->storage == HL_STORAGE_U8 ? WINDOW_SIDE : WINDOW_ROWS, WINDOW_SIDE};
   int32_t low[3];
   __m512i offset[3];
   if (!has_windows(grid)) return 0;
@@ -128,14 +129,74 @@ LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window
   return storage == HL_STORAGE_U16 ? slice_u16(first, window->row_bytes) : slice_f32(first, window->row_bytes);
 }
 
-/* The four taps of every lane in row y of a slice of u16 or f32 voxels. */
-LANES_INLINE window_taps taps_in_row(hl_storage storage, const window_slice *slice, __m512i index, int y) {
-  return storage == HL_STORAGE_U16 ? taps_u16(slice, index, y) : taps_f32(slice, index, y);
+/* ---- u8 and u16: every lane's own four slices ---- */
+
+/* Of u8 and u16 voxels taps of tap row y and slice z are taken for all lanes at once: from the slice in which the first
+ * lanes' begin, and from later ones, spread of them, for lanes that begin later. That is fewer sums than one for each slice. */
+typedef struct own_slices {
+  window_slice voxels[WINDOW_SIDE];
+  window_lanes later[WINDOW_SPREAD + 1]; /* lanes whose taps start at this slice */
+} own_slices;
+
+LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window, int spread, own_slices *own) {
+  for (int slice = 0; slice < spread + 4; slice++) own->voxels[slice] = slice_of_window(storage, window, slice);
+  for (int start = 1; start <= spread; start++)
+    own->later[start] = storage == HL_STORAGE_U8 ? some_lanes_u8(window->starts[start]) : some_lanes_u16(window->starts[start]);
 }
 
-LANES_INLINE lanes weigh_taps(hl_storage storage, const window_taps *taps, const lanes weight[4]) {
-  return storage == HL_STORAGE_U16 ? weigh_u16(taps, weight) : weigh_f32(taps, weight);
+/* The taps (0..3, y, z) of every lane, z from 0 to 3. */
+LANES_INLINE void own_taps(hl_storage storage, const own_slices *own, int spread, __m512i index, int y, window_taps taps[4]) {
+  window_slice rows[WINDOW_SIDE];
+  if (storage == HL_STORAGE_U8) index = index_in_row_u8(index, y);
+  for (int slice = 0; slice < spread + 4; slice++)
+    rows[slice] = storage == HL_STORAGE_U8 ? own->voxels[slice] : rows_u16(&own->voxels[slice], y);
+  for (int z = 0; z < 4; z++) {
+    taps[z] = storage == HL_STORAGE_U8 ? taps_u8(&rows[z], index) : taps_u16(&rows[z], index);
+    for (int start = 1; start <= spread; start++)
+      if (storage == HL_STORAGE_U8)
+        replace_taps_u8(&taps[z], own->later[start], &rows[z + start], index);
+      else
+        replace_taps_u16(&taps[z], own->later[start], &rows[z + start], index);
+  }
 }
+
+LANES_INLINE lanes weigh_taps(hl_storage storage, const window_taps *taps, const row_weights *weights) {
+  return storage == HL_STORAGE_U8 ? lanes_from_int(weigh_bytes((lanes_int)taps->part[0], &weights->bytes))
+                                  : weigh_u16(taps, weights->real);
+}
+
+LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window, int spread, const lanes weight[3][4]) {
+  own_slices own;
+  window_taps taps[4];
+  row_weights along = weights_of_row(storage, weight[0], 1);
+  lanes plane[4] = {lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(0)}, sum = lanes_set(0);
+  load_own_slices(storage, window, spread, &own);
+  for (int y = 0; y < 4; y++) {
+    own_taps(storage, &own, spread, window->index, y, taps);
+    for (int z = 0; z < 4; z++) plane[z] = plane[z] + weigh_taps(storage, &taps[z], &along) * weight[1][y];
+  }
+  for (int z = 0; z < 4; z++) sum = sum + plane[z] * weight[2][z];
+  return storage == HL_STORAGE_U8 ? sum * WHOLE_INVERSE : sum;
+}
+
+LANES_INLINE lanes sum_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
+  switch (window->slices - 4) {
+    case 0: return sum_own_slices(storage, window, 0, weight);
+    case 1: return sum_own_slices(storage, window, 1, weight);
+    case 2: return sum_own_slices(storage, window, 2, weight);
+    case 3: return sum_own_slices(storage, window, 3, weight);
+    default: return sum_own_slices(storage, window, WINDOW_SPREAD, weight);
+  }
+}
+
+static __attribute__((noinline)) lanes sum_window_u8(const voxel_window *window, const lanes weight[3][4]) {
+  return sum_window(HL_STORAGE_U8, window, weight);
+}
+static __attribute__((noinline)) lanes sum_window_u16(const voxel_window *window, const lanes weight[3][4]) {
+  return sum_window(HL_STORAGE_U16, window, weight);
+}
+
+/* ---- f32: slice by slice ---- */
 
 /* Every lane's weight of a slice: that of the tap that lies in it, or zero. */
 LANES_INLINE lanes weight_of_slice(const voxel_window *window, int slice, const lanes weight[4]) {
@@ -147,70 +208,18 @@ LANES_INLINE lanes weight_of_slice(const voxel_window *window, int slice, const 
   return (lanes)found;
 }
 
-LANES_INLINE lanes sum_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
+static __attribute__((noinline)) lanes sum_window_f32(const voxel_window *window, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
   for (int slice = 0; slice < window->slices; slice++) {
-    window_slice voxels = slice_of_window(storage, window, slice);
+    window_slice voxels = slice_of_window(HL_STORAGE_F32, window, slice);
     lanes plane = lanes_set(0);
     for (int y = 0; y < 4; y++) {
-      window_taps taps = taps_in_row(storage, &voxels, window->index, y);
-      plane = plane + weigh_taps(storage, &taps, weight[0]) * weight[1][y];
+      window_taps taps = taps_f32(&voxels, window->index, y);
+      plane = plane + weigh_f32(&taps, weight[0]) * weight[1][y];
     }
     sum = sum + plane * weight_of_slice(window, slice, weight[2]);
   }
   return sum;
-}
-
-/* Of u8 voxels, every lane's own four slices one after another: taps come from the slice in which most lanes' begin, and from
- * later ones, up to spread of them, where lanes begin later. That is fewer sums than one for each slice. */
-typedef struct own_slices {
-  window_slice voxels[WINDOW_SIDE];
-  __m512i index[4]; /* of each row's taps */
-  window_lanes later[WINDOW_SPREAD + 1]; /* lanes whose taps start at this slice */
-} own_slices;
-
-LANES_INLINE void load_own_slices(const voxel_window *window, int spread, own_slices *own) {
-  for (int slice = 0; slice < spread + 4; slice++) own->voxels[slice] = slice_of_window(HL_STORAGE_U8, window, slice);
-  for (int start = 1; start <= spread; start++) own->later[start] = lanes_with_taps(window->starts[start]);
-  for (int y = 0; y < 4; y++) own->index[y] = index_in_row_u8(window->index, y);
-}
-
-/* The taps (0..3, y, z) of every lane. */
-LANES_INLINE lanes_int own_taps(const own_slices *own, int spread, int y, int z) {
-  __m512i taps = taps_u8(&own->voxels[z], own->index[y]);
-  for (int start = 1; start <= spread; start++)
-    taps = replace_taps_u8(taps, own->later[start], &own->voxels[z + start], own->index[y]);
-  return (lanes_int)taps;
-}
-
-LANES_INLINE lanes sum_own_slices(const voxel_window *window, int spread, const lanes weight[3][4]) {
-  own_slices own;
-  row_weights along = weights_of_row(HL_STORAGE_U8, weight[0], 1);
-  lanes sum = lanes_set(0);
-  load_own_slices(window, spread, &own);
-  for (int z = 0; z < 4; z++) {
-    lanes plane = lanes_set(0);
-    for (int y = 0; y < 4; y++)
-      plane = plane + lanes_from_int(weigh_bytes(own_taps(&own, spread, y, z), &along.bytes)) * weight[1][y];
-    sum = sum + plane * weight[2][z];
-  }
-  return sum * WHOLE_INVERSE;
-}
-
-static __attribute__((noinline)) lanes sum_window_u8(const voxel_window *window, const lanes weight[3][4]) {
-  switch (window->slices - 4) {
-    case 0: return sum_own_slices(window, 0, weight);
-    case 1: return sum_own_slices(window, 1, weight);
-    case 2: return sum_own_slices(window, 2, weight);
-    case 3: return sum_own_slices(window, 3, weight);
-    default: return sum_own_slices(window, WINDOW_SPREAD, weight);
-  }
-}
-static __attribute__((noinline)) lanes sum_window_u16(const voxel_window *window, const lanes weight[3][4]) {
-  return sum_window(HL_STORAGE_U16, window, weight);
-}
-static __attribute__((noinline)) lanes sum_window_f32(const voxel_window *window, const lanes weight[3][4]) {
-  return sum_window(HL_STORAGE_F32, window, weight);
 }
 LANES_INLINE lanes sum_of_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
   return storage == HL_STORAGE_U8    ? sum_window_u8(window, weight)

@@ -9,4 +9,7 @@
 typedef struct window_slice { __m512i part[4]; } window_slice;
 typedef struct window_taps { __m512i part[4]; } window_taps;
 
+/* Some lanes: a bit for each piece of their taps that a permutation moves. */
+typedef __mmask64 window_lanes;
+
 #endif

@@ -1,9 +1,11 @@
-/* splat/window_rows_lanes.h - windows of u16 and f32 voxels: eight voxels each of eight rows of the volume, from which taps are
+/* splat/window_rows_lanes.h - windows of u16 and f32 voxels: eight voxels each of seven rows of the volume, from which taps are
  * taken by permutations. */
 #ifndef HL_SPLAT_WINDOW_ROWS_LANES_H
 #define HL_SPLAT_WINDOW_ROWS_LANES_H
 
 #include "splat/window_parts_lanes.h"
+
+enum { WINDOW_ROWS = GRID_COLUMN - 1 }; /* of u16 and f32 voxels */
 
 /* ---- u16: two taps a word ---- */
 
@@ -15,25 +17,44 @@ LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
 
 LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_si128((const __m128i *)row); }
 
+/* Four rows, and the three below them. */
 LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
-  for (int half = 0; half < 2; half++, row += 4 * row_bytes) {
-    __m512i rows = _mm512_castsi128_si512(row_of_shorts(row));
-    rows = _mm512_inserti32x4(rows, row_of_shorts(row + row_bytes), 1);
-    rows = _mm512_inserti32x4(rows, row_of_shorts(row + 2 * row_bytes), 2);
-    slice.part[half] = _mm512_inserti32x4(rows, row_of_shorts(row + 3 * row_bytes), 3);
-  }
+  __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)), lower = _mm512_castsi128_si512(row_of_shorts(row + 4 * row_bytes));
+  upper = _mm512_inserti32x4(upper, row_of_shorts(row + row_bytes), 1);
+  lower = _mm512_inserti32x4(lower, row_of_shorts(row + 5 * row_bytes), 1);
+  upper = _mm512_inserti32x4(upper, row_of_shorts(row + 2 * row_bytes), 2);
+  slice.part[1] = _mm512_inserti32x4(lower, row_of_shorts(row + 6 * row_bytes), 2);
+  slice.part[0] = _mm512_inserti32x4(upper, row_of_shorts(row + 3 * row_bytes), 3);
   return slice;
 }
 
-/* The four taps of every lane in row y of a slice. */
-LANES_INLINE window_taps taps_u16(const window_slice *slice, __m512i index, int y) {
-  __m512i first = _mm512_add_epi32(index, _mm512_set1_epi32(0x00080008 * y));
-  __m512i third = _mm512_add_epi32(first, _mm512_set1_epi32(0x00020002));
+/* The four rows from row y on, among which are the taps in row y of every lane. */
+LANES_INLINE window_slice rows_u16(const window_slice *slice, int y) {
+  window_slice rows;
+  rows.part[0] = y == 0   ? slice->part[0]
+                 : y == 1 ? _mm512_alignr_epi64(slice->part[1], slice->part[0], 2)
+                 : y == 2 ? _mm512_alignr_epi64(slice->part[1], slice->part[0], 4)
+                          : _mm512_alignr_epi64(slice->part[1], slice->part[0], 6);
+  return rows;
+}
+
+LANES_INLINE __m512i third_u16(__m512i index) { return _mm512_add_epi32(index, _mm512_set1_epi32(0x00020002)); }
+
+/* The four taps of every lane. */
+LANES_INLINE window_taps taps_u16(const window_slice *rows, __m512i index) {
   window_taps taps;
-  taps.part[0] = _mm512_permutex2var_epi16(slice->part[0], first, slice->part[1]);
-  taps.part[1] = _mm512_permutex2var_epi16(slice->part[0], third, slice->part[1]);
+  taps.part[0] = _mm512_permutexvar_epi16(index, rows->part[0]);
+  taps.part[1] = _mm512_permutexvar_epi16(third_u16(index), rows->part[0]);
   return taps;
+}
+
+LANES_INLINE window_lanes some_lanes_u16(__mmask16 bits) { return _mm512_movepi16_mask(_mm512_movm_epi32(bits)); }
+
+/* Some lanes' taps from another slice. */
+LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows, __m512i index) {
+  taps->part[0] = _mm512_mask_permutexvar_epi16(taps->part[0], (__mmask32)some, index, rows->part[0]);
+  taps->part[1] = _mm512_mask_permutexvar_epi16(taps->part[1], (__mmask32)some, third_u16(index), rows->part[0]);
 }
 
 LANES_INLINE lanes weigh_u16(const window_taps *taps, const lanes weight[4]) {
@@ -44,22 +65,29 @@ LANES_INLINE lanes weigh_u16(const window_taps *taps, const lanes weight[4]) {
 
 LANES_INLINE __m512i index_f32(__m512i x, __m512i y) { return _mm512_add_epi32(_mm512_slli_epi32(y, 3), x); }
 
+LANES_INLINE __m256i row_of_floats(const unsigned char *row) { return _mm256_loadu_si256((const __m256i *)row); }
+
+/* Seven rows, two to a part. */
 LANES_INLINE window_slice slice_f32(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
-  for (int pair = 0; pair < 4; pair++, row += 2 * row_bytes)
-    slice.part[pair] = _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_loadu_si256((const __m256i *)row)),
-                                          _mm256_loadu_si256((const __m256i *)(row + row_bytes)), 1);
+  for (int pair = 0; pair < 3; pair++, row += 2 * row_bytes)
+    slice.part[pair] = _mm512_inserti64x4(_mm512_castsi256_si512(row_of_floats(row)), row_of_floats(row + row_bytes), 1);
+  slice.part[3] = _mm512_castsi256_si512(row_of_floats(row));
   return slice;
 }
 
-/* A permutation takes from four rows: lanes whose row is among the last four take from those. */
+/* Two rows from row y on. */
+LANES_INLINE __m512i rows_f32(const window_slice *slice, int y) {
+  const __m512i *pair = slice->part + y / 2;
+  return y % 2 == 0 ? pair[0] : _mm512_alignr_epi64(pair[1], pair[0], 4);
+}
+
+/* The four taps of every lane in row y of a slice: among the four rows from there on. */
 LANES_INLINE window_taps taps_f32(const window_slice *slice, __m512i index, int y) {
-  __m512i at = _mm512_add_epi32(index, _mm512_set1_epi32(8 * y));
-  __mmask16 below = _mm512_test_epi32_mask(at, _mm512_set1_epi32(32));
+  __m512i upper = rows_f32(slice, y), lower = rows_f32(slice, y + 2);
   window_taps taps;
-  for (int tap = 0; tap < 4; tap++, at = _mm512_add_epi32(at, _mm512_set1_epi32(1)))
-    taps.part[tap] = _mm512_mask_mov_epi32(_mm512_permutex2var_epi32(slice->part[0], at, slice->part[1]), below,
-                                           _mm512_permutex2var_epi32(slice->part[2], at, slice->part[3]));
+  for (int tap = 0; tap < 4; tap++)
+    taps.part[tap] = _mm512_permutex2var_epi32(upper, _mm512_add_epi32(index, _mm512_set1_epi32(tap)), lower);
   return taps;
 }
 

@@ -27,18 +27,17 @@ LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shif
 LANES_INLINE __m512i index_in_row_u8(__m512i index, int y) { return _mm512_add_epi32(index, _mm512_set1_epi32(2 * y)); }
 
 /* The four taps of every lane. */
-LANES_INLINE __m512i taps_u8(const window_slice *slice, __m512i index) {
-  return _mm512_permutex2var_epi32(slice->part[0], index, slice->part[1]);
+LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index) {
+  window_taps taps;
+  taps.part[0] = _mm512_permutex2var_epi32(slice->part[0], index, slice->part[1]);
+  return taps;
 }
 
-/* Some lanes: a bit for each. */
-typedef __mmask16 window_lanes;
+LANES_INLINE window_lanes some_lanes_u8(__mmask16 bits) { return bits; }
 
-LANES_INLINE window_lanes lanes_with_taps(__mmask16 bits) { return bits; }
-
-/* Those lanes' taps from another slice. */
-LANES_INLINE __m512i replace_taps_u8(__m512i taps, window_lanes some, const window_slice *slice, __m512i index) {
-  return _mm512_mask_mov_epi32(taps, some, taps_u8(slice, index));
+/* Some lanes' taps from another slice. */
+LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice, __m512i index) {
+  taps->part[0] = _mm512_mask_mov_epi32(taps->part[0], (__mmask16)some, taps_u8(slice, index).part[0]);
 }
 
 #endif
