@@ -181,7 +181,7 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
   if (status == HL_OK) status = bound_bricks(context, pool, functions->rows[grid->storage], grid, error);
   set_cell_range(volume, grid);
   if (status == HL_OK)
-    status = hl_cell_bounds_build(context, pool, functions->along, functions->across, kernel->degree == 3, grid, error);
+    status = hl_cell_bounds_build(context, pool, functions->along, functions->across, kernel->degree == HL_BSPLINE_DEGREE, grid, error);
   if (status != HL_OK) hl_grid_release(context, grid);
   return status;
 }

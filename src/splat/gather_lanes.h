@@ -12,9 +12,10 @@
 /* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t; their sum is 1. */
 LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes weight[4]) {
   lanes s = 1.0f - t;
-  weight[0] = kernel_piece(kernel->outer, degree, t);
-  weight[1] = kernel_piece(kernel->inner, degree, t);
-  weight[3] = kernel_piece(kernel->outer, degree, s);
+  int bspline = degree == HL_BSPLINE_DEGREE;
+  weight[0] = bspline ? bspline_outer(s) : kernel_piece(kernel->outer, degree, t);
+  weight[1] = bspline ? bspline_inner(t) : kernel_piece(kernel->inner, degree, t);
+  weight[3] = bspline ? bspline_outer(t) : kernel_piece(kernel->outer, degree, s);
   weight[2] = 1.0f - (weight[0] + weight[1] + weight[3]);
 }
 
@@ -154,8 +155,8 @@ LANES_INLINE int gather_place(const fill_source *source, const block_place *plac
     lanes_store(density, sum);
     return 0;
   }
-  sum = source->kernel->degree <= 3 ? gather_block(source, place, active, 3, inside)
-                                    : gather_block(source, place, active, HL_KERNEL_DEGREE, inside);
+  sum = source->kernel->degree == HL_BSPLINE_DEGREE ? gather_block(source, place, active, HL_BSPLINE_DEGREE, inside)
+                                                    : gather_block(source, place, active, HL_KERNEL_DEGREE, inside);
   sum = sum - source->grid->empty;
   lanes_int shown = may_show(source, sum);
   if (!inside) {

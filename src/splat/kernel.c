@@ -10,7 +10,7 @@ static const kernel bspline = {
     .variance = 1.0 / 3,
     .inner = {2.0f / 3, 0, -1, 0.5f},
     .outer = {1.0f / 6, -0.5f, 0.5f, -1.0f / 6},
-    .degree = 3,
+    .degree = HL_BSPLINE_DEGREE,
 };
 
 /* The Gaussian exp(-2 d^2) cut at 2 and divided by the sum of its four neighbours at the same phase, so

@@ -9,7 +9,7 @@
 
 #include <halflight/scene.h>
 
-enum { HL_KERNEL_DEGREE = 5 };
+enum { HL_KERNEL_DEGREE = 5, HL_BSPLINE_DEGREE = 3 /* the cubic B-spline's, and no other kernel's */ };
 
 typedef struct kernel {
   const char *name;

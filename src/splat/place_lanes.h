@@ -12,6 +12,10 @@ LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
   return sum;
 }
 
+/* The cubic B-spline at distances up to 1, and at two less a rest up to 1, in fewer steps. */
+LANES_INLINE lanes bspline_inner(lanes distance) { return distance * distance * (distance * 0.5f - 1.0f) + 2.0f / 3; }
+LANES_INLINE lanes bspline_outer(lanes rest) { return rest * rest * (rest * (1.0f / 6)); }
+
 /* The point of a block's pixels in index space, clamped to the grid, and which of them matter. */
 typedef struct block_place {
   lanes3 point;     /* index space, clamped to [-1, n) */

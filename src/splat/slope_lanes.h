@@ -15,9 +15,10 @@ LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
 /* Derivatives of the four taps' weights; the two on the far side see their distance shrink. Their sum is 0. */
 LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes slope[4]) {
   lanes s = 1.0f - t;
-  slope[0] = kernel_piece_slope(kernel->outer, degree, t);
-  slope[1] = kernel_piece_slope(kernel->inner, degree, t);
-  slope[3] = -kernel_piece_slope(kernel->outer, degree, s);
+  int bspline = degree == HL_BSPLINE_DEGREE;
+  slope[0] = bspline ? s * (s * -0.5f) : kernel_piece_slope(kernel->outer, degree, t);
+  slope[1] = bspline ? t * (t * 1.5f - 2.0f) : kernel_piece_slope(kernel->inner, degree, t);
+  slope[3] = bspline ? t * (t * 0.5f) : -kernel_piece_slope(kernel->outer, degree, s);
   slope[2] = -(slope[0] + slope[1] + slope[3]);
 }
 
@@ -215,8 +216,8 @@ LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int
 }
 
 static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active, uint32_t starts) {
-  return kernel->degree <= 3 ? slopes_of_degree(grid, kernel, 3, point, active, starts)
-                             : slopes_of_degree(grid, kernel, HL_KERNEL_DEGREE, point, active, starts);
+  return kernel->degree == HL_BSPLINE_DEGREE ? slopes_of_degree(grid, kernel, HL_BSPLINE_DEGREE, point, active, starts)
+                                             : slopes_of_degree(grid, kernel, HL_KERNEL_DEGREE, point, active, starts);
 }
 
 #endif

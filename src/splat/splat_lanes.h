@@ -45,6 +45,8 @@ LANES_INLINE uint32_t blocks_in_reach(const tile_place *tile, float x, float y, 
 
 LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
   lanes a = lanes_abs(distance);
+  if (degree == HL_BSPLINE_DEGREE)
+    return lanes_select(a < 1.0f, bspline_inner(a), bspline_outer(lanes_max(2.0f - a, lanes_set(0))));
   lanes inner = kernel_piece(kernel->inner, degree, a), outer = kernel_piece(kernel->outer, degree, a - 1.0f);
   return lanes_keep(a < kernel->support, lanes_select(a < 1.0f, inner, outer));
 }
@@ -78,8 +80,8 @@ static uint32_t splat_tile(const fill_source *source, int tile_x, int tile_y, ui
   const uint32_t *start = lists->start + ((size_t)tile_y * (size_t)lists->tiles_x + (size_t)tile_x) * (size_t)lists->bucket_count +
                           (size_t)source->sheet;
   for (uint32_t at = start[0]; at < start[lists->span]; at++) {
-    if (source->kernel->degree <= 3)
-      splat_voxel(source, &tile, need, lists->voxel[at], 3, density);
+    if (source->kernel->degree == HL_BSPLINE_DEGREE)
+      splat_voxel(source, &tile, need, lists->voxel[at], HL_BSPLINE_DEGREE, density);
     else
       splat_voxel(source, &tile, need, lists->voxel[at], HL_KERNEL_DEGREE, density);
   }
