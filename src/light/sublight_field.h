@@ -41,11 +41,11 @@ typedef struct sublight_job {
   int channels;
 } sublight_job;
 
-/* Multiplies a tile by the slab; returns whether light may be left in it. */
-typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile_y);
+/* Multiplies a tile by the slab. lit: its blocks with light left, one bit each; returns those that still have some. */
+typedef uint32_t sublight_tile_function(const sublight_job *job, int tile_x, int tile_y, uint32_t lit);
 
-/* Multiplies a row of tiles by those of the slab's from first to last, where scale is 1. dark: [tiles_x], whether no light is
- * left; such tiles need nothing. */
-typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last, unsigned char *dark);
+/* Multiplies a row of tiles by those of the slab's from first to last, where scale is 1. lit: [tiles_x], of each tile; those that
+ * have no light need nothing. */
+typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last, uint16_t *lit);
 
 #endif

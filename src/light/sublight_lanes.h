@@ -10,7 +10,7 @@
 #include "light/attenuate_lanes.h"
 #include "light/sublight_field.h"
 
-enum { EVERY_ROW = (1 << TILE) - 1 };
+enum { EVERY_ROW = (1 << TILE) - 1, EVERY_COLUMN = EVERY_ROW };
 
 /* In the middle of the two inner ones, within what a transmittance can be. */
 LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
@@ -132,11 +132,35 @@ LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[T
 
 static const float DARK_PART = DARK * PART_ONE;
 
-LANES_INLINE int may_be_lit(const sublight_job *job, size_t at) {
-  for (int row = 0; row < TILE; row++)
+/* Of a tile's columns of pixels, those that were multiplied in each row of blocks, and those where light was seen to be left. */
+typedef struct tile_columns { uint32_t worked[TILE / BLOCK], lit[TILE / BLOCK]; } tile_columns;
+
+/* The blocks that have any of these columns. */
+LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
+  uint32_t any = columns | columns >> 1;
+  any |= any >> 2;
+  return (any & 1) | (any >> 3 & 2) | (any >> 6 & 4) | (any >> 9 & 8);
+}
+
+/* The columns with light in a row of blocks. at: its first pixel. */
+LANES_INLINE uint32_t lit_columns(const sublight_job *job, size_t at) {
+  uint32_t columns = 0;
+  for (int row = 0; row < BLOCK; row++)
     for (int c = 0; c < job->channels; c++)
-      if (lanes_bits(lanes_load_short(job->left[c] + at + (size_t)row * job->stride) >= DARK_PART) != 0) return 1;
-  return 0;
+      columns |= lanes_bits(lanes_load_short(job->left[c] + at + (size_t)row * job->stride) >= DARK_PART);
+  return columns;
+}
+
+/* Blocks go dark only where something was taken and nothing of what is left was seen: those are looked at whole. corner: the
+ * tile's first pixel. */
+LANES_INLINE uint32_t still_lit(const sublight_job *job, size_t corner, uint32_t lit, const tile_columns *found) {
+  for (int row = 0; row < TILE / BLOCK; row++) {
+    uint32_t doubtful = lit >> 4 * row & blocks_of_columns(found->worked[row]) & ~blocks_of_columns(found->lit[row]);
+    if (doubtful == 0) continue;
+    uint32_t seen = blocks_of_columns(lit_columns(job, corner + (size_t)(row * BLOCK) * job->stride));
+    lit &= ~((doubtful & ~seen) << 4 * row);
+  }
+  return lit;
 }
 
 /* Sixteen of a part's pixels times the slab's; what it then may hold. */
@@ -146,8 +170,8 @@ LANES_INLINE lanes composite_part(const sublight_job *job, part_pixel *at, lanes
   return passing;
 }
 
-static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
-  lanes greatest = lanes_set(0);
+static uint32_t sublight_tile(const sublight_job *job, int tile_x, int tile_y, uint32_t lit) {
+  tile_columns found = {{0}, {0}};
   row_taps taps = taps_of_row(job, tile_x);
   size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
   int first, last;
@@ -164,10 +188,11 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
       part_pixel *at = job->left[c] + corner + (size_t)row * job->stride;
       lanes left_by_slab = slab_row(&taps, rows);
       if (lanes_bits(left_by_slab < 1.0f) == 0) continue; /* the part's row need not come from memory */
-      greatest = lanes_max(greatest, composite_part(job, at, left_by_slab));
+      found.worked[row / BLOCK] = EVERY_COLUMN;
+      found.lit[row / BLOCK] |= lanes_bits(composite_part(job, at, left_by_slab) >= DARK_PART);
     }
   }
-  return lanes_bits(greatest >= DARK_PART) != 0 || may_be_lit(job, corner);
+  return still_lit(job, corner, lit, &found);
 }
 
 #endif

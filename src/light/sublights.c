@@ -46,7 +46,7 @@ uint64_t hl_sublights_bytes(const light_source *source, const light_image *image
     place_part(source, image, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
   lay_out_planes(&planned);
   uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
-  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) + count * tiles + slab_tiles * sizeof *planned.rows +
+  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) + count * tiles * sizeof *planned.flags + slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
          count * (sizeof *planned.parts + sizeof *planned.lookups) +
          hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) - hl_shadow_buffer_bytes(slab, 0, false, reach);
 }
@@ -62,20 +62,23 @@ static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *subligh
                    "lower shadow_resolution", count, (double)pixels * sizeof(part_pixel) / 1e9);
   hl_context *context = reserve->context;
   sublights->memory = hl_reserve_take(reserve, pixels, sizeof(part_pixel));
-  sublights->flags = hl_allocate_zeroed(context, count, tiles);
+  sublights->flags = hl_allocate(context, count * tiles, sizeof *sublights->flags);
   sublights->lookups = hl_allocate(context, count, sizeof *sublights->lookups);
   sublights->moved = hl_reserve_take(reserve, moved, sizeof(float));
-  sublights->rows = hl_allocate_zeroed(context, (size_t)slab->tiles_x * (size_t)slab->tiles_y, sizeof *sublights->rows);
+  size_t slab_tiles = (size_t)slab->tiles_x * (size_t)slab->tiles_y;
+  sublights->rows = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->rows);
+  sublights->found = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->found);
   if (sublights->memory == NULL || sublights->flags == NULL || sublights->lookups == NULL || sublights->moved == NULL ||
-      sublights->rows == NULL)
+      sublights->rows == NULL || sublights->found == NULL)
     return hl_fail_memory(error, pixels * sizeof(part_pixel) + moved * sizeof(float), "the parts of a light");
   hl_pool_set(pool, sublights->memory, pixels * sizeof(part_pixel), 0xff); /* PART_ONE */
   hl_pool_fill(pool, sublights->moved, moved, 1);
   for (size_t i = 0; i < count; i++) {
     sublight *part = &sublights->parts[i];
     part->pixels = sublights->memory + i * channels * sublights->plane + TILE;
-    part->dark = sublights->flags + i * tiles;
+    part->lit = sublights->flags + i * tiles;
   }
+  for (size_t i = 0; i < count * tiles; i++) sublights->flags[i] = ALL_BLOCKS;
   return HL_OK;
 }
 
@@ -113,7 +116,7 @@ hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *subl
 }
 
 void hl_sublights_release(hl_reserve *reserve, sublights *sublights) {
-  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags, sublights->rows};
+  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags, sublights->rows, sublights->found};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(reserve->context, owned[i]);
   hl_reserve_return(reserve, sublights->memory);
   hl_reserve_return(reserve, sublights->moved);
@@ -185,10 +188,10 @@ static void tiles_under(double x, double scale, double shift, int tiles, int *fi
   *last = high < 0 ? -1 : high >= tiles ? tiles - 1 : (int)high;
 }
 
-static bool any_marked(const unsigned char *marks, int tiles_x, int x0, int x1, int y0, int y1, unsigned char mark) {
+static bool any_touched(const shadow_buffer *slab, int x0, int x1, int y0, int y1) {
   for (int y = y0; y <= y1; y++)
     for (int x = x0; x <= x1; x++)
-      if (marks[(size_t)y * (size_t)tiles_x + (size_t)x] == mark) return true;
+      if (slab->tile_touched[(size_t)y * (size_t)slab->tiles_x + (size_t)x] != 0) return true;
   return false;
 }
 
@@ -239,7 +242,7 @@ static void composite_row(void *data, size_t index, int worker) {
   part_tiles(part, 1, task->y0, task->y1, all->tiles_y, &first, &last);
   if (y < first || y > last) return;
   if (part->shifted) {
-    task->functions->composite_row(&part->job, y, task->x0, task->x1, part->dark + (size_t)y * (size_t)all->tiles_x);
+    task->functions->composite_row(&part->job, y, task->x0, task->x1, part->lit + (size_t)y * (size_t)all->tiles_x);
     return;
   }
   part_tiles(part, 0, task->x0, task->x1, all->tiles_x, &first, &last);
@@ -247,10 +250,10 @@ static void composite_row(void *data, size_t index, int worker) {
   for (int x = first; x <= last; x++) {
     size_t tile = (size_t)y * (size_t)all->tiles_x + (size_t)x;
     int x0, x1;
-    if (part->dark[tile]) continue;
+    if (part->lit[tile] == 0) continue;
     tiles_under((double)x * TILE, (double)part->job.scale[0], (double)part->job.shift[0], slab->tiles_x, &x0, &x1);
     if (any_present(&part->job, x0, x1, y0, y1))
-      part->dark[tile] = !task->functions->composite(&part->job, x, y);
+      part->lit[tile] = (uint16_t)task->functions->composite(&part->job, x, y, part->lit[tile]);
   }
 }
 
@@ -271,7 +274,7 @@ static void move_row(void *data, size_t index, int worker) {
   int y = (int)index, y1 = y + 1 < slab->tiles_y ? y + 1 : y;
   for (int x = 0; x < slab->tiles_x; x++) {
     int x1 = x + 1 < slab->tiles_x ? x + 1 : x;
-    if (!any_marked(slab->tile_touched, slab->tiles_x, x, x1, y, y1, 1)) continue;
+    if (!any_touched(slab, x, x1, y, y1)) continue;
     for (int c = 0; c < all->channels; c++) {
       half_pixel_job job = {.slab = slab->transmittance[c], .slab_stride = slab->stride};
       for (int i = 1; i < SLAB_IMAGES; i++) job.moved[i] = moved_image(all, slab, c, i);
@@ -280,20 +283,7 @@ static void move_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Whether the light of some part reaches a tile. */
-static bool is_lit(const sublights *all, int x, int y) {
-  for (int i = 0; i < all->count; i++) {
-    const sublight *part = &all->parts[i];
-    int x0, x1, y0, y1;
-    if (!part->reaches) continue;
-    part_tiles(part, 0, x, x, all->tiles_x, &x0, &x1);
-    part_tiles(part, 1, y, y, all->tiles_y, &y0, &y1);
-    if (any_marked(part->dark, all->tiles_x, x0, x1, y0, y1, 0)) return true;
-  }
-  return false;
-}
-
-/* Tiles of the slab become ones again; those that no part's light reaches need not be filled. */
+/* Tiles of the slab become ones again. */
 static void clear_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -306,17 +296,119 @@ static void clear_row(void *data, size_t index, int worker) {
         fill_ones((i == 0 ? slab->transmittance[c] : moved_image(all, slab, c, i)) + at, slab->stride, all->rows[tile] >> TILE * i);
     all->rows[tile] = 0;
     slab->tile_touched[tile] = 0;
-    slab->tile_lit[tile] = is_lit(all, x, (int)index) ? ALL_BLOCKS : 0;
+  }
+}
+
+/* Lit blocks are found for a few slabs at once: the first one alone, then LIT_SLABS after another. */
+enum { LIT_SLABS = 4 };
+static int run_of_slab(int slab) { return (slab + LIT_SLABS - 1) / LIT_SLABS + 1; }
+
+static part_place place_of_job(const sublight_job *job) {
+  return (part_place){{1 / (double)job->scale[0], 1 / (double)job->scale[1]}, {(double)job->shift[0], (double)job->shift[1]}};
+}
+
+/* Where the parts are over the first and the last of the next slabs, from a height on. */
+static void place_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height, double spacing) {
+  for (int i = 0; i < sublights->count; i++) {
+    sublight *part = &sublights->parts[i];
+    map_part(sublights, part, slab, normal, height + (LIT_SLABS - 0.5) * spacing);
+    part->far = place_of_job(&part->job);
+    bool reached = part->reaches;
+    map_part(sublights, part, slab, normal, height + 0.5 * spacing);
+    part->near = place_of_job(&part->job);
+    part->comes = reached && !part->reaches;
   }
 }
 
 void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to, hl_pool *pool,
                           const sublight_functions *functions) {
   for (int i = 0; i < sublights->count; i++) map_part(sublights, &sublights->parts[i], slab, normal, (from + to) / 2);
-  sublights->slabs++;
   sublight_task task = {.sublights = sublights, .slab = slab, .functions = functions};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
   if (bound_present(&task))
     hl_pool_run(pool, (size_t)sublights->count * (size_t)sublights->tiles_y, composite_row, &task);
   hl_pool_run(pool, (size_t)slab->tiles_y, clear_row, &task);
+  int run = run_of_slab(sublights->slabs++);
+  if (run_of_slab(sublights->slabs) != run) place_run(sublights, slab, normal, to, to - from);
+}
+
+/* ---- what light reaches ---- */
+
+/* Pixels of the slab around a block that lie over the same pixels of a part: half pixels are made of two on either side. */
+enum { BLOCK_SPARE = 2 };
+
+/* Rows or columns of a part's blocks under each of the four of a tile of the slab. */
+typedef struct blocks_under { int first[TILE / BLOCK], last[TILE / BLOCK]; } blocks_under;
+
+/* Which of `count` lengths of pixels a place lies in; -1 or count beyond the ends. */
+static int place_among(double place, int length, int count) {
+  return place < 0 ? -1 : place >= (double)length * count ? count : (int)place / length;
+}
+
+static blocks_under find_under(const sublight *part, int axis, int tile, int tiles) {
+  const part_place *near = &part->near, *far = &part->far;
+  int end = tiles * (TILE / BLOCK);
+  blocks_under under;
+  for (int i = 0; i < TILE / BLOCK; i++) {
+    double from = tile * TILE + i * BLOCK - BLOCK_SPARE, to = from + BLOCK + 2 * BLOCK_SPARE;
+    int first = place_among(fmin(near->scale[axis] * (from - near->shift[axis]), far->scale[axis] * (from - far->shift[axis])), BLOCK, end);
+    int last = place_among(fmax(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])), BLOCK, end);
+    under.first[i] = first < 0 ? 0 : first;
+    under.last[i] = last < end ? last : end - 1;
+  }
+  return under;
+}
+
+/* The part's lit blocks in a row of them, from block `first` on: a bit each, as far as a word goes. */
+static uint64_t lit_in_row(const sublights *all, const sublight *part, int row, int first, int last) {
+  const uint16_t *tiles = part->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
+  uint64_t bits = 0;
+  for (int x = first / 4; x <= last / 4; x++) {
+    uint64_t four = tiles[x] >> 4 * (row % 4) & 15;
+    bits |= 4 * x < first ? four >> (first - 4 * x) : four << (4 * x - first);
+  }
+  return bits;
+}
+
+static uint32_t lit_by_blocks(const sublights *all, const sublight *part, const blocks_under *columns, const blocks_under *rows) {
+  int first = columns->first[0], last = columns->last[TILE / BLOCK - 1];
+  uint32_t lit = 0;
+  if (last - first >= 60) return ALL_BLOCKS;
+  for (int y = 0; y < TILE / BLOCK; y++) {
+    uint64_t bits = 0;
+    for (int row = rows->first[y]; row <= rows->last[y]; row++) bits |= lit_in_row(all, part, row, first, last);
+    for (int x = 0; x < TILE / BLOCK && bits != 0; x++) {
+      int count = columns->last[x] - columns->first[x] + 1;
+      if (count > 0 && (bits >> (columns->first[x] - first) & (((uint64_t)1 << count) - 1)) != 0) lit |= 1u << (4 * y + x);
+    }
+  }
+  return lit;
+}
+
+/* Most tiles are lit everywhere or nowhere. */
+static uint32_t lit_by_part(const sublights *all, const sublight *part, int tile_x, int tile_y) {
+  blocks_under columns = find_under(part, 0, tile_x, all->tiles_x), rows = find_under(part, 1, tile_y, all->tiles_y);
+  int x0 = columns.first[0] / 4, x1 = columns.last[TILE / BLOCK - 1], y0 = rows.first[0] / 4, y1 = rows.last[TILE / BLOCK - 1];
+  uint32_t any = 0, every = ALL_BLOCKS;
+  for (int y = y0; 4 * y <= y1; y++)
+    for (int x = x0; 4 * x <= x1; x++) {
+      uint32_t lit = part->lit[(size_t)y * (size_t)all->tiles_x + (size_t)x];
+      any |= lit;
+      every &= lit;
+    }
+  return any == 0 || every == ALL_BLOCKS ? any : lit_by_blocks(all, part, &columns, &rows);
+}
+
+void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile) {
+  int x = (int)(tile % (size_t)slab->tiles_x), y = (int)(tile / (size_t)slab->tiles_x);
+  uint32_t run = (uint32_t)run_of_slab(sublights->slabs);
+  if (sublights->found[tile] == run) return;
+  uint32_t lit = sublights->slabs == 0 ? ALL_BLOCKS : 0;
+  for (int i = 0; i < sublights->count && lit != ALL_BLOCKS; i++) {
+    const sublight *part = &sublights->parts[i];
+    if (part->reaches) lit |= lit_by_part(sublights, part, x, y);
+    else if (part->comes) lit = ALL_BLOCKS;
+  }
+  slab->tile_lit[tile] = (uint16_t)lit;
+  sublights->found[tile] = run;
 }

@@ -17,14 +17,19 @@
 
 enum { SUBLIGHT_REACH = 31 /* of the slab's buffer, beyond a tile */ };
 
+/* From pixels of the slab to those of a part, along u and v: scale * (pixel - shift). */
+typedef struct part_place { double scale[2], shift[2]; } part_place;
+
 /* One part's buffer. */
 typedef struct sublight {
   view view;
   part_pixel *pixels;     /* pixel (0,0) of the first channel; the others a plane apart; in memory */
-  unsigned char *dark;    /* [tiles]; 1 where no light is left; in flags */
+  uint16_t *lit;          /* [tiles]; blocks in which light is left; in flags */
   sublight_job job;       /* of the slab now composited */
   bool reaches;           /* the part lies before the slab */
   bool shifted;           /* the job's scale is 1 */
+  part_place near, far;   /* of the next slab, and of the last one that shares its lit blocks */
+  bool comes;             /* the part does not reach the next one, but the last */
 } sublight;
 
 typedef struct sublights {
@@ -34,9 +39,10 @@ typedef struct sublights {
   sublight *parts;        /* owned; [count] */
   part_lookup *lookups;   /* owned; [count] */
   part_pixel *memory;     /* lent; [count][channels] planes */
-  unsigned char *flags;   /* owned; [count][tiles] */
+  uint16_t *flags;        /* owned; [count][tiles] */
   float *moved;           /* lent; [channels][SLAB_IMAGES - 1] planes of the slab, half a pixel further along u, v and both */
   slab_rows *rows;        /* owned; [tiles of the slab] */
+  uint32_t *found;        /* owned; [tiles of the slab]; the run of slabs for which its lit blocks were found; 0: none */
 } sublights;
 
 typedef struct sublight_functions {
@@ -55,8 +61,11 @@ uint64_t hl_sublights_bytes(const light_source *source, const light_image *image
 void hl_sublights_release(hl_reserve *reserve, sublights *sublights);
 
 /* After the slab between these heights was composited into slab, a buffer that held ones: composites it into all parts,
- * and makes slab ones again; its lit tiles are those that some part's light still reaches. */
+ * and makes slab ones again. */
 void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to, hl_pool *pool,
                           const sublight_functions *functions);
+
+/* Finds the blocks of a tile of the next slab that some part's light still reaches: slab's tile_lit. One task has a tile. */
+void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile);
 
 #endif

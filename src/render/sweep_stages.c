@@ -135,7 +135,7 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
   attenuated_blocks blocks = sweep->hot->attenuate_tile(&job, tile_x, tile_y);
-  buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
+  if (light->sublights.count == 0) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
   if (blocks.taken == 0) return;
   buffer->tile_touched[tile] = 1;
   if (cascade) light->cascade.touched[tile] = 1;
@@ -143,7 +143,9 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
 
 static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker) {
   sweep_counts *counts = &sweep->counts[worker];
-  uint32_t need = sweep->lights[light_index].buffer->tile_lit[tile];
+  sweep_light *light = &sweep->lights[light_index];
+  if (light->sublights.count > 0) hl_sublights_find_lit(&light->sublights, light->buffer, tile);
+  uint32_t need = light->buffer->tile_lit[tile];
   counts->pixels_skipped_light += pixels_in(ALL_BLOCKS & ~need);
   if (need == 0) {
     counts->skipped_light++;

@@ -371,7 +371,7 @@ typedef struct field_state {
   sublight_job sublight;
   half_pixel_job half_pixel;
   slab_rows rows[16];
-  unsigned char dark[4];
+  uint16_t lit[4];
   field_blur_job field_blur;
   left_job left;
   image_job image;
@@ -379,7 +379,7 @@ typedef struct field_state {
   ptrdiff_t offset[40];
   float a[FIELD][FIELD], b[FIELD][FIELD];
   field_pixel lacking[FIELD][FIELD], thin[FIELD][FIELD]; /* whole numbers of a and b */
-  struct { float pixels[FIELD][FIELD]; field_pixel lacking[FIELD][FIELD]; int lit; unsigned char dark[4]; } out;
+  struct { float pixels[FIELD][FIELD]; field_pixel lacking[FIELD][FIELD]; int lit; uint16_t tiles_lit[4]; } out;
 } field_state;
 
 static void call_field(const hot_functions *hot, void *state) {
@@ -392,14 +392,14 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 5) s->out.lit = hot->field_blur_tile(&s->field_blur, 1, 1);
   if (s->which == 6) hot->left_tile(&s->left, 1, 1);
   if (s->which == 7) s->out.lit = (int)hot->absorbed_tile(&s->absorbed, 1, 1);
-  if (s->which == 8) s->out.lit = hot->sublight_tile(&s->sublight, 1, 1);
+  if (s->which == 8) s->out.lit = (int)hot->sublight_tile(&s->sublight, 1, 1, s->lit[1]);
   if (s->which == 13) {
     slab_rows rows = hot->half_pixel_tile(&s->half_pixel, 1, 1);
     s->out.lit = (int)(rows ^ rows >> 32);
   }
   if (s->which == 14) {
-    memcpy(s->out.dark, s->dark, sizeof s->dark);
-    hot->sublight_row(&s->sublight, 1, 0, 3, s->out.dark);
+    memcpy(s->out.tiles_lit, s->lit, sizeof s->lit);
+    hot->sublight_row(&s->sublight, 1, 0, 3, s->out.tiles_lit);
   }
   if (s->which == 9) s->out.lit = hot->double_tile(&s->field, 1, 1);
   if (s->which == 10) hot->image_tile(&s->image, 1, 1);
@@ -446,7 +446,7 @@ static void test_fields(void **unused) {
       s.sublight.left[c] = out;
     }
     for (int i = 0; i < 16; i++) s.rows[i] = (uint64_t)random_between(&seed, 0, 65535) * 0x1000100010001u;
-    for (int i = 0; i < 4; i++) s.dark[i] = random_between(&seed, 0, 1) < 0.3f;
+    for (int i = 0; i < 4; i++) s.lit[i] = random_between(&seed, 0, 1) < 0.3f ? 0 : (uint16_t)random_between(&seed, 1, 65535);
     s.half_pixel = (half_pixel_job){.slab = &s.a[MARGIN][MARGIN], .slab_stride = FIELD};
     for (int i = 1; i < SLAB_IMAGES; i++) s.half_pixel.moved[i] = &s.out.pixels[MARGIN + 16 * i][MARGIN];
     s.image = (image_job){.from = &s.a[MARGIN][MARGIN], .to = &s.out.pixels[MARGIN][MARGIN], .stride = FIELD,
