@@ -44,7 +44,9 @@ static void measure_block(const shade_job *job, const shade_patch *patches, int 
                           int block, block_density *densities, float *pixels) {
   block_slab slab;
   float *alpha = pixels + MEASURE_ALPHA * BLOCK_PIXELS;
-  if (slab_of_block(job, patches, patch_count, tile_x, tile_y, block, alpha, densities, &slab) == 0) return;
+  uint32_t bits = visible_in_block(job, patches, patch_count, block, alpha);
+  if (bits == 0) return;
+  slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits, densities, &slab);
   if (find_slab(job, densities, &slab) == 0) return;
   lanes before = lanes_load(alpha), weight = slab.opacity * (1.0f - before), after = before + weight;
   lanes3 normal = normal_of_block(&slab, densities);

@@ -344,24 +344,39 @@ LANES_INLINE int composite_packed(const shade_job *job, const packed_block *bloc
 
 /* A tile's blocks, so that those that share a slab lie side by side: gradients then share voxels. */
 static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0, 1, 4, 5, 2, 3, 6, 7, 10, 11, 14, 15, 8, 9, 12, 13};
+/* The place of each block in that order. */
+static const unsigned char PLACE_OF_BLOCK[TILE_BLOCKS] = {0, 1, 4, 5, 2, 3, 6, 7, 12, 13, 8, 9, 14, 15, 10, 11};
+
+/* Of the given blocks, those in which something may be seen, one bit each at their places in that order; bits: in which
+ * of their pixels. All blocks are asked before the first is gone into: half of them hold nothing, which no processor
+ * foresees, and loads would wait for one another's answers. */
+LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *patches, int patch_count, uint32_t blocks,
+                                     const float *pixels, uint16_t bits[TILE_BLOCKS]) {
+  uint32_t places = 0;
+  for (; blocks != 0; blocks &= blocks - 1) {
+    int block = __builtin_ctz(blocks);
+    uint32_t visible = visible_in_block(job, patches, patch_count, block, pixels + (block * 4 + 3) * BLOCK_PIXELS);
+    bits[block] = (uint16_t)visible;
+    places |= (uint32_t)(visible != 0) << PLACE_OF_BLOCK[block];
+  }
+  return places;
+}
 
 static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
                            uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
   block_density *ways = scratch, *densities = ways + patch_count;
   packed_tile tile;
   color_lanes lit[TILE_BLOCKS];
+  uint16_t bits[TILE_BLOCKS];
   uint32_t seen = 0;
   tile.slab_count = 0;
-  for (int i = 0; i < TILE_BLOCKS; i++) {
-    int block = NEAR_EACH_OTHER[i];
-    if ((blocks >> block & 1) == 0) continue;
+  for (uint32_t left = visible_blocks(job, patches, patch_count, blocks, pixels, bits); left != 0; left &= left - 1) {
+    int block = NEAR_EACH_OTHER[__builtin_ctz(left)];
     block_slab slab;
-    uint32_t bits = slab_of_block(job, patches, patch_count, tile_x, tile_y, block, pixels + (block * 4 + 3) * BLOCK_PIXELS,
-                                  ways, &slab);
-    if (bits == 0) continue;
+    slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits[block], ways, &slab);
     seen |= 1u << block;
     for (int c = 0; c < 3; c++) __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
-    tile.blocks[block] = pack_block(&tile, &slab, ways, bits, densities);
+    tile.blocks[block] = pack_block(&tile, &slab, ways, bits[block], densities);
   }
   light_slabs(job, &tile, densities, patch_count, lit, samples);
   uint32_t open = blocks & ~seen;

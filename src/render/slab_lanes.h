@@ -80,13 +80,18 @@ typedef struct block_density {
 /* In thinner slabs the gradient makes no difference to the light lost within. */
 static const float THIN_DEPTH = 1.0f / 64;
 
-/* A block's way through one volume; returns the pixels in which any of it may be visible. */
-LANES_INLINE lanes_int way_of_block(const shade_job *job, const shade_patch *patch, int block, block_way *way) {
+/* A block's pixels in which any of a volume may be visible. */
+LANES_INLINE lanes_int visible_in_patch(const shade_patch *patch, int block) {
   const classifier *classifier = patch->volume->classifier;
-  way->first = lanes_load(patch->before + block * BLOCK_PIXELS);
-  way->last = lanes_load(patch->current + block * BLOCK_PIXELS);
-  way->part = covered_block(patch->enter, patch->leave, patch->whole, block, job->height, job->spacing);
-  return may_be_visible(classifier, classify_place(classifier, way->first), classify_place(classifier, way->last));
+  return may_be_visible(classifier, classify_place(classifier, lanes_load(patch->before + block * BLOCK_PIXELS)),
+                        classify_place(classifier, lanes_load(patch->current + block * BLOCK_PIXELS)));
+}
+
+/* A block's way through one volume. */
+LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *patch, int block) {
+  block_way way = {lanes_load(patch->before + block * BLOCK_PIXELS), lanes_load(patch->current + block * BLOCK_PIXELS), {0}};
+  way.part = covered_block(patch->enter, patch->leave, patch->whole, block, job->height, job->spacing);
+  return way;
 }
 
 /* Step 13 for one volume: its extinction. */
@@ -173,27 +178,30 @@ typedef struct block_slab {
   lanes_int seen;
 } block_slab;
 
-/* A block's ways and pixels. Returns the pixels in which something may be seen, one bit each; if there are none, the rest is
- * not filled. alpha: of the pixels so far. */
-LANES_INLINE uint32_t slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
-                                    int tile_y, int block, const float *alpha, block_density *densities, block_slab *slab) {
+/* A block's pixels in which something may be seen, one bit each. alpha: of the pixels so far. */
+LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *patches, int patch_count, int block,
+                                       const float *alpha) {
   lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < OPAQUE, visible = lanes_set_int(0);
-  if (lanes_bits(open) == 0) return 0;
+  for (int i = 0; i < patch_count; i++)
+    if (patches[i].blocks >> block & 1 && patches[i].volume->visible) visible |= visible_in_patch(&patches[i], block);
+  return lanes_bits(visible & open);
+}
+
+/* A block's ways and pixels; bits: of those in which something may be seen, of which there is one at least. */
+LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
+                                int block, uint32_t bits, block_density *densities, block_slab *slab) {
   for (int i = 0; i < patch_count; i++) {
     block_density *d = &densities[i];
     d->patch = &patches[i];
-    d->there = 0;
-    if (!(patches[i].blocks >> block & 1)) continue;
-    lanes_int may_be = way_of_block(job, &patches[i], block, &d->way);
-    d->there = lanes_bits(may_be) != 0;
-    if (patches[i].volume->visible) visible |= may_be;
+    d->there = patches[i].blocks >> block & 1;
+    if (patch_count > 1 && d->there) d->there = lanes_bits(visible_in_patch(&patches[i], block)) != 0;
+    if (d->there) d->way = way_of_block(job, &patches[i], block);
   }
   slab->u = block_u(tile_x * TILE + block % 4 * BLOCK);
   slab->v = block_v(tile_y * TILE + block / 4 * BLOCK);
-  slab->open = visible & open;
+  slab->open = lanes_from_bits(bits);
   slab->starts = 1;
   slab->count = patch_count;
-  return lanes_bits(slab->open);
 }
 
 /* Step 13: what of the slab can be seen. */
