@@ -8,10 +8,10 @@
 static const float FIRST_OPACITY = 0.01f;
 
 /* Mean of the volumes' normals, weighted by extinction and by how much of a surface they are. */
-LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities) {
+LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities, int count) {
   lanes inverse = 1.0f / lanes_max(slab->total, lanes_set(1e-30f));
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  for (int i = 0; i < slab->count; i++) {
+  for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
     lanes surface;
@@ -29,13 +29,13 @@ LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3
 
 /* Where alpha reaches FIRST_OPACITY, in the lanes in which it does so in this slab (derived): the part u of the slab's
  * optical depth e at which (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
-LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities, lanes before,
+LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities, int count, lanes before,
                              lanes after, float *first) {
   lanes_int crossed = (before < FIRST_OPACITY) & (after >= FIRST_OPACITY);
   if (lanes_bits(crossed) == 0) return;
   lanes missing = lanes_log2((1.0f - before) * (1.0f / (1.0f - FIRST_OPACITY))) * 0.69314718056f;
   lanes u = lanes_clamp(missing / lanes_max(slab->depth, lanes_set(1e-30f)), 0, 1);
-  lanes place = place_of_part(densities, slab->count, slab->total, u);
+  lanes place = place_of_part(densities, count, slab->total, u);
   lanes3 position = add3(slab->geometry.start, scale3(slab->geometry.step_sheet, place));
   lanes_store(first, lanes_select(crossed, depth_of(job, slab, position), lanes_load(first)));
 }
@@ -47,16 +47,16 @@ static void measure_block(const shade_job *job, const shade_patch *patches, int 
   uint32_t bits = visible_in_block(job, patches, patch_count, block, alpha);
   if (bits == 0) return;
   slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits, densities, &slab);
-  if (find_slab(job, densities, &slab) == 0) return;
+  if (find_slab(job, densities, patch_count, &slab) == 0) return;
   lanes before = lanes_load(alpha), weight = slab.opacity * (1.0f - before), after = before + weight;
-  lanes3 normal = normal_of_block(&slab, densities);
+  lanes3 normal = normal_of_block(&slab, densities, patch_count);
   const lanes sums[4] = {depth_of(job, &slab, slab.geometry.position), normal.x, normal.y, normal.z};
   for (int i = 0; i < 4; i++) {
     float *sum = pixels + (MEASURE_DEPTH + i) * BLOCK_PIXELS;
     lanes_store(sum, lanes_load(sum) + lanes_keep(slab.seen, sums[i] * weight));
   }
   lanes_store(alpha, after);
-  mark_first(job, &slab, densities, before, after, pixels + MEASURE_DEPTH_FIRST * BLOCK_PIXELS);
+  mark_first(job, &slab, densities, patch_count, before, after, pixels + MEASURE_DEPTH_FIRST * BLOCK_PIXELS);
 }
 
 static uint32_t measure_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,

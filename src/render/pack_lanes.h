@@ -27,7 +27,6 @@ LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_c
   tile->filled[s] = 0;
   tile->slabs[s].u = tile->slabs[s].v = lanes_set(0);
   tile->slabs[s].starts = 0;
-  tile->slabs[s].count = patch_count;
   for (int i = 0; i < patch_count; i++) densities[(size_t)s * (size_t)patch_count + (size_t)i].there = 0;
   return s;
 }
@@ -44,9 +43,9 @@ LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *fr
 }
 
 /* Moves the pixels of a block with a bit to a slab. densities: of all slabs. */
-LANES_INLINE packed_block pack_block(packed_tile *tile, const block_slab *block, const block_density *ways, uint32_t bits,
-                                     block_density *densities) {
-  int count = __builtin_popcount(bits), s = slab_with_room(tile, count, block->count, densities), at = tile->filled[s];
+LANES_INLINE packed_block pack_block(packed_tile *tile, const block_slab *block, const block_density *ways, int patch_count,
+                                     uint32_t bits, block_density *densities) {
+  int count = __builtin_popcount(bits), s = slab_with_room(tile, count, patch_count, densities), at = tile->filled[s];
   block_slab *slab = &tile->slabs[s];
   lanes_packing packing = lanes_packing_of(bits, at);
   slab->u = lanes_pack(&packing, slab->u, block->u);
@@ -54,8 +53,8 @@ LANES_INLINE packed_block pack_block(packed_tile *tile, const block_slab *block,
   slab->starts |= 1u << at;
   tile->filled[s] += count;
   slab->open = lanes_from_bits((1u << tile->filled[s]) - 1);
-  for (int i = 0; i < block->count; i++)
-    if (ways[i].there) pack_way(&packing, &ways[i], &densities[(size_t)s * (size_t)block->count + (size_t)i]);
+  for (int i = 0; i < patch_count; i++)
+    if (ways[i].there) pack_way(&packing, &ways[i], &densities[(size_t)s * (size_t)patch_count + (size_t)i]);
   return (packed_block){(uint16_t)bits, (uint16_t)s, (uint16_t)at};
 }
 

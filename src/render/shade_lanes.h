@@ -196,7 +196,7 @@ LANES_INLINE int is_dark(const color_lanes *light) {
 }
 
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_slab *slab,
-                                     const block_density *densities) {
+                                     const block_density *densities, int count) {
   const block_geometry *g = &slab->geometry;
   arriving_light arriving;
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
@@ -222,7 +222,7 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   }
   arriving.shadowed = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
-  light_depths depths = depths_of_light(job, g, densities, slab->count, arriving.towards, path);
+  light_depths depths = depths_of_light(job, g, densities, count, arriving.towards, path);
   color_lanes reached = reaching(light, g->position);
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
@@ -311,23 +311,23 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
   int seen[TILE_BLOCKS], count = 0;
   for (int s = 0; s < tile->slab_count; s++) {
     of[s] = densities + (size_t)s * (size_t)patch_count;
-    classify_slab(of[s], &tile->slabs[s]);
+    classify_slab(of[s], patch_count, &tile->slabs[s]);
     uint32_t bits = lanes_bits(tile->slabs[s].seen);
     *samples += (uint64_t)__builtin_popcount(bits);
     if (bits != 0) seen[count++] = s;
     else lit[s] = (color_lanes){{lanes_set(0), lanes_set(0), lanes_set(0)}};
   }
-  for (int k = 0; k < count; k++) place_slab(job, of[seen[k]], &tile->slabs[seen[k]]);
+  for (int k = 0; k < count; k++) place_slab(job, of[seen[k]], patch_count, &tile->slabs[seen[k]]);
   for (int k = 0; k < count; k++) {
     block_slab *slab = &tile->slabs[seen[k]];
-    find_slopes(job, &slab->geometry, of[seen[k]], slab->count, slab->seen, slab->starts);
+    find_slopes(job, &slab->geometry, of[seen[k]], patch_count, slab->seen, slab->starts);
   }
   for (int k = 0; k < count; k++)
     for (int i = 0; i < job->light_count; i++)
-      lights[k][i] = light_at(job, &job->lights[i], &tile->slabs[seen[k]], of[seen[k]]);
+      lights[k][i] = light_at(job, &job->lights[i], &tile->slabs[seen[k]], of[seen[k]], patch_count);
   for (int k = 0; k < count; k++) {
     const block_slab *slab = &tile->slabs[seen[k]];
-    color_lanes color = color_of_block(job, &slab->geometry, lights[k], of[seen[k]], slab->count, slab->total);
+    color_lanes color = color_of_block(job, &slab->geometry, lights[k], of[seen[k]], patch_count, slab->total);
     for (int c = 0; c < 3; c++) lit[seen[k]].c[c] = lanes_keep(slab->seen, color.c[c]);
   }
 }
@@ -362,8 +362,8 @@ LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *pa
   return places;
 }
 
-static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
-                           uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
+LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
+                                    uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
   block_density *ways = scratch, *densities = ways + patch_count;
   packed_tile tile;
   color_lanes lit[TILE_BLOCKS];
@@ -376,7 +376,7 @@ static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int
     slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits[block], ways, &slab);
     seen |= 1u << block;
     for (int c = 0; c < 3; c++) __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
-    tile.blocks[block] = pack_block(&tile, &slab, ways, bits[block], densities);
+    tile.blocks[block] = pack_block(&tile, &slab, ways, patch_count, bits[block], densities);
   }
   light_slabs(job, &tile, densities, patch_count, lit, samples);
   uint32_t open = blocks & ~seen;
@@ -387,6 +387,13 @@ static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int
       open |= 1u << block;
   }
   return open;
+}
+
+/* Most often there is one volume, which needs no loops over volumes. */
+static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
+                           uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
+  if (patch_count == 1) return shade_patches(job, patches, 1, tile_x, tile_y, blocks, scratch, pixels, samples);
+  return shade_patches(job, patches, patch_count, tile_x, tile_y, blocks, scratch, pixels, samples);
 }
 
 #endif

@@ -170,7 +170,6 @@ typedef struct block_slab {
   lanes u, v;              /* the pixels */
   lanes_int open;          /* those that can still show something */
   uint32_t starts;         /* lanes at which those of one block follow those of another; the first included */
-  int count;               /* of the tile's volumes */
   block_geometry geometry; /* its position: where the slab is seen on average, and lit */
   lanes total, depth;      /* extinction averaged over the slab; optical depth */
   lanes left;              /* exp(-depth) */
@@ -201,13 +200,12 @@ LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches
   slab->v = block_v(tile_y * TILE + block / 4 * BLOCK);
   slab->open = lanes_from_bits(bits);
   slab->starts = 1;
-  slab->count = patch_count;
 }
 
 /* Step 13: what of the slab can be seen. */
-LANES_INLINE void classify_slab(block_density *densities, block_slab *slab) {
+LANES_INLINE void classify_slab(block_density *densities, int count, block_slab *slab) {
   slab->total = lanes_set(0);
-  for (int i = 0; i < slab->count; i++) {
+  for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
     if (!d->there) continue;
     classify_way(d);
@@ -218,7 +216,7 @@ LANES_INLINE void classify_slab(block_density *densities, block_slab *slab) {
 }
 
 /* How much is seen of a slab in which something is, and where. */
-LANES_INLINE void place_slab(const shade_job *job, block_density *densities, block_slab *slab) {
+LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   block_geometry *g = &slab->geometry;
   *g = geometry_of_block(job, slab->u, slab->v);
   slab->depth = lanes_keep(slab->seen, slab->total * g->path); /* lanes without a pixel have a path of their own */
@@ -226,19 +224,19 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, blo
   slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
   lanes u = seen_part(slab->depth, slab->left);
   if (job->back_to_front) u = 1.0f - u;
-  lanes seen_at = place_of_part(densities, slab->count, slab->total, u);
+  lanes seen_at = place_of_part(densities, count, slab->total, u);
   g->start = add3(g->position, scale3(g->step_sheet, lanes_set(-0.5f)));
   g->position = add3(g->start, scale3(g->step_sheet, seen_at));
 }
 
 /* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which something is
  * seen, one bit each; if there are none, only the opacity is filled. */
-LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, block_slab *slab) {
-  classify_slab(densities, slab);
+LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
+  classify_slab(densities, count, slab);
   uint32_t bits = lanes_bits(slab->seen);
   if (bits == 0) return 0;
-  place_slab(job, densities, slab);
-  find_slopes(job, &slab->geometry, densities, slab->count, slab->seen, slab->starts);
+  place_slab(job, densities, count, slab);
+  find_slopes(job, &slab->geometry, densities, count, slab->seen, slab->starts);
   return bits;
 }
 

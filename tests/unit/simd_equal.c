@@ -565,6 +565,32 @@ static void test_shade(void **unused) {
   }
 }
 
+/* One volume has code of its own: a second one that has nothing in the tile changes nothing, rounding apart. */
+static void test_shade_beside_nothing(void **unused) {
+  (void)unused;
+  static shade_state alone, beside;
+  uint32_t seed = 43;
+  int lit = 0;
+  for (int round = 0; round < 4 * ROUNDS; round += 2) {
+    set_up_shade(&alone, &seed, round);
+    for (int i = 0; i < 3; i++) alone.lights[i].nearest = 0; /* a rounding apart is another pixel there */
+    beside = alone;
+    beside.job.lights = beside.lights;
+    beside.patch_count = 2;
+    beside.patches[1].blocks = 0;
+    call_shade(&hl_hot_scalar, &alone);
+    call_shade(&hl_hot_scalar, &beside);
+    assert_int_equal(alone.out.open, beside.out.open);
+    assert_int_equal(alone.out.samples, beside.out.samples);
+    lit += alone.out.samples > 0;
+    for (int i = 0; i < 4 * TILE_PIXELS; i++) {
+      float pixel = alone.out.pixels[i];
+      if (isfinite(pixel)) assert_float_equal(beside.out.pixels[i], pixel, 1e-4f * (1 + fabsf(pixel)));
+    }
+  }
+  assert_true(lit > ROUNDS);
+}
+
 int main(int argc, char **argv) {
   timing = argc > 1 && strcmp(argv[1], "--time") == 0;
   if (hl_cpu_best_instruction_set() == HL_INSTRUCTION_SET_SCALAR) {
@@ -574,6 +600,7 @@ int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_bound_cells), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
       cmocka_unit_test(test_light),      cmocka_unit_test(test_fields), cmocka_unit_test(test_shade),
+      cmocka_unit_test(test_shade_beside_nothing),
   };
   return cmocka_run_group_tests_name("simd_equal", tests, open_classifier, close_classifier);
 }
