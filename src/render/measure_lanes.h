@@ -14,9 +14,7 @@ LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density 
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
-    lanes surface;
-    lanes3 normal = normal_of(d->patch->volume, slope_of_block(d), d->way.first + d->way.last, &surface);
-    sum = add3(sum, scale3(normal, d->extinction * inverse * surface));
+    sum = add3(sum, scale3(d->normal, d->extinction * inverse * d->surface));
   }
   return sum;
 }

@@ -103,6 +103,7 @@ LANES_INLINE color_lanes reaching(const shade_light *light, lanes3 position) {
 
 /* Steps 14 and 15's first half: what arrives of one light (eqs. 1 and 2), and from where. */
 typedef struct arriving_light {
+  int dark;       /* it lights nothing; the rest is not filled */
   lanes3 towards; /* unit */
   color_lanes full, shadowed; /* without and with attenuation */
 } arriving_light;
@@ -195,6 +196,16 @@ LANES_INLINE int is_dark(const color_lanes *light) {
   return lanes_bits((light->c[0] > 0.0f) | (light->c[1] > 0.0f) | (light->c[2] > 0.0f)) == 0;
 }
 
+/* Whether light from there can light anything seen: a medium, or a surface that faces it. */
+LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int seen, lanes3 towards) {
+  lanes_int faced = lanes_set_int(0);
+  for (int i = 0; i < count; i++) {
+    const block_density *d = &densities[i];
+    if (d->there && d->patch->volume->visible) faced |= (d->surface < 1.0f) | (dot3(d->normal, towards) > 0.0f);
+  }
+  return lanes_bits(faced & seen) != 0;
+}
+
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_slab *slab,
                                      const block_density *densities, int count) {
   const block_geometry *g = &slab->geometry;
@@ -214,6 +225,8 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
     if (light->share.count > 0) strength = strength * share_of_sector(&light->share, arriving.towards);
     if (light->cone.scale > 0) strength = strength * within_cone(&light->cone, arriving.towards);
   }
+  arriving.dark = !is_faced(densities, count, slab->seen, arriving.towards);
+  if (arriving.dark) return arriving;
   for (int c = 0; c < 3; c++) arriving.full.c[c] = strength * light->color[c];
   if (light->screen.pixels != NULL) {
     lanes pattern[3];
@@ -239,30 +252,19 @@ LANES_INLINE lanes power(lanes base, float exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Unit normal away from the matter; *surface: 1 for a surface, falling to 0 for a medium, which has no normal. The slope is
- * taken in steps of the transfer function's table: squares of data in units of 1e-27 or 1e30 are no floats. Where
- * even those vanish, components are below 1e-19: the normal stays short. */
-LANES_INLINE lanes3 normal_of(const shade_volume *volume, lanes3 slope, lanes density, lanes *surface) {
-  slope = scale3(slope, lanes_set(fabsf(volume->classifier->scale)));
-  lanes steepness = lanes_sqrt(dot3(slope, slope));
-  *surface = volume->phong ? lanes_min(steepness / volume->classifier->normal_edge, lanes_set(1.0f)) : lanes_set(0);
-  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-18f));
-  return scale3(slope, outward);
-}
-
 /* Step 15: eqs. (3) and (4) at the light's centre; a medium where there is no surface (algorithm, optical model). */
-LANES_INLINE color_lanes illuminate(const shade_job *job, const shade_volume *volume, const block_geometry *g,
-                                    const arriving_light *lights, color_lanes color, lanes3 slope, lanes density) {
-  lanes surface;
-  lanes3 normal = normal_of(volume, slope, density, &surface);
+LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
+                                    const arriving_light *lights, color_lanes color) {
+  const shade_volume *volume = d->patch->volume;
   color_lanes lit;
   for (int c = 0; c < 3; c++) lit.c[c] = color.c[c] * (volume->ambient * job->ambient[c]);
   for (int i = 0; i < job->light_count; i++) {
+    if (lights[i].dark) continue;
     const color_lanes *intensity = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full;
-    lanes facing = dot3(normal, lights[i].towards);
-    lanes diffuse = lanes_max(facing, lanes_set(0)) * volume->diffuse * surface + (1.0f - surface);
-    lanes3 mirrored = add3(scale3(normal, facing * 2.0f), scale3(lights[i].towards, lanes_set(-1.0f)));
-    lanes glint = power(dot3(g->towards_eye, mirrored), volume->shininess) * volume->specular * surface;
+    lanes facing = dot3(d->normal, lights[i].towards);
+    lanes diffuse = lanes_max(facing, lanes_set(0)) * volume->diffuse * d->surface + (1.0f - d->surface);
+    lanes3 mirrored = add3(scale3(d->normal, facing * 2.0f), scale3(lights[i].towards, lanes_set(-1.0f)));
+    lanes glint = power(dot3(g->towards_eye, mirrored), volume->shininess) * volume->specular * d->surface;
     glint = lanes_keep(facing > 0.0f, glint);
     for (int c = 0; c < 3; c++) lit.c[c] = lit.c[c] + intensity->c[c] * (color.c[c] * diffuse + glint);
   }
@@ -291,11 +293,10 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geomet
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible) continue;
-    const shade_volume *volume = d->patch->volume;
     table_place place = place_of_coordinate(coordinate_seen(d));
     color_lanes color;
-    table_values(volume->classifier->color, place, color.c);
-    color_lanes lit = illuminate(job, volume, g, lights, color, slope_of_block(d), d->way.first + d->way.last);
+    table_values(d->patch->volume->classifier->color, place, color.c);
+    color_lanes lit = illuminate(job, d, g, lights, color);
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
     for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
   }
@@ -321,6 +322,7 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
   for (int k = 0; k < count; k++) {
     block_slab *slab = &tile->slabs[seen[k]];
     find_slopes(job, &slab->geometry, of[seen[k]], patch_count, slab->seen, slab->starts);
+    find_normals(of[seen[k]], patch_count);
   }
   for (int k = 0; k < count; k++)
     for (int i = 0; i < job->light_count; i++)

@@ -75,6 +75,8 @@ typedef struct block_density {
   lanes evenly;        /* the part at which it would be seen if its extinction were even */
   lanes_int sloped;    /* where the gradient is known */
   lanes3 slope;        /* where the matter is seen; elsewhere 0 */
+  lanes3 normal;       /* unit, away from the matter */
+  lanes surface;       /* 1 for a surface, falling to 0 for a medium, which has no normal */
 } block_density;
 
 /* In thinner slabs the gradient makes no difference to the light lost within. */
@@ -165,6 +167,22 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_geometry *g, blo
   }
 }
 
+/* Its normal there. The slope is taken in steps of the transfer function's table: squares of data in units of 1e-27 or
+ * 1e30 are no floats. Where even those vanish, components are below 1e-19: the normal stays short. */
+LANES_INLINE void find_normal(block_density *d) {
+  const shade_volume *volume = d->patch->volume;
+  lanes3 slope = scale3(slope_of_block(d), lanes_set(fabsf(volume->classifier->scale)));
+  lanes steepness = lanes_sqrt(dot3(slope, slope)), density = d->way.first + d->way.last;
+  d->surface = volume->phong ? lanes_min(steepness / volume->classifier->normal_edge, lanes_set(1.0f)) : lanes_set(0);
+  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-18f));
+  d->normal = scale3(slope, outward);
+}
+
+LANES_INLINE void find_normals(block_density *densities, int count) {
+  for (int i = 0; i < count; i++)
+    if (densities[i].there && densities[i].patch->volume->visible) find_normal(&densities[i]);
+}
+
 /* Sixteen pixels' way through the slab: geometry, and how much is seen of it where. */
 typedef struct block_slab {
   lanes u, v;              /* the pixels */
@@ -237,6 +255,7 @@ LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, 
   if (bits == 0) return 0;
   place_slab(job, densities, count, slab);
   find_slopes(job, &slab->geometry, densities, count, slab->seen, slab->starts);
+  find_normals(densities, count);
   return bits;
 }
 
