@@ -9,14 +9,19 @@
 /* Pixels of the shadow buffer that get less than this of the light are done: 1/4 of a step of 8 bits. */
 static const float DARK = 1.0f / 1024;
 
-/* Length of the rays' way through one sheet: spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|). Lanes whose
- * sheet lies behind the view's origin by more than `reach`, a height, get 0. */
-LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, float reach, lanes u, lanes v) {
+/* Lanes whose sheet does not lie behind the view's origin by more than `reach`, a height. */
+LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach) {
+  return climb * rays->step + lanes_abs(climb) * reach > 0.0f;
+}
+
+/* Length of the rays' way through one sheet: spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|); 0 behind the
+ * view's origin. */
+LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
   if (!rays->perspective) return lanes_set(path);
   lanes3 w = rays_directions(rays, u, v);
   lanes climb = u * rays->hu + (v * rays->hv + rays->h0);
   lanes length = lanes_sqrt(w.x * w.x + w.y * w.y + w.z * w.z) / lanes_abs(climb) * path;
-  return lanes_keep(climb * rays->step + lanes_abs(climb) * reach > 0.0f, length);
+  return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
 /* The part of the slab before the sheet that lies in the volume's box, block by block. whole: all of it does. */
@@ -70,7 +75,7 @@ static int attenuate_block(const attenuate_job *job, int tile_x, int tile_y, int
   lanes any = depth[0] + depth[1] + depth[2];
   if (lanes_bits(any > 0.0f) == 0) return 0;
   int x = block % 4 * BLOCK, y = block / 4 * BLOCK;
-  lanes path = path_through_sheet(&job->rays, job->path, 0, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
+  lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
   for (int c = 0; c < job->channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;
     lanes passing = lanes_exp_negative(depth[c] * path);

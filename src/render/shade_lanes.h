@@ -9,10 +9,13 @@ static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
 typedef struct color_lanes { lanes c[3]; } color_lanes;
 
-/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1]. left: exp(-x). */
-LANES_INLINE lanes mean_transmittance(lanes x, lanes left) {
+/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1], as what is to be divided by what. left: exp(-x). */
+typedef struct mean_transmittance { lanes over, under; } mean_transmittance;
+
+LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
   lanes near = 1.0f - x * (0.5f - x * (1.0f / 6));
-  return lanes_select(x < 0.01f, near, (1.0f - left) / lanes_max(x, lanes_set(0.01f)));
+  lanes_int thin = x < 0.01f;
+  return (mean_transmittance){lanes_select(thin, near, 1.0f - left), lanes_select(thin, lanes_set(1.0f), x)};
 }
 
 /* Light left within the slab, averaged as the eye sees it: with e and l the slab's optical depths for the eye and for
@@ -22,9 +25,10 @@ LANES_INLINE lanes mean_transmittance(lanes x, lanes left) {
  *     (exp(-l) - exp(-e)) / (e - l) / phi(e) = exp(-min) phi(|e - l|) / phi(e). left: exp(-e). */
 LANES_INLINE lanes own_transmittance(int back_to_front, lanes e, lanes left, lanes l) {
   lanes both = back_to_front ? lanes_abs(e - l) : e + l;
-  lanes seen = mean_transmittance(both, lanes_exp_negative(both));
+  mean_transmittance of_both = transmittance_within(both, lanes_exp_negative(both)), of_eye = transmittance_within(e, left);
+  lanes seen = of_both.over * of_eye.under / (of_both.under * of_eye.over);
   if (back_to_front) seen = lanes_exp_negative(lanes_min(e, l)) * seen;
-  return lanes_min(seen / mean_transmittance(e, left), lanes_set(1.0f));
+  return lanes_min(seen, lanes_set(1.0f));
 }
 
 /* Where samples are in a shadow buffer: the first of two by two pixels, and how far they are on the way to the others. */
@@ -297,6 +301,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geomet
     color_lanes color;
     table_values(d->patch->volume->classifier->color, place, color.c);
     color_lanes lit = illuminate(job, d, g, lights, color);
+    if (count == 1) return lit; /* its extinction is the total */
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
     for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
   }

@@ -31,16 +31,18 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
   const sheet_rays *rays = &job->rays;
   block_geometry g;
   g.position = rays_positions(rays, u, v);
-  g.path = path_through_sheet(rays, job->path, job->spacing * 0.5f, u, v); /* the rays end in the slab's middle */
   if (!rays->perspective) {
+    g.path = lanes_set(job->path);
     g.step_sheet = set3(job->through);
     g.towards_eye = set3(job->towards_eye);
     return g;
   }
   lanes3 w = rays_directions(rays, u, v);
-  lanes inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
+  lanes climb = u * rays->hu + (v * rays->hv + rays->h0), inverse = 1.0f / climb, length = lanes_sqrt(dot3(w, w));
+  lanes_int ahead = is_ahead(rays, climb, job->spacing * 0.5f); /* the rays end in the slab's middle */
+  g.path = lanes_keep(ahead, length * lanes_abs(inverse) * job->path);
   g.step_sheet = scale3(w, inverse * job->spacing);
-  g.towards_eye = scale3(w, -1.0f / lanes_sqrt(dot3(w, w)));
+  g.towards_eye = scale3(w, -1.0f / length);
   return g;
 }
 
@@ -113,16 +115,19 @@ LANES_INLINE lanes power_of_part(lanes base, lanes exponent) {
 }
 
 /* Where in its optical depth a slab is seen on average, 0 (first) to 1: int e s exp(-e s) ds / (1 - exp(-e)) =
- * 1 / e - exp(-e) / (1 - exp(-e)) (derived); 1/2 - e / 12 for small e. left: exp(-e). */
+ * 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1 - exp(-e))) (derived); 1/2 - e / 12 for small e.
+ * left: exp(-e), which is held above 0: nothing of it is left for e > 100. */
 LANES_INLINE lanes seen_part(lanes e, lanes left) {
   lanes_int thin = e < 0.05f;
-  lanes safe = lanes_select(thin, lanes_set(0.5f), left);
-  return lanes_select(thin, 0.5f - e * (1.0f / 12), 1.0f / lanes_max(e, lanes_set(0.05f)) - safe / (1.0f - safe));
+  lanes lost = lanes_select(thin, lanes_set(1.0f), 1.0f - left);
+  lanes part = (lost - lanes_min(e, lanes_set(100.0f)) * left) / (lanes_max(e, lanes_set(0.05f)) * lost);
+  return lanes_select(thin, 0.5f - e * (1.0f / 12), part);
 }
 
 /* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
  * with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is reached at
- * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes' mean, in slabs. */
+ * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes' mean, in slabs. One volume's
+ * extinction is the total. */
 LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes total, lanes u) {
   lanes sum = lanes_set(0);
   for (int i = 0; i < count; i++) {
@@ -131,12 +136,14 @@ LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes tota
     d->seen = lanes_set(0.5f);
     d->evenly = u;
     if (!d->patch->volume->visible) continue;
-    lanes m = part_of_way(d->before, d->after, mean_coordinate(d->before, d->after, &d->sums));
-    lanes_int rising = m >= 0.5f;
-    lanes side = lanes_max(lanes_select(rising, m, 1.0f - m), lanes_set(0.5f));
-    lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), (1.0f - side) / side);
+    way_parts m = parts_of_way(d->before, d->after, &d->sums);
+    lanes_int rising = m.from_a >= m.from_b;
+    lanes t = power_of_part(lanes_select(rising, u, 1.0f - u),
+                            lanes_min(m.from_a, m.from_b) / lanes_max(m.from_a, m.from_b));
     d->seen = lanes_select(rising, t, 1.0f - t);
-    sum = sum + d->extinction * (d->way.part.begin + d->way.part.length * d->seen);
+    lanes place = d->way.part.begin + d->way.part.length * d->seen;
+    if (count == 1) return place;
+    sum = sum + d->extinction * place;
   }
   return sum / lanes_max(total, lanes_set(1e-30f));
 }
@@ -173,7 +180,7 @@ LANES_INLINE void find_normal(block_density *d) {
   const shade_volume *volume = d->patch->volume;
   lanes3 slope = scale3(slope_of_block(d), lanes_set(fabsf(volume->classifier->scale)));
   lanes steepness = lanes_sqrt(dot3(slope, slope)), density = d->way.first + d->way.last;
-  d->surface = volume->phong ? lanes_min(steepness / volume->classifier->normal_edge, lanes_set(1.0f)) : lanes_set(0);
+  d->surface = volume->phong ? lanes_min(steepness * (1.0f / volume->classifier->normal_edge), lanes_set(1.0f)) : lanes_set(0);
   lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-18f));
   d->normal = scale3(slope, outward);
 }

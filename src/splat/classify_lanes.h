@@ -51,19 +51,16 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_place 
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
-/* How far along the way from coordinate a to b another lies, 0 to 1; the middle where the way is short. */
-LANES_INLINE lanes part_of_way(lanes a, lanes b, lanes coordinate) {
-  lanes way = b - a;
-  lanes_int far = lanes_abs(way) > NEAR_ENTRIES;
-  return lanes_select(far, (coordinate - a) / lanes_select(far, way, lanes_set(1.0f)), lanes_set(0.5f));
-}
+/* How far from a and from b on the way between them, weighted by extinction, the density lies, in entries; 1 and 1 where the
+ * way is short or holds nothing. */
+typedef struct way_parts { lanes from_a, from_b; } way_parts;
 
-/* The coordinate between a and b where, weighted by extinction, the density lies. */
-LANES_INLINE lanes mean_coordinate(lanes a, lanes b, const way_sums *sums) {
-  lanes low = lanes_min(a, b), high = lanes_max(a, b), middle = (low + high) * 0.5f;
+LANES_INLINE way_parts parts_of_way(lanes a, lanes b, const way_sums *sums) {
   lanes_int usable = lanes_abs(sums->whole) > 0.0f;
   lanes mean = sums->moment / lanes_select(usable, sums->whole, lanes_set(1.0f));
-  return lanes_min(lanes_max(lanes_select(usable, mean, middle), low), high);
+  mean = lanes_min(lanes_max(mean, lanes_min(a, b)), lanes_max(a, b));
+  return (way_parts){lanes_select(usable, lanes_abs(mean - a), lanes_set(1.0f)),
+                     lanes_select(usable, lanes_abs(mean - b), lanes_set(1.0f))};
 }
 
 #endif
