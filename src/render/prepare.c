@@ -78,7 +78,7 @@ static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_fu
   status = hl_classifier_create(context, scene, &prepared->grid, &prepared->classifier, error);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   if (status != HL_OK) return status;
-  hl_grid_mark_relevant(&prepared->grid, &prepared->classifier, pool);
+  hl_grid_mark_relevant(&prepared->grid, &hot->grid, &prepared->classifier, pool);
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 

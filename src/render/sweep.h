@@ -39,7 +39,8 @@ typedef struct relevant_patch {
   int32_t first;                  /* the sheet before them; -1: none */
   int32_t end;                    /* of the bundle among them that was filled last */
   uint16_t need;                  /* in these blocks */
-  relevant_blocks found;
+  uint16_t asked;                 /* the blocks that were looked at */
+  relevant_blocks found;          /* in those */
 } relevant_patch;
 
 /* What one view, the eye's or a light's, sees of the last sheets. */

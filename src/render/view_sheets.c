@@ -160,18 +160,24 @@ static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets 
   return &sheets->sources[sheet % sheets->ring * sweep->volume_count + (int)sheets->occupancy.patch_grid[patch]];
 }
 
-/* Where the slabs of a sheet's run may hold something of a patch, found for all of them at once. */
-static const relevant_blocks *relevant_in_run(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet) {
+/* Where the slabs of a sheet's run may hold something of a patch in the needed blocks, found for all of them at once. Soft
+ * light may ask for more blocks later. */
+static const relevant_blocks *relevant_in_run(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet,
+                                              uint32_t need) {
   const occupancy *o = &sheets->occupancy;
   relevant_patch *relevant = &sheets->relevant[patch];
   int first = first_of_run(sheet);
-  if (relevant->first == first) return &relevant->found;
-  uint32_t slabs = 0;
+  if (relevant->first != first) *relevant = (relevant_patch){.first = first};
+  uint32_t more = need & ~(uint32_t)relevant->asked, slabs = 0;
+  if (more == 0) return &relevant->found;
   for (int i = 0; i < RUN_SLABS && first + i + 1 < o->sheets; i++)
     slabs |= (uint32_t)(hl_occupancy_has(o, patch, first + i) | hl_occupancy_has(o, patch, first + i + 1)) << i;
-  *relevant = (relevant_patch){.first = first};
+  relevant_blocks found = {0};
   sweep->hot->relevant_blocks_tile(&sheets->runs[o->patch_grid[patch]], (int)(tile % (size_t)o->tiles_x),
-                                   (int)(tile / (size_t)o->tiles_x), slabs, &relevant->found);
+                                   (int)(tile / (size_t)o->tiles_x), slabs, more, &found);
+  for (int i = 0; i < RUN_SLABS; i++) relevant->found.blocks[i] |= found.blocks[i];
+  relevant->found.whole = found.whole;
+  relevant->asked = (uint16_t)(relevant->asked | more);
   return &relevant->found;
 }
 
@@ -212,7 +218,7 @@ static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_
 }
 
 uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
-  return need & relevant_in_run(sweep, sheets, tile, patch, sheet)->blocks[sheet - 1 - first_of_run(sheet)];
+  return need & relevant_in_run(sweep, sheets, tile, patch, sheet, need)->blocks[sheet - 1 - first_of_run(sheet)];
 }
 
 patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,

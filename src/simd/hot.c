@@ -8,6 +8,7 @@
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
+#include "splat/cell_bits_lanes.h"
 #include "splat/cell_bounds_lanes.h"
 #include "splat/relevant_lanes.h"
 #include "splat/splat_lanes.h"
@@ -19,7 +20,7 @@
 #endif
 
 const hot_functions HL_HOT_TABLE = {
-    .grid = {{bound_rows_u8, bound_rows_u16, bound_rows_f32}, bound_along, bound_across, HL_COLUMN_SLICE},
+    .grid = {{bound_rows_u8, bound_rows_u16, bound_rows_f32}, bound_along, bound_across, brick_bits, HL_COLUMN_SLICE},
     .relevant_blocks_tile = relevant_blocks_tile,
     .splat_tile = splat_tile,
     .gather_tile = gather_tile,

@@ -210,6 +210,17 @@ LANES_INLINE lanes_int lanes_gather_bytes(const unsigned char *base, lanes_int o
   return lanes_load_words(base, &offsets);
 }
 
+/* One of sixteen words for every lane. */
+LANES_INLINE lanes_int lanes_look_up(lanes_int words, lanes_int index) {
+#if defined(__AVX512F__)
+  return (lanes_int)_mm512_permutexvar_epi32((__m512i)index, (__m512i)words);
+#else
+  unsigned char table[sizeof words];
+  memcpy(table, &words, sizeof words);
+  return lanes_gather_bytes(table, index * 4);
+#endif
+}
+
 /* table[index] of floats. */
 LANES_INLINE lanes lanes_gather(const float *table, lanes_int index) {
   return (lanes)lanes_gather_bytes((const unsigned char *)table, index * 4);

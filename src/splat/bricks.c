@@ -42,7 +42,7 @@ static void store_bounds(const grid *grid, size_t brick, float low, float high) 
   }
 }
 
-static void load_bounds(const grid *grid, size_t brick, float bounds[2]) {
+void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]) {
   for (size_t i = 0; i < 2; i++)
     bounds[i] = grid->storage == HL_STORAGE_U8    ? ((const uint8_t *)grid->brick_bounds)[2 * brick + i]
                 : grid->storage == HL_STORAGE_U16 ? ((const uint16_t *)grid->brick_bounds)[2 * brick + i]
@@ -147,13 +147,19 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
+static hl_status make_room_for_bits(hl_context *context, grid *grid, hl_error *error) {
+  size_t bricks = hl_grid_bricks(grid);
+  grid->cell_bits = hl_allocate(context, bricks, sizeof *grid->cell_bits);
+  return grid->cell_bits != NULL ? HL_OK : hl_fail_memory(error, bricks * sizeof *grid->cell_bits, "the bits of a volume's cells");
+}
+
 uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions, int threads) {
   uint64_t bricks = 1;
   for (int axis = 0; axis < 3; axis++) bricks *= volume->dimension[axis] / HL_BRICK_CELLS + 1;
   uint64_t copied = volume->nonfinite_count > 0 ? hl_volume_voxel_count(volume) * sizeof(float) : 0;
   int32_t dimension[3] = {(int32_t)volume->dimension[0], (int32_t)volume->dimension[1], (int32_t)volume->dimension[2]};
   if (hl_columns_wanted(functions->column_slice, dimension, volume->storage)) copied += hl_columns_bytes(dimension);
-  return copied + bricks * brick_bytes(volume->storage) + hl_cell_bounds_bytes(volume->dimension, threads);
+  return copied + bricks * brick_bytes(volume->storage) + hl_cell_bits_bytes(bricks) + hl_cell_bounds_bytes(volume->dimension, threads);
 }
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions, const kernel *kernel,
@@ -179,6 +185,7 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
   if (status == HL_OK && hl_columns_wanted(functions->column_slice, grid->dimension, grid->storage))
     status = hl_columns_build(context, pool, functions->column_slice, grid, error);
   if (status == HL_OK) status = bound_bricks(context, pool, functions->rows[grid->storage], grid, error);
+  if (status == HL_OK && hl_cell_bits_wanted(grid, kernel)) status = make_room_for_bits(context, grid, error);
   set_cell_range(volume, grid);
   if (status == HL_OK)
     status = hl_cell_bounds_build(context, pool, functions->along, functions->across, kernel->degree == HL_BSPLINE_DEGREE, grid, error);
@@ -191,6 +198,7 @@ void hl_grid_release(hl_context *context, grid *grid) {
   hl_release(context, grid->relevant);
   hl_cell_bounds_release(context, grid);
   hl_release(context, grid->relevant_list);
+  hl_release(context, grid->cell_bits);
   hl_release(context, grid->finite_voxels);
   hl_release(context, grid->columns);
   *grid = (struct grid){0};
@@ -219,7 +227,7 @@ static void mark_slab(void *data, size_t index, int worker) {
   for (b[1] = 0; b[1] < grid->brick_count[1]; b[1]++)
     for (b[0] = 0; b[0] < grid->brick_count[0]; b[0]++, at++) {
       float bounds[2];
-      load_bounds(grid, at, bounds);
+      hl_bounds_of_brick(grid, at, bounds);
       grid->relevant[at] = brick_in_box(grid, b) && hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]);
     }
 }
@@ -240,7 +248,7 @@ static bool brick_reaches_faces(const grid *grid, const int32_t b[3]) {
   return false;
 }
 
-void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *pool) {
+void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const classifier *classifier, hl_pool *pool) {
   mark_job job = {grid, classifier};
   hl_pool_run(pool, (size_t)grid->brick_count[2], mark_slab, &job);
   hl_cells_mark_visible(grid, classifier, pool);
@@ -263,5 +271,6 @@ void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *po
                          (uint64_t)voxels_along(b[1], grid->dimension[1]) *
                          (uint64_t)voxels_along(b[2], grid->dimension[2]);
   }
+  hl_cell_bits_find(grid, classifier, functions->brick_bits, pool);
   hl_cells_mark_near(grid, pool);
 }

@@ -2,6 +2,7 @@
 #ifndef HL_SPLAT_BRICKS_H
 #define HL_SPLAT_BRICKS_H
 
+#include "splat/cell_bits.h"
 #include "splat/cell_bounds.h"
 #include "splat/columns.h"
 
@@ -13,6 +14,7 @@ typedef struct grid_functions {
   bound_rows_function *rows[3]; /* by hl_storage */
   bound_along_function *along;
   bound_across_function *across;
+  brick_bits_function *brick_bits;
   column_slice_function *column_slice; /* null where no function reads columns */
 } grid_functions;
 
@@ -25,6 +27,6 @@ uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions,
 void hl_grid_release(hl_context *context, grid *grid);
 
 /* Marks the bricks that the transfer function can show, and counts their voxels. */
-void hl_grid_mark_relevant(grid *grid, const classifier *classifier, hl_pool *pool);
+void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const classifier *classifier, hl_pool *pool);
 
 #endif

@@ -42,6 +42,9 @@ static inline bool hl_brick_is_visible(const grid *grid, size_t brick) {
   return grid->level[1].near == NULL || grid->level[1].near[brick];
 }
 
+/* The least and greatest stored value of a brick (bricks.c). */
+void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]);
+
 /* Bounds of the cells of a layer of bricks as they are packed: first a bit for each brick, rows in whole bytes, 1 where
  * all eight of its cells have the same bounds; then, brick after brick, those (lower, upper), or eight lower and eight
  * upper ones, cell i + 2 j + 4 k at place (i, j, k). Cells beyond the grid are as their neighbours. */

@@ -46,14 +46,15 @@ typedef struct slab_run {
   float low[3], high[3];          /* what lies between is not cut by the box */
 } slab_run;
 
-/* Of a tile, slab by slab, the blocks outside of which there is nothing of the grid that matters, and whether the box
- * leaves all of those whole. */
+/* Of a tile, slab by slab, the needed blocks that may hold something of the grid that matters, and whether the box leaves
+ * all of those whole. */
 typedef struct relevant_blocks {
   uint16_t blocks[RUN_SLABS];
   uint16_t whole; /* one bit a slab */
 } relevant_blocks;
 
-/* Fills what is asked of the run's slabs, one bit each; others are left alone. */
-typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs, relevant_blocks *found);
+/* Fills what is asked of the run's slabs, one bit each; others are left alone. need: the blocks that are wanted. */
+typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs, uint32_t need,
+                                      relevant_blocks *found);
 
 #endif

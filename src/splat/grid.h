@@ -49,6 +49,8 @@ typedef struct grid {
   unsigned char **cell_bounds; /* owned; [bricks z], each owned: bounds in every 2x2x2 cells of a layer of bricks, packed
                                   (cell_bounds.c): cell_base + cell_step * value; null where 32 bits cannot number them */
   float cell_base, cell_step;  /* stored units */
+  uint64_t *cell_bits;         /* owned; [bricks z][y][x]; which of a brick's cells may show something (cell_bits.h); or null */
+  bool cell_bits_tell;         /* they leave out enough to be asked */
   uint32_t *relevant_list;     /* owned; [relevant_count]; relevant bricks with a visible cell, rising */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest place of a relevant brick along each axis */

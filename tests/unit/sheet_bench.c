@@ -57,7 +57,7 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
   require(hl_grid_create(bench->context, bench->pool, &hl_hot_functions(hl_cpu_best_instruction_set())->grid, hl_kernel_get(HL_KERNEL_BSPLINE), &bench->scene, placement,
                          hl_scene_volume_empty_value(&bench->scene), &bench->grid, &error), &error);
   require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error), &error);
-  hl_grid_mark_relevant(&bench->grid, &bench->classifier, bench->pool);
+  hl_grid_mark_relevant(&bench->grid, &hl_hot_functions(hl_cpu_best_instruction_set())->grid, &bench->classifier, bench->pool);
 }
 
 void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double distance, hl_kernel which) {

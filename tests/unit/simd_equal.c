@@ -168,6 +168,37 @@ static void test_bound_cells(void **unused) {
   }
 }
 
+typedef struct bits_state {
+  grid grid;
+  int32_t brick[3];
+  float sign, level;
+  uint64_t out;
+} bits_state;
+
+static void call_brick_bits(const hot_functions *hot, void *state) {
+  bits_state *s = state;
+  s->out = hot->grid.brick_bits(&s->grid, s->brick, s->sign, s->level);
+}
+
+static void test_brick_bits(void **unused) {
+  (void)unused;
+  static const char *const names[] = {"brick_bits u8", "brick_bits u16", "brick_bits f32"};
+  static float voxels[16 * 13 * 17];
+  static bits_state state;
+  uint32_t seed = 6;
+  for (int round = 0; round < 12 * ROUNDS; round++) {
+    fill_salted(voxels, 16 * 13 * 17, &seed, -5, 5);
+    state.grid = (grid){.voxels = voxels, .storage = (hl_storage)(round % 3), .dimension = {16, 13, 17}};
+    if (round % 4 == 3) state.grid.dimension[round / 4 % 3] = 1 + round % 5;
+    for (int axis = 0; axis < 3; axis++)
+      state.brick[axis] = round < 3 ? 1 : (int32_t)(bench_random(&seed) * (state.grid.dimension[axis] / HL_BRICK_CELLS + 1));
+    state.sign = round % 2 ? 1 : -1;
+    state.level = state.sign * (round % 3 == 0 ? 128.0f : round % 3 == 1 ? 32768.0f : 0.5f);
+    trial trial = {call_brick_bits, &state, &state.out, sizeof state.out};
+    try_it(names[round % 3], &trial, round / 3);
+  }
+}
+
 /* ---- filling ---- */
 
 typedef struct fill_state {
@@ -181,7 +212,7 @@ typedef struct fill_state {
 static void call_fill(const hot_functions *hot, void *state) {
   fill_state *s = state;
   fill_tile_function *fill = s->gather ? hot->gather_tile : hot->splat_tile;
-  hot->relevant_blocks_tile(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), &s->out.relevant);
+  hot->relevant_blocks_tile(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), s->need, &s->out.relevant);
   s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->out.density);
 }
 
@@ -190,6 +221,16 @@ static void spoil_rays(sheet_rays *rays, int round) {
   if (round % 8 == 5) rays->h0 = rays->hu = rays->hv = 0;
   if (round % 8 == 6) rays->w0[round % 3] = NAN;
   if (round % 8 == 7) rays->wu[round % 3] = 3e37f;
+}
+
+/* Of a third of the bricks no cell shows, of a third all do. */
+static void spread_bits(grid *grid, uint32_t *seed) {
+  for (size_t brick = 0; brick < hl_grid_bricks(grid); brick++) {
+    double kind = bench_random(seed);
+    uint64_t random = (uint64_t)(4294967296.0 * bench_random(seed)) << 32 | (uint64_t)(4294967296.0 * bench_random(seed));
+    grid->cell_bits[brick] = kind < 0.3 ? 0 : kind < 0.6 ? UINT64_MAX : random;
+  }
+  grid->cell_bits_tell = true;
 }
 
 static void check_fill(const size_t n[3], hl_storage storage, uint32_t seed) {
@@ -206,8 +247,9 @@ static void check_fill(const size_t n[3], hl_storage storage, uint32_t seed) {
     vec3 direction = bench_random_direction(&seed);
     vec3 normal = vec3_normalise(vec3_add(direction, vec3_scale(bench_random_direction(&seed), 0.8)));
     hl_kernel which = (hl_kernel)(round % 3);
-    double pixel = 0.3 + 0.2 * (round / 3 % 5); /* blocks as wide as a window and wider */
+    double pixel = round % 9 == 8 ? 3 : 0.3 + 0.2 * (round / 3 % 5); /* blocks as wide as a window or as two bricks, and wider */
     bench_look(&bench, direction, normal, pixel, round % 2 ? 12 : 0, which);
+    spread_bits(&bench.grid, &seed);
     for (int gather = 0; gather < 2; gather++) {
       static fill_state state;
       state = (fill_state){.source = bench_source(&bench, which, round % 5),
@@ -598,7 +640,7 @@ int main(int argc, char **argv) {
     return 0;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_bound_cells), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_bound_cells), cmocka_unit_test(test_brick_bits), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
       cmocka_unit_test(test_light),      cmocka_unit_test(test_fields), cmocka_unit_test(test_shade),
       cmocka_unit_test(test_shade_beside_nothing),
   };

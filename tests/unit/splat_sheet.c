@@ -289,10 +289,141 @@ static void test_cells_are_what_their_voxels_say(void **state) {
     assert_int_equal(hl_grid_create(bench.context, bench.pool, &hl_hot_scalar.grid, hl_kernel_get(HL_KERNEL_LINEAR), &bench.scene,
                                     affine3_identity(), 7, &bench.grid, NULL), HL_OK);
     assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL), HL_OK);
-    hl_grid_mark_relevant(&bench.grid, &bench.classifier, bench.pool);
+    hl_grid_mark_relevant(&bench.grid, &hl_hot_scalar.grid, &bench.classifier, bench.pool);
     assert_true(check_cells(&bench) > 0);
     bench_close(&bench);
   }
+}
+
+/* ---- bits of cells ---- */
+
+static double held_voxel(const grid *grid, int32_t x, int32_t y, int32_t z) {
+  int32_t at[3] = {x, y, z};
+  for (int axis = 0; axis < 3; axis++) at[axis] = at[axis] < 0 ? 0 : at[axis] >= grid->dimension[axis] ? grid->dimension[axis] - 1 : at[axis];
+  size_t place = place_of(grid->dimension, at[0], at[1], at[2]);
+  return grid->storage == HL_STORAGE_U8    ? ((const uint8_t *)grid->voxels)[place]
+         : grid->storage == HL_STORAGE_U16 ? ((const uint16_t *)grid->voxels)[place]
+                                           : (double)((const float *)grid->voxels)[place];
+}
+
+/* Weights of four voxels in the Bezier points of the cubic B-spline's span between the second and the third. */
+static const double bezier[4][4] = {{1 / 6.0, 4 / 6.0, 1 / 6.0, 0}, {0, 2 / 3.0, 1 / 3.0, 0}, {0, 1 / 3.0, 2 / 3.0, 0}, {0, 1 / 6.0, 4 / 6.0, 1 / 6.0}};
+
+/* The greatest Bezier point of a span, of four values. */
+static double greatest_of_span(const double value[4]) {
+  double greatest = -HUGE_VAL;
+  for (int point = 0; point < 4; point++) {
+    double sum = 0;
+    for (int tap = 0; tap < 4; tap++) sum += value[tap] * bezier[point][tap];
+    greatest = fmax(greatest, sum);
+  }
+  return greatest;
+}
+
+/* The bound, times sign, of the cell from a point's floor on: along z, then y, then x. */
+static double bound_of_cell(const grid *grid, const int32_t floor[3], double sign) {
+  double across[4];
+  for (int a = 0; a < 4; a++) {
+    double along_y[4];
+    for (int b = 0; b < 4; b++) {
+      double along_z[4];
+      for (int c = 0; c < 4; c++) along_z[c] = sign * held_voxel(grid, floor[0] - 1 + a, floor[1] - 1 + b, floor[2] - 1 + c);
+      along_y[b] = greatest_of_span(along_z);
+    }
+    across[a] = greatest_of_span(along_y);
+  }
+  return greatest_of_span(across);
+}
+
+/* The reconstruction at a point of that cell. */
+static double value_in_cell(const grid *grid, const int32_t floor[3], const double phase[3]) {
+  const kernel *kernel = hl_kernel_get(HL_KERNEL_BSPLINE);
+  double sum = 0;
+  for (int tap = 0; tap < 64; tap++) {
+    const int32_t at[3] = {tap % 4 - 1, tap / 4 % 4 - 1, tap / 16 - 1};
+    double weight = 1;
+    for (int axis = 0; axis < 3; axis++) weight *= hl_kernel_value(kernel, at[axis] - phase[axis]);
+    sum += weight * held_voxel(grid, floor[0] + at[0], floor[1] + at[1], floor[2] + at[2]);
+  }
+  return sum;
+}
+
+typedef struct bit_counts { long set, clear, near; } bit_counts;
+
+/* Of every cell: a bit where its bound shows, and none where it does not, but for what rounding may blur; and no point without
+ * a bit shows. */
+static bit_counts check_bits(const bench *bench, uint32_t *seed) {
+  const grid *grid = &bench->grid;
+  const classifier *classifier = &bench->classifier;
+  double sign = classifier->scale > 0 ? 1 : -1, scale = (double)classifier->scale, blur = 0.2; /* table entries */
+  bit_counts counts = {0};
+  for (int32_t z = -1; z < grid->dimension[2]; z++)
+    for (int32_t y = -1; y < grid->dimension[1]; y++)
+      for (int32_t x = -1; x < grid->dimension[0]; x++) {
+        const int32_t floor[3] = {x, y, z};
+        uint64_t word = grid->cell_bits[place_of(grid->brick_count, (x + 1) / 4, (y + 1) / 4, (z + 1) / 4)];
+        bool bit = word >> ((x + 1) % 4 + 4 * ((y + 1) % 4) + 16 * ((z + 1) % 4)) & 1;
+        double greatest = bound_of_cell(grid, floor, sign) * sign;
+        double above = (greatest - (double)grid->empty) * scale + (double)classifier->offset - (double)classifier->first_visible;
+        if (fabs(above) > blur && bit != (above > 0))
+          fail_msg("the bit of cell (%d, %d, %d) is %d, its bound lies %g above what shows", x, y, z, bit, above);
+        counts.near += fabs(above) <= blur;
+        counts.set += bit;
+        counts.clear += !bit;
+        for (int point = 0; point < 4; point++) {
+          const double phase[3] = {bench_random(seed), bench_random(seed), bench_random(seed)};
+          float density = (float)(value_in_cell(grid, floor, phase) - (double)grid->empty);
+          if (density * classifier->scale + classifier->offset > classifier->first_visible) assert_true(bit);
+        }
+      }
+  return counts;
+}
+
+/* A grid of noise in places, or of a plane or a ball, with a transfer function that shows what lies above or, where stored
+ * values fall as data rise, below a value. */
+static void open_bits(bench *bench, const size_t size[3], int which, bool falling, void *voxels) {
+  static hl_opacity_point ramp[2];
+  hl_storage storage = (hl_storage)(which % 3);
+  static const double greatest[] = {255, 65535, 2};
+  uint32_t seed = 60 + (uint32_t)which;
+  for (size_t v = 0; v < size[0] * size[1] * size[2]; v++) {
+    double x = (double)(v % size[0]), y = (double)(v / size[0] % size[1]), z = (double)(v / size[0] / size[1]);
+    double noise = x < 6 || bench_random(&seed) < 0.3 ? bench_random(&seed) : 0.1, ball = 1 - hypot(hypot(x - 7, y - 6), z - 8) / 14;
+    double value = (which / 3 == 0 ? noise : which / 3 == 1 ? (x + y / 2 + z / 4) / 40 : fmax(ball, 0)) * greatest[storage];
+    if (storage == HL_STORAGE_U8) ((uint8_t *)voxels)[v] = (uint8_t)value;
+    if (storage == HL_STORAGE_U16) ((uint16_t *)voxels)[v] = (uint16_t)value;
+    if (storage == HL_STORAGE_F32) ((float *)voxels)[v] = (float)(value - 0.5);
+  }
+  bench_open(bench, size, storage, voxels, oblique_axes());
+  hl_classifier_release(bench->context, &bench->classifier);
+  double low = bench->scene.volume->minimum, high = bench->scene.volume->maximum;
+  if (falling) bench->grid.value_scale = -1, bench->grid.value_offset = low + high;
+  ramp[0] = (hl_opacity_point){low + 0.55 * (high - low), 0};
+  ramp[1] = (hl_opacity_point){low + 0.6 * (high - low), 0.9};
+  bench->scene.transfer_function.opacity = ramp;
+  bench->scene.transfer_function.opacity_count = 2;
+  assert_int_equal(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, NULL), HL_OK);
+  hl_grid_mark_relevant(&bench->grid, &hl_hot_scalar.grid, &bench->classifier, bench->pool);
+}
+
+static void test_bits_are_what_cells_can_show(void **state) {
+  (void)state;
+  static const size_t sizes[][3] = {{14, 13, 15}, {9, 12, 16}, {19, 5, 8}, {3, 17, 2}};
+  static float voxels[16 * 16 * 16];
+  uint32_t seed = 12;
+  bit_counts all = {0};
+  for (int which = 0; which < 9; which++)
+    for (int round = 0; round < 8; round++) {
+      bench bench;
+      open_bits(&bench, sizes[round / 2], which, round % 2, voxels);
+      assert_true(bench.grid.cell_bits != NULL);
+      if (bench.grid.cell_bits_tell) {
+        bit_counts counts = check_bits(&bench, &seed);
+        all.set += counts.set, all.clear += counts.clear, all.near += counts.near;
+      }
+      bench_close(&bench);
+    }
+  assert_true(all.set > 10000 && all.clear > 10000 && all.near < 1000);
 }
 
 /* No pixel that shows something lies outside the blocks that are said to matter. */
@@ -308,21 +439,29 @@ static void test_relevant_blocks_miss_nothing(void **state) {
   bench.scene.transfer_function.opacity = ramp;
   bench.scene.transfer_function.opacity_count = 2;
   assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL), HL_OK);
-  hl_grid_mark_relevant(&bench.grid, &bench.classifier, bench.pool);
+  hl_grid_mark_relevant(&bench.grid, &hl_hot_scalar.grid, &bench.classifier, bench.pool);
   uint32_t seed = 6;
-  long shown = 0, left_out = 0;
-  static const double pixels[] = {0.05, 0.2, 0.45, 1};
+  long shown = 0, left_out = 0, left_out_by_bits = 0;
+  assert_true(bench.grid.cell_bits_tell);
+  static const double pixels[] = {0.05, 0.2, 0.45, 1, 3}; /* of the last, blocks are too large for a look */
   for (int round = 0; round < 2 * ORIENTATIONS; round++) {
-    look_at_random(&bench, &seed, round, pixels[round % 4], HL_KERNEL_BSPLINE);
+    look_at_random(&bench, &seed, round, pixels[round % 5], HL_KERNEL_BSPLINE);
     int at = round % (bench.sheets.count - 1);
     fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, at);
     slab_run run = bench_run(&bench, 0);
     fill_sheet(&source, hl_hot_scalar.gather_tile, sheet);
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
       int tile_x = tile % SIDE_TILES, tile_y = tile / SIDE_TILES;
-      relevant_blocks found = {0};
+      relevant_blocks found = {0}, by_boxes = {0};
       uint32_t slabs = at > 0 ? 3u << (at - 1) : 1;
-      hl_hot_scalar.relevant_blocks_tile(&run, tile_x, tile_y, slabs, &found);
+      hl_hot_scalar.relevant_blocks_tile(&run, tile_x, tile_y, slabs, ALL_BLOCKS, &found);
+      bench.grid.cell_bits_tell = false;
+      hl_hot_scalar.relevant_blocks_tile(&run, tile_x, tile_y, slabs, ALL_BLOCKS, &by_boxes);
+      bench.grid.cell_bits_tell = true;
+      for (int slab = 0; slab < RUN_SLABS; slab++) {
+        assert_int_equal(found.blocks[slab] & ~by_boxes.blocks[slab], 0);
+        left_out_by_bits += __builtin_popcount(found.blocks[slab] ^ by_boxes.blocks[slab]);
+      }
       uint32_t relevant = at > 0 ? found.blocks[at - 1] & found.blocks[at] : found.blocks[at];
       left_out += 16 - __builtin_popcount(relevant);
       for (int i = 0; i < TILE_PIXELS; i++) {
@@ -334,7 +473,7 @@ static void test_relevant_blocks_miss_nothing(void **state) {
       }
     }
   }
-  assert_true(shown > 1000 && left_out > 1000);
+  assert_true(shown > 1000 && left_out > 1000 && left_out_by_bits > 300);
   bench_close(&bench);
 }
 
@@ -357,7 +496,7 @@ static void test_whole_slabs_are_not_cut(void **state) {
       relevant_blocks found = {0};
       _Alignas(64) float enter[TILE_PIXELS], leave[TILE_PIXELS];
       hl_hot_scalar.coverage_tile(&rays, tile % SIDE_TILES, tile / SIDE_TILES, enter, leave);
-      hl_hot_scalar.relevant_blocks_tile(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1, &found);
+      hl_hot_scalar.relevant_blocks_tile(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1, ALL_BLOCKS, &found);
       for (int slab = 0; slab < RUN_SLABS; slab++)
         for (int i = 0; i < TILE_PIXELS; i++) {
           if (!(found.blocks[slab] >> (i / BLOCK_PIXELS) & 1)) continue;
@@ -426,6 +565,7 @@ int main(void) {
       cmocka_unit_test(test_other_blocks_are_left_alone),
       cmocka_unit_test(test_cells_bound_the_reconstruction),
       cmocka_unit_test(test_cells_are_what_their_voxels_say),
+      cmocka_unit_test(test_bits_are_what_cells_can_show),
       cmocka_unit_test(test_relevant_blocks_miss_nothing),
       cmocka_unit_test(test_whole_slabs_are_not_cut),
       cmocka_unit_test(test_kernels_sum_to_one),
