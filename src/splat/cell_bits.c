@@ -13,7 +13,7 @@ uint64_t hl_cell_bits_bytes(uint64_t bricks) {
 }
 
 bool hl_cell_bits_wanted(const grid *grid, const kernel *kernel) {
-  return kernel->degree == 3 && hl_cell_bits_bytes(hl_grid_bricks(grid)) > 0;
+  return kernel->degree == HL_BSPLINE_DEGREE && hl_cell_bits_bytes(hl_grid_bricks(grid)) > 0;
 }
 
 typedef struct bits_job {

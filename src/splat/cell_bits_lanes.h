@@ -3,18 +3,14 @@
 #ifndef HL_SPLAT_CELL_BITS_LANES_H
 #define HL_SPLAT_CELL_BITS_LANES_H
 
-#include "simd/lanes.h"
 #include "splat/cell_bits.h"
+#include "splat/place_lanes.h"
 
 enum { BITS_ROW = 8, BITS_ROWS = 8 };
 
 /* ---- voxels as numbers ---- */
 
 LANES_INLINE int32_t bits_voxel_at(int32_t i, int32_t count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
-
-LANES_INLINE float bits_number(hl_storage storage, const unsigned char *row, int32_t x) {
-  return storage == HL_STORAGE_U8 ? row[x] : storage == HL_STORAGE_U16 ? ((const uint16_t *)row)[x] : ((const float *)row)[x];
-}
 
 /* Eight voxels of each of two rows. */
 LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const row[2]) {
@@ -37,10 +33,10 @@ LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const 
   return both;
 }
 
-/* The same at the grid's faces, beyond which voxels continue. */
-LANES_INLINE lanes bits_two_held_rows(hl_storage storage, const unsigned char *const row[2], int32_t x, int32_t count) {
+/* The same at the grid's faces. */
+LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, int32_t z) {
   float both[LANES];
-  for (int i = 0; i < LANES; i++) both[i] = bits_number(storage, row[i / BITS_ROW], bits_voxel_at(x + i % BITS_ROW, count));
+  for (int i = 0; i < LANES; i++) both[i] = stored_value(grid, x + i % BITS_ROW, y + i / BITS_ROW, z);
   return lanes_load(both);
 }
 
@@ -88,7 +84,7 @@ LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32
     for (int tap = 0; tap < CELL_BIT_TAPS; tap++) {
       const unsigned char *slice = voxels + (size_t)bits_voxel_at(z + tap, count[2]) * slice_bytes;
       const unsigned char *const rows[2] = {slice + first, slice + second};
-      v[tap] = (within ? bits_two_rows(storage, rows) : bits_two_held_rows(storage, rows, x, count[0])) * sign;
+      v[tap] = (within ? bits_two_rows(storage, rows) : bits_two_held_rows(grid, x, y + 2 * pair, z + tap)) * sign;
     }
     greatest_of_four(v, greatest);
     for (int i = 0; i < HL_BRICK_CELLS; i++) lanes_store(bounds[i][2 * pair], greatest[i]);

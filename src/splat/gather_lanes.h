@@ -55,15 +55,6 @@ static __attribute__((noinline)) lanes sum_f32(const grid *grid, const tap_windo
   return sum_taps(grid, HL_STORAGE_F32, window, weight);
 }
 
-static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
-  int64_t at[3] = {x, y, z};
-  for (int a = 0; a < 3; a++) at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
-  size_t index = ((size_t)at[2] * (size_t)grid->dimension[1] + (size_t)at[1]) * (size_t)grid->dimension[0] + (size_t)at[0];
-  if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)grid->voxels)[index];
-  if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)grid->voxels)[index];
-  return ((const float *)grid->voxels)[index];
-}
-
 /* The same sum in grids less than four voxels thick somewhere. One lane at a time, same order. */
 static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const lanes_int cell[3], uint32_t active, const lanes weight[3][4]) {
   lanes sums = lanes_set(0);

@@ -16,6 +16,16 @@ LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
 LANES_INLINE lanes bspline_inner(lanes distance) { return distance * distance * (distance * 0.5f - 1.0f) + 2.0f / 3; }
 LANES_INLINE lanes bspline_outer(lanes rest) { return rest * rest * (rest * (1.0f / 6)); }
 
+/* A stored value; beyond the grid's faces they continue. */
+static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
+  int64_t at[3] = {x, y, z};
+  for (int a = 0; a < 3; a++) at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
+  size_t index = ((size_t)at[2] * (size_t)grid->dimension[1] + (size_t)at[1]) * (size_t)grid->dimension[0] + (size_t)at[0];
+  if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)grid->voxels)[index];
+  if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)grid->voxels)[index];
+  return ((const float *)grid->voxels)[index];
+}
+
 /* The point of a block's pixels in index space, clamped to the grid, and which of them matter. */
 typedef struct block_place {
   lanes3 point;     /* index space, clamped to [-1, n) */
