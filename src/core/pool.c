@@ -2,9 +2,10 @@
  * next one before they sleep; with more threads than processors they sleep at once.
  *
  * Each thread has a share of a job's indices, one after another: in job after job of the same kind it meets the same part
- * of the memory. A share is one 64-bit word on its own line of the cache: generation, end, next index. Its owner claims the first
- * index by compare-and-swap; who has none left takes the last ones of others. So nobody waits for a worker that the system
- * has not woken: on a busy machine the caller does the work alone. A job's description stays in its slot (by the
+ * of the memory. A share is one 64-bit word on its own line of the cache: generation, end, next index. Its owner claims an index
+ * from one end by compare-and-swap; who has none left takes those of others from the other end. Every second thread begins with
+ * its last index: two that share a job meet in its middle, and what one takes of the other's is what it had the job before. So
+ * nobody waits for a worker that the system has not woken: on a busy machine the caller does the work alone. A job's description stays in its slot (by the
  * generation's parity) until all that claimed of it have said so, since a later job of the same parity cannot start
  * before that. */
 #define _GNU_SOURCE
@@ -26,6 +27,9 @@ enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 
 /* Between two questions whether to stop, while a job runs: far less than a person notices, far more than asking takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
+/* Calls that take less than this together need no look at the clock in between; so many of them at most. */
+static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
+enum { MOST_UNREAD = 15 };
 
 typedef struct worker {
   hl_pool *pool;
@@ -60,10 +64,12 @@ struct hl_pool {
   atomic_uint_least64_t generation; /* of the last job, once its shares are there */
   atomic_bool stop;
   atomic_bool cancelled;        /* indices are passed over */
-  int64_t asked;                /* when the calling thread last asked, nanoseconds */
   atomic_int sleepers;
   pthread_mutex_t mutex;
   pthread_cond_t wake;       /* generation or stop changed */
+  /* the calling thread's own */
+  _Alignas(64) int64_t asked, read; /* when it last asked, and when it read the clock, nanoseconds */
+  int readings, unread;             /* calls that pass without reading it: in a row, and still to come */
 };
 
 static inline void relax(void) {
@@ -86,9 +92,23 @@ bool hl_pool_cancelled(hl_pool *pool) {
   return true;
 }
 
+/* The clock is read seldom where calls follow each other quickly. */
+static bool is_time_to_ask(hl_pool *pool) {
+  if (pool->unread > 0) {
+    pool->unread--;
+    return false;
+  }
+  int64_t now = now_nanoseconds();
+  bool quick = now - pool->read < NANOSECONDS_BETWEEN_READINGS;
+  pool->read = now;
+  pool->readings = quick ? (pool->readings < MOST_UNREAD ? 2 * pool->readings + 1 : MOST_UNREAD) : 0;
+  pool->unread = pool->readings;
+  return now - pool->asked >= NANOSECONDS_BETWEEN_QUESTIONS;
+}
+
 bool hl_pool_stops(hl_pool *pool, int worker) {
   bool cancelled = atomic_load_explicit(&pool->cancelled, memory_order_relaxed);
-  if (cancelled || worker != 0 || now_nanoseconds() - pool->asked < NANOSECONDS_BETWEEN_QUESTIONS) return cancelled;
+  if (cancelled || worker != 0 || !is_time_to_ask(pool)) return cancelled;
   return hl_pool_cancelled(pool);
 }
 
@@ -102,13 +122,13 @@ typedef struct claim {
   uint64_t generation, index;
 } claim;
 
-/* The first index of one's own share, or the last one of another's. */
-static bool claim_of_share(share *share, bool own, claim *claimed) {
+/* The first or the last index of a share. */
+static bool claim_of_share(share *share, bool first, claim *claimed) {
   uint64_t range = atomic_load(&share->range);
   while (next_of(range) < end_of(range)) {
-    uint64_t left = own ? range + 1 : range - ONE_OF_END;
+    uint64_t left = first ? range + 1 : range - ONE_OF_END;
     if (!atomic_compare_exchange_weak(&share->range, &range, left)) continue;
-    *claimed = (claim){generation_of(range), own ? next_of(range) : end_of(left)};
+    *claimed = (claim){generation_of(range), first ? next_of(range) : end_of(left)};
     return true;
   }
   return false;
@@ -117,7 +137,7 @@ static bool claim_of_share(share *share, bool own, claim *claimed) {
 static bool claim_index(hl_pool *pool, int number, claim *claimed) {
   for (int i = 0; i < pool->share_count; i++) {
     int whose = number + i < pool->share_count ? number + i : number + i - pool->share_count;
-    if (claim_of_share(&pool->shares[whose], i == 0, claimed)) return true;
+    if (claim_of_share(&pool->shares[whose], (i == 0) == (whose % 2 == 0), claimed)) return true;
   }
   return false;
 }
@@ -193,6 +213,7 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
+  pool->readings = pool->unread = 0; /* how long these take is not known */
   if (pool->threads == 1 || count <= 1) {
     for (size_t index = 0; index < count && !hl_pool_stops(pool, 0); index++) function(data, index, 0);
     return;

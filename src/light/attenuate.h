@@ -8,9 +8,9 @@
 
 enum { HL_CHANNELS = 3 };
 
-/* One volume's part in a tile. */
+/* One volume's part in a tile. On lines of the cache of its own: threads write theirs side by side. */
 typedef struct attenuate_volume {
-  const classifier *classifier;
+  _Alignas(64) const classifier *classifier;
   const float *density;          /* [256], block-major; on this sheet */
   const float *before;           /* [256], block-major; on the sheet before */
   const float *enter, *leave;    /* [256], block-major; null: the box does not cut anything visible */

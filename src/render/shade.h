@@ -24,9 +24,9 @@ typedef struct shade_volume {
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
 } shade_volume;
 
-/* One volume's part in a tile. */
+/* One volume's part in a tile. On lines of the cache of its own: threads write theirs side by side. */
 typedef struct shade_patch {
-  const shade_volume *volume;
+  _Alignas(64) const shade_volume *volume;
   const float *before, *current;         /* [256], block-major; on sheets k-1 and k */
   uint32_t blocks;                       /* those with density on either */
   const float *enter, *leave;            /* [256], block-major; null: the box does not cut anything visible */

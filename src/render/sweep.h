@@ -74,8 +74,9 @@ typedef struct sweep_light {
   shadow_lookup lookup;           /* without: of buffer */
 } sweep_light;
 
+/* One thread's, on lines of the cache of its own. */
 typedef struct sweep_counts {
-  uint64_t samples, filled_image, filled_light, skipped_image, skipped_light; /* pixels shaded; tiles */
+  _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image, skipped_light; /* pixels shaded; tiles */
   uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
   double seconds_fill, seconds_shade; /* of the image stage */
   double seconds_light, seconds_composite; /* of the light stage; the composite is part of it */

@@ -2,7 +2,7 @@
 #include "render/clock.h"
 #include "render/sweep.h"
 
-enum { TILES_A_TASK = 4 };
+enum { TILES_A_TASK = 2 };
 
 /* The tiles that a sheet or the one before may touch. */
 static int list_tiles(const occupancy *occupancy, int sheet, uint32_t *list) {
