@@ -130,7 +130,8 @@ void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_
 
 hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spare, view_sheets *sheets, hl_error *error) {
   hl_status status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, view,
-                                        &sweep->geometry->sheets, spare, &sheets->occupancy, error);
+                                        &sweep->geometry->sheets, spare, sweep->hot->brick_ranges, &sheets->occupancy,
+                                        error);
   if (status == HL_OK) status = sort_voxels(sweep, view, sheets, error);
   if (status == HL_OK) status = set_up_entries(sweep, view, sheets, error);
   if (status == HL_OK) status = keep_patches(sweep, sheets, error);

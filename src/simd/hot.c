@@ -8,6 +8,7 @@
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
+#include "splat/brick_ranges_lanes.h"
 #include "splat/cell_bits_lanes.h"
 #include "splat/cell_bounds_lanes.h"
 #include "splat/relevant_lanes.h"
@@ -21,6 +22,7 @@
 
 const hot_functions HL_HOT_TABLE = {
     .grid = {{bound_rows_u8, bound_rows_u16, bound_rows_f32}, bound_along, bound_across, brick_bits, HL_COLUMN_SLICE},
+    .brick_ranges = brick_ranges_in_view,
     .relevant_blocks_tile = relevant_blocks_tile,
     .splat_tile = splat_tile,
     .gather_tile = gather_tile,

@@ -10,12 +10,14 @@
 #include "light/cascade_field.h"
 #include "light/sublight_field.h"
 #include "render/shade.h"
+#include "splat/brick_ranges.h"
 #include "splat/bricks.h"
 #include "splat/coverage.h"
 #include "splat/fill.h"
 
 typedef struct hot_functions {
   grid_functions grid;
+  brick_ranges_function *brick_ranges;
   relevant_blocks_function *relevant_blocks_tile;
   fill_tile_function *splat_tile, *gather_tile;
   coverage_tile_function *coverage_tile;

@@ -1,6 +1,8 @@
 /* splat/occupancy.c - projects relevant bricks into tiles and sheets. */
 #include "splat/occupancy.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 
 void hl_footprint_map(const view *view, vec3 normal, affine3 index_to_frame, footprint_map *map) {
@@ -65,8 +67,8 @@ typedef struct occupancy_job {
   occupancy *occupancy;
   const grid *grid;
   const tile_rectangle *rectangle;
-  footprint_map map;
-  const sheet_stack *sheets;
+  brick_view view;
+  brick_ranges_function *ranges;
 } occupancy_job;
 
 enum { BRICKS_A_TASK = 1024 };
@@ -118,35 +120,73 @@ static void number_patches(occupancy *o, int grid_count) {
   o->first_patch[(size_t)o->tiles_x * (size_t)o->tiles_y] = patch;
 }
 
+/* Rounding errs by a few parts in 2^24 of the greatest sum: that of a row's magnitudes over the grid. */
+static float set_row(const double row[4], const double middle[3], const double half[3], double scale, float rounded[4]) {
+  double offset = row[3], greatest = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    rounded[axis] = (float)(row[axis] * scale);
+    offset += row[axis] * middle[axis];
+    greatest += fabs(row[axis]) * half[axis];
+  }
+  rounded[3] = (float)(offset * scale);
+  return (float)((greatest + fabs(offset)) * fabs(scale) * 1e-6);
+}
+
+static void set_view(const footprint_map *map, const grid *grid, const sheet_stack *sheets, const occupancy *o,
+                     const tile_rectangle *r, brick_view *view) {
+  double middle[3], half[3], height[4];
+  for (int axis = 0; axis < 3; axis++) {
+    middle[axis] = 0.5 * grid->dimension[axis];
+    half[axis] = 0.5 * grid->dimension[axis] + GRID_MARGIN + HL_BRICK_CELLS;
+    view->middle[axis] = (float)middle[axis];
+    height[axis] = map->height[axis];
+  }
+  height[3] = map->height[3] - sheets->first;
+  view->slack[0] = set_row(map->view[0], middle, half, 1, view->view[0]);
+  for (int axis = 0; axis < 2; axis++)
+    view->slack[1 + axis] = set_row(map->view[1 + axis], middle, half, 1.0 / TILE, view->view[1 + axis]);
+  view->slack[3] = set_row(height, middle, half, 1 / sheets->spacing, view->height);
+  view->spare = (float)(o->spare / TILE);
+  const int32_t first[RANGE_AXES] = {r->x, r->y, 0}, last[RANGE_AXES] = {r->x + r->width - 1, r->y + r->height - 1, o->sheets - 1};
+  memcpy(view->first, first, sizeof first);
+  memcpy(view->last, last, sizeof last);
+}
+
+/* Most bricks find their bits set by others: those are only read. */
 static void mark_bits(uint64_t *words, int first, int last) {
   for (int word = first / 64; word <= last / 64; word++) {
     int low = word == first / 64 ? first % 64 : 0, high = word == last / 64 ? last % 64 : 63;
     uint64_t mask = (high == 63 ? ~(uint64_t)0 : ((uint64_t)1 << (high + 1)) - 1) & (~(uint64_t)0 << low);
-    __atomic_fetch_or(&words[word], mask, __ATOMIC_RELAXED);
+    if ((__atomic_load_n(&words[word], __ATOMIC_RELAXED) & mask) != mask) __atomic_fetch_or(&words[word], mask, __ATOMIC_RELAXED);
   }
 }
 
-static void mark_brick(const occupancy_job *job, uint32_t brick) {
-  occupancy *o = job->occupancy;
-  int32_t b[3];
-  double centre[3], half[3];
-  footprint_bounds bounds;
-  hl_grid_brick_place(job->grid, brick, b);
-  hl_brick_bounds(job->grid, b, GRID_MARGIN, centre, half);
-  if (!hl_footprint_bounds(&job->map, centre, half, &bounds)) return;
-  double low = ceil((bounds.low_height - job->sheets->first) / job->sheets->spacing - 1e-6);
-  double high = floor((bounds.high_height - job->sheets->first) / job->sheets->spacing + 1e-6);
-  int first = low < 0 ? 0 : low >= o->sheets ? o->sheets : (int)low;
-  int last = high < 0 ? -1 : high >= o->sheets ? o->sheets - 1 : (int)high;
+static void mark_brick(const occupancy_job *job, const brick_ranges *ranges, int brick) {
+  const occupancy *o = job->occupancy;
+  const tile_rectangle *r = job->rectangle;
+  int first = ranges->first[RANGE_SHEETS][brick], last = ranges->last[RANGE_SHEETS][brick];
   if (first > last) return;
-  tile_rectangle tiles = tiles_of(&bounds, o);
-  for (int y = tiles.y; y < tiles.y + tiles.height; y++)
-    for (int x = tiles.x; x < tiles.x + tiles.width; x++) {
-      const tile_rectangle *r = job->rectangle;
-      if (!in_rectangle(r, x, y)) continue; /* by rounding only */
-      size_t patch = o->patch_of[r->first + (size_t)(y - r->y) * (size_t)r->width + (size_t)(x - r->x)];
-      mark_bits(o->by_patch + patch * (size_t)o->words, first, last);
+  for (int y = ranges->first[RANGE_Y][brick]; y <= ranges->last[RANGE_Y][brick]; y++) {
+    const uint32_t *patch = o->patch_of + r->first + (size_t)(y - r->y) * (size_t)r->width;
+    for (int x = ranges->first[RANGE_X][brick]; x <= ranges->last[RANGE_X][brick]; x++)
+      mark_bits(o->by_patch + patch[x - r->x] * (size_t)o->words, first, last);
+  }
+}
+
+/* Numbers rise: most often the next one is in the same row of bricks. */
+static void places_of_bricks(const grid *grid, const uint32_t *bricks, int count, int32_t place[3][BRICKS_AT_ONCE]) {
+  uint32_t row_start = 0, row_end = 0;
+  int32_t b[3] = {0};
+  for (int i = 0; i < BRICKS_AT_ONCE; i++) {
+    uint32_t brick = bricks[i < count ? i : count - 1];
+    if (brick < row_start || brick >= row_end) {
+      hl_grid_brick_place(grid, brick, b);
+      row_start = brick - (uint32_t)b[0];
+      row_end = row_start + (uint32_t)grid->brick_count[0];
     }
+    b[0] = (int32_t)(brick - row_start);
+    for (int axis = 0; axis < 3; axis++) place[axis][i] = b[axis];
+  }
 }
 
 static void mark_bricks(void *data, size_t index, int worker) {
@@ -154,7 +194,14 @@ static void mark_bricks(void *data, size_t index, int worker) {
   const occupancy_job *job = data;
   size_t end = (index + 1) * BRICKS_A_TASK;
   if (end > job->grid->relevant_count) end = job->grid->relevant_count;
-  for (size_t i = index * BRICKS_A_TASK; i < end; i++) mark_brick(job, job->grid->relevant_list[i]);
+  for (size_t i = index * BRICKS_A_TASK; i < end; i += BRICKS_AT_ONCE) {
+    int count = end - i < BRICKS_AT_ONCE ? (int)(end - i) : BRICKS_AT_ONCE;
+    int32_t place[3][BRICKS_AT_ONCE];
+    brick_ranges ranges;
+    places_of_bricks(job->grid, job->grid->relevant_list + i, count, place);
+    job->ranges(&job->view, job->grid, (const int32_t(*)[BRICKS_AT_ONCE])place, &ranges);
+    for (int brick = 0; brick < count; brick++) mark_brick(job, &ranges, brick);
+  }
 }
 
 /* Transposes 64 tiles x 64 sheets at a time; index: a word column of by_sheet. */
@@ -211,7 +258,8 @@ uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view,
 }
 
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
-                             const sheet_stack *sheets, double spare, occupancy *occupancy, hl_error *error) {
+                             const sheet_stack *sheets, double spare, brick_ranges_function *ranges, occupancy *occupancy,
+                             hl_error *error) {
   set_size(view, sheets, spare, occupancy);
   size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
   occupancy->rectangle = hl_allocate(context, (size_t)grid_count, sizeof(tile_rectangle));
@@ -228,8 +276,10 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *gri
   if (status != HL_OK) return status;
   number_patches(occupancy, grid_count);
   for (int g = 0; g < grid_count; g++) {
-    occupancy_job job = {occupancy, &grids[g], &occupancy->rectangle[g], {{{0}}, {0}}, sheets};
-    hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &job.map);
+    occupancy_job job = {.occupancy = occupancy, .grid = &grids[g], .rectangle = &occupancy->rectangle[g], .ranges = ranges};
+    footprint_map map;
+    hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &map);
+    set_view(&map, &grids[g], sheets, occupancy, job.rectangle, &job.view);
     hl_pool_run(pool, (grids[g].relevant_count + BRICKS_A_TASK - 1) / BRICKS_A_TASK, mark_bricks, &job);
   }
   hl_pool_run(pool, (size_t)occupancy->tile_words, transpose_tiles, occupancy);

@@ -5,6 +5,7 @@
 #ifndef HL_SPLAT_OCCUPANCY_H
 #define HL_SPLAT_OCCUPANCY_H
 
+#include "splat/brick_ranges.h"
 #include "splat/fill.h"
 
 /* The sheets of a sweep: mid-plane of sheet k at height first + k * spacing along the unit normal. */
@@ -40,7 +41,8 @@ typedef struct occupancy {
 /* Builds an empty occupancy for a view of width x height pixels. spare: pixels around each brick that it touches too. What
  * fails half-way is released as usual. */
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
-                             const sheet_stack *sheets, double spare, occupancy *occupancy, hl_error *error);
+                             const sheet_stack *sheets, double spare, brick_ranges_function *ranges, occupancy *occupancy,
+                             hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
 /* How many patches it would have, and the bytes that it would hold. */

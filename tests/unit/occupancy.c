@@ -1,0 +1,95 @@
+/* unit/occupancy.c - tiles and sheets are marked where bricks lie: by bounds in double precision, and by no more than rounding. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "sheet_bench.h"
+
+enum { SIDE = 23, ROUNDS = 120, SHEETS = 5, TILES = 3 };
+
+typedef struct marks { bool at[TILES][TILES][SHEETS]; } marks;
+
+/* What a brick touches; more: by so many pixels and sheets beyond. */
+static void mark(const bench *bench, const footprint_map *map, uint32_t brick, double pixels, double sheets, marks *marks) {
+  int32_t place[3];
+  double centre[3], half[3];
+  footprint_bounds bounds;
+  hl_grid_brick_place(&bench->grid, brick, place);
+  hl_brick_bounds(&bench->grid, place, GRID_MARGIN, centre, half);
+  if (!hl_footprint_bounds(map, centre, half, &bounds)) return;
+  for (int y = 0; y < TILES; y++)
+    for (int x = 0; x < TILES; x++)
+      for (int k = 0; k < SHEETS; k++) {
+        double height = hl_sheet_height(&bench->sheets, k), reach = sheets * bench->sheets.spacing;
+        if (bounds.low[0] - pixels < (x + 1) * TILE && bounds.high[0] + pixels >= x * TILE && bounds.low[1] - pixels < (y + 1) * TILE &&
+            bounds.high[1] + pixels >= y * TILE && bounds.low_height - reach <= height && bounds.high_height + reach >= height)
+          marks->at[y][x][k] = true;
+      }
+}
+
+static void check(const bench *bench, const occupancy *o, long counts[2]) {
+  footprint_map map;
+  marks least = {0}, greatest = {0};
+  hl_footprint_map(&bench->view, bench->sheets.normal, bench->grid.index_to_frame, &map);
+  for (uint32_t i = 0; i < bench->grid.relevant_count; i++) {
+    mark(bench, &map, bench->grid.relevant_list[i], o->spare, 0, &least);
+    mark(bench, &map, bench->grid.relevant_list[i], o->spare + 0.01, 1e-3, &greatest);
+  }
+  for (size_t tile = 0; tile < TILES * TILES; tile++)
+    for (int k = 0; k < SHEETS; k++) {
+      size_t patch = o->first_patch[tile];
+      bool marked = patch < o->first_patch[tile + 1] && hl_occupancy_has(o, patch, k);
+      bool in_sheet = o->by_sheet[(size_t)k * (size_t)o->tile_words] >> tile & 1;
+      assert_int_equal(marked, in_sheet);
+      if (least.at[tile / TILES][tile % TILES][k]) assert_true(marked);
+      if (marked) assert_true(greatest.at[tile / TILES][tile % TILES][k]);
+      counts[marked]++;
+    }
+}
+
+/* A few bright voxels: few bricks matter. */
+static void open_grid(bench *bench, uint8_t *voxels) {
+  memset(voxels, 0, SIDE * SIDE * SIDE);
+  uint32_t seed = 4;
+  for (int i = 0; i < 9; i++) voxels[(size_t)(bench_random(&seed) * SIDE * SIDE * SIDE)] = 255;
+  bench_open(bench, (size_t[3]){SIDE, SIDE, SIDE}, HL_STORAGE_U8, voxels,
+             mat3_from_columns((vec3){1, 0.1, 0}, (vec3){-0.2, 1.3, 0.1}, (vec3){0.1, 0.15, 0.8}));
+  static const hl_opacity_point ramp[] = {{20, 0}, {40, 0.9}};
+  hl_classifier_release(bench->context, &bench->classifier);
+  bench->scene.transfer_function.opacity = ramp;
+  bench->scene.transfer_function.opacity_count = 2;
+  assert_int_equal(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, NULL), HL_OK);
+  hl_grid_mark_relevant(&bench->grid, &hl_hot_scalar.grid, &bench->classifier, bench->pool);
+}
+
+static void test_bricks_mark_what_they_touch(void **state) {
+  (void)state;
+  static uint8_t voxels[SIDE * SIDE * SIDE];
+  bench bench;
+  open_grid(&bench, voxels);
+  assert_true(bench.grid.relevant_count > 0 && bench.grid.relevant_count < hl_grid_bricks(&bench.grid) / 2);
+  uint32_t seed = 9;
+  long counts[2] = {0};
+  for (int round = 0; round < ROUNDS; round++) {
+    /* in parallel, from outside, from within, and from afar */
+    static const double distances[] = {0, 40, 5, 1e5}, pixels[] = {0.5, 0.1, 2};
+    vec3 direction = bench_random_direction(&seed);
+    vec3 normal = vec3_normalise(vec3_add(direction, vec3_scale(bench_random_direction(&seed), 0.8)));
+    bench_look(&bench, direction, normal, pixels[round % 3], distances[round % 4], HL_KERNEL_BSPLINE);
+    occupancy o = {0};
+    assert_int_equal(hl_occupancy_build(bench.context, bench.pool, &bench.grid, 1, &bench.view, &bench.sheets, round % 2 ? 1.0 : 0.3,
+                                        hl_hot_scalar.brick_ranges, &o, NULL), HL_OK);
+    check(&bench, &o, counts);
+    hl_occupancy_release(bench.context, &o);
+  }
+  assert_true(counts[0] > 1000 && counts[1] > 1000);
+  bench_close(&bench);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_bricks_mark_what_they_touch)};
+  return cmocka_run_group_tests_name("occupancy", tests, NULL, NULL);
+}
