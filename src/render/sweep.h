@@ -34,14 +34,15 @@ typedef struct kept_patch {
   uint16_t need, blocks;          /* blocks that were filled; those of them with density */
 } kept_patch;
 
-/* Where some slabs in a row may hold something of a patch. */
-typedef struct relevant_patch {
+/* What some slabs in a row show of a patch. */
+typedef struct patch_run {
   int32_t first;                  /* the sheet before them; -1: none */
   int32_t end;                    /* of the bundle among them that was filled last */
-  uint16_t need;                  /* in these blocks */
   uint16_t asked;                 /* the blocks that were looked at */
-  relevant_blocks found;          /* in those */
-} relevant_patch;
+  uint16_t filled;                /* the blocks that the bundle was filled for */
+  relevant_blocks near;           /* where something may be, of those that were looked at */
+  uint16_t shows[RUN_SLABS];      /* where something may be seen, of those that were filled for; of the bundle's slabs */
+} patch_run;
 
 /* What one view, the eye's or a light's, sees of the last sheets. */
 typedef struct view_sheets {
@@ -51,7 +52,7 @@ typedef struct view_sheets {
   int ring;                       /* bundle + 1: sheets that are kept; sheet k at k % ring */
   fill_source *sources;           /* owned; [ring][grids] */
   slab_run *runs;                 /* owned; [grids]; the slabs that the last one is among */
-  relevant_patch *relevant;       /* owned; [patches] */
+  patch_run *patch_runs;          /* owned; [patches] */
   float *entries;                 /* lent; [entry_count][2][256]; where rays enter a box and leave it; room for all patches;
                                      null where no box cuts anything visible */
   uint32_t *entry_of;             /* owned; [patches]; NO_ENTRY where none was asked for */
@@ -165,18 +166,18 @@ void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets);
 uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view, double spare);
 /* Before patches of a sheet are asked for. */
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets);
-/* A patch's densities on the sheet and the one before, [256] block-major, in the needed blocks that hold any: kept from
- * a slab before, or filled now. */
+/* Of the needed blocks, those in which a patch's slab may hold anything, as far as is known. */
+uint32_t hl_patch_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need);
+/* Of those, one at least, the patch's densities on the sheet and the one before, [256] block-major, in the blocks in which any
+ * may show: kept from a slab before, or filled now. */
 typedef struct patch_slab {
   const float *before, *current; /* valid in blocks */
   const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible, unset where whole */
   int whole;                     /* it cuts nothing in this slab, and no light on its way through it to the eye's pixels */
   uint32_t blocks;
 } patch_slab;
-/* Of the needed blocks, those in which a patch's slab may hold anything. */
-uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need);
-/* Of those, one at least. need: what the bundle's next slabs may ask for. pixels: is raised by the pixels filled. */
+/* need: what the bundle's next slabs may ask for. pixels: is raised by the pixels filled. */
 patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
-                         uint32_t relevant, uint64_t *pixels);
+                         uint64_t *pixels);
 
 #endif

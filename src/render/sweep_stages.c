@@ -36,10 +36,10 @@ static int fill_image_tile(sweep *sweep, size_t tile, int worker, shade_patch *p
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
     uint32_t g = sheets->occupancy.patch_grid[p];
-    uint32_t relevant = hl_patch_relevant(sweep, sheets, tile, p, sweep->sheet, need);
-    if (relevant == 0) continue;
-    fetch_opacities(sweep->pixels + tile * 4 * TILE_PIXELS, relevant);
-    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, relevant, &counts->pixels_image);
+    uint32_t near = hl_patch_near(sweep, sheets, tile, p, sweep->sheet, need);
+    if (near == 0) continue;
+    fetch_opacities(sweep->pixels + tile * 4 * TILE_PIXELS, near);
+    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, &counts->pixels_image);
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
     patches[count++] = (shade_patch){&sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter,
@@ -106,9 +106,8 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
     uint32_t g = sheets->occupancy.patch_grid[p];
     const hl_scene_volume *scene = sweep->volumes[g].scene;
     if (!scene->casts_shadow) continue;
-    uint32_t relevant = hl_patch_relevant(sweep, sheets, tile, p, sweep->sheet, need);
-    if (relevant == 0) continue;
-    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, relevant, pixels);
+    if (hl_patch_near(sweep, sheets, tile, p, sweep->sheet, need) == 0) continue;
+    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, pixels);
     if (slab.blocks == 0) continue;
     volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = slab.blocks,
                                         .before = slab.before, .density = slab.current,

@@ -66,11 +66,11 @@ static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error 
   sheets->kept = hl_allocate(sweep->context, count, sizeof *sheets->kept);
   sheets->sources = hl_allocate(sweep->context, (size_t)sheets->ring * (size_t)sweep->volume_count, sizeof *sheets->sources);
   sheets->runs = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->runs);
-  sheets->relevant = hl_allocate(sweep->context, sheets->occupancy.patch_count, sizeof *sheets->relevant);
-  if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL || sheets->runs == NULL || sheets->relevant == NULL)
+  sheets->patch_runs = hl_allocate(sweep->context, sheets->occupancy.patch_count, sizeof *sheets->patch_runs);
+  if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL || sheets->runs == NULL || sheets->patch_runs == NULL)
     return hl_fail_memory(error, count * TILE_PIXELS * sizeof(float), "the last sheets");
   for (size_t i = 0; i < count; i++) sheets->kept[i] = (kept_patch){.sheet = -1};
-  for (size_t i = 0; i < sheets->occupancy.patch_count; i++) sheets->relevant[i] = (relevant_patch){.first = -1};
+  for (size_t i = 0; i < sheets->occupancy.patch_count; i++) sheets->patch_runs[i] = (patch_run){.first = -1};
   return HL_OK;
 }
 
@@ -80,7 +80,7 @@ uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view, double spare
   for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
   uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, spare, &patches);
   size_t ring = (size_t)bundle_of_patches(patches) + 1;
-  uint64_t a_patch = ring * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(relevant_patch) + (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
+  uint64_t a_patch = ring * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(patch_run) + (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
   return bytes + patches * a_patch;
 }
 
@@ -145,7 +145,7 @@ void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
     hl_voxel_lists_release(sweep->context, &sheets->lists[g]);
   hl_reserve_return(sweep->reserve, sheets->entries);
   hl_reserve_return(sweep->reserve, sheets->density);
-  void *owned[] = {sheets->lists, sheets->sources, sheets->runs, sheets->relevant, sheets->entry_of, sheets->box_rays, sheets->kept};
+  void *owned[] = {sheets->lists, sheets->sources, sheets->runs, sheets->patch_runs, sheets->entry_of, sheets->box_rays, sheets->kept};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
   hl_occupancy_release(sweep->context, &sheets->occupancy);
 }
@@ -161,74 +161,106 @@ static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets 
   return &sheets->sources[sheet % sheets->ring * sweep->volume_count + (int)sheets->occupancy.patch_grid[patch]];
 }
 
-/* Where the slabs of a sheet's run may hold something of a patch in the needed blocks, found for all of them at once. Soft
- * light may ask for more blocks later. */
-static const relevant_blocks *relevant_in_run(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet,
-                                              uint32_t need) {
+/* Where the slabs of a run may hold something of a patch in the needed blocks, found for all of them at once. Soft light may
+ * ask for more blocks later. */
+static void look_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, uint32_t need, patch_run *run) {
   const occupancy *o = &sheets->occupancy;
-  relevant_patch *relevant = &sheets->relevant[patch];
-  int first = first_of_run(sheet);
-  if (relevant->first != first) *relevant = (relevant_patch){.first = first};
-  uint32_t more = need & ~(uint32_t)relevant->asked, slabs = 0;
-  if (more == 0) return &relevant->found;
-  for (int i = 0; i < RUN_SLABS && first + i + 1 < o->sheets; i++)
-    slabs |= (uint32_t)(hl_occupancy_has(o, patch, first + i) | hl_occupancy_has(o, patch, first + i + 1)) << i;
-  relevant_blocks found = {0};
+  uint32_t more = need & ~(uint32_t)run->asked, slabs = 0;
+  if (more == 0) return;
+  for (int i = 0; i < RUN_SLABS && run->first + i + 1 < o->sheets; i++)
+    slabs |= (uint32_t)(hl_occupancy_has(o, patch, run->first + i) | hl_occupancy_has(o, patch, run->first + i + 1)) << i;
+  relevant_blocks near = {0};
   sweep->hot->relevant_blocks_tile(&sheets->runs[o->patch_grid[patch]], (int)(tile % (size_t)o->tiles_x),
-                                   (int)(tile / (size_t)o->tiles_x), slabs, more, &found);
-  for (int i = 0; i < RUN_SLABS; i++) relevant->found.blocks[i] |= found.blocks[i];
-  relevant->found.whole = found.whole;
-  relevant->asked = (uint16_t)(relevant->asked | more);
-  return &relevant->found;
+                                   (int)(tile / (size_t)o->tiles_x), slabs, more, &near);
+  for (int i = 0; i < RUN_SLABS; i++) run->near.blocks[i] |= near.blocks[i];
+  run->near.whole = near.whole;
+  run->asked = (uint16_t)(run->asked | more);
 }
 
 static float *density_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
   return sheets->density + (patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)) * TILE_PIXELS;
 }
 
-/* Fills what is missing of the wanted blocks; returns the pixels filled. */
-static uint64_t fill_patch(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t wanted) {
-  const occupancy *o = &sheets->occupancy;
-  kept_patch *kept = patch_on_sheet(sheets, patch, sheet);
-  uint32_t missing = wanted & ~(uint32_t)kept->need;
-  if (missing == 0) return 0;
-  const fill_source *source = source_on_sheet(sweep, sheets, patch, sheet);
-  fill_tile_function *fill = sweep->splat ? sweep->hot->splat_tile : sweep->hot->gather_tile;
-  uint32_t filled = fill(source, (int)(tile % (size_t)o->tiles_x), (int)(tile / (size_t)o->tiles_x), missing,
-                         density_on_sheet(sheets, patch, sheet));
-  kept->need = (uint16_t)(kept->need | missing);
-  kept->blocks = (uint16_t)(kept->blocks | filled);
-  return (uint64_t)__builtin_popcount(missing) * BLOCK_PIXELS;
+/* A bundle's slabs of a patch while it is filled. Its sheets are numbered from the one before it. */
+typedef struct patch_bundle {
+  const sweep *sweep;
+  const view_sheets *sheets;
+  size_t tile, patch;
+  int first, slabs;            /* the sheet before it; how many it has */
+  uint32_t near[RUN_SLABS];    /* where it may hold something, slab by slab */
+  uint64_t pixels;             /* filled */
+} patch_bundle;
+
+/* The blocks of a sheet that show something, of those that are filled. */
+static uint32_t showing_on(const patch_bundle *b, int i) {
+  return i < 0 || i > b->slabs ? 0 : patch_on_sheet(b->sheets, b->patch, b->first + i)->blocks;
 }
 
-/* Fills a slab's sheets in its relevant blocks, and those that follow in the bundle in the blocks that may be asked for. */
-static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
-  relevant_patch *relevant = &sheets->relevant[patch];
-  int end = end_of_bundle(sheets, sheet), first = first_of_run(sheet);
-  uint32_t before = 0;
-  uint64_t pixels = 0;
-  if (relevant->end == end && (need & ~(uint32_t)relevant->need) == 0) return 0;
-  for (int at = sheet - 1; at < end; at++) {
-    uint32_t after = at + 1 < end ? need & relevant->found.blocks[at - first] : 0; /* of the slab that begins with this sheet */
-    pixels += fill_patch(sweep, sheets, tile, patch, at, before | after);
-    before = after;
-  }
-  relevant->need = (uint16_t)(need | (relevant->end == end ? relevant->need : 0));
-  relevant->end = end;
-  return pixels;
+/* The blocks of a sheet in which a slab beside it may hold something, and those in which that slab's other sheet shows it. */
+static uint32_t near_slab(const patch_bundle *b, int slab) { return slab < 0 || slab >= b->slabs ? 0 : b->near[slab]; }
+static uint32_t near_sheet(const patch_bundle *b, int i) { return near_slab(b, i - 1) | near_slab(b, i); }
+static uint32_t beside_showing(const patch_bundle *b, int i) {
+  return (near_slab(b, i - 1) & showing_on(b, i - 1)) | (near_slab(b, i) & showing_on(b, i + 1));
 }
 
-uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
-  return need & relevant_in_run(sweep, sheets, tile, patch, sheet, need)->blocks[sheet - 1 - first_of_run(sheet)];
+/* Fills what of the wanted blocks is missing on a sheet: those, and of the others those that may show something. */
+static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others) {
+  const occupancy *o = &b->sheets->occupancy;
+  kept_patch *kept = patch_on_sheet(b->sheets, b->patch, b->first + i);
+  wanted &= ~(uint32_t)kept->need;
+  others &= ~(wanted | kept->need);
+  if ((wanted | others) == 0) return;
+  fill_tile_function *fill = b->sweep->splat ? b->sweep->hot->splat_tile : b->sweep->hot->gather_tile;
+  filled_blocks blocks = fill(source_on_sheet(b->sweep, b->sheets, b->patch, b->first + i), (int)(b->tile % (size_t)o->tiles_x),
+                              (int)(b->tile / (size_t)o->tiles_x), wanted, others,
+                              density_on_sheet(b->sheets, b->patch, b->first + i));
+  kept->need = (uint16_t)(kept->need | blocks.filled);
+  kept->blocks = (uint16_t)(kept->blocks | blocks.showing);
+  b->pixels += (uint64_t)__builtin_popcount(blocks.filled) * BLOCK_PIXELS;
+}
+
+/* A slab shows something where one of its sheets does, and then both are wanted. Every second sheet is filled where its cells may
+ * show something; those between them where that was true, and where their own cells may; then the first ones where they
+ * turn out to be wanted. */
+static void fill_sheets(patch_bundle *b) {
+  for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, 0, near_sheet(b, i));
+  for (int i = 0; i <= b->slabs; i += 2) fill_sheet(b, i, beside_showing(b, i), near_sheet(b, i));
+  for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, beside_showing(b, i), 0);
+}
+
+/* Fills a bundle for the needed blocks. Returns the pixels filled. */
+static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
+                            patch_run *run) {
+  int end = end_of_bundle(sheets, sheet);
+  if (run->end != end) run->filled = 0;
+  run->end = end;
+  uint32_t more = need & ~(uint32_t)run->filled;
+  if (more == 0) return 0;
+  patch_bundle b = {.sweep = sweep, .sheets = sheets, .tile = tile, .patch = patch, .first = sheet - 1, .slabs = end - sheet};
+  for (int i = 0; i < b.slabs; i++) b.near[i] = more & run->near.blocks[b.first + i - run->first];
+  fill_sheets(&b);
+  for (int i = 0; i < b.slabs; i++) run->shows[b.first + i - run->first] |= (uint16_t)(b.near[i] & (showing_on(&b, i) | showing_on(&b, i + 1)));
+  run->filled = (uint16_t)(run->filled | more);
+  return b.pixels;
+}
+
+uint32_t hl_patch_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
+  patch_run *run = &sheets->patch_runs[patch];
+  int first = first_of_run(sheet), slab = sheet - 1 - first;
+  if (run->first != first) *run = (patch_run){.first = first};
+  look_near(sweep, sheets, tile, patch, need, run);
+  bool filled = run->end == end_of_bundle(sheets, sheet) && (need & ~(uint32_t)run->filled) == 0;
+  return need & (filled ? run->shows[slab] : run->near.blocks[slab]);
 }
 
 patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
-                         uint32_t relevant, uint64_t *pixels) {
-  *pixels += fill_bundle(sweep, sheets, tile, patch, sheet, need);
+                         uint64_t *pixels) {
+  patch_run *run = &sheets->patch_runs[patch];
+  int slab = sheet - 1 - run->first;
+  *pixels += fill_bundle(sweep, sheets, tile, patch, sheet, need, run);
   bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
-  bool whole = sheets->relevant[patch].found.whole >> (sheet - 1 - first_of_run(sheet)) & 1;
+  bool whole = run->near.whole >> slab & 1;
   const float *enter = !cut ? NULL : whole ? sheets->entries : entries_of(sweep, sheets, tile, patch);
-  uint32_t shown = (uint32_t)patch_on_sheet(sheets, patch, sheet - 1)->blocks | patch_on_sheet(sheets, patch, sheet)->blocks;
   return (patch_slab){.before = density_on_sheet(sheets, patch, sheet - 1), .current = density_on_sheet(sheets, patch, sheet),
-                      .enter = enter, .leave = cut ? enter + TILE_PIXELS : NULL, .whole = whole, .blocks = relevant & shown};
+                      .enter = enter, .leave = cut ? enter + TILE_PIXELS : NULL, .whole = whole, .blocks = run->shows[slab] & need};
 }

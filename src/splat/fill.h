@@ -34,9 +34,14 @@ typedef struct fill_source {
   int sheet;
 } fill_source;
 
-/* Fills density[16][16] (block, lane) for the blocks in need (one bit each); others are left alone.
- * Returns the blocks in which some pixel may show something, alone or on the way to another density above it. */
-typedef uint32_t fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density);
+/* Blocks of a tile, one bit each: those that were filled, and those of them in which some pixel may show something, alone or on
+ * the way to another density above it. */
+typedef struct filled_blocks { uint32_t filled, showing; } filled_blocks;
+
+/* Fills density[16][16] (block, lane) for the blocks in need, and for the others that the cells around their points let show
+ * something (cell_bits.h); what is left is left alone. */
+typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others,
+                                         float *density);
 
 /* A few sheets one after another, and the slabs between them. */
 enum { RUN_SLABS = 4 };
@@ -46,7 +51,7 @@ typedef struct slab_run {
   float low[3], high[3];          /* what lies between is not cut by the box */
 } slab_run;
 
-/* Of a tile, slab by slab, the needed blocks that may hold something of the grid that matters, and whether the box leaves
+/* Of a tile, slab by slab, the needed blocks whose boxes may hold something of the grid that matters, and whether the box leaves
  * all of those whole. */
 typedef struct relevant_blocks {
   uint16_t blocks[RUN_SLABS];

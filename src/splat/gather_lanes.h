@@ -7,6 +7,7 @@
 
 #include "splat/place_lanes.h"
 #include "splat/row_lanes.h"
+#include "splat/shown_lanes.h"
 #include "splat/window_lanes.h"
 
 /* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t; their sum is 1. */
@@ -158,22 +159,34 @@ LANES_INLINE int gather_place(const fill_source *source, const block_place *plac
   return lanes_bits(shown) != 0;
 }
 
-static uint32_t gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {
-  uint32_t filled = 0;
-  int inside = tile_is_inside(source, tile_x * TILE, tile_y * TILE);
-  for (uint32_t left = need; left != 0; left &= left - 1) {
-    int block = __builtin_ctz(left), x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK, shows;
-    float *to = density + block * BLOCK_PIXELS;
-    if (inside) {
-      block_place place = place_block_inside(source, x, y);
-      shows = gather_place(source, &place, 1, to);
-    } else {
-      block_place place = place_block(source, x, y);
-      shows = gather_place(source, &place, 0, to);
-    }
-    filled |= (uint32_t)shows << block;
+LANES_INLINE block_place place_in_tile(const fill_source *source, int tile_x, int tile_y, int block, int inside) {
+  int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK;
+  return inside ? place_block_inside(source, x, y) : place_block(source, x, y);
+}
+
+/* All of the others are asked before the first block is gone into: which of them show something no processor foresees. */
+LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others,
+                                         int inside, float *density) {
+  block_place place[TILE_BLOCKS];
+  filled_blocks blocks = {need, 0};
+  for (uint32_t left = others; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    place[block] = place_in_tile(source, tile_x, tile_y, block, inside);
+    blocks.filled |= (uint32_t)cells_show(source->grid, place[block].cell) << block;
   }
-  return filled;
+  for (uint32_t left = blocks.filled; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    if (need >> block & 1) place[block] = place_in_tile(source, tile_x, tile_y, block, inside);
+    blocks.showing |= (uint32_t)gather_place(source, &place[block], inside, density + block * BLOCK_PIXELS) << block;
+  }
+  return blocks;
+}
+
+static filled_blocks gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others, float *density) {
+  if (!source->grid->cell_bits_tell) need |= others;
+  others &= ~need;
+  if (tile_is_inside(source, tile_x * TILE, tile_y * TILE)) return gather_blocks(source, tile_x, tile_y, need, others, 1, density);
+  return gather_blocks(source, tile_x, tile_y, need, others, 0, density);
 }
 
 #endif

@@ -57,6 +57,29 @@ LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
   return place;
 }
 
+/* The least cell of a block along each axis. Along a row or a column of its pixels places rise or fall throughout, so that the
+ * least is at a corner, rounding apart. */
+LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
+#if defined(__AVX512BW__)
+  const __m512i of_two = _mm512_set_epi32(0, 0, 0, 0, 15, 12, 3, 0, 31, 28, 19, 16, 15, 12, 3, 0);
+  __m512i corners = _mm512_permutex2var_epi32((__m512i)cell[0], of_two, (__m512i)cell[1]);
+  corners = _mm512_mask_permutexvar_epi32(corners, 0x0f00, of_two, (__m512i)cell[2]);
+  corners = _mm512_min_epi32(corners, _mm512_shuffle_epi32(corners, _MM_PERM_CDAB));
+  corners = _mm512_min_epi32(corners, _mm512_shuffle_epi32(corners, _MM_PERM_BADC));
+  low[0] = _mm_cvtsi128_si32(_mm512_castsi512_si128(corners));
+  low[1] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 1));
+  low[2] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 2));
+#else
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = cell[axis][0];
+    for (int corner = 1; corner < 4; corner++) {
+      int32_t other = cell[axis][corner % 2 * 3 + corner / 2 * 12];
+      if (other < low[axis]) low[axis] = other;
+    }
+  }
+#endif
+}
+
 /* Whether the taps of all pixels of a tile lie in the grid, with room for rounding. A sheet's part that a tile's pixels
  * cover has straight edges: the pixels lie among those at its corners, unless some of them lie behind the view. */
 LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {

@@ -1,12 +1,12 @@
 /* splat/relevant_lanes.h - which blocks of a tile can hold anything between two sheets: one look at the box around each
- * one's rays, all sixteen at a time, and then at their points. A few slabs in a row at once: they share boxes and what they
- * read of the cells. */
+ * one's rays, all sixteen at a time. A few slabs in a row at once: they share boxes and what they read of the cells. */
 #ifndef HL_SPLAT_RELEVANT_LANES_H
 #define HL_SPLAT_RELEVANT_LANES_H
 
 #include "splat/fill.h"
 #include "splat/rays_lanes.h"
-#include "splat/shown_lanes.h"
+
+typedef struct lanes_box { lanes low[3], high[3]; } lanes_box; /* index space */
 
 /* Derived: on the sheet at base + P / H, a pixel further is (Pu - (Hu / H) P) / H further along it;
  * from a block's middle to its pixels' centres it is at most 3/2 pixels either way (a little more is allowed for: H
@@ -81,7 +81,6 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
   lanes u = lanes_load(block_column) * (float)BLOCK + ((float)(tile_x * TILE) + 1.5f);
   lanes v = lanes_load(block_row) * (float)BLOCK + ((float)(tile_y * TILE) + 1.5f);
   lanes_box on_sheet[RUN_SLABS + 1];
-  uint32_t blocks[RUN_SLABS] = {0};
   for (int slab = 0; slab < RUN_SLABS; slab++) {
     const sheet_rays *rays = &run->rays[slab];
     if ((slabs >> slab & 1) == 0) continue;
@@ -92,11 +91,8 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     /* where the eye is in the slab, rays begin there */
     int whole = rays[0].step * rays[1].step > 0 && (showing & ~whole_blocks(run, &box)) == 0;
     found->whole = (uint16_t)((found->whole & ~(1u << slab)) | (uint32_t)whole << slab);
-    blocks[slab] = showing & need;
+    found->blocks[slab] = (uint16_t)(showing & need);
   }
-  if (run->grid->cell_bits_tell) keep_shown(run, on_sheet, tile_x, tile_y, blocks);
-  for (int slab = 0; slab < RUN_SLABS; slab++)
-    if (slabs >> slab & 1) found->blocks[slab] = (uint16_t)blocks[slab];
 }
 
 #endif

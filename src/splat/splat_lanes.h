@@ -71,10 +71,14 @@ LANES_INLINE void splat_voxel(const fill_source *source, const tile_place *tile,
   }
 }
 
-static uint32_t splat_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density) {
+static filled_blocks splat_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others, float *density) {
   const voxel_lists *lists = source->lists;
   tile_place tile;
   place_tile(source, tile_x, tile_y, &tile);
+  for (uint32_t left = others & ~need; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    if (!source->grid->cell_bits_tell || cells_show(source->grid, tile.block[block].cell)) need |= 1u << block;
+  }
   for (uint32_t left = need; left != 0; left &= left - 1)
     lanes_store(density + __builtin_ctz(left) * BLOCK_PIXELS, lanes_set(0));
   const uint32_t *start = lists->start + ((size_t)tile_y * (size_t)lists->tiles_x + (size_t)tile_x) * (size_t)lists->bucket_count +
@@ -85,16 +89,16 @@ static uint32_t splat_tile(const fill_source *source, int tile_x, int tile_y, ui
     else
       splat_voxel(source, &tile, need, lists->voxel[at], HL_KERNEL_DEGREE, density);
   }
-  uint32_t filled = 0;
+  filled_blocks blocks = {need, 0};
   for (uint32_t left = need; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
     float *to = density + block * BLOCK_PIXELS;
     lanes_int inside = tile.block[block].inside;
     lanes kept = lanes_keep(inside, lanes_load(to));
     lanes_store(to, kept);
-    if (lanes_bits(inside & may_show(source, kept)) != 0) filled |= 1u << block;
+    if (lanes_bits(inside & may_show(source, kept)) != 0) blocks.showing |= 1u << block;
   }
-  return filled;
+  return blocks;
 }
 
 #endif

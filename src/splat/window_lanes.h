@@ -38,19 +38,6 @@ LANES_INLINE void lowest_of_lanes(const lanes_int cell[3], uint32_t active, int3
   for (int a = 0; a < 3; a++) low[a] = _mm512_mask_reduce_min_epi32((__mmask16)active, (__m512i)cell[a]);
 }
 
-/* The same of a whole block of pixels, in fewer steps: along a row or a column places rise or fall throughout, so that the
- * least is at a corner, rounding apart. */
-LANES_INLINE void lowest_of_corners(const lanes_int cell[3], int32_t low[3]) {
-  const __m512i of_two = _mm512_set_epi32(0, 0, 0, 0, 15, 12, 3, 0, 31, 28, 19, 16, 15, 12, 3, 0);
-  __m512i corners = _mm512_permutex2var_epi32((__m512i)cell[0], of_two, (__m512i)cell[1]);
-  corners = _mm512_mask_permutexvar_epi32(corners, 0x0f00, of_two, (__m512i)cell[2]);
-  corners = _mm512_min_epi32(corners, _mm512_shuffle_epi32(corners, _MM_PERM_CDAB));
-  corners = _mm512_min_epi32(corners, _mm512_shuffle_epi32(corners, _MM_PERM_BADC));
-  low[0] = _mm_cvtsi128_si32(_mm512_castsi512_si128(corners));
-  low[1] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 1));
-  low[2] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 2));
-}
-
 LANES_INLINE __m512i window_index(hl_storage storage, const __m512i offset[3]) {
   return storage == HL_STORAGE_U8    ? index_u8(offset[0], offset[1])
          : storage == HL_STORAGE_U16 ? index_u16(offset[0], offset[1])
@@ -118,7 +105,7 @@ LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t
 /* Of a block of neighbouring pixels, all of them active. */
 LANES_INLINE int open_window_of_block(const grid *grid, const lanes_int cell[3], voxel_window *window) {
   int32_t lowest[3];
-  lowest_of_corners(cell, lowest);
+  lowest_of_block(cell, lowest);
   return open_window_at(grid, cell, lowest, 0xffff, window) || open_window(grid, cell, 0xffff, window);
 }
 

@@ -205,15 +205,15 @@ typedef struct fill_state {
   fill_source source;
   slab_run run;
   int gather, tile_x, tile_y;
-  uint32_t need;
-  struct { float density[TILE_PIXELS]; uint32_t filled; relevant_blocks relevant; } out;
+  uint32_t need, others;
+  struct { float density[TILE_PIXELS]; filled_blocks filled; relevant_blocks relevant; } out;
 } fill_state;
 
 static void call_fill(const hot_functions *hot, void *state) {
   fill_state *s = state;
   fill_tile_function *fill = s->gather ? hot->gather_tile : hot->splat_tile;
   hot->relevant_blocks_tile(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), s->need, &s->out.relevant);
-  s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->out.density);
+  s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->others, s->out.density);
 }
 
 /* Rays that run along the sheets, or nowhere: positions become huge or NaN. */
@@ -256,6 +256,7 @@ static void check_fill(const size_t n[3], hl_storage storage, uint32_t seed) {
                            .run = bench_run(&bench, 0.5), .gather = gather, .tile_x = round == 0 ? 1 : round % 3,
                            .tile_y = round == 0 ? 1 : round / 3 % 3, .need = round % 4 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(&seed))};
       if (round == 0) state.need = ALL_BLOCKS;
+      if (round % 2 == 1) state.need &= (uint32_t)(65536 * bench_random(&seed)), state.others = ALL_BLOCKS & ~state.need;
       spoil_rays(&state.source.rays, round);
       spoil_rays(&state.run.rays[round / 8 % (RUN_SLABS + 1)], round);
       trial trial = {call_fill, &state, &state.out, sizeof state.out};
@@ -300,6 +301,42 @@ static void test_coverage(void **unused) {
     if (round % 16 == 15) state.rays.start[round % 3] = NAN;
     trial trial = {call_coverage, &state, state.out, sizeof state.out};
     try_it("coverage_tile", &trial, round);
+  }
+}
+
+/* ---- where bricks lie ---- */
+
+typedef struct ranges_state {
+  brick_view view;
+  grid grid;
+  int32_t place[3][BRICKS_AT_ONCE];
+  brick_ranges out;
+} ranges_state;
+
+static void call_ranges(const hot_functions *hot, void *state) {
+  ranges_state *s = state;
+  hot->brick_ranges(&s->view, &s->grid, (const int32_t(*)[BRICKS_AT_ONCE])s->place, &s->out);
+}
+
+static void test_brick_ranges(void **unused) {
+  (void)unused;
+  uint32_t seed = 21;
+  for (int round = 0; round < 4 * ROUNDS; round++) {
+    static ranges_state state;
+    fill_salted(&state.view.view[0][0], 12, &seed, -2, 2);
+    fill_salted(state.view.height, 4, &seed, -2, 2);
+    state.view.spare = random_between(&seed, 0, 1);
+    for (int i = 0; i < 3; i++) {
+      state.view.middle[i] = random_between(&seed, 0, 30);
+      state.grid.dimension[i] = 1 + (int32_t)(60 * bench_random(&seed));
+      state.view.first[i] = (int32_t)(4 * bench_random(&seed));
+      state.view.last[i] = state.view.first[i] + (int32_t)(40 * bench_random(&seed));
+      for (int brick = 0; brick < BRICKS_AT_ONCE; brick++)
+        state.place[i][brick] = (int32_t)(bench_random(&seed) * (state.grid.dimension[i] / HL_BRICK_CELLS + 1));
+    }
+    if (round % 16 == 15) state.view.view[round % 3][0] = NAN;
+    trial trial = {call_ranges, &state, &state.out, sizeof state.out};
+    try_it("brick_ranges", &trial, round);
   }
 }
 
@@ -641,6 +678,7 @@ int main(int argc, char **argv) {
   }
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_bound_cells), cmocka_unit_test(test_brick_bits), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_brick_ranges),
       cmocka_unit_test(test_light),      cmocka_unit_test(test_fields), cmocka_unit_test(test_shade),
       cmocka_unit_test(test_shade_beside_nothing),
   };

@@ -27,14 +27,12 @@ static void look_at_random(bench *bench, uint32_t *seed, int round, double pixel
   bench_look(bench, direction, normal, pixel, round % 3 == 2 ? 15 : 0, which);
 }
 
-typedef uint32_t fill_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, float *density);
-
 /* [y][x] of a whole sheet, by way of tiles and blocks. */
-static void fill_sheet(const fill_source *source, fill_function *fill, float sheet[SIDE][SIDE]) {
+static void fill_sheet(const fill_source *source, fill_tile_function *fill, float sheet[SIDE][SIDE]) {
   float density[TILE_PIXELS];
   for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
     for (int i = 0; i < TILE_PIXELS; i++) density[i] = NAN;
-    fill(source, tile % SIDE_TILES, tile / SIDE_TILES, ALL_BLOCKS, density);
+    fill(source, tile % SIDE_TILES, tile / SIDE_TILES, ALL_BLOCKS, 0, density);
     for (int i = 0; i < TILE_PIXELS; i++) {
       int block = i / BLOCK_PIXELS, lane = i % BLOCK_PIXELS;
       sheet[tile / SIDE_TILES * TILE + block / 4 * BLOCK + lane / 4][tile % SIDE_TILES * TILE + block % 4 * BLOCK + lane % 4] =
@@ -151,8 +149,8 @@ static void test_other_blocks_are_left_alone(void **state) {
   for (int way = 0; way < 2; way++) {
     float density[TILE_PIXELS];
     for (int i = 0; i < TILE_PIXELS; i++) density[i] = -7;
-    fill_function *fill = way == 0 ? hl_hot_scalar.splat_tile : hl_hot_scalar.gather_tile;
-    assert_int_equal(fill(&source, 1, 1, 0x8421, density), 0x8421);
+    fill_tile_function *fill = way == 0 ? hl_hot_scalar.splat_tile : hl_hot_scalar.gather_tile;
+    assert_int_equal(fill(&source, 1, 1, 0x8421, 0, density).filled, 0x8421);
     for (int i = 0; i < TILE_PIXELS; i++) assert_true((density[i] == -7) == !(0x8421 >> (i / BLOCK_PIXELS) & 1));
   }
   bench_close(&bench);
@@ -452,18 +450,16 @@ static void test_relevant_blocks_miss_nothing(void **state) {
     fill_sheet(&source, hl_hot_scalar.gather_tile, sheet);
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
       int tile_x = tile % SIDE_TILES, tile_y = tile / SIDE_TILES;
-      relevant_blocks found = {0}, by_boxes = {0};
+      relevant_blocks found = {0};
       uint32_t slabs = at > 0 ? 3u << (at - 1) : 1;
       hl_hot_scalar.relevant_blocks_tile(&run, tile_x, tile_y, slabs, ALL_BLOCKS, &found);
-      bench.grid.cell_bits_tell = false;
-      hl_hot_scalar.relevant_blocks_tile(&run, tile_x, tile_y, slabs, ALL_BLOCKS, &by_boxes);
-      bench.grid.cell_bits_tell = true;
-      for (int slab = 0; slab < RUN_SLABS; slab++) {
-        assert_int_equal(found.blocks[slab] & ~by_boxes.blocks[slab], 0);
-        left_out_by_bits += __builtin_popcount(found.blocks[slab] ^ by_boxes.blocks[slab]);
-      }
-      uint32_t relevant = at > 0 ? found.blocks[at - 1] & found.blocks[at] : found.blocks[at];
-      left_out += 16 - __builtin_popcount(relevant);
+      uint32_t near = at > 0 ? found.blocks[at - 1] & found.blocks[at] : found.blocks[at];
+      float density[TILE_PIXELS];
+      uint32_t relevant = hl_hot_scalar.gather_tile(&source, tile_x, tile_y, 0, near, density).filled;
+      assert_int_equal(hl_hot_scalar.splat_tile(&source, tile_x, tile_y, 0, near, density).filled, relevant);
+      assert_int_equal(relevant & ~near, 0);
+      left_out += 16 - __builtin_popcount(near);
+      left_out_by_bits += __builtin_popcount(near & ~relevant);
       for (int i = 0; i < TILE_PIXELS; i++) {
         int x = tile % SIDE_TILES * TILE + i % TILE, y = tile / SIDE_TILES * TILE + i / TILE;
         vec3 p = bench_position(&bench, at, x, y);
