@@ -32,23 +32,17 @@ LANES_INLINE covered_part covered_block(const float *enter, const float *leave, 
   return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height, spacing);
 }
 
-/* Of the given blocks of a tile, those with a pixel that some light reaches. */
-LANES_INLINE uint32_t lit_blocks(const float *const transmittance[HL_CHANNELS], int channels, size_t stride,
-                                 uint32_t blocks) {
+/* The blocks of a tile with a pixel that some light reaches. */
+static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], int channels, size_t stride) {
   uint32_t lit = 0;
-  for (; blocks != 0; blocks &= blocks - 1) {
-    int block = __builtin_ctz(blocks);
+  for (int block = 0; block < TILE_BLOCKS; block++) {
     lanes greatest = lanes_set(0);
     for (int c = 0; c < channels; c++)
       greatest = lanes_max(greatest, lanes_load_block(transmittance[c] + (size_t)(block / 4 * BLOCK) * stride +
                                                           block % 4 * BLOCK, stride));
-    if (lanes_bits(greatest >= DARK) != 0) lit |= 1u << block;
+    lit |= (uint32_t)(lanes_bits(greatest >= DARK) != 0) << block;
   }
   return lit;
-}
-
-static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], int channels, size_t stride) {
-  return lit_blocks(transmittance, channels, stride, ALL_BLOCKS);
 }
 
 /* Density runs linearly through the slab: the ends of its covered part in the tables. */
@@ -58,45 +52,58 @@ LANES_INLINE void cut_way(covered_part part, table_place *a, table_place *b) {
   *b = place_of_coordinate(from + way * lanes_min(part.begin + part.length, lanes_set(1.0f)));
 }
 
-/* Returns whether it took any light. */
-static int attenuate_block(const attenuate_job *job, int tile_x, int tile_y, int block) {
+typedef struct attenuated_block { int taken, lit; } attenuated_block;
+
+/* Whether it took any light, and whether it left enough. */
+LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels, int tile_x, int tile_y,
+                                              int block) {
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  for (int i = 0; i < job->volume_count; i++) {
+  for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
-    if ((volume->blocks >> block & 1) == 0) continue;
+    if (volume_count > 1 && (volume->blocks >> block & 1) == 0) continue;
     table_place a = classify_place(volume->classifier, lanes_load(volume->before + block * BLOCK_PIXELS));
     table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
     if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
     covered_part part = covered_block(volume->enter, volume->leave, volume->whole, block, job->height, job->spacing);
     if (volume->enter != NULL) cut_way(part, &a, &b);
     lanes extinction = sums_of_way(volume->classifier, a, b).extinction * part.length;
-    for (int c = 0; c < job->channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
+    for (int c = 0; c < channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
   }
-  lanes any = depth[0] + depth[1] + depth[2];
-  if (lanes_bits(any > 0.0f) == 0) return 0;
+  lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
+  if (lanes_bits(any > 0.0f) == 0) return (attenuated_block){0, 1};
   int x = block % 4 * BLOCK, y = block / 4 * BLOCK;
   lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
-  for (int c = 0; c < job->channels; c++) {
+  lanes greatest = lanes_set(0);
+  for (int c = 0; c < channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;
     lanes passing = lanes_exp_negative(depth[c] * path);
     lanes before = lanes_load_block(at, job->stride), after = before * passing;
     lanes_store_block(at, job->stride, after);
+    greatest = lanes_max(greatest, after);
     if (job->moment[c] == NULL) continue;
     float *moment = job->moment[c] + (size_t)y * job->moment_stride + x;
     lanes_store_block(moment, job->moment_stride, lanes_load_block(moment, job->moment_stride) + (before - after) * job->place);
   }
-  return 1;
+  return (attenuated_block){1, lanes_bits(greatest >= DARK) != 0};
 }
 
-static attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
-  uint32_t blocks = 0, taken = 0;
-  for (int i = 0; i < job->volume_count; i++) blocks |= job->volumes[i].blocks;
-  for (uint32_t left = blocks; left != 0; left &= left - 1) {
-    int block = __builtin_ctz(left);
-    taken |= (uint32_t)attenuate_block(job, tile_x, tile_y, block) << block;
+LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int volume_count, int channels, int tile_x, int tile_y) {
+  uint32_t left = 0;
+  attenuated_blocks blocks = {0, 0};
+  for (int i = 0; i < volume_count; i++) left |= job->volumes[i].blocks;
+  for (; left != 0; left &= left - 1) {
+    int at = __builtin_ctz(left);
+    attenuated_block block = attenuate_block(job, volume_count, channels, tile_x, tile_y, at);
+    blocks.taken |= (uint32_t)block.taken << at;
+    blocks.lit |= (uint32_t)block.lit << at;
   }
-  uint32_t lit = lit_blocks((const float *const *)job->transmittance, job->channels, job->stride, taken);
-  return (attenuated_blocks){lit | (blocks & ~taken), taken};
+  return blocks;
+}
+
+/* Most often there is one volume, and its shadows are grey: no loops over volumes and colours. */
+static attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
+  if (job->volume_count == 1 && job->channels == 1) return attenuate_volumes(job, 1, 1, tile_x, tile_y);
+  return attenuate_volumes(job, job->volume_count, job->channels, tile_x, tile_y);
 }
 
 #endif

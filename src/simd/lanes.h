@@ -182,8 +182,18 @@ LANES_INLINE void lanes_store_short(uint16_t *p, lanes v) {
 }
 /* Greatest integer not above x; |x| < 2^31. */
 LANES_CALL lanes_int lanes_floor(lanes x) {
+#if defined(__AVX512F__)
+  return (lanes_int)_mm512_cvt_roundps_epi32((__m512)x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#elif defined(__AVX2__)
+  __m256 half[2];
+  memcpy(half, &x, sizeof half);
+  for (int i = 0; i < 2; i++) half[i] = _mm256_floor_ps(half[i]);
+  memcpy(&x, half, sizeof x);
+  return lanes_truncate(x);
+#else
   lanes_int i = lanes_truncate(x);
   return i + (lanes_from_int(i) > x);
+#endif
 }
 
 /* Offsets of sixteen loads, in memory: taking them from a vector register lane by lane costs more than the loads. */

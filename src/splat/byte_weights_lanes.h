@@ -33,23 +33,28 @@ LANES_INLINE whole_weights round_weights(const lanes weight[4], int total) {
 /* A lane's four weights as three signed bytes each, the highest first: whole = (d0 256 + d1) 256 + d2. */
 typedef struct byte_weights { __m512i digit[3]; } byte_weights;
 
+/* Of each byte, the source whose mask has it; no byte is in two masks. */
+LANES_INLINE __m512i take_bytes(const __m512i packed[3], int32_t first, int32_t second, int32_t third) {
+  __m512i some = _mm512_ternarylogic_epi32(_mm512_and_si512(packed[0], _mm512_set1_epi32(first)), packed[1], _mm512_set1_epi32(second), 0xf8);
+  return _mm512_ternarylogic_epi32(some, packed[2], _mm512_set1_epi32(third), 0xf8); /* a | (b & c) */
+}
+
 LANES_INLINE byte_weights split_weights(const whole_weights *whole) {
-  __m512i biased[4];
+  __m512i biased[4], packed[3];
   const __m512i bias = _mm512_set1_epi32(0x808080), sign = _mm512_set1_epi32((int)0x80808080);
   for (int tap = 0; tap < 4; tap++) biased[tap] = _mm512_add_epi32((__m512i)whole->tap[tap], bias);
-  /* bytes of each lane: of two taps, the two lower digits in turn, or the highest; then of all four one digit each */
-  const __m512i lane = _mm512_set_epi32(0x3c3c3c3c, 0x38383838, 0x34343434, 0x30303030, 0x2c2c2c2c, 0x28282828, 0x24242424,
-                                        0x20202020, 0x1c1c1c1c, 0x18181818, 0x14141414, 0x10101010, 0x0c0c0c0c, 0x08080808,
-                                        0x04040404, 0);
-  const __m512i lower = _mm512_add_epi8(lane, _mm512_set1_epi32(0x41014000)), highest = _mm512_add_epi8(lane, _mm512_set1_epi32(0x42024202));
-  const __m512i first = _mm512_add_epi8(lane, _mm512_set1_epi32(0x41400100)), second = _mm512_add_epi8(lane, _mm512_set1_epi32(0x43420302));
-  __m512i low = _mm512_permutex2var_epi8(biased[0], lower, biased[1]), high = _mm512_permutex2var_epi8(biased[2], lower, biased[3]);
-  __m512i low_top = _mm512_permutex2var_epi8(biased[0], highest, biased[1]);
-  __m512i high_top = _mm512_permutex2var_epi8(biased[2], highest, biased[3]);
+  /* three bytes of each of the taps A to D, from the lowest on: A0 A1 A2 B0, B1 B2 C0 C1, C2 D0 D1 D2 */
+  packed[0] = _mm512_or_si512(biased[0], _mm512_slli_epi32(biased[1], 24));
+  packed[1] = _mm512_or_si512(_mm512_srli_epi32(biased[1], 8), _mm512_slli_epi32(biased[2], 16));
+  packed[2] = _mm512_or_si512(_mm512_srli_epi32(biased[2], 16), _mm512_slli_epi32(biased[3], 8));
+  /* of the four one digit each, which are in different bytes: A0 D0 C0 B0, B1 A1 D1 C1, C2 B2 A2 D2; then in order */
+  const __m512i lowest = _mm512_set4_epi32(0x0d0e0f0c, 0x090a0b08, 0x05060704, 0x01020300);
+  const __m512i middle = _mm512_set4_epi32(0x0e0f0c0d, 0x0a0b0809, 0x06070405, 0x02030001);
+  const __m512i highest = _mm512_set4_epi32(0x0f0c0d0e, 0x0b08090a, 0x07040506, 0x03000102);
   byte_weights weights;
-  weights.digit[2] = _mm512_xor_si512(_mm512_permutex2var_epi8(low, first, high), sign);
-  weights.digit[1] = _mm512_xor_si512(_mm512_permutex2var_epi8(low, second, high), sign);
-  weights.digit[0] = _mm512_xor_si512(_mm512_permutex2var_epi8(low_top, first, high_top), sign);
+  weights.digit[2] = _mm512_xor_si512(_mm512_shuffle_epi8(take_bytes(packed, (int32_t)0xff0000ff, 0x00ff0000, 0x0000ff00), lowest), sign);
+  weights.digit[1] = _mm512_xor_si512(_mm512_shuffle_epi8(take_bytes(packed, 0x0000ff00, (int32_t)0xff0000ff, 0x00ff0000), middle), sign);
+  weights.digit[0] = _mm512_xor_si512(_mm512_shuffle_epi8(take_bytes(packed, 0x00ff0000, 0x0000ff00, (int32_t)0xff0000ff), highest), sign);
   return weights;
 }
 
