@@ -85,7 +85,7 @@ typedef struct bench_job {
   hl_scene *scene;                       /* owned */
   bool bare;
   hl_renderer *renderer[SETTING_COUNT];  /* owned */
-  float *pixels;                         /* owned; [height][width][4] */
+  hl_image *image;                       /* owned; the frame */
   bench_result *result;
 } bench_job;
 
@@ -115,10 +115,9 @@ static int open_renderers(bench_job *job) {
   result->height = description->height;
   result->frames = job->values[BENCH_FRAMES].given ? (int)job->values[BENCH_FRAMES].number[0] : 9;
   result->move = job->values[BENCH_MOVE].given ? job->values[BENCH_MOVE].choice : MOVE_CAMERA;
-  size_t lines = ((size_t)result->width * (size_t)result->height + 3) / 4; /* of a cache, as those of hl_image */
-  job->pixels = aligned_alloc(64, 64 * lines);
-  if (job->pixels == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for a picture of %dx%d pixels", result->width, result->height);
   hl_error error = {0};
+  hl_status made = hl_image_create(job->host->context, result->width, result->height, &job->image, &error);
+  if (made != HL_OK) return host_fail(job->host, PHASE_RUN, made, &error);
   for (int setting = 0; setting < SETTING_COUNT; setting++) {
     result->run[setting].supported = !job->values[BENCH_ONLY].given || job->values[BENCH_ONLY].choice == setting;
     result->run[setting].samples = calloc((size_t)result->frames, sizeof(bench_sample));
@@ -161,7 +160,7 @@ static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   hl_error error = {0};
   run->statistics = (hl_render_statistics){.struct_size = sizeof run->statistics};
   double start = clock_seconds(), spent = processor_seconds();
-  hl_status status = hl_renderer_render(job->renderer[setting], scene, job->pixels, 4 * (size_t)result->width,
+  hl_status status = hl_renderer_render(job->renderer[setting], scene, hl_image_pixels(job->image), 4 * (size_t)result->width,
                                         &run->statistics, &error);
   bench_sample sample = sample_of(clock_seconds() - start, &run->statistics);
   sample.processor = processor_seconds() - spent;
@@ -195,7 +194,7 @@ static int measure(cli_host *host, const cli_value *values, const char *path, be
   if (exit_code == EXIT_CODE_OK) exit_code = run_frames(&job);
   for (int setting = 0; setting < SETTING_COUNT; setting++) hl_renderer_destroy(job.renderer[setting]);
   hl_scene_release(job.scene);
-  free(job.pixels);
+  hl_image_destroy(job.image);
   return exit_code;
 }
 

@@ -56,21 +56,25 @@ static bool sum_is_zeros(const add_task *task, int x, int y) {
   return true;
 }
 
-static void add_row(void *data, size_t index, int worker) {
-  (void)worker;
-  const add_task *task = data;
-  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, (int)index, task->reach);
-  for (int x = 0; x < task->level->tiles_x; x++) {
+static void add_tiles(const add_task *task, row_part part) {
+  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, part.y, task->reach);
+  for (int x = part.first; x < part.end; x++) {
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
-    if (sum_is_zeros(task, x, (int)index)) {
-      hl_cascade_clear_tile(task->level, task->to, x, (int)index);
+    if (sum_is_zeros(task, x, part.y)) {
+      hl_cascade_clear_tile(task->level, task->to, x, part.y);
       continue;
     }
     field_job job = task->job;
     job.rows = hl_cascade_rows_read(&read, x);
-    if (task->doubled && task->a != NULL && task->a->zeros[index * (size_t)task->level->tiles_x + (size_t)x]) job.a = job.thin = NULL;
-    note_zeros(task->level, task->to, x, (int)index, job.rows, task->function(&job, x, (int)index));
+    if (task->doubled && task->a != NULL && task->a->zeros[part.y * task->level->tiles_x + x]) job.a = job.thin = NULL;
+    note_zeros(task->level, task->to, x, part.y, job.rows, task->function(&job, x, part.y));
   }
+}
+
+static void add_part(void *data, size_t index, int worker) {
+  (void)worker;
+  const add_task *task = data;
+  add_tiles(task, hl_cascade_row_part(task->level, index));
 }
 
 static add_task task_of_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
@@ -92,7 +96,7 @@ void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, cons
                     const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
                     int reach) {
   add_task task = task_of_add(crew, level_a, a, thin, level_b, b, level, to, reach);
-  hl_pool_run(crew->pool, (size_t)level->tiles_y, add_row, &task);
+  hl_pool_run(crew->pool, hl_cascade_row_parts(level), add_part, &task);
 }
 
 typedef struct blur_task {
@@ -105,13 +109,14 @@ typedef struct blur_task {
   int reach_x, reach_y; /* of the blur; tiles */
 } blur_task;
 
-static void blur_row(void *data, size_t index, int worker) {
+static void blur_part(void *data, size_t index, int worker) {
   (void)worker;
   const blur_task *task = data;
-  int y = (int)index;
+  const row_part part = hl_cascade_row_part(task->level, index);
+  int y = part.y;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
-  for (int x = 0; x < task->level->tiles_x; x++) {
-    size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
+  for (int x = part.first; x < part.end; x++) {
+    size_t tile = (size_t)y * (size_t)task->level->tiles_x + (size_t)x;
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     bool skip = (task->a == NULL || task->a->zeros[tile]) &&
                 hl_cascade_all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
@@ -148,7 +153,7 @@ void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, c
                                  .thin = thin == NULL ? NULL : thin->pixels, .stride = level->stride};
   task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur.variance, blur.resampled[0]);
   task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur.variance, blur.resampled[1]);
-  hl_pool_run(crew->pool, (size_t)level->tiles_y, blur_row, &task);
+  hl_pool_run(crew->pool, hl_cascade_row_parts(level), blur_part, &task);
 }
 
 typedef struct part_task {
@@ -186,7 +191,7 @@ static void merge_row(void *data, size_t index, int worker) {
   merge_task *task = data;
   size_t first = index * (size_t)task->ratio, end = first + (size_t)task->ratio;
   for (size_t row = first; row < end && row < (size_t)task->level->tiles_y; row++) part_row(&task->part, row, worker);
-  for (int i = 0; i < MERGE_SUMS; i++) add_row(&task->sums[i], index, worker);
+  for (int i = 0; i < MERGE_SUMS; i++) add_tiles(&task->sums[i], (row_part){(int)index, 0, task->sums[i].level->tiles_x});
 }
 
 void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a, const cascade_matter *b,

@@ -4,6 +4,16 @@
 
 #include "light/soft_cascade.h"
 
+/* Rows of tiles are worked on in parts, so that threads end at the same time. */
+enum { ROW_PARTS = 2 };
+typedef struct row_part { int y, first, end; } row_part; /* tiles */
+
+static inline size_t hl_cascade_row_parts(const cascade_level *level) { return (size_t)level->tiles_y * ROW_PARTS; }
+static inline row_part hl_cascade_row_part(const cascade_level *level, size_t index) {
+  int part = (int)(index % ROW_PARTS);
+  return (row_part){(int)(index / ROW_PARTS), level->tiles_x * part / ROW_PARTS, level->tiles_x * (part + 1) / ROW_PARTS};
+}
+
 /* How much a pass blurs. */
 typedef struct cascade_blur {
   double variance;  /* where the light is widest, pixels of the level; columns and rows have their parts of it */

@@ -315,13 +315,14 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
 }
 
 /* What the chunk's slabs took of the light that reached the chunk goes to the groups at its two ends. */
-static void absorb_row(void *data, size_t index, int worker) {
+static void absorb_part(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
-  size_t tiles = (size_t)task->cascade->level[0].tiles_x;
-  for (size_t tile_x = 0; tile_x < tiles; tile_x++) {
-    for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, tile_x, index, c);
-    task->cascade->touched[index * tiles + tile_x] = 0;
+  const cascade_level *level = &task->cascade->level[0];
+  const row_part part = hl_cascade_row_part(level, index);
+  for (int x = part.first; x < part.end; x++) {
+    for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, (size_t)x, (size_t)part.y, c);
+    task->cascade->touched[part.y * level->tiles_x + x] = 0;
   }
 }
 
@@ -332,7 +333,7 @@ static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, doubl
   start->filled = start->filled || end->filled;
   end->omega = omega;
   absorb_task task = {cascade, buffer, start, end, omega - cascade->chunk_start, crew->functions->absorbed};
-  hl_pool_run(crew->pool, (size_t)level->tiles_y, absorb_row, &task);
+  hl_pool_run(crew->pool, hl_cascade_row_parts(level), absorb_part, &task);
   level->renewed = true;
   cascade->chunk_start = omega;
   cascade->chunks++;
@@ -396,13 +397,10 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
 static const double LOOKUP_VARIANCE = 1.0 / 6;
 
 /* Nothing lies before the farthest group, whose penumbra pays for the look-up. */
-static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group) {
+static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group, const cascade_crew *crew) {
   level->owed[0] = level->owed[1] = LOOKUP_VARIANCE;
-  for (int c = 0; c < cascade->channels; c++) {
-    const cascade_field *from = &group->absorbed[c], *to = &level->sum[level->newest][c];
-    memcpy(to->pixels - level->origin, from->pixels - level->origin, level->plane * sizeof(field_pixel));
-    memcpy(to->zeros, from->zeros, (size_t)level->tiles_x * (size_t)level->tiles_y);
-  }
+  for (int c = 0; c < cascade->channels; c++)
+    hl_cascade_add(crew, level, &group->absorbed[c], NULL, NULL, NULL, level, &level->sum[level->newest][c], READ_EVERYWHERE);
 }
 
 /* ---- where the next slabs read ---- */
@@ -453,7 +451,7 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
       if (!group->filled) continue;
-      if (sum == NULL) pass_first(cascade, level, group);
+      if (sum == NULL) pass_first(cascade, level, group, crew);
       else {
         int reach = period > 1 ? READ_EVERYWHERE : reach_behind(cascade, i, g, receiver);
         pass_group(cascade->channels, sum, level, group, served, reach, crew);
@@ -474,23 +472,24 @@ typedef struct light_task {
   const cascade_functions *functions;
 } light_task;
 
-static void light_row(void *data, size_t index, int worker) {
+static void light_part(void *data, size_t index, int worker) {
   (void)worker;
   const light_task *task = data;
   const cascade_level *level = &task->cascade->level[0];
   shadow_buffer *buffer = task->buffer;
-  const read_row read = hl_cascade_read_row(&task->cascade->reads, 1, (int)index, 0);
-  for (size_t tile_x = 0; tile_x < (size_t)level->tiles_x; tile_x++) {
-    size_t tile = index * (size_t)level->tiles_x + tile_x;
-    if (!hl_cascade_is_read(&read, &read.all, (int)tile_x)) continue;
+  const row_part part = hl_cascade_row_part(level, index);
+  const read_row read = hl_cascade_read_row(&task->cascade->reads, 1, part.y, 0);
+  for (int tile_x = part.first; tile_x < part.end; tile_x++) {
+    size_t tile = (size_t)part.y * (size_t)level->tiles_x + (size_t)tile_x;
+    if (!hl_cascade_is_read(&read, &read.all, tile_x)) continue;
     bool shaded = false;
     for (int c = 0; c < buffer->channels; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
       left_job job = {task->cascade->shade[c].pixels, buffer->transmittance[c], level->stride, buffer->stride};
-      task->functions->left(&job, (int)tile_x, (int)index);
+      task->functions->left(&job, tile_x, part.y);
     }
     buffer->tile_touched[tile] = shaded;
-    hl_shadow_buffer_find_lit(buffer, (int)tile_x, (int)index, task->functions->lit_blocks);
+    hl_shadow_buffer_find_lit(buffer, tile_x, part.y, task->functions->lit_blocks);
   }
 }
 
@@ -515,7 +514,7 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
 static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, const cascade_crew *crew) {
   if (!find_shade(cascade, receiver, crew)) return; /* the buffer is all ones */
   light_task task = {cascade, buffer, crew->functions};
-  hl_pool_run(crew->pool, (size_t)cascade->level[0].tiles_y, light_row, &task);
+  hl_pool_run(crew->pool, hl_cascade_row_parts(&cascade->level[0]), light_part, &task);
 }
 
 void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
