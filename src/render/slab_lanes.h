@@ -93,7 +93,9 @@ LANES_INLINE lanes_int visible_in_patch(const shade_patch *patch, int block) {
 
 /* A block's way through one volume. */
 LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *patch, int block) {
-  block_way way = {lanes_load(patch->before + block * BLOCK_PIXELS), lanes_load(patch->current + block * BLOCK_PIXELS), {0}};
+  block_way way;
+  way.first = lanes_load(patch->before + block * BLOCK_PIXELS);
+  way.last = lanes_load(patch->current + block * BLOCK_PIXELS);
   way.part = covered_block(patch->enter, patch->leave, patch->whole, block, job->height, job->spacing);
   return way;
 }
