@@ -2,12 +2,12 @@
  * next one before they sleep; with more threads than processors they sleep at once.
  *
  * Each thread has a share of a job's indices, one after another: in job after job of the same kind it meets the same part
- * of the memory. A share is one 64-bit word on its own line of the cache: generation, end, next index. Its owner claims an index
- * from one end by compare-and-swap; who has none left takes those of others from the other end. Every second thread begins with
- * its last index: two that share a job meet in its middle, and what one takes of the other's is what it had the job before. So
- * nobody waits for a worker that the system has not woken: on a busy machine the caller does the work alone. A job's description stays in its slot (by the
- * generation's parity) until all that claimed of it have said so, since a later job of the same parity cannot start
- * before that. */
+ * of the memory. A share is one 64-bit word on its own line of the cache: generation, end, next index. Its owner claims an
+ * index from one end by compare-and-swap; who has none left takes those of others from the other end. Every second thread
+ * begins with its last index: two threads meet in the middle of a job, and what one takes of the other's share is what it had
+ * the job before. So nobody waits for a worker that the system has not woken: on a busy machine the caller does the work
+ * alone. A job's description stays in its slot (by the generation's parity) until all that claimed of it have said so, since
+ * a later job of the same parity cannot start before that. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
