@@ -37,7 +37,7 @@ typedef struct kept_patch {
 /* What some slabs in a row show of a patch. */
 typedef struct patch_run {
   int32_t first;                  /* the sheet before them; -1: none */
-  int32_t end;                    /* of the bundle among them that was filled last */
+  int32_t end;                    /* of the bundle among them that was asked for last */
   uint16_t asked;                 /* the blocks that were looked at */
   uint16_t filled;                /* the blocks that the bundle was filled for */
   relevant_blocks near;           /* where something may be, of those that were looked at */

@@ -228,28 +228,27 @@ static void fill_sheets(patch_bundle *b) {
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, beside_showing(b, i), 0);
 }
 
-/* Fills a bundle for the needed blocks. Returns the pixels filled. */
-static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
+/* Fills a bundle for some more blocks. Returns the pixels filled. */
+static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t more,
                             patch_run *run) {
-  int end = end_of_bundle(sheets, sheet);
-  if (run->end != end) run->filled = 0;
-  run->end = end;
-  uint32_t more = need & ~(uint32_t)run->filled;
-  if (more == 0) return 0;
-  patch_bundle b = {.sweep = sweep, .sheets = sheets, .tile = tile, .patch = patch, .first = sheet - 1, .slabs = end - sheet};
-  for (int i = 0; i < b.slabs; i++) b.near[i] = more & run->near.blocks[b.first + i - run->first];
+  int slab = sheet - 1 - run->first;
+  patch_bundle b = {.sweep = sweep, .sheets = sheets, .tile = tile, .patch = patch, .first = sheet - 1, .slabs = run->end - sheet};
+  for (int i = 0; i < b.slabs; i++) b.near[i] = more & run->near.blocks[slab + i];
   fill_sheets(&b);
-  for (int i = 0; i < b.slabs; i++) run->shows[b.first + i - run->first] |= (uint16_t)(b.near[i] & (showing_on(&b, i) | showing_on(&b, i + 1)));
+  for (int i = 0; i < b.slabs; i++)
+    run->shows[slab + i] |= (uint16_t)(b.near[i] & (showing_on(&b, i) | showing_on(&b, i + 1)));
   run->filled = (uint16_t)(run->filled | more);
   return b.pixels;
 }
 
 uint32_t hl_patch_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
   patch_run *run = &sheets->patch_runs[patch];
-  int first = first_of_run(sheet), slab = sheet - 1 - first;
+  int first = first_of_run(sheet), slab = sheet - 1 - first, end = end_of_bundle(sheets, sheet);
   if (run->first != first) *run = (patch_run){.first = first};
+  if (run->end != end) run->filled = 0;
+  run->end = end;
   look_near(sweep, sheets, tile, patch, need, run);
-  bool filled = run->end == end_of_bundle(sheets, sheet) && (need & ~(uint32_t)run->filled) == 0;
+  bool filled = (need & ~(uint32_t)run->filled) == 0;
   return need & (filled ? run->shows[slab] : run->near.blocks[slab]);
 }
 
@@ -257,7 +256,8 @@ patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, s
                          uint64_t *pixels) {
   patch_run *run = &sheets->patch_runs[patch];
   int slab = sheet - 1 - run->first;
-  *pixels += fill_bundle(sweep, sheets, tile, patch, sheet, need, run);
+  uint32_t more = need & ~(uint32_t)run->filled;
+  if (more != 0) *pixels += fill_bundle(sweep, sheets, tile, patch, sheet, more, run);
   bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
   bool whole = run->near.whole >> slab & 1;
   const float *enter = !cut ? NULL : whole ? sheets->entries : entries_of(sweep, sheets, tile, patch);

@@ -38,8 +38,8 @@ typedef struct fill_source {
  * the way to another density above it. */
 typedef struct filled_blocks { uint32_t filled, showing; } filled_blocks;
 
-/* Fills density[16][16] (block, lane) for the blocks in need, and for the others that the cells around their points let show
- * something (cell_bits.h); what is left is left alone. */
+/* Fills density[16][16] (block, lane) for the blocks in need, and for those of some others that the cells around their points
+ * let show something (cell_bits.h); what is left is left alone. */
 typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others,
                                          float *density);
 

@@ -183,8 +183,7 @@ LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, 
 }
 
 static filled_blocks gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others, float *density) {
-  if (!source->grid->cell_bits_tell) need |= others;
-  others &= ~need;
+  if (!source->grid->cell_bits_tell) need |= others, others = 0;
   if (tile_is_inside(source, tile_x * TILE, tile_y * TILE)) return gather_blocks(source, tile_x, tile_y, need, others, 1, density);
   return gather_blocks(source, tile_x, tile_y, need, others, 0, density);
 }

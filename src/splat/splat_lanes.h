@@ -75,7 +75,7 @@ static filled_blocks splat_tile(const fill_source *source, int tile_x, int tile_
   const voxel_lists *lists = source->lists;
   tile_place tile;
   place_tile(source, tile_x, tile_y, &tile);
-  for (uint32_t left = others & ~need; left != 0; left &= left - 1) {
+  for (uint32_t left = others; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
     if (!source->grid->cell_bits_tell || cells_show(source->grid, tile.block[block].cell)) need |= 1u << block;
   }

@@ -12,7 +12,7 @@ enum { SIDE = 23, ROUNDS = 120, SHEETS = 5, TILES = 3 };
 
 typedef struct marks { bool at[TILES][TILES][SHEETS]; } marks;
 
-/* What a brick touches; more: by so many pixels and sheets beyond. */
+/* What a brick touches, so many pixels and sheets around it included. */
 static void mark(const bench *bench, const footprint_map *map, uint32_t brick, double pixels, double sheets, marks *marks) {
   int32_t place[3];
   double centre[3], half[3];
@@ -24,8 +24,9 @@ static void mark(const bench *bench, const footprint_map *map, uint32_t brick, d
     for (int x = 0; x < TILES; x++)
       for (int k = 0; k < SHEETS; k++) {
         double height = hl_sheet_height(&bench->sheets, k), reach = sheets * bench->sheets.spacing;
-        if (bounds.low[0] - pixels < (x + 1) * TILE && bounds.high[0] + pixels >= x * TILE && bounds.low[1] - pixels < (y + 1) * TILE &&
-            bounds.high[1] + pixels >= y * TILE && bounds.low_height - reach <= height && bounds.high_height + reach >= height)
+        if (bounds.low[0] - pixels < (x + 1) * TILE && bounds.high[0] + pixels >= x * TILE &&
+            bounds.low[1] - pixels < (y + 1) * TILE && bounds.high[1] + pixels >= y * TILE &&
+            bounds.low_height - reach <= height && bounds.high_height + reach >= height)
           marks->at[y][x][k] = true;
       }
 }
@@ -55,14 +56,9 @@ static void open_grid(bench *bench, uint8_t *voxels) {
   memset(voxels, 0, SIDE * SIDE * SIDE);
   uint32_t seed = 4;
   for (int i = 0; i < 9; i++) voxels[(size_t)(bench_random(&seed) * SIDE * SIDE * SIDE)] = 255;
-  bench_open(bench, (size_t[3]){SIDE, SIDE, SIDE}, HL_STORAGE_U8, voxels,
-             mat3_from_columns((vec3){1, 0.1, 0}, (vec3){-0.2, 1.3, 0.1}, (vec3){0.1, 0.15, 0.8}));
+  bench_open(bench, (size_t[3]){SIDE, SIDE, SIDE}, HL_STORAGE_U8, voxels, bench_oblique_axes());
   static const hl_opacity_point ramp[] = {{20, 0}, {40, 0.9}};
-  hl_classifier_release(bench->context, &bench->classifier);
-  bench->scene.transfer_function.opacity = ramp;
-  bench->scene.transfer_function.opacity_count = 2;
-  assert_int_equal(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, NULL), HL_OK);
-  hl_grid_mark_relevant(&bench->grid, &hl_hot_scalar.grid, &bench->classifier, bench->pool);
+  bench_show(bench, ramp, 2);
 }
 
 static void test_bricks_mark_what_they_touch(void **state) {
@@ -76,8 +72,7 @@ static void test_bricks_mark_what_they_touch(void **state) {
   for (int round = 0; round < ROUNDS; round++) {
     /* in parallel, from outside, from within, and from afar */
     static const double distances[] = {0, 40, 5, 1e5}, pixels[] = {0.5, 0.1, 2};
-    vec3 direction = bench_random_direction(&seed);
-    vec3 normal = vec3_normalise(vec3_add(direction, vec3_scale(bench_random_direction(&seed), 0.8)));
+    vec3 direction = bench_random_direction(&seed), normal = bench_random_normal(direction, &seed);
     bench_look(&bench, direction, normal, pixels[round % 3], distances[round % 4], HL_KERNEL_BSPLINE);
     occupancy o = {0};
     assert_int_equal(hl_occupancy_build(bench.context, bench.pool, &bench.grid, 1, &bench.view, &bench.sheets, round % 2 ? 1.0 : 0.3,

@@ -25,6 +25,14 @@ vec3 bench_random_direction(uint32_t *state) {
   }
 }
 
+vec3 bench_random_normal(vec3 direction, uint32_t *state) {
+  return vec3_normalise(vec3_add(direction, vec3_scale(bench_random_direction(state), 0.8)));
+}
+
+mat3 bench_oblique_axes(void) {
+  return mat3_from_columns((vec3){1, 0.1, 0}, (vec3){-0.2, 1.3, 0.1}, (vec3){0.1, 0.15, 0.8});
+}
+
 static void require(hl_status status, const hl_error *error) {
   if (status != HL_OK) fail_msg("%s", error->message);
 }
@@ -58,6 +66,15 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
                          hl_scene_volume_empty_value(&bench->scene), &bench->grid, &error), &error);
   require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error), &error);
   hl_grid_mark_relevant(&bench->grid, &hl_hot_functions(hl_cpu_best_instruction_set())->grid, &bench->classifier, bench->pool);
+}
+
+void bench_show(bench *bench, const hl_opacity_point *opacity, size_t count) {
+  hl_error error = {0};
+  hl_classifier_release(bench->context, &bench->classifier);
+  bench->scene.transfer_function.opacity = opacity;
+  bench->scene.transfer_function.opacity_count = count;
+  require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error), &error);
+  hl_grid_mark_relevant(&bench->grid, &hl_hot_scalar.grid, &bench->classifier, bench->pool);
 }
 
 void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double distance, hl_kernel which) {

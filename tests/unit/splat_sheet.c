@@ -15,15 +15,9 @@ static void assert_near(double value, double expected, double tolerance) {
     fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
 }
 
-/* Anisotropic and askew, but not degenerate. */
-static mat3 oblique_axes(void) {
-  return mat3_from_columns((vec3){1, 0.1, 0}, (vec3){-0.2, 1.3, 0.1}, (vec3){0.1, 0.15, 0.8});
-}
-
 /* A view and a slicing normal at most about 50 degrees from it; every third one in perspective. */
 static void look_at_random(bench *bench, uint32_t *seed, int round, double pixel, hl_kernel which) {
-  vec3 direction = bench_random_direction(seed);
-  vec3 normal = vec3_normalise(vec3_add(direction, vec3_scale(bench_random_direction(seed), 0.8)));
+  vec3 direction = bench_random_direction(seed), normal = bench_random_normal(direction, seed);
   bench_look(bench, direction, normal, pixel, round % 3 == 2 ? 15 : 0, which);
 }
 
@@ -64,7 +58,7 @@ static void check_known(expected_function *expected, double margin, double toler
   static float voxels[N * N * N], sheet[SIDE][SIDE];
   for (int i = 0; i < N * N * N; i++) voxels[i] = (float)expected((vec3){i % N, i / N % N, i / N / N});
   bench bench;
-  bench_open(&bench, (size_t[3]){N, N, N}, HL_STORAGE_F32, voxels, oblique_axes());
+  bench_open(&bench, (size_t[3]){N, N, N}, HL_STORAGE_F32, voxels, bench_oblique_axes());
   uint32_t seed = 7 + (uint32_t)which;
   long checked = 0;
   for (int round = 0; round < ORIENTATIONS; round++) {
@@ -114,7 +108,7 @@ static void check_agreement(const size_t n[3], hl_storage storage, uint32_t seed
   const void *voxels = storage == HL_STORAGE_U8 ? (void *)u8 : storage == HL_STORAGE_U16 ? (void *)u16 : (void *)f32;
   double scale = storage == HL_STORAGE_U8 ? 255 : storage == HL_STORAGE_U16 ? 65535 : 1;
   bench bench;
-  bench_open(&bench, n, storage, voxels, oblique_axes());
+  bench_open(&bench, n, storage, voxels, bench_oblique_axes());
   for (int round = 0; round < 9; round++) {
     hl_kernel which = (hl_kernel)(round % 3);
     look_at_random(&bench, &seed, round / 3, 0.35, which);
@@ -143,7 +137,7 @@ static void test_other_blocks_are_left_alone(void **state) {
   static uint8_t voxels[8 * 8 * 8];
   for (int i = 0; i < 512; i++) voxels[i] = (uint8_t)(i * 37 + 1);
   bench bench;
-  bench_open(&bench, (size_t[3]){8, 8, 8}, HL_STORAGE_U8, voxels, oblique_axes());
+  bench_open(&bench, (size_t[3]){8, 8, 8}, HL_STORAGE_U8, voxels, bench_oblique_axes());
   bench_look(&bench, (vec3){0, 0, 1}, (vec3){0, 0, 1}, 0.2, 0, HL_KERNEL_BSPLINE);
   fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, 2);
   for (int way = 0; way < 2; way++) {
@@ -176,7 +170,7 @@ static void test_cells_bound_the_reconstruction(void **state) {
   static float sheet[SIDE][SIDE];
   fill_noise(voxels, 71);
   bench bench;
-  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, oblique_axes());
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, bench_oblique_axes());
   const grid *grid = &bench.grid;
   uint32_t seed = 5;
   double width = 0;
@@ -279,7 +273,7 @@ static void test_cells_are_what_their_voxels_say(void **state) {
       voxels[v] = grainy && bench_random(&seed) < 0.1 ? (uint8_t)(256 * bench_random(&seed)) : full ? 200 : 7;
     }
     bench bench;
-    bench_open(&bench, size, HL_STORAGE_U8, voxels, oblique_axes());
+    bench_open(&bench, size, HL_STORAGE_U8, voxels, bench_oblique_axes());
     hl_classifier_release(bench.context, &bench.classifier);
     hl_grid_release(bench.context, &bench.grid);
     bench.scene.transfer_function.opacity = ramp;
@@ -392,16 +386,12 @@ static void open_bits(bench *bench, const size_t size[3], int which, bool fallin
     if (storage == HL_STORAGE_U16) ((uint16_t *)voxels)[v] = (uint16_t)value;
     if (storage == HL_STORAGE_F32) ((float *)voxels)[v] = (float)(value - 0.5);
   }
-  bench_open(bench, size, storage, voxels, oblique_axes());
-  hl_classifier_release(bench->context, &bench->classifier);
+  bench_open(bench, size, storage, voxels, bench_oblique_axes());
   double low = bench->scene.volume->minimum, high = bench->scene.volume->maximum;
   if (falling) bench->grid.value_scale = -1, bench->grid.value_offset = low + high;
   ramp[0] = (hl_opacity_point){low + 0.55 * (high - low), 0};
   ramp[1] = (hl_opacity_point){low + 0.6 * (high - low), 0.9};
-  bench->scene.transfer_function.opacity = ramp;
-  bench->scene.transfer_function.opacity_count = 2;
-  assert_int_equal(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, NULL), HL_OK);
-  hl_grid_mark_relevant(&bench->grid, &hl_hot_scalar.grid, &bench->classifier, bench->pool);
+  bench_show(bench, ramp, 2);
 }
 
 static void test_bits_are_what_cells_can_show(void **state) {
@@ -432,12 +422,8 @@ static void test_relevant_blocks_miss_nothing(void **state) {
   static float sheet[SIDE][SIDE];
   fill_noise(voxels, 72);
   bench bench;
-  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, oblique_axes());
-  hl_classifier_release(bench.context, &bench.classifier);
-  bench.scene.transfer_function.opacity = ramp;
-  bench.scene.transfer_function.opacity_count = 2;
-  assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL), HL_OK);
-  hl_grid_mark_relevant(&bench.grid, &hl_hot_scalar.grid, &bench.classifier, bench.pool);
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, bench_oblique_axes());
+  bench_show(&bench, ramp, 2);
   uint32_t seed = 6;
   long shown = 0, left_out = 0, left_out_by_bits = 0;
   assert_true(bench.grid.cell_bits_tell);
@@ -479,7 +465,7 @@ static void test_whole_slabs_are_not_cut(void **state) {
   static uint8_t voxels[NOISE_SIDE * NOISE_SIDE * NOISE_SIDE];
   fill_noise(voxels, 73);
   bench bench;
-  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, oblique_axes());
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, bench_oblique_axes());
   uint32_t seed = 8;
   long whole = 0, cut = 0;
   for (int round = 0; round < 2 * ORIENTATIONS; round++) {
