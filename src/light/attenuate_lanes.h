@@ -11,7 +11,7 @@ static const float DARK = 1.0f / 1024;
 
 /* Lanes whose sheet does not lie behind the view's origin by more than `reach`, a height. */
 LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach) {
-  return climb * rays->step + lanes_abs(climb) * reach > 0.0f;
+  return lanes_add_scaled(climb * rays->step, lanes_abs(climb), reach) > 0.0f;
 }
 
 /* Length of the rays' way through one sheet: spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|); 0 behind the
@@ -19,8 +19,8 @@ LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach
 LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
   if (!rays->perspective) return lanes_set(path);
   lanes3 w = rays_directions(rays, u, v);
-  lanes climb = u * rays->hu + (v * rays->hv + rays->h0);
-  lanes length = lanes_sqrt(w.x * w.x + w.y * w.y + w.z * w.z) / lanes_abs(climb) * path;
+  lanes climb = rays_climb(rays, u, v);
+  lanes length = lanes_sqrt(dot3(w, w)) / lanes_abs(climb) * path;
   return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
@@ -48,8 +48,8 @@ static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], i
 /* Density runs linearly through the slab: the ends of its covered part in the tables. */
 LANES_INLINE void cut_way(covered_part part, table_place *a, table_place *b) {
   lanes from = a->x, way = b->x - a->x;
-  *a = place_of_coordinate(from + way * part.begin);
-  *b = place_of_coordinate(from + way * lanes_min(part.begin + part.length, lanes_set(1.0f)));
+  *a = place_of_coordinate(lanes_fma(way, part.begin, from));
+  *b = place_of_coordinate(lanes_fma(way, lanes_min(part.begin + part.length, lanes_set(1.0f)), from));
 }
 
 typedef struct attenuated_block { int taken, lit; } attenuated_block;
@@ -67,7 +67,7 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     covered_part part = covered_block(volume->enter, volume->leave, volume->whole, block, job->height, job->spacing);
     if (volume->enter != NULL) cut_way(part, &a, &b);
     lanes extinction = sums_of_way(volume->classifier, a, b).extinction * part.length;
-    for (int c = 0; c < channels; c++) depth[c] = depth[c] + extinction * volume->weight[c];
+    for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
   }
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
   if (lanes_bits(any > 0.0f) == 0) return (attenuated_block){0, 1};
@@ -82,7 +82,7 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     greatest = lanes_max(greatest, after);
     if (job->moment[c] == NULL) continue;
     float *moment = job->moment[c] + (size_t)y * job->moment_stride + x;
-    lanes_store_block(moment, job->moment_stride, lanes_load_block(moment, job->moment_stride) + (before - after) * job->place);
+    lanes_store_block(moment, job->moment_stride, lanes_add_scaled(lanes_load_block(moment, job->moment_stride), before - after, job->place));
   }
   return (attenuated_block){1, lanes_bits(greatest >= DARK) != 0};
 }

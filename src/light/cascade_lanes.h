@@ -32,7 +32,7 @@ LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
 LANES_INLINE int is_above_zero(lanes greatest) { return lanes_bits(greatest + 0.5f >= 1.0f) != 0; }
 
 /* What thin matter leaves. */
-LANES_INLINE lanes left_by(const field_pixel *thin) { return 1.0f - lanes_load_short(thin) * (1.0f / FIELD_ONE); }
+LANES_INLINE lanes left_by(const field_pixel *thin) { return lanes_line(lanes_load_short(thin), -1.0f / FIELD_ONE, 1.0f); }
 
 /* What is left of the light where so much is lacking: from twice UMBRA on all of it. */
 LANES_INLINE lanes light_left(const field_pixel *lacking) {
@@ -45,7 +45,14 @@ LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) 
   lanes_int ends = lanes_load_short_int(from - (box->reach + 1)) + lanes_load_short_int(from + (box->reach + 1));
   lanes_int sum = lanes_load_short_int(from);
   for (int i = 1; i <= box->reach; i++) sum = sum + (lanes_load_short_int(from - i) + lanes_load_short_int(from + i));
-  return (lanes_from_int(sum) + lanes_from_int(ends) * box->edge) * box->scale;
+  return lanes_add_scaled(lanes_from_int(sum), lanes_from_int(ends), box->edge) * box->scale;
+}
+
+/* a + (1 - thin) b at a row of a tile; fields may be null: 0. */
+LANES_INLINE lanes left_and_a(lanes b, const field_pixel *thin, const field_pixel *a, size_t at) {
+  if (a == NULL) return thin == NULL ? b : b * left_by(thin + at);
+  lanes more = lanes_load_short(a + at);
+  return thin == NULL ? b + more : lanes_fma(b, left_by(thin + at), more);
 }
 
 static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
@@ -61,18 +68,15 @@ static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
   lanes greatest = lanes_set(0);
   for (int row = 0; row < count; row++, at += job->stride) {
     lanes blurred = blur_sixteen(rows + (row + apron) * TILE, TILE, &job->v);
-    if (job->thin != NULL) blurred = blurred * left_by(job->thin + at);
-    store_pixels(job->to + at, job->a == NULL ? blurred : blurred + lanes_load_short(job->a + at), &greatest);
+    store_pixels(job->to + at, left_and_a(blurred, job->thin, job->a, at), &greatest);
   }
   return is_above_zero(greatest);
 }
 
 /* a + (1 - thin) b; b and thin may be null: 0. */
 LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
-  lanes a = lanes_load_short(job->a + at);
-  if (job->b == NULL) return a;
-  lanes b = lanes_load_short(job->b + at);
-  return a + (job->thin == NULL ? b : b * left_by(job->thin + at));
+  if (job->b == NULL) return lanes_load_short(job->a + at);
+  return left_and_a(lanes_load_short(job->b + at), job->thin, job->a, at);
 }
 
 static int add_tile(const field_job *job, int tile_x, int tile_y) {
@@ -114,10 +118,10 @@ static int add_half_tile(const field_job *job, int tile_x, int tile_y) {
 LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x, int y) {
   const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
   const field_pixel *far = y & 1 ? near + stride : near - stride;
-  lanes coarse = 0.75f * lanes_load_short(near) + 0.25f * lanes_load_short(far); /* from the pixel before the tile's first */
+  lanes coarse = lanes_add_scaled(0.25f * lanes_load_short(far), lanes_load_short(near), 0.75f); /* from the pixel before the tile's first */
   lanes own = __builtin_shufflevector(coarse, coarse, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8);
   lanes other = __builtin_shufflevector(coarse, coarse, 0, 2, 1, 3, 2, 4, 3, 5, 4, 6, 5, 7, 6, 8, 7, 9);
-  return 0.75f * own + 0.25f * other;
+  return lanes_add_scaled(0.25f * other, own, 0.75f);
 }
 
 static int add_double_tile(const field_job *job, int tile_x, int tile_y) {
@@ -127,9 +131,7 @@ static int add_double_tile(const field_job *job, int tile_x, int tile_y) {
   lanes greatest = lanes_set(0);
   for (int y = tile_y * TILE + job->rows.first; y < tile_y * TILE + job->rows.end; y++) {
     size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
-    lanes fine = double_row(job->b, job->stride_in, tile_x, y);
-    if (job->thin != NULL) fine = fine * left_by(job->thin + at);
-    store_pixels(job->to + at, job->a == NULL ? fine : lanes_load_short(job->a + at) + fine, &greatest);
+    store_pixels(job->to + at, left_and_a(double_row(job->b, job->stride_in, tile_x, y), job->thin, job->a, at), &greatest);
   }
   return is_above_zero(greatest);
 }
@@ -149,7 +151,7 @@ LANES_INLINE void weigh_rows(const image_job *job, const float *from, lanes sum[
   for (int tap = 0; tap < job->count; tap++) {
     const float *at = from + job->offset[tap];
     for (int row = 0; row < IMAGE_ROWS; row++)
-      sum[row] = sum[row] + lanes_load(at + (size_t)row * job->stride) * job->weight[tap];
+      sum[row] = lanes_add_scaled(sum[row], lanes_load(at + (size_t)row * job->stride), job->weight[tap]);
   }
 }
 
@@ -158,7 +160,7 @@ LANES_INLINE void weigh_field_rows(const field_image_job *job, const field_pixel
   for (int tap = 0; tap < job->count; tap++) {
     const field_pixel *at = from + job->offset[tap];
     for (int row = 0; row < IMAGE_ROWS; row++)
-      sum[row] = sum[row] + lanes_load_short(at + (size_t)row * job->stride) * job->weight[tap];
+      sum[row] = lanes_add_scaled(sum[row], lanes_load_short(at + (size_t)row * job->stride), job->weight[tap]);
   }
 }
 
@@ -171,8 +173,8 @@ static int field_image_tile(const field_image_job *job, int tile_x, int tile_y) 
     weigh_field_rows(job, job->thin + at, thin);
     for (int i = 0; i < IMAGE_ROWS; i++) {
       field_pixel *to = job->to + at + (size_t)i * job->stride;
-      lanes left = lanes_max(1.0f - thin[i] * (1.0f / FIELD_ONE), lanes_set(0));
-      store_pixels(to, sum[i] + lanes_load_short(to) * left, &greatest);
+      lanes left = lanes_max(lanes_line(thin[i], -1.0f / FIELD_ONE, 1.0f), lanes_set(0));
+      store_pixels(to, lanes_fma(lanes_load_short(to), left, sum[i]), &greatest);
     }
   }
   return is_above_zero(greatest);
@@ -205,9 +207,9 @@ LANES_INLINE parted_matter part_matter(lanes absorbed, lanes thin, lanes late) {
     to.thin[0] = 1.0f - lanes_exp2(depth * (1.0f - late));
     to.thin[1] = 1.0f - lanes_exp2(depth * late);
   }
-  lanes solid = (absorbed - thin) / lanes_max(late + (1.0f - to.thin[1]) * (1.0f - late), lanes_set(1e-3f));
-  to.absorbed[0] = solid * (1.0f - late) + to.thin[0];
-  to.absorbed[1] = solid * late + to.thin[1];
+  lanes solid = (absorbed - thin) / lanes_max(lanes_fma(1.0f - to.thin[1], 1.0f - late, late), lanes_set(1e-3f));
+  to.absorbed[0] = lanes_fma(solid, 1.0f - late, to.thin[0]);
+  to.absorbed[1] = lanes_fma(solid, late, to.thin[1]);
   return to;
 }
 
@@ -253,13 +255,13 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     lanes place = lanes_clamp(lanes_load(job->moment + at) / lanes_max(taken * job->length, lanes_set(1e-6f)), 0, 1.0f);
     lanes solid = lanes_clamp((part - THIN_MATTER) * (1.0f / (SOLID_MATTER - THIN_MATTER)), 0, 1.0f);
     lanes thin = part * (1.0f - solid);
-    parted_matter to = part_matter(taken * solid + thin, thin, place);
+    parted_matter to = part_matter(lanes_fma(taken, solid, thin), thin, place);
     lanes_store(job->moment + at, lanes_set(0));
     store_part(job->end_absorbed + at, to.absorbed[1], &end[0]);
     store_part(job->end_thin + at, to.thin[1], &end[1]);
     lanes left = 1.0f - to.thin[0];
-    store_part(job->start_absorbed + at, to.absorbed[0] + load_part(job->start_absorbed + at) * left, &start[0]);
-    store_part(job->start_thin + at, to.thin[0] + load_part(job->start_thin + at) * left, &start[1]);
+    store_part(job->start_absorbed + at, lanes_fma(load_part(job->start_absorbed + at), left, to.absorbed[0]), &start[0]);
+    store_part(job->start_thin + at, lanes_fma(load_part(job->start_thin + at), left, to.thin[0]), &start[1]);
   }
   uint32_t to_start = (uint32_t)is_above_zero(start[0]) | (uint32_t)is_above_zero(start[1]) << 1;
   return to_start | (uint32_t)is_above_zero(end[0]) << 2 | (uint32_t)is_above_zero(end[1]) << 3;

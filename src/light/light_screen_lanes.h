@@ -7,7 +7,8 @@
 
 /* How far within the screen's two edges of one axis a place is: 0 to 1 over one pixel of the picture, or over more. */
 LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
-  return lanes_clamp(u * sharpness + 0.5f, 0, 1) * lanes_clamp((size - u) * sharpness + 0.5f, 0, 1);
+  lanes half = lanes_set(0.5f);
+  return lanes_clamp(lanes_fma(u, sharpness, half), 0, 1) * lanes_clamp(lanes_fma(size - u, sharpness, half), 0, 1);
 }
 
 /* One axis of a bilinear lookup: the two pixels, held at the image's borders, and the way between them. */
@@ -30,8 +31,8 @@ LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u
   for (int c = 0; c < 3; c++) {
     lanes a = lanes_gather(pixels + c, at[0]), b = lanes_gather(pixels + c, at[1]);
     lanes d = lanes_gather(pixels + c, at[2]), e = lanes_gather(pixels + c, at[3]);
-    lanes upper = a + (b - a) * x.part, lower = d + (e - d) * x.part;
-    color[c] = upper + (lower - upper) * y.part;
+    lanes upper = lanes_fma(b - a, x.part, a), lower = lanes_fma(e - d, x.part, d);
+    color[c] = lanes_fma(lower - upper, y.part, upper);
   }
 }
 
@@ -44,7 +45,7 @@ LANES_INLINE void sharp_pattern(const light_screen *screen, lanes blur, lanes u,
   if (lanes_bits(inside > 0.0f) == 0) return;
   lanes color[3];
   read_image(screen->pixels, screen->width, screen->height, u, v, color);
-  for (int c = 0; c < 3; c++) pattern[c] = pattern[c] + color[c] * inside;
+  for (int c = 0; c < 3; c++) pattern[c] = lanes_fma(color[c], inside, pattern[c]);
 }
 
 /* The mean of the two levels whose variances are around the sample's, variance being linear in their weights. Below the
@@ -65,17 +66,15 @@ LANES_INLINE void soft_pattern(const light_screen *screen, lanes blur, lanes u, 
     if (lanes_bits(weight > 0.0f) == 0) continue;
     const screen_level *at = &screen->level[l];
     lanes color[3];
-    read_image(at->pixels, at->width, at->height, u * at->scale[0] + at->shift[0], v * at->scale[1] + at->shift[1], color);
-    for (int c = 0; c < 3; c++) pattern[c] = pattern[c] + color[c] * weight;
+    read_image(at->pixels, at->width, at->height, lanes_line(u, at->scale[0], at->shift[0]), lanes_line(v, at->scale[1], at->shift[1]), color);
+    for (int c = 0; c < 3; c++) pattern[c] = lanes_fma(color[c], weight, pattern[c]);
   }
 }
 
 /* light_color(x) of eq. (2) at samples of frame space. */
 LANES_INLINE void screen_pattern(const light_screen *screen, lanes3 position, lanes pattern[3]) {
   lanes place[3];
-  for (int row = 0; row < 3; row++)
-    place[row] = position.x * screen->map[row][0] + position.y * screen->map[row][1] +
-                 (position.z * screen->map[row][2] + screen->map[row][3]);
+  for (int row = 0; row < 3; row++) place[row] = row_of_point(screen->map[row], position);
   lanes_int in_front = place[0] > 0.0f;
   lanes safe = lanes_select(in_front, place[0], lanes_set(1.0f)), u = place[1] / safe, v = place[2] / safe;
   lanes ahead = lanes_keep(in_front, lanes_set(1.0f));
@@ -84,8 +83,7 @@ LANES_INLINE void screen_pattern(const light_screen *screen, lanes3 position, la
     sharp_pattern(screen, lanes_set(0), u, v, ahead, pattern);
     return;
   }
-  lanes beyond = position.x * screen->beyond[0] + position.y * screen->beyond[1] +
-                 (position.z * screen->beyond[2] + screen->beyond[3]);
+  lanes beyond = row_of_point(screen->beyond, position);
   lanes blur = screen->parallel ? lanes_abs(beyond) : lanes_abs(1.0f - 1.0f / lanes_max(safe, lanes_set(0.05f)));
   soft_pattern(screen, blur, u, v, ahead, pattern);
 }

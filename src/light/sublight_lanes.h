@@ -14,7 +14,7 @@ enum { EVERY_ROW = (1 << TILE) - 1, EVERY_COLUMN = EVERY_ROW };
 
 /* In the middle of the two inner ones, within what a transmittance can be. */
 LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
-  return lanes_clamp((b + c) * 0.625f - (a + d) * 0.125f, 0, 1);
+  return lanes_clamp(lanes_add_scaled((a + d) * -0.125f, b + c, 0.625f), 0, 1);
 }
 
 LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
@@ -94,7 +94,7 @@ LANES_INLINE lanes slab_row(const row_taps *taps, const float *const images[2]) 
   lanes sum = lanes_set(0);
   for (int i = 0; i < taps->count; i++) {
     int half = taps->first + i;
-    sum = sum + lanes_load(images[half & 1] + (half >> 1)) * taps->weight[i];
+    sum = lanes_fma(lanes_load(images[half & 1] + (half >> 1)), taps->weight[i], sum);
   }
   return sum;
 }

@@ -14,14 +14,14 @@ LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density 
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
-    sum = add3(sum, scale3(d->normal, d->extinction * inverse * d->surface));
+    sum = add_scaled3(sum, d->normal, d->extinction * inverse * d->surface);
   }
   return sum;
 }
 
 /* Distance along the eye's rays. */
 LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3 position) {
-  lanes3 way = add3(position, scale3(set3(job->eye), lanes_set(-1.0f)));
+  lanes3 way = add_scaled3(position, set3(job->eye), lanes_set(-1.0f));
   return -dot3(way, slab->geometry.towards_eye);
 }
 
@@ -34,7 +34,7 @@ LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block
   lanes missing = lanes_log2((1.0f - before) * (1.0f / (1.0f - FIRST_OPACITY))) * 0.69314718056f;
   lanes u = lanes_clamp(missing / lanes_max(slab->depth, lanes_set(1e-30f)), 0, 1);
   lanes place = place_of_part(densities, count, slab->total, u);
-  lanes3 position = add3(slab->geometry.start, scale3(slab->geometry.step_sheet, place));
+  lanes3 position = add_scaled3(slab->geometry.start, slab->geometry.step_sheet, place);
   lanes_store(first, lanes_select(crossed, depth_of(job, slab, position), lanes_load(first)));
 }
 

@@ -13,7 +13,7 @@ typedef struct color_lanes { lanes c[3]; } color_lanes;
 typedef struct mean_transmittance { lanes over, under; } mean_transmittance;
 
 LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
-  lanes near = 1.0f - x * (0.5f - x * (1.0f / 6));
+  lanes near = lanes_fma(-x, lanes_line(x, -1.0f / 6, 0.5f), lanes_set(1.0f));
   lanes_int thin = x < 0.01f;
   return (mean_transmittance){lanes_select(thin, near, 1.0f - left), lanes_select(thin, lanes_set(1.0f), x)};
 }
@@ -55,8 +55,7 @@ LANES_INLINE shadow_taps taps_of_place(const shadow_map *map, int nearest, lanes
 
 LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow_map *map, lanes3 position) {
   lanes place[3];
-  for (int row = 0; row < 3; row++)
-    place[row] = position.x * map->rows[row][0] + position.y * map->rows[row][1] + (position.z * map->rows[row][2] + map->rows[row][3]);
+  for (int row = 0; row < 3; row++) place[row] = row_of_point(map->rows[row], position);
   if (light->parallel) return taps_of_place(map, light->nearest, place[1], place[2]); /* place[0] is 1 everywhere */
   lanes_int ahead = place[0] > 0.0f;
   lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
@@ -65,8 +64,8 @@ LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow
 
 /* Between the pixels a b and, in the next row, c d; `beyond` outside the buffer. */
 LANES_INLINE lanes between_taps(const shadow_taps *taps, lanes a, lanes b, lanes c, lanes d, float beyond) {
-  lanes top = a + (b - a) * taps->fx, bottom = c + (d - c) * taps->fx;
-  return lanes_select(taps->inside, top + (bottom - top) * taps->fy, lanes_set(beyond));
+  lanes top = lanes_fma(b - a, taps->fx, a), bottom = lanes_fma(d - c, taps->fx, c);
+  return lanes_select(taps->inside, lanes_fma(bottom - top, taps->fy, top), lanes_set(beyond));
 }
 
 LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const float *buffer) {
@@ -89,7 +88,7 @@ LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position
     const part_lookup *part = &light->parts[i];
     shadow_taps taps = taps_of_position(light, &part->map, position);
     for (int c = 0; c < light->channels; c++)
-      sum.c[c] = sum.c[c] + look_up_part(&part->map, &taps, part->left[c]) * part->weight[c];
+      sum.c[c] = lanes_add_scaled(sum.c[c], look_up_part(&part->map, &taps, part->left[c]), part->weight[c]);
   }
   for (int c = 0; c < light->channels; c++) sum.c[c] = sum.c[c] / ((float)PART_ONE * (float)light->part_count);
   return sum;
@@ -119,14 +118,12 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
   ways_in_box ways = {lanes_set(1e30f), lanes_set(1e30f)};
   for (int axis = 0; axis < 3; axis++) {
     const float *row = volume->to_index[axis];
-    lanes at = start.x * row[0] + start.y * row[1] + (start.z * row[2] + row[3]);
-    lanes step = way.x * row[0] + way.y * row[1] + way.z * row[2];
-    lanes speed = towards.x * row[0] + towards.y * row[1] + towards.z * row[2];
+    lanes at = row_of_point(row, start), step = row_of_vector(row, way), speed = row_of_vector(row, towards);
     speed = lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
     lanes slowness = 1.0f / speed;
     lanes first = (lanes_select(speed > 0.0f, lanes_set(volume->high[axis]), lanes_set(volume->low[axis])) - at) * slowness;
     ways.first = lanes_min(ways.first, lanes_max(first, lanes_set(0)));
-    ways.last = lanes_min(ways.last, lanes_max(first - step * slowness, lanes_set(0)));
+    ways.last = lanes_min(ways.last, lanes_max(lanes_fma(-step, slowness, first), lanes_set(0)));
   }
   return ways;
 }
@@ -137,7 +134,7 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
 typedef struct light_depths { lanes before[HL_CHANNELS], within[HL_CHANNELS]; } light_depths;
 
 /* Where in the table a volume is seen. */
-LANES_INLINE lanes coordinate_seen(const block_density *d) { return d->before + (d->after - d->before) * d->seen; }
+LANES_INLINE lanes coordinate_seen(const block_density *d) { return lanes_fma(d->after - d->before, d->seen, d->before); }
 
 /* Even extinction of the light's way through the slab that has the right optical depth down to what is seen of a volume
  * (derived). The eye's ray may run along a surface that the light's crosses: a way s before the point seen, the
@@ -148,7 +145,7 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   if (lanes_bits(d->sloped) == 0) return d->sums.extinction;
   lanes late = lanes_min(d->seen / lanes_max(d->evenly, lanes_set(1e-3f)), lanes_set(4.0f));
   lanes seen = coordinate_seen(d);
-  lanes start = seen + dot3(d->slope, towards) * (way * classifier->scale);
+  lanes start = lanes_fma(dot3(d->slope, towards), way * classifier->scale, seen);
   way_sums sums = sums_of_way(classifier, place_of_coordinate(lanes_clamp(start, 0, CLASSIFIER_ENTRIES)),
                               place_of_coordinate(seen));
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
@@ -165,15 +162,16 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geom
     const covered_part *part = &d->way.part;
     lanes first = part->begin * path, last = (part->begin + part->length) * path;
     if (d->patch->enter != NULL && !d->patch->whole) {
-      ways_in_box ways = ways_of_light(volume, add3(g->start, scale3(g->step_sheet, part->begin)),
+      ways_in_box ways = ways_of_light(volume, add_scaled3(g->start, g->step_sheet, part->begin),
                                        scale3(g->step_sheet, part->length), towards);
       first = lanes_min(first, ways.first);
       last = lanes_max(lanes_min(last, ways.last), first);
     }
-    lanes extinction = extinction_towards(d, towards, first + (last - first) * d->seen);
+    lanes extinction = extinction_towards(d, towards, lanes_fma(last - first, d->seen, first));
     for (int c = 0; c < job->channels; c++) {
-      depths.before[c] = depths.before[c] + extinction * volume->cast[c] * first;
-      depths.within[c] = depths.within[c] + extinction * volume->cast[c] * (last - first);
+      lanes cast = extinction * volume->cast[c];
+      depths.before[c] = lanes_fma(cast, first, depths.before[c]);
+      depths.within[c] = lanes_fma(cast, last - first, depths.within[c]);
     }
   }
   return depths;
@@ -182,7 +180,7 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geom
 /* Brightness of a spot light: a smooth step over its cone's edge. */
 LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
   lanes x = lanes_clamp((-dot3(towards, set3(cone->axis)) - cone->outer) * cone->scale, 0, 1);
-  return x * x * (3.0f - 2.0f * x);
+  return x * x * lanes_line(x, -2.0f, 3.0f);
 }
 
 /* The share of a light's sector (light_sector.h). */
@@ -190,7 +188,7 @@ LANES_INLINE lanes share_of_sector(const light_share *share, lanes3 towards) {
   lanes own = lanes_set(0), sum = lanes_set(1e-30f);
   for (int i = 0; i < share->count; i++) {
     lanes above = lanes_max(-dot3(towards, set3(share->axis[i])) - share->least, lanes_set(0));
-    sum = sum + above * above;
+    sum = lanes_fma(above, above, sum);
     if (i == share->sector) own = above * above;
   }
   return own / sum;
@@ -266,11 +264,11 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
     if (lights[i].dark) continue;
     const color_lanes *intensity = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full;
     lanes facing = dot3(d->normal, lights[i].towards);
-    lanes diffuse = lanes_max(facing, lanes_set(0)) * volume->diffuse * d->surface + (1.0f - d->surface);
-    lanes3 mirrored = add3(scale3(d->normal, facing * 2.0f), scale3(lights[i].towards, lanes_set(-1.0f)));
+    lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface, 1.0f - d->surface);
+    lanes3 mirrored = add_scaled3(scale3(lights[i].towards, lanes_set(-1.0f)), d->normal, facing * 2.0f);
     lanes glint = power(dot3(g->towards_eye, mirrored), volume->shininess) * volume->specular * d->surface;
     glint = lanes_keep(facing > 0.0f, glint);
-    for (int c = 0; c < 3; c++) lit.c[c] = lit.c[c] + intensity->c[c] * (color.c[c] * diffuse + glint);
+    for (int c = 0; c < 3; c++) lit.c[c] = lanes_fma(intensity->c[c], lanes_fma(color.c[c], diffuse, glint), lit.c[c]);
   }
   return lit;
 }
@@ -282,9 +280,9 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   lanes keep = back_to_front ? 1.0f - opacity : lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     float *at = pixels + c * BLOCK_PIXELS;
-    lanes_store(at, lanes_load(at) * keep + lit.c[c] * weight);
+    lanes_store(at, lanes_fma(lit.c[c], weight, lanes_load(at) * keep));
   }
-  alpha = alpha * keep + weight;
+  alpha = lanes_fma(alpha, keep, weight);
   lanes_store(pixels + 3 * BLOCK_PIXELS, alpha);
   return alpha;
 }
@@ -303,7 +301,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geomet
     color_lanes lit = illuminate(job, d, g, lights, color);
     if (count == 1) return lit; /* its extinction is the total */
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
-    for (int c = 0; c < 3; c++) sum.c[c] = sum.c[c] + lit.c[c] * weight;
+    for (int c = 0; c < 3; c++) sum.c[c] = lanes_fma(lit.c[c], weight, sum.c[c]);
   }
   return sum;
 }

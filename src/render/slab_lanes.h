@@ -12,11 +12,6 @@
 /* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
 static const float OPAQUE = 1.0f - 1.0f / 2048;
 
-LANES_INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-LANES_INLINE lanes3 scale3(lanes3 a, lanes s) { return (lanes3){a.x * s, a.y * s, a.z * s}; }
-LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
-LANES_INLINE lanes3 set3(const float v[3]) { return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])}; }
-
 /* What the volumes share: where the pixels' rays are and how they look. */
 typedef struct block_geometry {
   lanes3 position;       /* frame space, in the slab: where it is lit */
@@ -38,7 +33,7 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
     return g;
   }
   lanes3 w = rays_directions(rays, u, v);
-  lanes climb = u * rays->hu + (v * rays->hv + rays->h0), inverse = 1.0f / climb, length = lanes_sqrt(dot3(w, w));
+  lanes climb = rays_climb(rays, u, v), inverse = 1.0f / climb, length = lanes_sqrt(dot3(w, w));
   lanes_int ahead = is_ahead(rays, climb, job->spacing * 0.5f); /* the rays end in the slab's middle */
   g.path = lanes_keep(ahead, length * lanes_abs(inverse) * job->path);
   g.step_sheet = scale3(w, inverse * job->spacing);
@@ -48,16 +43,11 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
 
 /* Step 12. df/dframe = (dindex/dframe)^T df/dindex, at a point of frame space; stored units. */
 LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t active, uint32_t starts) {
-  lanes at[3];
-  for (int axis = 0; axis < 3; axis++) {
-    const float *row = volume->to_index[axis];
-    at[axis] = point.x * row[0] + point.y * row[1] + (point.z * row[2] + row[3]);
-  }
-  lanes3 slope = slopes_at(volume->grid, volume->kernel, (lanes3){at[0], at[1], at[2]}, active, starts);
   const float(*m)[4] = volume->to_index;
-  return (lanes3){slope.x * m[0][0] + slope.y * m[1][0] + slope.z * m[2][0],
-                  slope.x * m[0][1] + slope.y * m[1][1] + slope.z * m[2][1],
-                  slope.x * m[0][2] + slope.y * m[1][2] + slope.z * m[2][2]};
+  lanes3 at = {row_of_point(m[0], point), row_of_point(m[1], point), row_of_point(m[2], point)};
+  lanes3 slope = slopes_at(volume->grid, volume->kernel, at, active, starts);
+  const float columns[3][4] = {{m[0][0], m[1][0], m[2][0], 0}, {m[0][1], m[1][1], m[2][1], 0}, {m[0][2], m[1][2], m[2][2], 0}};
+  return (lanes3){row_of_vector(columns[0], slope), row_of_vector(columns[1], slope), row_of_vector(columns[2], slope)};
 }
 
 /* One volume's way through the slab: its densities on the two sheets, and the part of the way that is in its box. */
@@ -122,8 +112,8 @@ LANES_INLINE lanes power_of_part(lanes base, lanes exponent) {
 LANES_INLINE lanes seen_part(lanes e, lanes left) {
   lanes_int thin = e < 0.05f;
   lanes lost = lanes_select(thin, lanes_set(1.0f), 1.0f - left);
-  lanes part = (lost - lanes_min(e, lanes_set(100.0f)) * left) / (lanes_max(e, lanes_set(0.05f)) * lost);
-  return lanes_select(thin, 0.5f - e * (1.0f / 12), part);
+  lanes part = lanes_fma(-lanes_min(e, lanes_set(100.0f)), left, lost) / (lanes_max(e, lanes_set(0.05f)) * lost);
+  return lanes_select(thin, lanes_line(e, -1.0f / 12, 0.5f), part);
 }
 
 /* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
@@ -143,9 +133,9 @@ LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes tota
     lanes t = power_of_part(lanes_select(rising, u, 1.0f - u),
                             lanes_min(m.from_a, m.from_b) / lanes_max(m.from_a, m.from_b));
     d->seen = lanes_select(rising, t, 1.0f - t);
-    lanes place = d->way.part.begin + d->way.part.length * d->seen;
+    lanes place = lanes_fma(d->way.part.length, d->seen, d->way.part.begin);
     if (count == 1) return place;
-    sum = sum + d->extinction * place;
+    sum = lanes_fma(d->extinction, place, sum);
   }
   return sum / lanes_max(total, lanes_set(1e-30f));
 }
@@ -171,7 +161,7 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_geometry *g, blo
     uint32_t active = volume->visible && (volume->phong || shadowed) ? lanes_bits(d->sloped) : 0;
     if (active == 0) d->sloped = lanes_set_int(0);
     else
-      d->slope = gradient(volume, add3(g->start, scale3(g->step_sheet, d->way.part.begin + d->way.part.length * d->seen)),
+      d->slope = gradient(volume, add_scaled3(g->start, g->step_sheet, lanes_fma(d->way.part.length, d->seen, d->way.part.begin)),
                           active, starts);
   }
 }
@@ -252,8 +242,8 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   lanes u = seen_part(slab->depth, slab->left);
   if (job->back_to_front) u = 1.0f - u;
   lanes seen_at = place_of_part(densities, count, slab->total, u);
-  g->start = add3(g->position, scale3(g->step_sheet, lanes_set(-0.5f)));
-  g->position = add3(g->start, scale3(g->step_sheet, seen_at));
+  g->start = add_scaled3(g->position, g->step_sheet, lanes_set(-0.5f));
+  g->position = add_scaled3(g->start, g->step_sheet, seen_at);
 }
 
 /* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which something is

@@ -14,14 +14,14 @@ LANES_INLINE table_place place_of_coordinate(lanes x) {
 }
 
 LANES_INLINE table_place classify_place(const classifier *classifier, lanes density) {
-  return place_of_coordinate(lanes_clamp(density * classifier->scale + classifier->offset, 0, CLASSIFIER_ENTRIES));
+  return place_of_coordinate(lanes_clamp(lanes_line(density, classifier->scale, classifier->offset), 0, CLASSIFIER_ENTRIES));
 }
 
 /* The values of a table's columns at a place. */
 LANES_INLINE void table_values(float (*table)[4], table_place place, lanes values[3]) {
   lanes a[3], b[3];
   lanes_gather_row_pairs(&table[0][0], place.entry, a, b);
-  for (int i = 0; i < 3; i++) values[i] = a[i] + (b[i] - a[i]) * place.fraction;
+  for (int i = 0; i < 3; i++) values[i] = lanes_fma(b[i] - a[i], place.fraction, a[i]);
 }
 
 /* Closer than this many entries the integral's difference loses digits; the ends' mean is as good there. */

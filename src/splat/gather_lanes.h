@@ -40,8 +40,8 @@ LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_wind
     lanes plane = lanes_set(0);
 #pragma GCC unroll 1
     for (int y = 0; y < 4; y++)
-      plane = plane + sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along) * weight[1][y];
-    sum = sum + plane * weight[2][z];
+      plane = lanes_fma(sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along), weight[1][y], plane);
+    sum = lanes_fma(plane, weight[2][z], sum);
   }
   return storage == HL_STORAGE_U8 ? sum * WHOLE_INVERSE : sum;
 }

@@ -8,12 +8,14 @@
 
 LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
   lanes sum = lanes_set(piece[degree]);
-  for (int power = degree - 1; power >= 0; power--) sum = sum * a + piece[power];
+  for (int power = degree - 1; power >= 0; power--) sum = lanes_fma(sum, a, lanes_set(piece[power]));
   return sum;
 }
 
 /* The cubic B-spline at distances up to 1, and at two less a rest up to 1, in fewer steps. */
-LANES_INLINE lanes bspline_inner(lanes distance) { return distance * distance * (distance * 0.5f - 1.0f) + 2.0f / 3; }
+LANES_INLINE lanes bspline_inner(lanes distance) {
+  return lanes_fma(distance * distance, lanes_line(distance, 0.5f, -1.0f), lanes_set(2.0f / 3));
+}
 LANES_INLINE lanes bspline_outer(lanes rest) { return rest * rest * (rest * (1.0f / 6)); }
 
 /* A stored value; beyond the grid's faces they continue. */
@@ -37,7 +39,7 @@ typedef struct block_place {
 LANES_INLINE lanes_int may_show(const fill_source *source, lanes density) {
   const classifier *classifier = source->classifier;
   if (classifier == NULL) return lanes_set_int(-1);
-  return density * classifier->scale + classifier->offset > classifier->first_visible;
+  return lanes_line(density, classifier->scale, classifier->offset) > classifier->first_visible;
 }
 
 LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
@@ -89,7 +91,7 @@ LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   lanes3 p = rays_positions(rays, u, v);
   lanes axis[3] = {p.x, p.y, p.z};
   lanes_int inside = lanes_set_int(-1);
-  if (rays->perspective) inside = u * rays->hu + (v * rays->hv + rays->h0) > 0.0f;
+  if (rays->perspective) inside = rays_climb(rays, u, v) > 0.0f;
   for (int a = 0; a < 3; a++)
     inside &= (axis[a] > 1.0f + spare) & (axis[a] < (float)source->grid->dimension[a] - 2.0f - spare);
   return lanes_bits(inside) == 0xffff;

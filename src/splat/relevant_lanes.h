@@ -15,15 +15,15 @@ LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   const float reach = 1.5f * 1.02f;
   lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
   lanes linear[3] = {p.x, p.y, p.z}, inverse = lanes_set(1.0f);
-  if (rays->perspective) inverse = 1.0f / (u * rays->hu + (v * rays->hv + rays->h0));
+  if (rays->perspective) inverse = 1.0f / rays_climb(rays, u, v);
   lanes_box box;
   for (int a = 0; a < 3; a++) {
-    lanes at = rays->perspective ? linear[a] * inverse + rays->base[a] : linear[a];
-    lanes along_u = (rays->pu[a] - linear[a] * (inverse * rays->hu)) * inverse;
-    lanes along_v = (rays->pv[a] - linear[a] * (inverse * rays->hv)) * inverse;
-    lanes half = (lanes_abs(along_u) + lanes_abs(along_v)) * reach;
-    box.low[a] = at - half;
-    box.high[a] = at + half;
+    lanes at = rays->perspective ? lanes_fma(linear[a], inverse, lanes_set(rays->base[a])) : linear[a];
+    lanes along_u = lanes_fma(linear[a], inverse * -rays->hu, lanes_set(rays->pu[a])) * inverse;
+    lanes along_v = lanes_fma(linear[a], inverse * -rays->hv, lanes_set(rays->pv[a])) * inverse;
+    lanes length = lanes_abs(along_u) + lanes_abs(along_v);
+    box.low[a] = lanes_add_scaled(at, length, -reach);
+    box.high[a] = lanes_add_scaled(at, length, reach);
   }
   return box;
 }

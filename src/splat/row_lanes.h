@@ -10,17 +10,17 @@ LANES_INLINE lanes row_u8(const unsigned char *row, const lanes_offsets *offsets
   return lanes_from_int(weigh_bytes(lanes_load_words(row, offsets), weights));
 }
 
+LANES_INLINE lanes weigh_floats(lanes a, lanes b, lanes c, lanes d, const lanes weight[4]) {
+  return lanes_fma(a, weight[0], b * weight[1]) + lanes_fma(c, weight[2], d * weight[3]);
+}
+
 /* Two u16 taps a word. */
 LANES_INLINE lanes weigh_words(lanes_int low, lanes_int high, const lanes weight[4]) {
-  lanes a = lanes_from_int(low & 65535) * weight[0] + lanes_from_int((low >> 16) & 65535) * weight[1];
-  lanes b = lanes_from_int(high & 65535) * weight[2] + lanes_from_int((high >> 16) & 65535) * weight[3];
-  return a + b;
+  return weigh_floats(lanes_from_int(low & 65535), lanes_from_int((low >> 16) & 65535), lanes_from_int(high & 65535),
+                      lanes_from_int((high >> 16) & 65535), weight);
 }
 LANES_INLINE lanes row_u16(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
   return weigh_words(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), weight);
-}
-LANES_INLINE lanes weigh_floats(lanes a, lanes b, lanes c, lanes d, const lanes weight[4]) {
-  return (a * weight[0] + b * weight[1]) + (c * weight[2] + d * weight[3]);
 }
 LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
   return weigh_floats((lanes)lanes_load_words(row, offsets), (lanes)lanes_load_words(row + 4, offsets),

@@ -8,7 +8,7 @@
 /* d/dt of a piece. */
 LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
   lanes sum = lanes_set(piece[degree] * (float)degree);
-  for (int power = degree - 1; power >= 1; power--) sum = sum * a + piece[power] * (float)power;
+  for (int power = degree - 1; power >= 1; power--) sum = lanes_fma(sum, a, lanes_set(piece[power] * (float)power));
   return sum;
 }
 
@@ -17,7 +17,7 @@ LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes sl
   lanes s = 1.0f - t;
   int bspline = degree == HL_BSPLINE_DEGREE;
   slope[0] = bspline ? s * (s * -0.5f) : kernel_piece_slope(kernel->outer, degree, t);
-  slope[1] = bspline ? t * (t * 1.5f - 2.0f) : kernel_piece_slope(kernel->inner, degree, t);
+  slope[1] = bspline ? t * lanes_line(t, 1.5f, -2.0f) : kernel_piece_slope(kernel->inner, degree, t);
   slope[3] = bspline ? t * (t * 0.5f) : -kernel_piece_slope(kernel->outer, degree, s);
   slope[2] = -(slope[0] + slope[1] + slope[3]);
 }
@@ -35,13 +35,13 @@ LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_w
     for (int y = 0; y < 4; y++) {
       const unsigned char *row = window_row(grid, storage, window, y, z);
       lanes plain = sum_row(storage, row, &window->offsets, &weights);
-      along_x = along_x + sum_row(storage, row, &window->offsets, &slopes) * w->weight[1][y];
-      along_y = along_y + plain * w->slope[1][y];
-      value = value + plain * w->weight[1][y];
+      along_x = lanes_fma(sum_row(storage, row, &window->offsets, &slopes), w->weight[1][y], along_x);
+      along_y = lanes_fma(plain, w->slope[1][y], along_y);
+      value = lanes_fma(plain, w->weight[1][y], value);
     }
-    sum.x = sum.x + along_x * w->weight[2][z];
-    sum.y = sum.y + along_y * w->weight[2][z];
-    sum.z = sum.z + value * w->slope[2][z];
+    sum.x = lanes_fma(along_x, w->weight[2][z], sum.x);
+    sum.y = lanes_fma(along_y, w->weight[2][z], sum.y);
+    sum.z = lanes_fma(value, w->slope[2][z], sum.z);
   }
   if (storage != HL_STORAGE_U8) return sum;
   return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
@@ -72,15 +72,15 @@ LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window 
     own_taps(storage, &own, spread, window->index, y, taps);
     for (int z = 0; z < 4; z++) {
       lanes plain = weigh_taps(storage, &taps[z], &weights);
-      along_x[z] = along_x[z] + weigh_taps(storage, &taps[z], &slopes) * w->weight[1][y];
-      along_y[z] = along_y[z] + plain * w->slope[1][y];
-      value[z] = value[z] + plain * w->weight[1][y];
+      along_x[z] = lanes_fma(weigh_taps(storage, &taps[z], &slopes), w->weight[1][y], along_x[z]);
+      along_y[z] = lanes_fma(plain, w->slope[1][y], along_y[z]);
+      value[z] = lanes_fma(plain, w->weight[1][y], value[z]);
     }
   }
   for (int z = 0; z < 4; z++) {
-    sum.x = sum.x + along_x[z] * w->weight[2][z];
-    sum.y = sum.y + along_y[z] * w->weight[2][z];
-    sum.z = sum.z + value[z] * w->slope[2][z];
+    sum.x = lanes_fma(along_x[z], w->weight[2][z], sum.x);
+    sum.y = lanes_fma(along_y[z], w->weight[2][z], sum.y);
+    sum.z = lanes_fma(value[z], w->slope[2][z], sum.z);
   }
   if (storage != HL_STORAGE_U8) return sum;
   return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
@@ -110,14 +110,14 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
     for (int y = 0; y < 4; y++) {
       window_taps taps = taps_f32(&voxels, window->index, y);
       lanes plain = weigh_f32(&taps, w->weight[0]);
-      along_x = along_x + weigh_f32(&taps, w->slope[0]) * w->weight[1][y];
-      along_y = along_y + plain * w->slope[1][y];
-      value = value + plain * w->weight[1][y];
+      along_x = lanes_fma(weigh_f32(&taps, w->slope[0]), w->weight[1][y], along_x);
+      along_y = lanes_fma(plain, w->slope[1][y], along_y);
+      value = lanes_fma(plain, w->weight[1][y], value);
     }
     lanes weight = weight_of_slice(window, slice, w->weight[2]);
-    sum.x = sum.x + along_x * weight;
-    sum.y = sum.y + along_y * weight;
-    sum.z = sum.z + value * weight_of_slice(window, slice, w->slope[2]);
+    sum.x = lanes_fma(along_x, weight, sum.x);
+    sum.y = lanes_fma(along_y, weight, sum.y);
+    sum.z = lanes_fma(value, weight_of_slice(window, slice, w->slope[2]), sum.z);
   }
   return sum;
 }

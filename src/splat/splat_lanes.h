@@ -67,7 +67,7 @@ LANES_INLINE void splat_voxel(const fill_source *source, const tile_place *tile,
                    kernel_at(source->kernel, degree, p->y - (float)y) *
                    kernel_at(source->kernel, degree, p->z - (float)z);
     float *to = density + block * BLOCK_PIXELS;
-    lanes_store(to, lanes_load(to) + weight * value);
+    lanes_store(to, lanes_add_scaled(lanes_load(to), weight, value));
   }
 }
 

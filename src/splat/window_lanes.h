@@ -160,9 +160,9 @@ LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window
   load_own_slices(storage, window, spread, &own);
   for (int y = 0; y < 4; y++) {
     own_taps(storage, &own, spread, window->index, y, taps);
-    for (int z = 0; z < 4; z++) plane[z] = plane[z] + weigh_taps(storage, &taps[z], &along) * weight[1][y];
+    for (int z = 0; z < 4; z++) plane[z] = lanes_fma(weigh_taps(storage, &taps[z], &along), weight[1][y], plane[z]);
   }
-  for (int z = 0; z < 4; z++) sum = sum + plane[z] * weight[2][z];
+  for (int z = 0; z < 4; z++) sum = lanes_fma(plane[z], weight[2][z], sum);
   return storage == HL_STORAGE_U8 ? sum * WHOLE_INVERSE : sum;
 }
 
@@ -202,9 +202,9 @@ static __attribute__((noinline)) lanes sum_window_f32(const voxel_window *window
     lanes plane = lanes_set(0);
     for (int y = 0; y < 4; y++) {
       window_taps taps = taps_f32(&voxels, window->index, y);
-      plane = plane + weigh_f32(&taps, weight[0]) * weight[1][y];
+      plane = lanes_fma(weigh_f32(&taps, weight[0]), weight[1][y], plane);
     }
-    sum = sum + plane * weight_of_slice(window, slice, weight[2]);
+    sum = lanes_fma(plane, weight_of_slice(window, slice, weight[2]), sum);
   }
   return sum;
 }
