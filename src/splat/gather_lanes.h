@@ -34,7 +34,7 @@ LANES_INLINE const unsigned char *window_row(const grid *grid, hl_storage storag
 /* The loops stay loops: unrolled, they outgrow the instruction cache and take a compiler minutes. */
 LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
-  row_weights along = weights_of_row(storage, weight[0], 1);
+  row_weights along = weights_of_row(storage, weight[0]);
 #pragma GCC unroll 1
   for (int z = 0; z < 4; z++) {
     lanes plane = lanes_set(0);
@@ -43,7 +43,7 @@ LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_wind
       plane = lanes_fma(sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along), weight[1][y], plane);
     sum = lanes_fma(plane, weight[2][z], sum);
   }
-  return storage == HL_STORAGE_U8 ? sum * WHOLE_INVERSE : sum;
+  return storage == HL_STORAGE_U8 ? sum * WEIGHT_INVERSE : sum;
 }
 
 static __attribute__((noinline)) lanes sum_u8(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
@@ -125,8 +125,10 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
   tap_weights(source->kernel, degree, place->point.z - lanes_from_int(cell[2]), weight[2]);
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   if (!inside && (lanes_bits(taps_inside(grid, cell)) & active) != active) {
-    if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
+    if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4) {
+      if (storage == HL_STORAGE_U8) round_to_weights(weight[0]);
       return sum_in_thin_grid(grid, cell, active, weights);
+    }
     for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
 #ifdef HL_WINDOWS

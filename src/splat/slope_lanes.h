@@ -27,7 +27,8 @@ typedef struct tap_slope_weights { lanes weight[3][4], slope[3][4]; } tap_slope_
 /* The three sums share the loads: along x once with the weights and once with their slopes. */
 LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window, const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  row_weights weights = weights_of_row(storage, w->weight[0], 1), slopes = weights_of_row(storage, w->slope[0], 0);
+  row_weights weights = weights_of_row(storage, w->weight[0]);
+  row_slopes slopes = slopes_of_row(storage, w->slope[0]);
 #pragma GCC unroll 1
   for (int z = 0; z < 4; z++) {
     lanes value = lanes_set(0), along_x = value, along_y = value;
@@ -35,7 +36,7 @@ LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_w
     for (int y = 0; y < 4; y++) {
       const unsigned char *row = window_row(grid, storage, window, y, z);
       lanes plain = sum_row(storage, row, &window->offsets, &weights);
-      along_x = lanes_fma(sum_row(storage, row, &window->offsets, &slopes), w->weight[1][y], along_x);
+      along_x = lanes_fma(slope_row(storage, row, &window->offsets, &slopes), w->weight[1][y], along_x);
       along_y = lanes_fma(plain, w->slope[1][y], along_y);
       value = lanes_fma(plain, w->weight[1][y], value);
     }
@@ -44,7 +45,7 @@ LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_w
     sum.z = lanes_fma(value, w->slope[2][z], sum.z);
   }
   if (storage != HL_STORAGE_U8) return sum;
-  return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
+  return (lanes3){sum.x * SLOPE_INVERSE, sum.y * WEIGHT_INVERSE, sum.z * WEIGHT_INVERSE};
 }
 
 /* Without the last block's lanes. */
@@ -64,7 +65,8 @@ LANES_INLINE void join_slopes(uint32_t bits, lanes3 part, lanes3 *slope) {
 LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window *window, int spread, const tap_slope_weights *w) {
   own_slices own;
   window_taps taps[4];
-  row_weights weights = weights_of_row(storage, w->weight[0], 1), slopes = weights_of_row(storage, w->slope[0], 0);
+  row_weights weights = weights_of_row(storage, w->weight[0]);
+  row_slopes slopes = slopes_of_row(storage, w->slope[0]);
   lanes none = lanes_set(0), value[4] = {none, none, none, none}, along_x[4] = {none, none, none, none}, along_y[4] = {none, none, none, none};
   lanes3 sum = {none, none, none};
   load_own_slices(storage, window, spread, &own);
@@ -72,7 +74,7 @@ LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window 
     own_taps(storage, &own, spread, window->index, y, taps);
     for (int z = 0; z < 4; z++) {
       lanes plain = weigh_taps(storage, &taps[z], &weights);
-      along_x[z] = lanes_fma(weigh_taps(storage, &taps[z], &slopes), w->weight[1][y], along_x[z]);
+      along_x[z] = lanes_fma(slope_of_taps(storage, &taps[z], &slopes), w->weight[1][y], along_x[z]);
       along_y[z] = lanes_fma(plain, w->slope[1][y], along_y[z]);
       value[z] = lanes_fma(plain, w->weight[1][y], value[z]);
     }
@@ -83,7 +85,7 @@ LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window 
     sum.z = lanes_fma(value[z], w->slope[2][z], sum.z);
   }
   if (storage != HL_STORAGE_U8) return sum;
-  return (lanes3){sum.x * WHOLE_INVERSE, sum.y * WHOLE_INVERSE, sum.z * WHOLE_INVERSE};
+  return (lanes3){sum.x * SLOPE_INVERSE, sum.y * WEIGHT_INVERSE, sum.z * WEIGHT_INVERSE};
 }
 
 LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *window, const tap_slope_weights *w) {

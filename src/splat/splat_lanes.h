@@ -7,9 +7,11 @@
 
 #include "splat/gather_lanes.h"
 
-/* A tile's pixels in index space, and the bounds of each block there (lane = block). */
+/* A tile's pixels in index space, and the bounds of each block there (lane = block). Of u8 voxels the four taps' weights along x are
+ * those that gathering rounds to (byte_weights_lanes.h). */
 typedef struct tile_place {
   block_place block[TILE_BLOCKS];
+  lanes along_x[TILE_BLOCKS][4];
   lanes3 low, high;
 } tile_place;
 
@@ -22,9 +24,15 @@ LANES_INLINE void keep_relevant(const grid *grid, block_place *place) {
   place->inside &= (lanes_gather_bytes(grid->relevant, brick & place->inside) & 255) != 0;
 }
 
+LANES_INLINE void weigh_along_x(const kernel *kernel, const block_place *place, lanes along_x[4]) {
+  tap_weights(kernel, kernel->degree, place->point.x - lanes_from_int(place->cell[0]), along_x);
+  round_to_weights(along_x);
+}
+
 static void place_tile(const fill_source *source, int tile_x, int tile_y, tile_place *tile) {
   for (int block = 0; block < TILE_BLOCKS; block++) {
     tile->block[block] = place_block(source, tile_x * TILE + block % 4 * BLOCK, tile_y * TILE + block / 4 * BLOCK);
+    if (source->grid->storage == HL_STORAGE_U8) weigh_along_x(source->kernel, &tile->block[block], tile->along_x[block]);
     keep_relevant(source->grid, &tile->block[block]);
     const lanes3 *p = &tile->block[block].point;
     tile->low.x[block] = lanes_least(p->x);
@@ -51,6 +59,15 @@ LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
   return lanes_keep(a < kernel->support, lanes_select(a < 1.0f, inner, outer));
 }
 
+/* The weights along x of voxel x at a block's pixels. */
+LANES_INLINE lanes weight_along_x(const fill_source *source, const tile_place *tile, int block, int degree, int32_t x) {
+  const block_place *place = &tile->block[block];
+  if (source->grid->storage != HL_STORAGE_U8) return kernel_at(source->kernel, degree, place->point.x - (float)x);
+  lanes weight = lanes_set(0);
+  for (int tap = 0; tap < 4; tap++) weight = lanes_select(place->cell[0] == x + 1 - tap, tile->along_x[block][tap], weight);
+  return weight;
+}
+
 LANES_INLINE void splat_voxel(const fill_source *source, const tile_place *tile, uint32_t need, uint32_t voxel,
                               int degree, float *density) {
   const grid *grid = source->grid;
@@ -63,7 +80,7 @@ LANES_INLINE void splat_voxel(const fill_source *source, const tile_place *tile,
   for (; blocks != 0; blocks &= blocks - 1) {
     int block = __builtin_ctz(blocks);
     const lanes3 *p = &tile->block[block].point;
-    lanes weight = kernel_at(source->kernel, degree, p->x - (float)x) *
+    lanes weight = weight_along_x(source, tile, block, degree, x) *
                    kernel_at(source->kernel, degree, p->y - (float)y) *
                    kernel_at(source->kernel, degree, p->z - (float)z);
     float *to = density + block * BLOCK_PIXELS;

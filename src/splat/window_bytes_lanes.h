@@ -32,6 +32,14 @@ LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index) {
   return taps;
 }
 
+/* In columns voxels are less 128. */
+LANES_INLINE lanes weigh_u8(const window_taps *taps, const byte_weights *weights) {
+  return lanes_from_int(weigh_signed_bytes((lanes_int)taps->part[0], weights));
+}
+LANES_INLINE lanes slope_u8(const window_taps *taps, const byte_slopes *slopes) {
+  return lanes_from_int(slope_of_bytes(taps_with_sign((lanes_int)taps->part[0]), slopes));
+}
+
 LANES_INLINE window_lanes some_lanes_u8(__mmask16 bits) { return _mm512_movepi8_mask(_mm512_movm_epi32(bits)); }
 
 /* Some lanes' taps from another slice. */

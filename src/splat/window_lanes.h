@@ -148,14 +148,16 @@ LANES_INLINE void own_taps(hl_storage storage, const own_slices *own, int spread
 }
 
 LANES_INLINE lanes weigh_taps(hl_storage storage, const window_taps *taps, const row_weights *weights) {
-  return storage == HL_STORAGE_U8 ? lanes_from_int(weigh_bytes((lanes_int)taps->part[0], &weights->bytes))
-                                  : weigh_u16(taps, weights->real);
+  return storage == HL_STORAGE_U8 ? weigh_u8(taps, &weights->bytes) : weigh_u16(taps, weights->real);
+}
+LANES_INLINE lanes slope_of_taps(hl_storage storage, const window_taps *taps, const row_slopes *slopes) {
+  return storage == HL_STORAGE_U8 ? slope_u8(taps, &slopes->bytes) : weigh_u16(taps, slopes->real);
 }
 
 LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window, int spread, const lanes weight[3][4]) {
   own_slices own;
   window_taps taps[4];
-  row_weights along = weights_of_row(storage, weight[0], 1);
+  row_weights along = weights_of_row(storage, weight[0]);
   lanes plane[4] = {lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(0)}, sum = lanes_set(0);
   load_own_slices(storage, window, spread, &own);
   for (int y = 0; y < 4; y++) {
@@ -163,7 +165,7 @@ LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window
     for (int z = 0; z < 4; z++) plane[z] = lanes_fma(weigh_taps(storage, &taps[z], &along), weight[1][y], plane[z]);
   }
   for (int z = 0; z < 4; z++) sum = lanes_fma(plane[z], weight[2][z], sum);
-  return storage == HL_STORAGE_U8 ? sum * WHOLE_INVERSE : sum;
+  return storage == HL_STORAGE_U8 ? sum * WEIGHT_INVERSE : sum;
 }
 
 LANES_INLINE lanes sum_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {

@@ -17,6 +17,7 @@ LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
 LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shift) {
   const __mmask16 odd = 0xaaaa;
   __m512i rows = _mm512_or_si512(_mm512_srlv_epi64(left, shift), _mm512_sllv_epi64(right, _mm512_sub_epi64(_mm512_set1_epi64(64), shift)));
+  rows = _mm512_xor_si512(rows, _mm512_set1_epi8((char)0x80)); /* in columns voxels are less 128 */
   window_slice slice;
   slice.part[0] = _mm512_mask_mov_epi32(rows, odd, _mm512_slli_epi64(rows, 24));
   slice.part[1] = _mm512_mask_mov_epi32(_mm512_srli_epi64(rows, 16), odd, _mm512_slli_epi64(rows, 8));
@@ -31,6 +32,13 @@ LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index) {
   window_taps taps;
   taps.part[0] = _mm512_permutex2var_epi32(slice->part[0], index, slice->part[1]);
   return taps;
+}
+
+LANES_INLINE lanes weigh_u8(const window_taps *taps, const byte_weights *weights) {
+  return lanes_from_int(weigh_bytes((lanes_int)taps->part[0], weights));
+}
+LANES_INLINE lanes slope_u8(const window_taps *taps, const byte_slopes *slopes) {
+  return lanes_from_int(slope_of_bytes((lanes_int)taps->part[0], slopes));
 }
 
 LANES_INLINE window_lanes some_lanes_u8(__mmask16 bits) { return bits; }
