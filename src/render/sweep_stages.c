@@ -19,8 +19,6 @@ static int list_tiles(const occupancy *occupancy, int sheet, uint32_t *list) {
 static bool is_timed(size_t tile, int sheet) { return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0; }
 static double read_clock(bool timed) { return timed ? hl_clock_seconds() : 0; }
 
-static uint64_t pixels_in(uint32_t blocks) { return (uint64_t)__builtin_popcount(blocks) * BLOCK_PIXELS; }
-
 /* ---- the image ---- */
 
 /* Opacities are asked for before densities are found: they come from farther than the nearest cache. */
@@ -52,7 +50,7 @@ static int fill_image_tile(sweep *sweep, size_t tile, int worker, shade_patch *p
 static void shade_one(sweep *sweep, size_t tile, int worker) {
   sweep_counts *counts = &sweep->counts[worker];
   uint32_t blocks = 0, need = sweep->open[tile];
-  counts->pixels_skipped_image += pixels_in(ALL_BLOCKS & ~need);
+  counts->pixels_skipped_image += hl_pixels_of_blocks(ALL_BLOCKS & ~need);
   if (need == 0) {
     counts->skipped_image++;
     return;
@@ -145,7 +143,7 @@ static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker
   sweep_light *light = &sweep->lights[light_index];
   if (light->sublights.count > 0) hl_sublights_find_lit(&light->sublights, light->buffer, tile);
   uint32_t need = light->buffer->tile_lit[tile];
-  counts->pixels_skipped_light += pixels_in(ALL_BLOCKS & ~need);
+  counts->pixels_skipped_light += hl_pixels_of_blocks(ALL_BLOCKS & ~need);
   if (need == 0) {
     counts->skipped_light++;
     return;

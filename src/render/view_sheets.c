@@ -216,7 +216,7 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
                               density_on_sheet(b->sheets, b->patch, b->first + i));
   kept->need = (uint16_t)(kept->need | blocks.filled);
   kept->blocks = (uint16_t)(kept->blocks | blocks.showing);
-  b->pixels += (uint64_t)__builtin_popcount(blocks.filled) * BLOCK_PIXELS;
+  b->pixels += hl_pixels_of_blocks(blocks.filled);
 }
 
 /* A slab shows something where one of its sheets does, and then both are wanted. Every second sheet is filled where its cells may

@@ -38,6 +38,14 @@ typedef struct fill_source {
  * the way to another density above it. */
 typedef struct filled_blocks { uint32_t filled, showing; } filled_blocks;
 
+/* The pixels of some blocks. By sums of bits two by two, four by four and so on: the baseline has no instruction for it. */
+static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
+  blocks -= blocks >> 1 & 0x5555;
+  blocks = (blocks & 0x3333) + (blocks >> 2 & 0x3333);
+  blocks = (blocks + (blocks >> 4)) & 0x0f0f;
+  return (uint64_t)((blocks + (blocks >> 8)) & 31) * BLOCK_PIXELS;
+}
+
 /* Fills density[16][16] (block, lane) for the blocks in need, and for those of some others that the cells around their points
  * let show something (cell_bits.h); what is left is left alone. */
 typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others,
