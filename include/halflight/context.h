@@ -53,7 +53,7 @@ typedef enum hl_log_level { HL_LOG_WARNING = 1, HL_LOG_INFO = 2 } hl_log_level;
 typedef enum hl_instruction_set {
   HL_INSTRUCTION_SET_AUTO = 0,   /* the best that the processor has */
   HL_INSTRUCTION_SET_SCALAR = 1, /* the compiler's baseline for the target; on 64-bit Arm without vectors */
-  HL_INSTRUCTION_SET_AVX2 = 2,
+  HL_INSTRUCTION_SET_AVX2 = 2,   /* and FMA: Haswell, Zen and later */
   HL_INSTRUCTION_SET_AVX512 = 3, /* F, DQ, BW and VL: Skylake servers and later */
   HL_INSTRUCTION_SET_NEON = 4,   /* every 64-bit Arm processor */
   HL_INSTRUCTION_SET_AVX512_VBMI = 5 /* and VBMI, VBMI2 and VNNI: Ice Lake, Zen 4 and later */
