@@ -40,7 +40,11 @@ LANES_INLINE lanes slope_u8(const window_taps *taps, const byte_slopes *slopes) 
   return lanes_from_int(slope_of_bytes(taps_with_sign((lanes_int)taps->part[0]), slopes));
 }
 
-LANES_INLINE window_lanes some_lanes_u8(__mmask16 bits) { return _mm512_movepi8_mask(_mm512_movm_epi32(bits)); }
+/* The lanes whose taps begin in a slice. */
+LANES_INLINE window_lanes lanes_from_u8(__m512i start, int slice) {
+  const __m512i lowest_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
+  return _mm512_cmpeq_epi8_mask(_mm512_shuffle_epi8(start, lowest_byte), _mm512_set1_epi8((char)slice));
+}
 
 /* Some lanes' taps from another slice. */
 LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice, __m512i index) {

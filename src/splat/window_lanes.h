@@ -29,7 +29,7 @@ typedef struct voxel_window {
   size_t beside;                 /* u8: bytes to the next column, where the window reaches into it */
   __m512i shift;                 /* u8: bits from the column's first voxel to the window's, in every row */
   __m512i index;                 /* of each lane's taps in the first row */
-  __mmask16 starts[WINDOW_SPREAD + 1]; /* lanes whose taps start at this slice */
+  __m512i start;                 /* of each lane's taps: the slice in which they begin; 0 of idle lanes */
   int slices;
 } voxel_window;
 
@@ -85,11 +85,8 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
     fits = _mm512_mask_cmple_epu32_mask(fits, offset[a], _mm512_set1_epi32(side[a] - 4));
   }
   if (fits != lanes_mask) return 0;
-  window->slices = 4;
-  for (int slice = 0; slice <= WINDOW_SPREAD; slice++) {
-    window->starts[slice] = _mm512_mask_cmpeq_epi32_mask(lanes_mask, offset[2], _mm512_set1_epi32(slice));
-    if (window->starts[slice] != 0) window->slices = slice + 4;
-  }
+  window->start = offset[2];
+  window->slices = 4 + _mm512_reduce_max_epi32(offset[2]);
   window->index = window_index(grid->storage, offset);
   place_window(grid, low, window);
   return 1;
@@ -128,7 +125,7 @@ typedef struct own_slices {
 LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window, int spread, own_slices *own) {
   for (int slice = 0; slice < spread + 4; slice++) own->voxels[slice] = slice_of_window(storage, window, slice);
   for (int start = 1; start <= spread; start++)
-    own->later[start] = storage == HL_STORAGE_U8 ? some_lanes_u8(window->starts[start]) : some_lanes_u16(window->starts[start]);
+    own->later[start] = storage == HL_STORAGE_U8 ? lanes_from_u8(window->start, start) : lanes_from_u16(window->start, start);
 }
 
 /* The taps (0..3, y, z) of every lane, z from 0 to 3. */
@@ -192,7 +189,9 @@ LANES_INLINE lanes weight_of_slice(const voxel_window *window, int slice, const 
   __m512 found = _mm512_setzero_ps();
   for (int tap = 0; tap < 4; tap++) {
     int start = slice - tap;
-    if (start >= 0 && start <= WINDOW_SPREAD) found = _mm512_mask_mov_ps(found, window->starts[start], (__m512)weight[tap]);
+    if (start < 0 || start > WINDOW_SPREAD) continue;
+    __mmask16 lanes_there = _mm512_cmpeq_epi32_mask(window->start, _mm512_set1_epi32(start));
+    found = _mm512_mask_mov_ps(found, lanes_there, (__m512)weight[tap]);
   }
   return (lanes)found;
 }

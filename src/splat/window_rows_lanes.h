@@ -49,7 +49,11 @@ LANES_INLINE window_taps taps_u16(const window_slice *rows, __m512i index) {
   return taps;
 }
 
-LANES_INLINE window_lanes some_lanes_u16(__mmask16 bits) { return _mm512_movepi16_mask(_mm512_movm_epi32(bits)); }
+/* The lanes whose taps begin in a slice. */
+LANES_INLINE window_lanes lanes_from_u16(__m512i start, int slice) {
+  __m512i both = _mm512_or_si512(start, _mm512_slli_epi32(start, 16));
+  return _mm512_cmpeq_epi16_mask(both, _mm512_set1_epi16((short)slice));
+}
 
 /* Some lanes' taps from another slice. */
 LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows, __m512i index) {
