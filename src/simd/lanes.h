@@ -127,7 +127,7 @@ LANES_CALL lanes lanes_max(lanes a, lanes b) {
 #endif
 }
 
-#if !defined(__AVX2__) && !defined(__ARM_NEON)
+#if !defined(__AVX2__) && !defined(__ARM_NEON) && !defined(__FP_FAST_FMAF)
 typedef double lanes_double __attribute__((vector_size(128)));
 typedef int64_t lanes_long __attribute__((vector_size(128)));
 typedef uint32_t lanes_unsigned __attribute__((vector_size(64)));
@@ -176,6 +176,9 @@ LANES_INLINE lanes lanes_fma(lanes a, lanes b, lanes c) {
   memcpy(z, &c, sizeof z);
   for (int i = 0; i < 4; i++) z[i] = vfmaq_f32(z[i], x[i], y[i]);
   memcpy(&c, z, sizeof c);
+  return c;
+#elif defined(__FP_FAST_FMAF)
+  for (int lane = 0; lane < LANES; lane++) c[lane] = __builtin_fmaf(a[lane], b[lane], c[lane]);
   return c;
 #else
   return fma_in_doubles(a, b, c);
