@@ -131,12 +131,19 @@ LANES_CALL lanes lanes_max(lanes a, lanes b) {
 typedef double lanes_double __attribute__((vector_size(128)));
 typedef int64_t lanes_long __attribute__((vector_size(128)));
 typedef uint32_t lanes_unsigned __attribute__((vector_size(64)));
+typedef int32_t lanes_words __attribute__((vector_size(128)));
 
-LANES_INLINE int any_of_longs(lanes_long mask) {
-  int64_t of[LANES], any = 0;
+LANES_INLINE int any_lane(lanes_int mask) {
+  uint64_t of[LANES / 2], any = 0;
   memcpy(of, &mask, sizeof of);
-  for (int lane = 0; lane < LANES; lane++) any |= of[lane];
+  for (int i = 0; i < LANES / 2; i++) any |= of[i];
   return any != 0;
+}
+
+/* The lower 32 bits of each. */
+LANES_INLINE lanes_int lower_words(lanes_double x) {
+  lanes_words words = (lanes_words)x;
+  return __builtin_shufflevector(words, words, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 }
 
 /* A product of floats is exact in doubles, a sum is not. Rounded to floats from there it is wrong only where it lies in the middle
@@ -148,8 +155,8 @@ LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   lanes_double addend = __builtin_convertvector(c, lanes_double), sum = product + addend;
   lanes rounded = __builtin_convertvector(sum, lanes);
   lanes_int subnormal = ((lanes_unsigned)rounded & 0x7fffffffu) - 1u < 0x00800000u;
-  lanes_long middle = ((lanes_long)sum & 0x1fffffff) == 0x10000000;
-  if (!any_of_longs(middle | __builtin_convertvector(subnormal, lanes_long))) return rounded;
+  lanes_int middle = (lower_words(sum) & 0x1fffffff) == 0x10000000;
+  if (!any_lane(middle | subnormal)) return rounded;
   lanes_double back = sum - product, lost = (product - (sum - back)) + (addend - back);
   lanes_long even = ((lanes_long)sum & 1) - 1, inexact = (lost < 0.0) | (lost > 0.0);
   lanes_long outwards = (lost > 0.0) ^ (sum < 0.0); /* all bits, or none */
