@@ -46,8 +46,7 @@ LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t 
   const float(*m)[4] = volume->to_index;
   lanes3 at = {row_of_point(m[0], point), row_of_point(m[1], point), row_of_point(m[2], point)};
   lanes3 slope = slopes_at(volume->grid, volume->kernel, at, active, starts);
-  const float columns[3][4] = {{m[0][0], m[1][0], m[2][0], 0}, {m[0][1], m[1][1], m[2][1], 0}, {m[0][2], m[1][2], m[2][2], 0}};
-  return (lanes3){row_of_vector(columns[0], slope), row_of_vector(columns[1], slope), row_of_vector(columns[2], slope)};
+  return add_scaled3(add_scaled3(scale3(set3(m[2]), slope.z), set3(m[1]), slope.y), set3(m[0]), slope.x);
 }
 
 /* One volume's way through the slab: its densities on the two sheets, and the part of the way that is in its box. */

@@ -87,32 +87,29 @@ LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes)
 typedef struct byte_weights { lanes_int high[2], low[2]; } byte_weights;
 typedef struct byte_slopes { lanes_int pair[2]; } byte_slopes;
 
-LANES_INLINE byte_weights split_weights(const whole_weights *whole) {
-  byte_weights weights;
-  for (int i = 0; i < 2; i++) {
-    lanes_int both = whole->tap[i] | whole->tap[i + 2] << 16;
-    weights.high[i] = both >> 8 & 0x00ff00ff;
-    weights.low[i] = both & 0x00ff00ff;
-  }
-  return weights;
-}
-
 LANES_INLINE byte_slopes split_slopes(const whole_weights *whole) {
   byte_slopes slopes;
   for (int i = 0; i < 2; i++) slopes.pair[i] = (whole->tap[i] & 65535) | whole->tap[i + 2] << 16;
   return slopes;
 }
 
+LANES_INLINE byte_weights split_weights(const whole_weights *whole) {
+  byte_slopes both = split_slopes(whole);
+  byte_weights weights;
+  for (int i = 0; i < 2; i++) {
+    weights.high[i] = both.pair[i] >> 8 & 0x00ff00ff;
+    weights.low[i] = both.pair[i] & 0x00ff00ff;
+  }
+  return weights;
+}
+
+LANES_INLINE lanes_int multiply_pairs(lanes_int taps, const lanes_int pair[2]) {
+  return lanes_multiply_shorts(taps & 0x00ff00ff, pair[0]) + lanes_multiply_shorts((taps >> 8) & 0x00ff00ff, pair[1]);
+}
 LANES_INLINE lanes_int weigh_bytes(lanes_int taps, const byte_weights *weights) {
-  lanes_int even = taps & 0x00ff00ff, odd = (taps >> 8) & 0x00ff00ff;
-  lanes_int high = lanes_multiply_shorts(even, weights->high[0]) + lanes_multiply_shorts(odd, weights->high[1]);
-  lanes_int low = lanes_multiply_shorts(even, weights->low[0]) + lanes_multiply_shorts(odd, weights->low[1]);
-  return (high << 8) + low;
+  return (multiply_pairs(taps, weights->high) << 8) + multiply_pairs(taps, weights->low);
 }
-LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes) {
-  lanes_int even = taps & 0x00ff00ff, odd = (taps >> 8) & 0x00ff00ff;
-  return lanes_multiply_shorts(even, slopes->pair[0]) + lanes_multiply_shorts(odd, slopes->pair[1]);
-}
+LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes) { return multiply_pairs(taps, slopes->pair); }
 #else
 typedef whole_weights byte_weights, byte_slopes;
 

@@ -5,7 +5,6 @@
 #include "splat/byte_weights_lanes.h"
 #include "splat/grid.h"
 
-
 LANES_INLINE lanes weigh_floats(lanes a, lanes b, lanes c, lanes d, const lanes weight[4]) {
   return lanes_fma(a, weight[0], b * weight[1]) + lanes_fma(c, weight[2], d * weight[3]);
 }

@@ -6,11 +6,15 @@
 
 enum { WINDOW_WIDTH = GRID_COLUMN }; /* voxels along x that taps are taken from */
 
+/* The lowest byte of each lane in all four. */
+LANES_INLINE __m512i repeat_bytes(__m512i x) {
+  return _mm512_shuffle_epi8(x, _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0));
+}
+
 /* From how far each lane's first tap lies from the window's first voxel: a byte for each tap's place in the first row. */
 LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(y, 3), x);
-  const __m512i lowest_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
-  return _mm512_add_epi8(_mm512_shuffle_epi8(first, lowest_byte), _mm512_set1_epi32(0x03020100));
+  return _mm512_add_epi8(repeat_bytes(first), _mm512_set1_epi32(0x03020100));
 }
 
 /* The rows that begin so many bits after those of the left column. */
@@ -41,9 +45,8 @@ LANES_INLINE lanes slope_u8(const window_taps *taps, const byte_slopes *slopes) 
 }
 
 /* The lanes whose taps begin in a slice. */
-LANES_INLINE window_lanes lanes_from_u8(__m512i start, int slice) {
-  const __m512i lowest_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
-  return _mm512_cmpeq_epi8_mask(_mm512_shuffle_epi8(start, lowest_byte), _mm512_set1_epi8((char)slice));
+LANES_INLINE window_lanes starting_u8(__m512i start, int slice) {
+  return _mm512_cmpeq_epi8_mask(repeat_bytes(start), _mm512_set1_epi8((char)slice));
 }
 
 /* Some lanes' taps from another slice. */

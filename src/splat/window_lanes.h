@@ -125,7 +125,7 @@ typedef struct own_slices {
 LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window, int spread, own_slices *own) {
   for (int slice = 0; slice < spread + 4; slice++) own->voxels[slice] = slice_of_window(storage, window, slice);
   for (int start = 1; start <= spread; start++)
-    own->later[start] = storage == HL_STORAGE_U8 ? lanes_from_u8(window->start, start) : lanes_from_u16(window->start, start);
+    own->later[start] = storage == HL_STORAGE_U8 ? starting_u8(window->start, start) : starting_u16(window->start, start);
 }
 
 /* The taps (0..3, y, z) of every lane, z from 0 to 3. */

@@ -50,7 +50,7 @@ LANES_INLINE window_taps taps_u16(const window_slice *rows, __m512i index) {
 }
 
 /* The lanes whose taps begin in a slice. */
-LANES_INLINE window_lanes lanes_from_u16(__m512i start, int slice) {
+LANES_INLINE window_lanes starting_u16(__m512i start, int slice) {
   __m512i both = _mm512_or_si512(start, _mm512_slli_epi32(start, 16));
   return _mm512_cmpeq_epi16_mask(both, _mm512_set1_epi16((short)slice));
 }

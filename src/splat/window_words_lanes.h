@@ -42,7 +42,7 @@ LANES_INLINE lanes slope_u8(const window_taps *taps, const byte_slopes *slopes) 
 }
 
 /* The lanes whose taps begin in a slice. */
-LANES_INLINE window_lanes lanes_from_u8(__m512i start, int slice) { return _mm512_cmpeq_epi32_mask(start, _mm512_set1_epi32(slice)); }
+LANES_INLINE window_lanes starting_u8(__m512i start, int slice) { return _mm512_cmpeq_epi32_mask(start, _mm512_set1_epi32(slice)); }
 
 /* Some lanes' taps from another slice. */
 LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice, __m512i index) {
