@@ -126,7 +126,13 @@ typedef enum hl_reconstruction {
   HL_RECONSTRUCTION_GATHER = 2
 } hl_reconstruction;
 typedef enum hl_slicing { HL_SLICING_HALF_VECTOR = 0, HL_SLICING_IMAGE_ALIGNED = 1 } hl_slicing;
-typedef enum hl_shadow_lookup { HL_LOOKUP_BILINEAR = 0, HL_LOOKUP_NEAREST = 1 } hl_shadow_lookup;
+/* How the light that is left is read between the pixels of a shadow buffer. */
+typedef enum hl_shadow_lookup {
+  HL_LOOKUP_BILINEAR = 0,
+  HL_LOOKUP_NEAREST = 1,
+  HL_LOOKUP_CUBIC = 2,         /* cubic convolution: sharper; of sub-lights bilinear */
+  HL_LOOKUP_AUTO = 3           /* cubic, of coarser pixels, where shadows are a cascade and lights even; elsewhere bilinear */
+} hl_shadow_lookup;
 
 typedef struct hl_render_settings {
   hl_shadows shadows;          /* off, hard or soft */

@@ -13,7 +13,7 @@ static const cli_choice soft_methods[] = {
     {"cascade", HL_SOFT_CASCADE}, {"paper", HL_SOFT_PAPER}, {"sublights", HL_SOFT_SUBLIGHTS}, {NULL, 0}};
 static const cli_choice resolutions[] = {{"auto", 0}, {NULL, 0}};
 static const cli_choice lookups[] = {
-    {"bilinear", HL_LOOKUP_BILINEAR}, {"nearest", HL_LOOKUP_NEAREST}, {NULL, 0}};
+    {"auto", HL_LOOKUP_AUTO}, {"bilinear", HL_LOOKUP_BILINEAR}, {"cubic", HL_LOOKUP_CUBIC}, {"nearest", HL_LOOKUP_NEAREST}, {NULL, 0}};
 const cli_choice kernel_choices[] = {{"bspline", HL_KERNEL_BSPLINE},
                                      {"gaussian", HL_KERNEL_GAUSSIAN},
                                      {"linear", HL_KERNEL_LINEAR},

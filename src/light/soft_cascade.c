@@ -167,8 +167,9 @@ void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, v
 
 hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
                                 const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
-                                double pixel, shadow_buffer *buffer, hl_error *error) {
+                                double pixel, double lookup_variance, shadow_buffer *buffer, hl_error *error) {
   plan(cascade, light, image, normal, first, last, pixel, buffer);
+  cascade->lookup_variance = lookup_variance;
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   cascade->touched = hl_allocate_zeroed(context, tiles, 1);
   cascade->reads = (cascade_reads){buffer->tiles_x, buffer->tiles_y, NULL};
@@ -393,12 +394,9 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
     bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], reach, crew);
 }
 
-/* A bilinear look-up weighs two pixels of the buffer by their distances p and 1 - p: a variance of p (1 - p), 1/6 on average. */
-static const double LOOKUP_VARIANCE = 1.0 / 6;
-
 /* Nothing lies before the farthest group, whose penumbra pays for the look-up. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group, const cascade_crew *crew) {
-  level->owed[0] = level->owed[1] = LOOKUP_VARIANCE;
+  level->owed[0] = level->owed[1] = cascade->lookup_variance;
   for (int c = 0; c < cascade->channels; c++)
     hl_cascade_add(crew, level, &group->absorbed[c], NULL, NULL, NULL, level, &level->sum[level->newest][c], READ_EVERYWHERE);
 }
@@ -493,7 +491,7 @@ static void light_part(void *data, size_t index, int worker) {
   }
 }
 
-/* Less than this, pixels squared, is not worth a blur: bilinear look-ups have 1/6 and more. */
+/* Less than this, pixels squared, is not worth a blur: a third of what a bilinear look-up has. */
 static const double LEAST_VARIANCE = 0.05;
 
 /* What receivers around omega = receiver lack, where it is read; false if nothing is in the way. */

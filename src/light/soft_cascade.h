@@ -88,6 +88,7 @@ typedef struct soft_cascade {
   double slope_start[2], slope_step[2]; /* of the buffer's pixels, seen from the light: at its corner, and from one to the next */
   double chunk;         /* omega of a chunk of slabs, pixels */
   double chunk_start;   /* omega */
+  double lookup_variance; /* what look-ups blur, pixels squared */
   double slab;          /* the place of the slab now composited in the chunk, omega from its start */
   uint64_t chunks;      /* finished */
   int channels;
@@ -107,10 +108,10 @@ typedef struct cascade_crew {
 } cascade_crew;
 
 /* pixel: buffer pixel (parallel: frame units; else at distance 1). first, last: heights of the sweep's sheets. image: the
- * light's, borrowed until the end; null where it is even. */
+ * light's, borrowed until the end; null where it is even. lookup_variance: what look-ups of the buffer blur, its pixels squared. */
 hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
                                 const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
-                                double pixel, shadow_buffer *buffer, hl_error *error);
+                                double pixel, double lookup_variance, shadow_buffer *buffer, hl_error *error);
 /* The bytes that it then holds for a buffer of that view: of memory, which stays, and of its own. */
 void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
                            double pixel, const view *view, int channels, uint64_t *kept, uint64_t *passing);

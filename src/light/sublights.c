@@ -31,10 +31,11 @@ static void place_parts(sublights *sublights, const light_source *source, const 
     place_part(source, image, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x, &sublights->tiles_y);
 }
 
-/* A margin of a tile on either side, where tiles of the slab reach across the edges; look-ups read a row beyond the last. */
+/* A margin of a tile on either side, where tiles of the slab reach across the edges; look-ups may read rows beyond the last. */
+enum { ROWS_BEYOND = 7 };
 static void lay_out_planes(sublights *sublights) {
   sublights->stride = (size_t)(sublights->tiles_x + 3) / 2 * 2 * TILE; /* whole lines of the cache */
-  sublights->plane = ((size_t)sublights->tiles_y * TILE + 1) * sublights->stride;
+  sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
 
 uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,

@@ -47,7 +47,7 @@ typedef struct shade_light {
   light_screen screen;            /* the image that the light projects */
   light_cone cone;                /* of a spot light */
   light_share share;              /* of a light within the content */
-  int nearest;                    /* lookup: nearest pixel instead of bilinear */
+  int nearest, cubic;             /* lookup: nearest pixel, or between four by four, instead of bilinear; parts never cubic */
 } shade_light;
 
 typedef struct shade_job {

@@ -3,6 +3,7 @@
 #define HL_RENDER_SHADE_LANES_H
 
 #include "light/light_screen_lanes.h"
+#include "light/shadow_lookup_lanes.h"
 #include "render/pack_lanes.h"
 
 static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
@@ -31,28 +32,6 @@ LANES_INLINE lanes own_transmittance(int back_to_front, lanes e, lanes left, lan
   return lanes_min(seen, lanes_set(1.0f));
 }
 
-/* Where samples are in a shadow buffer: the first of two by two pixels, and how far they are on the way to the others. */
-typedef struct shadow_taps {
-  lanes_int inside, at;
-  lanes fx, fy;
-} shadow_taps;
-
-/* At continuous pixel coordinates. */
-LANES_INLINE shadow_taps taps_of_place(const shadow_map *map, int nearest, lanes u, lanes v) {
-  shadow_taps taps;
-  taps.inside = (u > 0.0f) & (v > 0.0f) & (u < (float)map->width) & (v < (float)map->height);
-  lanes x = lanes_clamp(u - 0.5f, 0, (float)(map->width - 1)), y = lanes_clamp(v - 0.5f, 0, (float)(map->height - 1));
-  if (nearest) {
-    x = lanes_from_int(lanes_truncate(x + 0.5f));
-    y = lanes_from_int(lanes_truncate(y + 0.5f));
-  }
-  lanes_int column = lanes_truncate(x), row = lanes_truncate(y);
-  taps.fx = x - lanes_from_int(column);
-  taps.fy = y - lanes_from_int(row);
-  taps.at = row * (int32_t)map->stride + column;
-  return taps;
-}
-
 LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow_map *map, lanes3 position) {
   lanes place[3];
   for (int row = 0; row < 3; row++) place[row] = row_of_point(map->rows[row], position);
@@ -62,45 +41,28 @@ LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow
   return taps_of_place(map, light->nearest, lanes_select(ahead, place[1] / safe, outside), lanes_select(ahead, place[2] / safe, outside));
 }
 
-/* Between the pixels a b and, in the next row, c d; `beyond` outside the buffer. */
-LANES_INLINE lanes between_taps(const shadow_taps *taps, lanes a, lanes b, lanes c, lanes d, float beyond) {
-  lanes top = lanes_fma(b - a, taps->fx, a), bottom = lanes_fma(d - c, taps->fx, c);
-  return lanes_select(taps->inside, lanes_fma(bottom - top, taps->fy, top), lanes_set(beyond));
-}
-
-LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const float *buffer) {
-  lanes a, b, c, d;
-  lanes_gather_pairs(buffer, taps->at, &a, &b);
-  lanes_gather_pairs(buffer + map->stride, taps->at, &c, &d);
-  return between_taps(taps, a, b, c, d, 1);
-}
-
-LANES_INLINE lanes look_up_part(const shadow_map *map, const shadow_taps *taps, const part_pixel *buffer) {
-  lanes_int a, b, c, d;
-  lanes_gather_short_pairs(buffer, taps->at, &a, &b);
-  lanes_gather_short_pairs(buffer + map->stride, taps->at, &c, &d);
-  return between_taps(taps, lanes_from_int(a), lanes_from_int(b), lanes_from_int(c), lanes_from_int(d), PART_ONE);
-}
-
-LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position) {
+LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position, uint32_t active) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   for (int i = 0; i < light->part_count; i++) {
     const part_lookup *part = &light->parts[i];
     shadow_taps taps = taps_of_position(light, &part->map, position);
     for (int c = 0; c < light->channels; c++)
-      sum.c[c] = lanes_add_scaled(sum.c[c], look_up_part(&part->map, &taps, part->left[c]), part->weight[c]);
+      sum.c[c] = lanes_add_scaled(sum.c[c], look_up_part(&part->map, &taps, part->left[c], active), part->weight[c]);
   }
   for (int c = 0; c < light->channels; c++) sum.c[c] = sum.c[c] / ((float)PART_ONE * (float)light->part_count);
   return sum;
 }
 
-/* Light reaching the slab: the shadow buffers' transmittance at its first sheet. */
-LANES_INLINE color_lanes reaching(const shade_light *light, lanes3 position) {
-  if (light->part_count > 0) return mean_of_parts(light, position);
+/* Light reaching the slab in the active lanes: the shadow buffers' transmittance at its first sheet. */
+LANES_INLINE color_lanes reaching(const shade_light *light, lanes3 position, uint32_t active) {
+  if (light->part_count > 0) return mean_of_parts(light, position, active);
   color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   const shadow_map *map = &light->lookup->map;
   shadow_taps taps = taps_of_position(light, map, position);
-  for (int c = 0; c < light->channels; c++) reached.c[c] = look_up(map, &taps, light->lookup->transmittance[c]);
+  for (int c = 0; c < light->channels; c++) {
+    const float *buffer = light->lookup->transmittance[c];
+    reached.c[c] = light->cubic ? look_up_cubic(map, &taps, buffer) : look_up(map, &taps, buffer);
+  }
   return reached;
 }
 
@@ -238,7 +200,7 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   arriving.shadowed = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
   light_depths depths = depths_of_light(job, g, densities, count, arriving.towards, path);
-  color_lanes reached = reaching(light, g->position);
+  color_lanes reached = reaching(light, g->position, lanes_bits(slab->seen));
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     if (c < light->channels)

@@ -67,6 +67,7 @@ typedef struct sweep_light {
   const light_source *source;
   shadow_buffer *buffer;          /* null: no shadows */
   view_sheets sheets;
+  bool cubic;                     /* buffer is read by cubic convolution */
   light_screen screen;            /* the image that the light projects */
   light_image *image;             /* owned; the image on the light itself; null: none */
   soft_paper paper;               /* by the source's soft method */

@@ -8,6 +8,8 @@
  * at least; and somewhat coarser than the image's. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4, PART_PIXEL_PER_IMAGE_PIXEL = 1.5;
+/* Read by cubic convolution, penumbrae lose less on pixels so much larger than bilinear look-ups do on these. */
+static const double CUBIC_LARGER = 7.0 / 6;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
@@ -42,7 +44,19 @@ static double penumbra_margin(const sweep *sweep, const light_source *source, co
   return width * (1 / nearest - 1 / (nearest + depth));
 }
 
-static double shadow_pixel(const sweep *sweep, const light_source *source) {
+/* image: of the light, null where it is even; the penumbrae of others have edges of their own. */
+static bool is_read_cubic(const sweep *sweep, const light_source *source, const light_image *image) {
+  hl_shadow_lookup lookup = sweep->scene->render.shadow_lookup;
+  bool soft = source->shadows == HL_SHADOWS_SOFT;
+  if (soft && source->soft_method == HL_SOFT_SUBLIGHTS) return false;
+  return lookup == HL_LOOKUP_CUBIC || (lookup == HL_LOOKUP_AUTO && soft && source->soft_method == HL_SOFT_CASCADE && image == NULL);
+}
+
+/* A bilinear look-up weighs two pixels by their distances p and 1 - p: a variance of p (1 - p), 1/6 on average. Cubic
+ * convolution has none. */
+static double lookup_variance(bool cubic) { return cubic ? 0 : 1.0 / 6; }
+
+static double shadow_pixel(const sweep *sweep, const light_source *source, bool cubic) {
   const frame *frame = sweep->frame;
   double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
   double pixel = fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL * frame->voxel), GREATEST_SHADOW_PIXEL * frame->voxel);
@@ -50,16 +64,17 @@ static double shadow_pixel(const sweep *sweep, const light_source *source) {
   if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(PART_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
   /* a pixel on the sheets is narrower seen along the light: as large as a hard shadow's there */
   double slant = source->parallel ? fabs(vec3_dot(source->direction, sweep->geometry->sheets.normal)) : 1;
+  if (cubic) pixel *= CUBIC_LARGER;
   return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel / sqrt(fmax(slant, 0.5)));
 }
 
 /* Places the buffer: perpendicular to the light for hard shadows; parallel to the sheets for soft ones, around the middle
  * and along the axes of the light as they see it. False where nothing of the content is in the picture. */
-static bool place_buffer(const sweep *sweep, const light_source *source, vec3 *points, shadow_extent *extent,
+static bool place_buffer(const sweep *sweep, const light_source *source, bool cubic, vec3 *points, shadow_extent *extent,
                          sheet_light *seen, view *view) {
   size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height * SHADOW_PIXELS_PER_IMAGE_PIXEL;
   *extent = (shadow_extent){.points = points, .point_count = hl_frame_visible_points(sweep->frame, points),
-                          .pixel = shadow_pixel(sweep, source),
+                          .pixel = shadow_pixel(sweep, source, cubic),
                           .resolution = sweep->scene->render.shadow_resolution,
                           .greatest_pixels = greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
                           .content = sweep->frame->points, .content_count = sweep->frame->point_count};
@@ -99,13 +114,14 @@ static double steepest_tangent(const view *view, vec3 normal) {
 /* A cascade keeps its buffer where it is looked up. What is seen of a brick is looked up in the middle of the slab, up to half
  * a slab further along the eye's ray: derived, in a buffer parallel to the sheets that is half their distance times the
  * difference of the two rays' tangents away. Near a light within the content a tile must do. */
-static double look_up_spare(const sweep *sweep, const light_source *source, const view *view) {
+static double look_up_spare(const sweep *sweep, const light_source *source, bool cubic, const view *view) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   if (source->shadows != HL_SHADOWS_SOFT || source->soft_method != HL_SOFT_CASCADE) return PIXEL_TO_SPARE;
   double nearest = 1, pixel = fmin(vec3_length(view->du), vec3_length(view->dv));
   if (view->perspective) nearest = fmax(sheets->first - vec3_dot(view->origin, sheets->normal), 1e-9 * pixel);
   double tangents = steepest_tangent(&sweep->frame->eye, sheets->normal) + steepest_tangent(view, sheets->normal);
-  return PIXEL_TO_SPARE + fmin(0.5 * sheets->spacing * tangents / (pixel * nearest), TILE);
+  int taps = cubic ? 2 * PIXEL_TO_SPARE : PIXEL_TO_SPARE;
+  return taps + fmin(0.5 * sheets->spacing * tangents / (pixel * nearest), TILE);
 }
 
 /* One light's part of hl_sweep_bytes; as begin_light takes it. image: null where penumbrae are even. */
@@ -116,7 +132,8 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
   view view;
   shadow_extent extent;
   sheet_light seen = {0};
-  if (source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, points, &extent, &seen, &view)) return;
+  bool cubic = is_read_cubic(sweep, source, image);
+  if (source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, cubic, points, &extent, &seen, &view)) return;
   bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
   int reach = soft && source->soft_method == HL_SOFT_SUBLIGHTS ? SUBLIGHT_REACH : 0;
   if (paper) {
@@ -127,7 +144,7 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
   }
   uint64_t tiles = (uint64_t)hl_tiles(view.width) * (uint64_t)hl_tiles(view.height), passing = 0;
   bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper, reach);
-  bytes->passing += hl_view_sheets_bytes(sweep, &view, look_up_spare(sweep, source, &view));
+  bytes->passing += hl_view_sheets_bytes(sweep, &view, look_up_spare(sweep, source, cubic, &view));
   bytes->passing += tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
   if (soft && source->soft_method == HL_SOFT_SUBLIGHTS)
     bytes->passing += hl_sublights_bytes(source, image, sweep->scene->render.light_samples, sheets->normal, &extent,
@@ -158,12 +175,13 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   hl_status status = hl_light_image_create(sweep->context, source, &light->image, error);
   if (status != HL_OK) return status;
   light_image *image = light->image == NULL || light->image->even ? NULL : light->image;
+  light->cubic = is_read_cubic(sweep, source, image);
   status = hl_light_screen_create(sweep->context, source, sweep->frame->points, sweep->frame->point_count,
                                   sweep->frame->middle, sweep->frame->middle_pixel, &light->screen, error);
   view view;
   shadow_extent extent;
   sheet_light seen = {0};
-  if (status != HL_OK || source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, points, &extent, &seen, &view))
+  if (status != HL_OK || source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, light->cubic, points, &extent, &seen, &view))
     return status;
   light->buffer = buffer;
   double edge = vec3_length(view.du);
@@ -186,8 +204,8 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   if (cascade && image != NULL) hl_light_image_see(source, &seen, sheets->normal, image);
   if (status == HL_OK && cascade)
     status = hl_soft_cascade_begin(sweep->context, sweep->pool, memory, &light->cascade, &seen, image, sheets->normal,
-                                   sheets->first, last, edge, buffer, error);
-  if (status == HL_OK) status = hl_view_sheets_begin(sweep, &view, look_up_spare(sweep, source, &view), &light->sheets, error);
+                                   sheets->first, last, edge, lookup_variance(light->cubic), buffer, error);
+  if (status == HL_OK) status = hl_view_sheets_begin(sweep, &view, look_up_spare(sweep, source, light->cubic, &view), &light->sheets, error);
   return status;
 }
 
@@ -244,7 +262,8 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
                          .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE, .screen = from->screen,
                          .share = hl_light_share(from->source->sectors, from->source->sector),
                          .cone = hl_light_cone(from->source, sweep->frame->middle, sweep->frame->middle_pixel),
-                         .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST};
+                         .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST,
+                         .cubic = from->cubic};
   vec3_store(light->towards, vec3_scale(from->source->direction, -1));
   vec3_store(light->position, from->source->position);
   for (int c = 0; c < 3; c++) light->color[c] = (float)(scene->color[c] * scene->intensity * (from->image == NULL ? 1 : from->image->mean[c]));

@@ -502,7 +502,7 @@ static hl_status check_render(const hl_render_settings *render, hl_error *error)
     return status;
   if ((status = check_choice(&check, "slicing", (int)render->slicing, 0, HL_SLICING_IMAGE_ALIGNED)) != HL_OK)
     return status;
-  if ((status = check_choice(&check, "shadow_lookup", (int)render->shadow_lookup, 0, HL_LOOKUP_NEAREST)) !=
+  if ((status = check_choice(&check, "shadow_lookup", (int)render->shadow_lookup, 0, HL_LOOKUP_AUTO)) !=
       HL_OK)
     return status;
   if ((status = check_range(&check, "shadow_resolution", render->shadow_resolution, 0,

@@ -16,7 +16,7 @@ const char *const hl_soft_method_names[] = {"cascade", "paper", "sublights", NUL
 const char *const hl_kernel_names[] = {"bspline", "gaussian", "linear", NULL};
 const char *const hl_reconstruction_names[] = {"auto", "splat", "gather", NULL};
 const char *const hl_slicing_names[] = {"half-vector", "image-aligned", NULL};
-const char *const hl_shadow_lookup_names[] = {"bilinear", "nearest", NULL};
+const char *const hl_shadow_lookup_names[] = {"bilinear", "nearest", "cubic", "auto", NULL};
 
 json_t *hl_json_copy(const json_t *value) {
   json_t *copy = json_copy((json_t *)value);

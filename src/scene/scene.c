@@ -56,7 +56,8 @@ void hl_scene_description_defaults(hl_scene_description *description) {
                  .soft_method = HL_SOFT_CASCADE,
                  .light_samples = 4,
                  .sheet_spacing = 0.5,
-                 .kernel = HL_KERNEL_BSPLINE},
+                 .kernel = HL_KERNEL_BSPLINE,
+                 .shadow_lookup = HL_LOOKUP_AUTO},
   };
 }
 

@@ -277,7 +277,7 @@ LANES_INLINE void lanes_store_offsets(lanes_offsets *offsets, lanes_int value) {
 }
 
 /* Sixteen 4-byte loads at base + offset (bytes). Plain loads: gather instructions were measured four times slower on
- * processors with the mitigations against data sampling. */
+ * processors with the mitigations against data sampling. (clang 19 makes some of them for AVX-512 of its own accord.) */
 LANES_CALL lanes_int lanes_load_words(const unsigned char *base, const lanes_offsets *offsets) {
 #define LANES_WORD(lane) lanes_word(base + offsets->at[lane])
   return (lanes_int){LANES_WORD(0),  LANES_WORD(1),  LANES_WORD(2),  LANES_WORD(3), LANES_WORD(4),  LANES_WORD(5),
@@ -325,6 +325,42 @@ LANES_INLINE void columns_of_pairs(const __m512 pairs[4], __m512 columns[3]) {
   columns[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(c, d));
 }
 #endif
+
+/* table[index] to table[index + 3]: one load a lane. */
+LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes quad[4]) {
+#if defined(__AVX512F__)
+  lanes_offsets offsets;
+  lanes_store_offsets(&offsets, index);
+  __m512 of_lanes[4]; /* of the lanes k, 4 + k, 8 + k and 12 + k */
+  for (int k = 0; k < 4; k++) {
+    __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(table + offsets.at[k]));
+    four = _mm512_insertf32x4(four, _mm_loadu_ps(table + offsets.at[4 + k]), 1);
+    four = _mm512_insertf32x4(four, _mm_loadu_ps(table + offsets.at[8 + k]), 2);
+    of_lanes[k] = _mm512_insertf32x4(four, _mm_loadu_ps(table + offsets.at[12 + k]), 3);
+  }
+  __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(of_lanes[0], of_lanes[1])), b = _mm512_castps_pd(_mm512_unpacklo_ps(of_lanes[2], of_lanes[3]));
+  __m512d c = _mm512_castps_pd(_mm512_unpackhi_ps(of_lanes[0], of_lanes[1])), d = _mm512_castps_pd(_mm512_unpackhi_ps(of_lanes[2], of_lanes[3]));
+  quad[0] = (lanes)_mm512_unpacklo_pd(a, b);
+  quad[1] = (lanes)_mm512_unpackhi_pd(a, b);
+  quad[2] = (lanes)_mm512_unpacklo_pd(c, d);
+  quad[3] = (lanes)_mm512_unpackhi_pd(c, d);
+#elif defined(__AVX2__)
+  lanes_offsets offsets;
+  lanes_store_offsets(&offsets, index);
+  for (int half = 0; half < 2; half++) {
+    const int32_t *at = offsets.at + 8 * half;
+    __m256 of_lanes[4]; /* of the lanes k and 4 + k */
+    for (int k = 0; k < 4; k++)
+      of_lanes[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(table + at[k])), _mm_loadu_ps(table + at[4 + k]), 1);
+    __m256d a = _mm256_castps_pd(_mm256_unpacklo_ps(of_lanes[0], of_lanes[1])), b = _mm256_castps_pd(_mm256_unpacklo_ps(of_lanes[2], of_lanes[3]));
+    __m256d c = _mm256_castps_pd(_mm256_unpackhi_ps(of_lanes[0], of_lanes[1])), d = _mm256_castps_pd(_mm256_unpackhi_ps(of_lanes[2], of_lanes[3]));
+    const __m256d column[4] = {_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b), _mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d)};
+    for (int i = 0; i < 4; i++) memcpy((float *)&quad[i] + 8 * half, &column[i], sizeof column[i]);
+  }
+#else
+  for (int i = 0; i < 4; i++) quad[i] = lanes_gather(table + i, index);
+#endif
+}
 
 /* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to 2: one load a lane instead of six. */
 LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lanes first[3], lanes second[3]) {
@@ -380,6 +416,64 @@ LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int inde
   lanes_int pair = lanes_gather_bytes((const unsigned char *)table, index * 2);
   *first = pair & 0xffff;
   *second = pair >> 16 & 0xffff;
+}
+
+/* Where sixteen squares of two by two numbers begin in a table. */
+typedef struct lanes_squares { lanes_int column, row; } lanes_squares;
+
+#if defined(__AVX512BW__)
+/* The least column and row of the active lanes, in 16 bits each of every lane; both are below 65535. */
+LANES_INLINE __m512i least_corner(__m512i corners, __mmask16 active) {
+  __m512i held = _mm512_mask_mov_epi32(_mm512_set1_epi32(-1), active, corners);
+  __m256i of_eight = _mm256_min_epu16(_mm512_castsi512_si256(held), _mm512_extracti64x4_epi64(held, 1));
+  __m128i least = _mm_min_epu16(_mm256_castsi256_si128(of_eight), _mm256_extracti128_si256(of_eight, 1));
+  least = _mm_min_epu16(least, _mm_shuffle_epi32(least, 0x4e));
+  return _mm512_broadcastd_epi32(_mm_min_epu16(least, _mm_shuffle_epi32(least, 0xb1)));
+}
+
+/* Four rows of eight numbers. */
+LANES_INLINE __m512i four_rows(const uint16_t *from, size_t stride) {
+  __m512i rows = _mm512_castsi128_si512(_mm_loadu_si128((const __m128i *)(const void *)from));
+  rows = _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + stride)), 1);
+  rows = _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + 2 * stride)), 2);
+  return _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + 3 * stride)), 3);
+}
+
+/* Squares of lanes near each other, one active lane at least, lie in eight rows of eight numbers. False where they do not. */
+LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_squares squares, uint32_t active, __m512i pair[2]) {
+  __m512i corners = _mm512_or_si512((__m512i)squares.column, _mm512_slli_epi32((__m512i)squares.row, 16));
+  __m512i least = least_corner(corners, (__mmask16)active), apart = _mm512_sub_epi16(corners, least);
+  __m512i ends = _mm512_add_epi16(apart, _mm512_set1_epi16(1));
+  if (_mm512_mask_test_epi32_mask((__mmask16)active, ends, _mm512_set1_epi16(-8)) != 0) return 0;
+  uint32_t corner = (uint32_t)_mm_cvtsi128_si32(_mm512_castsi512_si128(least));
+  const uint16_t *first = table + (corner >> 16) * stride + (corner & 0xffff);
+  __m512i upper = four_rows(first, stride), lower = four_rows(first + 4 * stride, stride);
+  __m512i index = _mm512_or_si512(_mm512_srli_epi32(apart, 13), _mm512_and_si512(apart, _mm512_set1_epi32(7)));
+  index = _mm512_add_epi16(_mm512_or_si512(index, _mm512_slli_epi32(index, 16)), _mm512_set1_epi32(0x10000));
+  pair[0] = _mm512_permutex2var_epi16(upper, index, lower);
+  pair[1] = _mm512_permutex2var_epi16(upper, _mm512_add_epi16(index, _mm512_set1_epi16(8)), lower);
+  return 1;
+}
+#endif
+
+/* Of each active lane table[stride * row + column], the number beside it, the one below and the one beside that. Columns and rows
+ * are below 65535; six more of them may be read. */
+LANES_CALL void lanes_gather_short_squares(const uint16_t *table, size_t stride, lanes_squares squares, uint32_t active, lanes_int square[4]) {
+#if defined(__AVX512BW__)
+  __m512i pair[2];
+  if (squares_in_window(table, stride, squares, active, pair)) {
+    for (int i = 0; i < 2; i++) {
+      square[2 * i] = (lanes_int)_mm512_and_si512(pair[i], _mm512_set1_epi32(0xffff));
+      square[2 * i + 1] = (lanes_int)_mm512_srli_epi32(pair[i], 16);
+    }
+    return;
+  }
+#else
+  (void)active;
+#endif
+  lanes_int at = squares.row * (int32_t)stride + squares.column;
+  lanes_gather_short_pairs(table, at, &square[0], &square[1]);
+  lanes_gather_short_pairs(table + stride, at, &square[2], &square[3]);
 }
 
 /* Some of sixteen lanes, one bit each, that move together to the lanes `at` and on, in their order. */

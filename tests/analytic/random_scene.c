@@ -246,7 +246,8 @@ void random_scene_open(random_scene *scene, uint64_t seed) {
   render->kernel = (hl_kernel)below(&d, 3);
   render->reconstruction = (hl_reconstruction)below(&d, 3);
   render->slicing = chance(&d, 0.1) ? HL_SLICING_IMAGE_ALIGNED : HL_SLICING_HALF_VECTOR;
-  render->shadow_lookup = chance(&d, 0.1) ? HL_LOOKUP_NEAREST : HL_LOOKUP_BILINEAR;
+  const hl_shadow_lookup lookups[] = {HL_LOOKUP_BILINEAR, HL_LOOKUP_CUBIC, HL_LOOKUP_AUTO};
+  render->shadow_lookup = chance(&d, 0.1) ? HL_LOOKUP_NEAREST : lookups[below(&d, 3)];
   render->shadow_resolution = chance(&d, 0.2) ? 1 + below(&d, 64) : 0;
   draw_camera(&d, &set->scene.camera, size);
   for (int count = 1 + below(&d, 3); count > 0; count--) draw_volume(&d, scene, size);

@@ -181,7 +181,7 @@ static void draw_settings(fuzz_source *source, hl_render_settings *render) {
   render->kernel = (hl_kernel)fuzz_choice(source, 3);
   render->reconstruction = (hl_reconstruction)fuzz_choice(source, 3);
   render->slicing = (hl_slicing)fuzz_choice(source, 2);
-  render->shadow_lookup = (hl_shadow_lookup)fuzz_choice(source, 2);
+  render->shadow_lookup = (hl_shadow_lookup)fuzz_choice(source, 4);
   render->shadow_resolution = resolutions[fuzz_choice(source, 8)];
   render->threads = 1;
 }

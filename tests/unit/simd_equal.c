@@ -561,10 +561,11 @@ static void call_shade(const hot_functions *hot, void *state) {
   s->out.open = hot->shade_tile(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels, &s->out.samples);
 }
 
-static shadow_map random_map(uint32_t *seed) {
+/* steepest: pixels that places lie apart at most, for each unit. */
+static shadow_map random_map(uint32_t *seed, double steepest) {
   shadow_map map = {.stride = 64, .width = 60, .height = 50};
   for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 4; column++) map.rows[row][column] = random_between(seed, -9, 9);
+    for (int column = 0; column < 4; column++) map.rows[row][column] = random_between(seed, -steepest, steepest);
   map.rows[0][3] = 10;
   map.rows[1][3] = map.rows[2][3] = 250;
   return map;
@@ -579,11 +580,11 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
     *light = (shade_light){.parallel = (round + i) % 2, .towards = {(float)towards.x, (float)towards.y, (float)towards.z},
                            .position = {3, -2, (float)i}, .color = {1, 0.5f, salted(seed, 0, 1)}, .inverse_square = i == 1,
                            .shadowed = i < 2, .path = 0.7f, .lookup = &s->lookups[i], .parts = s->parts[i], .part_count = round % 4,
-                           .channels = s->job.channels, .nearest = round % 5 == 4};
-    s->lookups[i].map = random_map(seed);
+                           .channels = s->job.channels, .nearest = round % 5 == 4, .cubic = round / 4 % 2};
+    s->lookups[i].map = random_map(seed, 9);
     for (int c = 0; c < HL_CHANNELS; c++) s->lookups[i].transmittance[c] = &s->buffer[c][2][2];
     for (int part = 0; part < 3; part++) {
-      s->parts[i][part] = (part_lookup){.map = random_map(seed), .weight = {1, 0.7f, salted(seed, 0, 1)}};
+      s->parts[i][part] = (part_lookup){.map = random_map(seed, part == 0 ? 9 : 2), .weight = {1, 0.7f, salted(seed, 0, 1)}};
       for (int c = 0; c < HL_CHANNELS; c++) s->parts[i][part].left[c] = &s->left[c][2][2];
     }
     if (round % 4 == 3) light->cone = (light_cone){{-light->towards[0], 0.6f, -light->towards[2]}, 0.3f, 4};
