@@ -41,11 +41,15 @@ typedef struct sublight_job {
   int channels;
 } sublight_job;
 
-/* Multiplies a tile by the slab. lit: its blocks with light left, one bit each; returns those that still have some. */
-typedef uint32_t sublight_tile_function(const sublight_job *job, int tile_x, int tile_y, uint32_t lit);
+/* Multiplies a tile by the slab. Returns whether that took any light. */
+typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile_y);
 
-/* Multiplies a row of tiles by those of the slab's from first to last, where scale is 1. lit: [tiles_x], of each tile; those that
- * have no light need nothing. */
-typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last, uint16_t *lit);
+/* Multiplies a row of tiles by those of the slab's from first to last, where scale is 1. lit: [tiles_x], of each tile its blocks with
+ * light, one bit each; tiles that have none need nothing. touched: [tiles_x], becomes 1 where light may have been taken. */
+typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last, const uint16_t *lit,
+                                   unsigned char *touched);
+
+/* Of a tile's blocks with light left, those that still have some. */
+typedef uint32_t sublight_lit_function(const sublight_job *job, int tile_x, int tile_y, uint32_t lit);
 
 #endif

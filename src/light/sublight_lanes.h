@@ -10,7 +10,7 @@
 #include "light/attenuate_lanes.h"
 #include "light/sublight_field.h"
 
-enum { EVERY_ROW = (1 << TILE) - 1, EVERY_COLUMN = EVERY_ROW };
+enum { EVERY_ROW = (1 << TILE) - 1 };
 
 /* In the middle of the two inner ones, within what a transmittance can be. */
 LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
@@ -132,9 +132,6 @@ LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[T
 
 static const float DARK_PART = DARK * PART_ONE;
 
-/* Of a tile's columns of pixels, those that were multiplied in each row of blocks, and those where light was seen to be left. */
-typedef struct tile_columns { uint32_t worked[TILE / BLOCK], lit[TILE / BLOCK]; } tile_columns;
-
 /* The blocks that have any of these columns. */
 LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
   uint32_t any = columns | columns >> 1;
@@ -151,27 +148,21 @@ LANES_INLINE uint32_t lit_columns(const sublight_job *job, size_t at) {
   return columns;
 }
 
-/* Blocks go dark only where something was taken and nothing of what is left was seen: those are looked at whole. corner: the
- * tile's first pixel. */
-LANES_INLINE uint32_t still_lit(const sublight_job *job, size_t corner, uint32_t lit, const tile_columns *found) {
-  for (int row = 0; row < TILE / BLOCK; row++) {
-    uint32_t doubtful = lit >> 4 * row & blocks_of_columns(found->worked[row]) & ~blocks_of_columns(found->lit[row]);
-    if (doubtful == 0) continue;
-    uint32_t seen = blocks_of_columns(lit_columns(job, corner + (size_t)(row * BLOCK) * job->stride));
-    lit &= ~((doubtful & ~seen) << 4 * row);
-  }
-  return lit;
+static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, uint32_t lit) {
+  size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
+  uint32_t left = 0;
+  for (int row = 0; row < TILE / BLOCK; row++)
+    if ((lit >> 4 * row & 15) != 0) left |= blocks_of_columns(lit_columns(job, corner + (size_t)(row * BLOCK) * job->stride)) << 4 * row;
+  return lit & left;
 }
 
-/* Sixteen of a part's pixels times the slab's; what it then may hold. */
-LANES_INLINE lanes composite_part(const sublight_job *job, part_pixel *at, lanes left_by_slab) {
-  lanes passing = lanes_load_short(at) * left_by_slab;
-  lanes_store_short_int(at, lanes_truncate(passing + job->carry));
-  return passing;
+/* Sixteen of a part's pixels times the slab's. */
+LANES_INLINE void composite_part(const sublight_job *job, part_pixel *at, lanes left_by_slab) {
+  lanes_store_short_int(at, lanes_truncate(lanes_load_short(at) * left_by_slab + job->carry));
 }
 
-static uint32_t sublight_tile(const sublight_job *job, int tile_x, int tile_y, uint32_t lit) {
-  tile_columns found = {{0}, {0}};
+static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
+  int touched = 0;
   row_taps taps = taps_of_row(job, tile_x);
   size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
   int first, last;
@@ -188,11 +179,11 @@ static uint32_t sublight_tile(const sublight_job *job, int tile_x, int tile_y, u
       part_pixel *at = job->left[c] + corner + (size_t)row * job->stride;
       lanes left_by_slab = slab_row(&taps, rows);
       if (lanes_bits(left_by_slab < 1.0f) == 0) continue; /* the part's row need not come from memory */
-      found.worked[row / BLOCK] = EVERY_COLUMN;
-      found.lit[row / BLOCK] |= lanes_bits(composite_part(job, at, left_by_slab) >= DARK_PART);
+      composite_part(job, at, left_by_slab);
+      touched = 1;
     }
   }
-  return still_lit(job, corner, lit, &found);
+  return touched;
 }
 
 #endif

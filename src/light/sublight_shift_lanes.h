@@ -11,12 +11,6 @@
 /* Tiles of the slab whose pixels are fetched before the first is used. */
 enum { SHIFTED_TILES = 16 };
 
-/* Of a tile of the slab over a row of a part's tiles. */
-typedef struct shifted_tile {
-  uint32_t rows;              /* the part's rows that it takes light from */
-  uint32_t lit[TILE / BLOCK]; /* of the sixteen columns of pixels under it, those with light left in these rows, by rows of blocks */
-} shifted_tile;
-
 /* The image of the slab that is read. */
 LANES_INLINE int image_of_shift(const sublight_job *job) { return (job->half[0] & 1) + 2 * (job->half[1] & 1); }
 
@@ -40,58 +34,42 @@ LANES_INLINE part_pixel *pixels_under(const sublight_job *job, int channel, int 
   return job->left[channel] + (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE - (job->half[0] >> 1);
 }
 
-/* What there is to do, and its pixels on their way from memory: they come many at a time, not one after another. */
-LANES_INLINE shifted_tile begin_shifted(const sublight_job *job, int tile_x, int tile_y, const uint16_t *lit) {
+/* The part's rows that take light from a tile of the slab, and their pixels on their way from memory: they come many at a time,
+ * not one after another. The part's tiles under it are touched. */
+LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int tile_y, const uint16_t *lit, unsigned char *touched) {
   int top = tile_y * TILE + (job->half[1] >> 1), column = tile_x * TILE - (job->half[0] >> 1);
-  shifted_tile tile = {rows_from(job, tile_x, top, image_of_shift(job)), {0}};
-  if (is_dark_tile(job, lit, column >> 4) && is_dark_tile(job, lit, (column + TILE - 1) >> 4)) tile.rows = 0;
+  uint32_t rows = rows_from(job, tile_x, top, image_of_shift(job));
+  int ends[2] = {column >> 4, (column + TILE - 1) >> 4};
+  if (rows == 0 || (is_dark_tile(job, lit, ends[0]) && is_dark_tile(job, lit, ends[1]))) return 0;
+  for (int i = 0; i < 2; i++)
+    if (!is_dark_tile(job, lit, ends[i])) touched[ends[i]] = 1;
   for (int c = 0; c < job->channels; c++)
-    for (uint32_t left = tile.rows; left != 0; left &= left - 1) {
+    for (uint32_t left = rows; left != 0; left &= left - 1) {
       const part_pixel *at = pixels_under(job, c, tile_x, tile_y) + __builtin_ctz(left) * (ptrdiff_t)job->stride;
       __builtin_prefetch(at, 1);
       __builtin_prefetch(at + TILE - 1, 1);
     }
-  return tile;
+  return rows;
 }
 
-LANES_INLINE void composite_shifted(const sublight_job *job, int tile_x, int tile_y, shifted_tile *tile) {
+LANES_INLINE void composite_shifted(const sublight_job *job, int tile_x, int tile_y, uint32_t rows) {
   int top = tile_y * TILE + (job->half[1] >> 1);
   for (int c = 0; c < job->channels; c++) {
     const float *from = job->slab[c][image_of_shift(job)] + (ptrdiff_t)top * (ptrdiff_t)job->slab_stride + tile_x * TILE;
     part_pixel *to = pixels_under(job, c, tile_x, tile_y);
-    for (uint32_t left = tile->rows; left != 0; left &= left - 1) {
+    for (uint32_t left = rows; left != 0; left &= left - 1) {
       int row = __builtin_ctz(left);
-      lanes passing = composite_part(job, to + row * (ptrdiff_t)job->stride, lanes_load(from + row * (ptrdiff_t)job->slab_stride));
-      tile->lit[row / BLOCK] |= lanes_bits(passing >= DARK_PART);
+      composite_part(job, to + row * (ptrdiff_t)job->stride, lanes_load(from + row * (ptrdiff_t)job->slab_stride));
     }
   }
 }
 
-/* Tile x of the part is complete: the slab's tile and the one before it lie over it. */
-LANES_INLINE void end_shifted(const sublight_job *job, int tile_x, int tile_y, const shifted_tile *before, const shifted_tile *tile,
-                              uint16_t *lit) {
-  int column = tile_x * TILE - (job->half[0] >> 1), at = column >> 4, from = column & (TILE - 1);
-  if ((before->rows | tile->rows) == 0 || is_dark_tile(job, lit, at)) return;
-  tile_columns found;
-  uint32_t of_tile = EVERY_COLUMN << from & EVERY_COLUMN; /* the columns under it; those under the one before begin the tile */
-  for (int row = 0; row < TILE / BLOCK; row++) {
-    uint32_t rows = 15u << BLOCK * row;
-    found.worked[row] = ((tile->rows & rows) != 0 ? of_tile : 0) | ((before->rows & rows) != 0 ? EVERY_COLUMN & ~of_tile : 0);
-    found.lit[row] = (tile->lit[row] << from & EVERY_COLUMN) | before->lit[row] >> (TILE - from);
-  }
-  lit[at] = (uint16_t)still_lit(job, (size_t)(tile_y * TILE) * job->stride + (size_t)at * TILE, lit[at], &found);
-}
-
-static void sublight_row(const sublight_job *job, int tile_y, int first, int last, uint16_t *lit) {
-  shifted_tile tiles[SHIFTED_TILES + 1] = {{0, {0}}}; /* the first: the last of those before */
-  for (int x = first; x <= last + 1; x += SHIFTED_TILES) {
-    for (int i = 0; i < SHIFTED_TILES; i++)
-      tiles[i + 1] = x + i <= last ? begin_shifted(job, x + i, tile_y, lit) : (shifted_tile){0, {0}};
-    for (int i = 0; i < SHIFTED_TILES; i++) {
-      composite_shifted(job, x + i, tile_y, &tiles[i + 1]);
-      end_shifted(job, x + i, tile_y, &tiles[i], &tiles[i + 1], lit);
-    }
-    tiles[0] = tiles[SHIFTED_TILES];
+static void sublight_row(const sublight_job *job, int tile_y, int first, int last, const uint16_t *lit, unsigned char *touched) {
+  uint32_t rows[SHIFTED_TILES];
+  for (int x = first; x <= last; x += SHIFTED_TILES) {
+    int count = last - x + 1 < SHIFTED_TILES ? last - x + 1 : SHIFTED_TILES;
+    for (int i = 0; i < count; i++) rows[i] = begin_shifted(job, x + i, tile_y, lit, touched);
+    for (int i = 0; i < count; i++) composite_shifted(job, x + i, tile_y, rows[i]);
   }
 }
 

@@ -47,7 +47,7 @@ uint64_t hl_sublights_bytes(const light_source *source, const light_image *image
     place_part(source, image, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
   lay_out_planes(&planned);
   uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
-  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) + count * tiles * sizeof *planned.flags + slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
+  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) + count * tiles * (sizeof *planned.flags + 1) + slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
          count * (sizeof *planned.parts + sizeof *planned.lookups) +
          hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) - hl_shadow_buffer_bytes(slab, 0, false, reach);
 }
@@ -64,13 +64,14 @@ static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *subligh
   hl_context *context = reserve->context;
   sublights->memory = hl_reserve_take(reserve, pixels, sizeof(part_pixel));
   sublights->flags = hl_allocate(context, count * tiles, sizeof *sublights->flags);
+  sublights->marks = hl_allocate_zeroed(context, count, tiles);
   sublights->lookups = hl_allocate(context, count, sizeof *sublights->lookups);
   sublights->moved = hl_reserve_take(reserve, moved, sizeof(float));
   size_t slab_tiles = (size_t)slab->tiles_x * (size_t)slab->tiles_y;
   sublights->rows = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->rows);
   sublights->found = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->found);
-  if (sublights->memory == NULL || sublights->flags == NULL || sublights->lookups == NULL || sublights->moved == NULL ||
-      sublights->rows == NULL || sublights->found == NULL)
+  if (sublights->memory == NULL || sublights->flags == NULL || sublights->marks == NULL || sublights->lookups == NULL ||
+      sublights->moved == NULL || sublights->rows == NULL || sublights->found == NULL)
     return hl_fail_memory(error, pixels * sizeof(part_pixel) + moved * sizeof(float), "the parts of a light");
   hl_pool_set(pool, sublights->memory, pixels * sizeof(part_pixel), 0xff); /* PART_ONE */
   hl_pool_fill(pool, sublights->moved, moved, 1);
@@ -78,6 +79,7 @@ static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *subligh
     sublight *part = &sublights->parts[i];
     part->pixels = sublights->memory + i * channels * sublights->plane + TILE;
     part->lit = sublights->flags + i * tiles;
+    part->touched = sublights->marks + i * tiles;
   }
   for (size_t i = 0; i < count * tiles; i++) sublights->flags[i] = ALL_BLOCKS;
   return HL_OK;
@@ -117,7 +119,7 @@ hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *subl
 }
 
 void hl_sublights_release(hl_reserve *reserve, sublights *sublights) {
-  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags, sublights->rows, sublights->found};
+  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags, sublights->marks, sublights->rows, sublights->found};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(reserve->context, owned[i]);
   hl_reserve_return(reserve, sublights->memory);
   hl_reserve_return(reserve, sublights->moved);
@@ -180,6 +182,7 @@ typedef struct sublight_task {
   shadow_buffer *slab;
   const sublight_functions *functions;
   int x0, x1, y0, y1; /* tiles of the slab that are present lie between these */
+  bool ends_run;      /* lit blocks are found after it */
 } sublight_task;
 
 /* First and last tile of `to` under pixels from x to x + TILE of one axis, scaled and shifted; a pixel to spare. */
@@ -204,8 +207,8 @@ static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1)
   return false;
 }
 
-/* What is present of the slab; false: nothing. */
-static bool bound_present(sublight_task *task) {
+/* What is present of the slab; x1 < 0: nothing. */
+static void bound_present(sublight_task *task) {
   const shadow_buffer *slab = task->slab;
   task->x0 = slab->tiles_x;
   task->y0 = slab->tiles_y;
@@ -220,7 +223,6 @@ static bool bound_present(sublight_task *task) {
       task->y1 = y;
     }
   }
-  return task->x1 >= 0;
 }
 
 /* The tiles of a part under these of the slab, along an axis. */
@@ -231,19 +233,16 @@ static void part_tiles(const sublight *part, int axis, int low, int high, int ti
   tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
 }
 
-/* A row of tiles of one part. */
-static void composite_row(void *data, size_t index, int worker) {
-  (void)worker;
-  const sublight_task *task = data;
+/* A row of tiles of one part times the slab. */
+static void composite_row(const sublight_task *task, sublight *part, int y) {
   const sublights *all = task->sublights;
   const shadow_buffer *slab = task->slab;
-  sublight *part = &all->parts[index % (size_t)all->count]; /* parts in turn: what the slab holds under a row stays near */
-  int y = (int)(index / (size_t)all->count), y0, y1, first, last;
-  if (!part->reaches) return;
+  int y0, y1, first, last;
   part_tiles(part, 1, task->y0, task->y1, all->tiles_y, &first, &last);
   if (y < first || y > last) return;
   if (part->shifted) {
-    task->functions->composite_row(&part->job, y, task->x0, task->x1, part->lit + (size_t)y * (size_t)all->tiles_x);
+    size_t row = (size_t)y * (size_t)all->tiles_x;
+    task->functions->composite_row(&part->job, y, task->x0, task->x1, part->lit + row, part->touched + row);
     return;
   }
   part_tiles(part, 0, task->x0, task->x1, all->tiles_x, &first, &last);
@@ -253,9 +252,30 @@ static void composite_row(void *data, size_t index, int worker) {
     int x0, x1;
     if (part->lit[tile] == 0) continue;
     tiles_under((double)x * TILE, (double)part->job.scale[0], (double)part->job.shift[0], slab->tiles_x, &x0, &x1);
-    if (any_present(&part->job, x0, x1, y0, y1))
-      part->lit[tile] = (uint16_t)task->functions->composite(&part->job, x, y, part->lit[tile]);
+    if (any_present(&part->job, x0, x1, y0, y1) && task->functions->composite(&part->job, x, y)) part->touched[tile] = 1;
   }
+}
+
+/* Where light is left in a row of tiles, of those where some was taken. */
+static void find_part_lit(const sublight_task *task, sublight *part, int y) {
+  int tiles_x = task->sublights->tiles_x;
+  size_t row = (size_t)y * (size_t)tiles_x;
+  for (int x = 0; x < tiles_x; x++) {
+    if (!part->touched[row + (size_t)x]) continue;
+    part->touched[row + (size_t)x] = 0;
+    part->lit[row + (size_t)x] = (uint16_t)task->functions->lit(&part->job, x, y, part->lit[row + (size_t)x]);
+  }
+}
+
+static void advance_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const sublight_task *task = data;
+  const sublights *all = task->sublights;
+  sublight *part = &all->parts[index % (size_t)all->count]; /* parts in turn: what the slab holds under a row stays near */
+  int y = (int)(index / (size_t)all->count);
+  if (!part->reaches) return;
+  if (task->x1 >= 0) composite_row(task, part, y);
+  if (task->ends_run) find_part_lit(task, part, y);
 }
 
 /* ---- the slab ---- */
@@ -326,11 +346,13 @@ void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal
   for (int i = 0; i < sublights->count; i++) map_part(sublights, &sublights->parts[i], slab, normal, (from + to) / 2);
   sublight_task task = {.sublights = sublights, .slab = slab, .functions = functions};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
-  if (bound_present(&task))
-    hl_pool_run(pool, (size_t)sublights->count * (size_t)sublights->tiles_y, composite_row, &task);
-  hl_pool_run(pool, (size_t)slab->tiles_y, clear_row, &task);
   int run = run_of_slab(sublights->slabs++);
-  if (run_of_slab(sublights->slabs) != run) place_run(sublights, slab, normal, to, to - from);
+  task.ends_run = run_of_slab(sublights->slabs) != run;
+  bound_present(&task);
+  if (task.x1 >= 0 || task.ends_run)
+    hl_pool_run(pool, (size_t)sublights->count * (size_t)sublights->tiles_y, advance_row, &task);
+  hl_pool_run(pool, (size_t)slab->tiles_y, clear_row, &task);
+  if (task.ends_run) place_run(sublights, slab, normal, to, to - from);
 }
 
 /* ---- what light reaches ---- */

@@ -24,7 +24,8 @@ typedef struct part_place { double scale[2], shift[2]; } part_place;
 typedef struct sublight {
   view view;
   part_pixel *pixels;     /* pixel (0,0) of the first channel; the others a plane apart; in memory */
-  uint16_t *lit;          /* [tiles]; blocks in which light is left; in flags */
+  uint16_t *lit;          /* [tiles]; blocks in which light is left, or was before the last few slabs; in flags */
+  unsigned char *touched; /* [tiles]; 1 where those took some; in marks */
   sublight_job job;       /* of the slab now composited */
   bool reaches;           /* the part lies before the slab */
   bool shifted;           /* the job's scale is 1 */
@@ -40,6 +41,7 @@ typedef struct sublights {
   part_lookup *lookups;   /* owned; [count] */
   part_pixel *memory;     /* lent; [count][channels] planes */
   uint16_t *flags;        /* owned; [count][tiles] */
+  unsigned char *marks;   /* owned; [count][tiles] */
   float *moved;           /* lent; [channels][SLAB_IMAGES - 1] planes of the slab, half a pixel further along u, v and both */
   slab_rows *rows;        /* owned; [tiles of the slab] */
   uint32_t *found;        /* owned; [tiles of the slab]; the run of slabs for which its lit blocks were found; 0: none */
@@ -48,6 +50,7 @@ typedef struct sublights {
 typedef struct sublight_functions {
   sublight_tile_function *composite;
   sublight_row_function *composite_row; /* where pixels are only shifted */
+  sublight_lit_function *lit;
   half_pixel_tile_function *half_pixel;
 } sublight_functions;
 

@@ -216,7 +216,7 @@ void hl_sweep_soften(sweep *sweep, int sheet) {
   const cascade_functions cascade = {hot->lit_blocks_tile, hot->field_blur_tile, hot->add_tile,
                                      hot->add_half_tile, hot->add_double_tile, hot->left_tile, hot->absorbed_tile, hot->part_tile,
                                      hot->double_tile, hot->field_image_tile};
-  const sublight_functions parts = {hot->sublight_tile, hot->sublight_row, hot->half_pixel_tile};
+  const sublight_functions parts = {hot->sublight_tile, hot->sublight_row, hot->sublight_lit, hot->half_pixel_tile};
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;

@@ -39,6 +39,7 @@ const hot_functions HL_HOT_TABLE = {
     .add_double_tile = add_double_tile,
     .sublight_tile = sublight_tile,
     .sublight_row = sublight_row,
+    .sublight_lit = sublight_lit,
     .half_pixel_tile = half_pixel_tile,
     .left_tile = left_tile,
     .absorbed_tile = absorbed_tile,

@@ -26,6 +26,7 @@ typedef struct hot_functions {
   shade_tile_function *shade_tile, *measure_tile;
   sublight_tile_function *sublight_tile;
   sublight_row_function *sublight_row;
+  sublight_lit_function *sublight_lit;
   half_pixel_tile_function *half_pixel_tile;
   blur_tile_function *blur_rows_tile, *blur_columns_tile;
   field_blur_tile_function *field_blur_tile;

@@ -442,7 +442,7 @@ typedef struct field_state {
   field_job field;
   absorbed_job absorbed;
   part_job part;
-  sublight_job sublight;
+  sublight_job sublight, dark; /* the other's pixels are light or dark, in rows of blocks */
   half_pixel_job half_pixel;
   slab_rows rows[16];
   uint16_t lit[4];
@@ -453,7 +453,8 @@ typedef struct field_state {
   ptrdiff_t offset[40];
   float a[FIELD][FIELD], b[FIELD][FIELD];
   field_pixel lacking[FIELD][FIELD], thin[FIELD][FIELD]; /* whole numbers of a and b */
-  struct { float pixels[FIELD][FIELD]; field_pixel lacking[FIELD][FIELD]; int lit; uint16_t tiles_lit[4]; } out;
+  part_pixel shade[FIELD][FIELD];
+  struct { float pixels[FIELD][FIELD]; field_pixel lacking[FIELD][FIELD]; int lit; unsigned char touched[4]; } out;
 } field_state;
 
 static void call_field(const hot_functions *hot, void *state) {
@@ -466,15 +467,13 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 5) s->out.lit = hot->field_blur_tile(&s->field_blur, 1, 1);
   if (s->which == 6) hot->left_tile(&s->left, 1, 1);
   if (s->which == 7) s->out.lit = (int)hot->absorbed_tile(&s->absorbed, 1, 1);
-  if (s->which == 8) s->out.lit = (int)hot->sublight_tile(&s->sublight, 1, 1, s->lit[1]);
+  if (s->which == 8) s->out.lit = hot->sublight_tile(&s->sublight, 1, 1);
   if (s->which == 13) {
     slab_rows rows = hot->half_pixel_tile(&s->half_pixel, 1, 1);
     s->out.lit = (int)(rows ^ rows >> 32);
   }
-  if (s->which == 14) {
-    memcpy(s->out.tiles_lit, s->lit, sizeof s->lit);
-    hot->sublight_row(&s->sublight, 1, 0, 3, s->out.tiles_lit);
-  }
+  if (s->which == 14) hot->sublight_row(&s->sublight, 1, 0, 3, s->lit, s->out.touched);
+  if (s->which == 15) s->out.lit = (int)hot->sublight_lit(&s->dark, 1, 1, s->lit[1]);
   if (s->which == 9) s->out.lit = hot->double_tile(&s->field, 1, 1);
   if (s->which == 10) hot->image_tile(&s->image, 1, 1);
   if (s->which == 12) s->out.lit = (int)hot->part_tile(&s->part, 1, 1);
@@ -484,7 +483,7 @@ static void call_field(const hot_functions *hot, void *state) {
 static void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "field_blur_tile", "left_tile", "absorbed_tile", "sublight_tile",
-                                      "double_tile", "image_tile", "field_image_tile", "part_tile", "half_pixel_tile", "sublight_row"};
+                                      "double_tile", "image_tile", "field_image_tile", "part_tile", "half_pixel_tile", "sublight_row", "sublight_lit"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -519,6 +518,9 @@ static void test_fields(void **unused) {
       for (int i = 0; i < SLAB_IMAGES; i++) s.sublight.slab[c][i] = &s.a[MARGIN + c][MARGIN + 5 * i];
       s.sublight.left[c] = out;
     }
+    s.dark = s.sublight;
+    for (int c = 0; c < HL_CHANNELS; c++) s.dark.left[c] = &s.shade[0][0];
+    for (int i = 0; i < FIELD * FIELD; i++) (&s.shade[0][0])[i] = random_between(&seed, 0, 1) < 0.95f ? 0 : (part_pixel)random_between(&seed, 60, 68);
     for (int i = 0; i < 16; i++) s.rows[i] = (uint64_t)random_between(&seed, 0, 65535) * 0x1000100010001u;
     for (int i = 0; i < 4; i++) s.lit[i] = random_between(&seed, 0, 1) < 0.3f ? 0 : (uint16_t)random_between(&seed, 1, 65535);
     s.half_pixel = (half_pixel_job){.slab = &s.a[MARGIN][MARGIN], .slab_stride = FIELD};
@@ -529,7 +531,7 @@ static void test_fields(void **unused) {
                                       .offset = s.offset, .weight = &s.b[MARGIN + 30][MARGIN]};
     for (int i = 0; i < 40; i++)
       s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD + (ptrdiff_t)random_between(&seed, -20, 20);
-    for (s.which = 0; s.which < 15; s.which++) {
+    for (s.which = 0; s.which < 16; s.which++) {
       trial trial = {call_field, &s, &s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
