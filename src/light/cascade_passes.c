@@ -56,8 +56,35 @@ static bool sum_is_zeros(const add_task *task, int x, int y) {
   return true;
 }
 
+/* Whether a row of a field's tiles, some more around them, holds anything. */
+static bool holds_any(const cascade_level *level, const cascade_field *field, int first, int last, int top, int bottom) {
+  if (first < 0) first = 0;
+  if (last >= level->tiles_x) last = level->tiles_x - 1;
+  for (int y = top < 0 ? 0 : top; y <= bottom && y < level->tiles_y && first <= last; y++)
+    if (memchr(field->zeros + y * level->tiles_x + first, 0, (size_t)(last - first + 1)) != NULL) return true;
+  return false;
+}
+
+/* Most rows of a pass hold nothing, and are zeros already. */
+static bool sums_are_zeros(const add_task *task, row_part part) {
+  const cascade_level *levels[2] = {task->level_a, task->level_b};
+  const cascade_field *fields[2] = {task->a, task->b};
+  int last = part.end - 1, y = part.y;
+  for (int i = 0; i < 2; i++) {
+    if (fields[i] == NULL) continue;
+    bool finer = levels[i]->scale < task->level->scale, coarser = levels[i]->scale > task->level->scale;
+    if (finer ? holds_any(levels[i], fields[i], 2 * part.first, 2 * last + 1, 2 * y, 2 * y + 1)
+        : coarser ? holds_any(levels[i], fields[i], (part.first - 1) / 2, (last + 1) / 2, (y - 1) / 2, (y + 1) / 2)
+                  : holds_any(levels[i], fields[i], part.first, last, y, y))
+      return false;
+  }
+  return !holds_any(task->level, task->to, part.first, last, y, y);
+}
+
 static void add_tiles(const add_task *task, row_part part) {
+  if (sums_are_zeros(task, part)) return;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, part.y, task->reach);
+  if (!read.any) return;
   for (int x = part.first; x < part.end; x++) {
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     if (sum_is_zeros(task, x, part.y)) {
@@ -113,8 +140,12 @@ static void blur_part(void *data, size_t index, int worker) {
   (void)worker;
   const blur_task *task = data;
   const row_part part = hl_cascade_row_part(task->level, index);
-  int y = part.y;
+  int y = part.y, last = part.end - 1;
+  if (!holds_any(task->level, task->from, part.first - task->reach_x, last + task->reach_x, y - task->reach_y, y + task->reach_y) &&
+      (task->a == NULL || !holds_any(task->level, task->a, part.first, last, y, y)) && !holds_any(task->level, task->to, part.first, last, y, y))
+    return;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
+  if (!read.any) return;
   for (int x = part.first; x < part.end; x++) {
     size_t tile = (size_t)y * (size_t)task->level->tiles_x + (size_t)x;
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;

@@ -38,11 +38,13 @@ static read_band band_of(const cascade_reads *reads, int top, int bottom) {
 }
 
 read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int reach) {
-  read_row row = {.scale = scale, .reach = reach, .tiles_x = reads->tiles_x};
+  read_row row = {.scale = scale, .reach = reach, .tiles_x = reads->tiles_x, .any = true};
   if (reach == READ_EVERYWHERE) return row;
   int top = y * TILE * scale - reach, step = BLOCK * scale;
   row.around = (reach + TILE - 1) / TILE;
   row.all = band_of(reads, top, top + TILE * scale - 1 + 2 * reach);
+  row.any = row.all.lower[reads->tiles_x] != row.all.upper[reads->tiles_x];
+  if (!row.any) return row;
   for (int i = 0; i < TILE / BLOCK; i++) row.blocks[i] = band_of(reads, top + i * step, top + (i + 1) * step - 1 + 2 * reach);
   return row;
 }

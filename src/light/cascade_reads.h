@@ -24,6 +24,7 @@ typedef struct read_band { const uint32_t *upper, *lower; } read_band;
 typedef struct read_row {
   int scale, reach, tiles_x;
   int around;                     /* reach in tiles */
+  bool any;                       /* of the whole row; if not, the bands of blocks are not set */
   read_band all;                  /* of the whole row */
   read_band blocks[TILE / BLOCK]; /* of each four of its pixels' rows */
 } read_row;

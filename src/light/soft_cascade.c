@@ -477,6 +477,7 @@ static void light_part(void *data, size_t index, int worker) {
   shadow_buffer *buffer = task->buffer;
   const row_part part = hl_cascade_row_part(level, index);
   const read_row read = hl_cascade_read_row(&task->cascade->reads, 1, part.y, 0);
+  if (!read.any) return;
   for (int tile_x = part.first; tile_x < part.end; tile_x++) {
     size_t tile = (size_t)part.y * (size_t)level->tiles_x + (size_t)tile_x;
     if (!hl_cascade_is_read(&read, &read.all, tile_x)) continue;
