@@ -8,10 +8,18 @@ void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *fi
   for (size_t row = 0; row < TILE; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(field_pixel));
 }
 
+/* Fewer are faster looked at one by one. */
+enum { MANY_TILES = 4 };
+
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1) {
-  for (int y = y0 < 0 ? 0 : y0; y <= y1 && y < level->tiles_y; y++)
-    for (int x = x0 < 0 ? 0 : x0; x <= x1 && x < level->tiles_x; x++)
-      if (!field->zeros[y * level->tiles_x + x]) return false;
+  if (x0 < 0) x0 = 0;
+  if (x1 >= level->tiles_x) x1 = level->tiles_x - 1;
+  for (int y = y0 < 0 ? 0 : y0; y <= y1 && y < level->tiles_y && x0 <= x1; y++) {
+    const unsigned char *zeros = field->zeros + y * level->tiles_x;
+    if (x1 - x0 >= MANY_TILES && memchr(zeros + x0, 0, (size_t)(x1 - x0 + 1)) != NULL) return false;
+    for (int x = x0; x <= x1 && x1 - x0 < MANY_TILES; x++)
+      if (!zeros[x]) return false;
+  }
   return true;
 }
 
@@ -39,55 +47,37 @@ typedef struct add_task {
   bool doubled;         /* b is coarser: a of zeros may be left out */
 } add_task;
 
-static bool sum_is_zeros(const add_task *task, int x, int y) {
+/* In a row of tiles from x0 to x1, both included. */
+static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   const cascade_level *levels[2] = {task->level_a, task->level_b};
   const cascade_field *fields[2] = {task->a, task->b};
   for (int i = 0; i < 2; i++) {
     if (fields[i] == NULL) continue;
-    if (levels[i]->scale == task->level->scale) {
-      if (!fields[i]->zeros[y * task->level->tiles_x + x]) return false;
+    int scale = levels[i]->scale, own = task->level->scale;
+    if (scale == own && x0 == x1) {
+      if (!fields[i]->zeros[y * task->level->tiles_x + x0]) return false;
       continue;
     }
-    int coarse = levels[i]->scale, own = task->level->scale, x0 = x, y0 = y, x1 = x, y1 = y;
-    if (coarse < own) x0 = 2 * x, x1 = 2 * x + 1, y0 = 2 * y, y1 = 2 * y + 1;
-    if (coarse > own) x0 = (x - 1) / 2, x1 = (x + 1) / 2, y0 = (y - 1) / 2, y1 = (y + 1) / 2;
-    if (!hl_cascade_all_zeros(levels[i], fields[i], x0, x1, y0, y1)) return false;
+    if (scale < own ? !hl_cascade_all_zeros(levels[i], fields[i], 2 * x0, 2 * x1 + 1, 2 * y, 2 * y + 1)
+        : scale > own ? !hl_cascade_all_zeros(levels[i], fields[i], (x0 - 1) / 2, (x1 + 1) / 2, (y - 1) / 2, (y + 1) / 2)
+                      : !hl_cascade_all_zeros(levels[i], fields[i], x0, x1, y, y))
+      return false;
   }
   return true;
 }
 
-/* Whether a row of a field's tiles, some more around them, holds anything. */
-static bool holds_any(const cascade_level *level, const cascade_field *field, int first, int last, int top, int bottom) {
-  if (first < 0) first = 0;
-  if (last >= level->tiles_x) last = level->tiles_x - 1;
-  for (int y = top < 0 ? 0 : top; y <= bottom && y < level->tiles_y && first <= last; y++)
-    if (memchr(field->zeros + y * level->tiles_x + first, 0, (size_t)(last - first + 1)) != NULL) return true;
-  return false;
-}
-
 /* Most rows of a pass hold nothing, and are zeros already. */
-static bool sums_are_zeros(const add_task *task, row_part part) {
-  const cascade_level *levels[2] = {task->level_a, task->level_b};
-  const cascade_field *fields[2] = {task->a, task->b};
-  int last = part.end - 1, y = part.y;
-  for (int i = 0; i < 2; i++) {
-    if (fields[i] == NULL) continue;
-    bool finer = levels[i]->scale < task->level->scale, coarser = levels[i]->scale > task->level->scale;
-    if (finer ? holds_any(levels[i], fields[i], 2 * part.first, 2 * last + 1, 2 * y, 2 * y + 1)
-        : coarser ? holds_any(levels[i], fields[i], (part.first - 1) / 2, (last + 1) / 2, (y - 1) / 2, (y + 1) / 2)
-                  : holds_any(levels[i], fields[i], part.first, last, y, y))
-      return false;
-  }
-  return !holds_any(task->level, task->to, part.first, last, y, y);
+static bool row_is_zeros(const cascade_level *level, const cascade_field *field, row_part part) {
+  return hl_cascade_all_zeros(level, field, part.first, part.end - 1, part.y, part.y);
 }
 
 static void add_tiles(const add_task *task, row_part part) {
-  if (sums_are_zeros(task, part)) return;
+  if (row_is_zeros(task->level, task->to, part) && sum_is_zeros(task, part.first, part.end - 1, part.y)) return;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, part.y, task->reach);
   if (!read.any) return;
   for (int x = part.first; x < part.end; x++) {
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
-    if (sum_is_zeros(task, x, part.y)) {
+    if (sum_is_zeros(task, x, x, part.y)) {
       hl_cascade_clear_tile(task->level, task->to, x, part.y);
       continue;
     }
@@ -140,9 +130,9 @@ static void blur_part(void *data, size_t index, int worker) {
   (void)worker;
   const blur_task *task = data;
   const row_part part = hl_cascade_row_part(task->level, index);
-  int y = part.y, last = part.end - 1;
-  if (!holds_any(task->level, task->from, part.first - task->reach_x, last + task->reach_x, y - task->reach_y, y + task->reach_y) &&
-      (task->a == NULL || !holds_any(task->level, task->a, part.first, last, y, y)) && !holds_any(task->level, task->to, part.first, last, y, y))
+  int y = part.y, around = task->reach_x;
+  if (row_is_zeros(task->level, task->to, part) && (task->a == NULL || row_is_zeros(task->level, task->a, part)) &&
+      hl_cascade_all_zeros(task->level, task->from, part.first - around, part.end - 1 + around, y - task->reach_y, y + task->reach_y))
     return;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
   if (!read.any) return;

@@ -315,14 +315,14 @@ LANES_INLINE __m512 two_row_pairs(const float *table, int32_t first, int32_t sec
   return _mm512_castpd_ps(_mm512_insertf64x4(low, _mm256_castps_pd(_mm256_loadu_ps(table + second)), 1));
 }
 
-/* From the row pairs of the lanes j (low halves) and 4 + j (high halves), j = 0 to 3, the first three columns: in each
- * half, four lanes' values of the first rows and then of the second. */
-LANES_INLINE void columns_of_pairs(const __m512 pairs[4], __m512 columns[3]) {
-  __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(pairs[0], pairs[1])), b = _mm512_castps_pd(_mm512_unpacklo_ps(pairs[2], pairs[3]));
-  __m512d c = _mm512_castps_pd(_mm512_unpackhi_ps(pairs[0], pairs[1])), d = _mm512_castps_pd(_mm512_unpackhi_ps(pairs[2], pairs[3]));
+/* In each quarter of four registers four rows of four floats: their columns. */
+LANES_INLINE void columns_of_quads(const __m512 rows[4], __m512 columns[4]) {
+  __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(rows[0], rows[1])), b = _mm512_castps_pd(_mm512_unpacklo_ps(rows[2], rows[3]));
+  __m512d c = _mm512_castps_pd(_mm512_unpackhi_ps(rows[0], rows[1])), d = _mm512_castps_pd(_mm512_unpackhi_ps(rows[2], rows[3]));
   columns[0] = _mm512_castpd_ps(_mm512_unpacklo_pd(a, b));
   columns[1] = _mm512_castpd_ps(_mm512_unpackhi_pd(a, b));
   columns[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(c, d));
+  columns[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(c, d));
 }
 #endif
 
@@ -331,19 +331,15 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index);
-  __m512 of_lanes[4]; /* of the lanes k, 4 + k, 8 + k and 12 + k */
+  __m512 of_lanes[4], columns[4]; /* of the lanes k, 4 + k, 8 + k and 12 + k */
   for (int k = 0; k < 4; k++) {
     __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(table + offsets.at[k]));
     four = _mm512_insertf32x4(four, _mm_loadu_ps(table + offsets.at[4 + k]), 1);
     four = _mm512_insertf32x4(four, _mm_loadu_ps(table + offsets.at[8 + k]), 2);
     of_lanes[k] = _mm512_insertf32x4(four, _mm_loadu_ps(table + offsets.at[12 + k]), 3);
   }
-  __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(of_lanes[0], of_lanes[1])), b = _mm512_castps_pd(_mm512_unpacklo_ps(of_lanes[2], of_lanes[3]));
-  __m512d c = _mm512_castps_pd(_mm512_unpackhi_ps(of_lanes[0], of_lanes[1])), d = _mm512_castps_pd(_mm512_unpackhi_ps(of_lanes[2], of_lanes[3]));
-  quad[0] = (lanes)_mm512_unpacklo_pd(a, b);
-  quad[1] = (lanes)_mm512_unpackhi_pd(a, b);
-  quad[2] = (lanes)_mm512_unpacklo_pd(c, d);
-  quad[3] = (lanes)_mm512_unpackhi_pd(c, d);
+  columns_of_quads(of_lanes, columns);
+  for (int i = 0; i < 4; i++) quad[i] = (lanes)columns[i];
 #elif defined(__AVX2__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index);
@@ -367,12 +363,12 @@ LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lane
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index * 4);
-  __m512 columns[2][3];
+  __m512 columns[2][4]; /* in each half four lanes' values of the first rows and then of the second */
   for (int half = 0; half < 2; half++) {
     const int32_t *at = offsets.at + 8 * half;
     __m512 pairs[4];
     for (int j = 0; j < 4; j++) pairs[j] = two_row_pairs(table, at[j], at[4 + j]);
-    columns_of_pairs(pairs, columns[half]);
+    columns_of_quads(pairs, columns[half]);
   }
   for (int c = 0; c < 3; c++) {
     first[c] = (lanes)_mm512_shuffle_f32x4(columns[0][c], columns[1][c], 0x88);
