@@ -22,9 +22,10 @@ void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int
   size_t stride = (size_t)reads->tiles_x + 1;
   for (int y = 1; y <= reads->tiles_y; y++) {
     uint32_t *row = reads->before + (size_t)y * stride, sum = 0;
+    const uint32_t *above = row - stride;
     for (size_t x = 1; x < stride; x++) {
       sum += row[x];
-      row[x] = row[x - stride] + sum;
+      row[x] = above[x] + sum;
     }
   }
 }
