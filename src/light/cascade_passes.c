@@ -16,8 +16,11 @@ bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field
   if (x1 >= level->tiles_x) x1 = level->tiles_x - 1;
   for (int y = y0 < 0 ? 0 : y0; y <= y1 && y < level->tiles_y && x0 <= x1; y++) {
     const unsigned char *zeros = field->zeros + y * level->tiles_x;
-    if (x1 - x0 >= MANY_TILES && memchr(zeros + x0, 0, (size_t)(x1 - x0 + 1)) != NULL) return false;
-    for (int x = x0; x <= x1 && x1 - x0 < MANY_TILES; x++)
+    if (x1 - x0 >= MANY_TILES) {
+      if (memchr(zeros + x0, 0, (size_t)(x1 - x0 + 1)) != NULL) return false;
+      continue;
+    }
+    for (int x = x0; x <= x1; x++)
       if (!zeros[x]) return false;
   }
   return true;
@@ -53,24 +56,23 @@ static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   const cascade_field *fields[2] = {task->a, task->b};
   for (int i = 0; i < 2; i++) {
     if (fields[i] == NULL) continue;
-    int scale = levels[i]->scale, own = task->level->scale;
-    if (scale == own && x0 == x1) {
+    int scale = levels[i]->scale, own = task->level->scale, first = x0, last = x1, top = y, bottom = y;
+    if (scale == own && x0 == x1) { /* most often: without a call */
       if (!fields[i]->zeros[y * task->level->tiles_x + x0]) return false;
       continue;
     }
-    if (scale < own ? !hl_cascade_all_zeros(levels[i], fields[i], 2 * x0, 2 * x1 + 1, 2 * y, 2 * y + 1)
-        : scale > own ? !hl_cascade_all_zeros(levels[i], fields[i], (x0 - 1) / 2, (x1 + 1) / 2, (y - 1) / 2, (y + 1) / 2)
-                      : !hl_cascade_all_zeros(levels[i], fields[i], x0, x1, y, y))
-      return false;
+    if (scale < own) first = 2 * x0, last = 2 * x1 + 1, top = 2 * y, bottom = 2 * y + 1;
+    if (scale > own) first = (x0 - 1) / 2, last = (x1 + 1) / 2, top = (y - 1) / 2, bottom = (y + 1) / 2;
+    if (!hl_cascade_all_zeros(levels[i], fields[i], first, last, top, bottom)) return false;
   }
   return true;
 }
 
-/* Most rows of a pass hold nothing, and are zeros already. */
 static bool row_is_zeros(const cascade_level *level, const cascade_field *field, row_part part) {
   return hl_cascade_all_zeros(level, field, part.first, part.end - 1, part.y, part.y);
 }
 
+/* Most rows of a pass hold nothing, and are zeros already. */
 static void add_tiles(const add_task *task, row_part part) {
   if (row_is_zeros(task->level, task->to, part) && sum_is_zeros(task, part.first, part.end - 1, part.y)) return;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, part.y, task->reach);

@@ -39,10 +39,15 @@ LANES_INLINE part_pixel *pixels_under(const sublight_job *job, int channel, int 
 LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int tile_y, const uint16_t *lit, unsigned char *touched) {
   int top = tile_y * TILE + (job->half[1] >> 1), column = tile_x * TILE - (job->half[0] >> 1);
   uint32_t rows = rows_from(job, tile_x, top, image_of_shift(job));
-  int ends[2] = {column >> 4, (column + TILE - 1) >> 4};
-  if (rows == 0 || (is_dark_tile(job, lit, ends[0]) && is_dark_tile(job, lit, ends[1]))) return 0;
-  for (int i = 0; i < 2; i++)
-    if (!is_dark_tile(job, lit, ends[i])) touched[ends[i]] = 1;
+  const int ends[2] = {column >> 4, (column + TILE - 1) >> 4};
+  if (rows == 0) return 0;
+  int reached = 0;
+  for (int i = 0; i < 2; i++) {
+    if (is_dark_tile(job, lit, ends[i])) continue;
+    touched[ends[i]] = 1;
+    reached = 1;
+  }
+  if (!reached) return 0;
   for (int c = 0; c < job->channels; c++)
     for (uint32_t left = rows; left != 0; left &= left - 1) {
       const part_pixel *at = pixels_under(job, c, tile_x, tile_y) + __builtin_ctz(left) * (ptrdiff_t)job->stride;

@@ -442,7 +442,7 @@ typedef struct field_state {
   field_job field;
   absorbed_job absorbed;
   part_job part;
-  sublight_job sublight, dark; /* the other's pixels are light or dark, in rows of blocks */
+  sublight_job sublight, dark; /* few of the other's pixels are light */
   half_pixel_job half_pixel;
   slab_rows rows[16];
   uint16_t lit[4];
