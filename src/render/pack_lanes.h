@@ -6,7 +6,7 @@
 #include "render/slab_lanes.h"
 
 /* Where a block's pixels went. */
-typedef struct packed_block { uint16_t bits, slab, at; } packed_block;
+typedef struct packed_block { lanes_packing packing; int slab; } packed_block;
 
 typedef struct packed_tile {
   block_slab slabs[TILE_BLOCKS];
@@ -55,7 +55,7 @@ LANES_INLINE packed_block pack_block(packed_tile *tile, const block_slab *block,
   slab->open = lanes_from_bits((1u << tile->filled[s]) - 1);
   for (int i = 0; i < patch_count; i++)
     if (ways[i].there) pack_way(&packing, &ways[i], &densities[(size_t)s * (size_t)patch_count + (size_t)i]);
-  return (packed_block){(uint16_t)bits, (uint16_t)s, (uint16_t)at};
+  return (packed_block){packing, s};
 }
 
 #endif

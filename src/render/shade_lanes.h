@@ -302,10 +302,9 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
 /* Returns true while some pixel of the block is not opaque. */
 LANES_INLINE int composite_packed(const shade_job *job, const packed_block *block, const block_slab *slab,
                                   const color_lanes *lit, float *pixels) {
-  lanes_packing packing = lanes_packing_of(block->bits, block->at);
   color_lanes color;
-  for (int c = 0; c < 3; c++) color.c[c] = lanes_unpack(&packing, lit->c[c]);
-  lanes alpha = composite(job->back_to_front, lanes_unpack(&packing, slab->opacity), color, pixels);
+  for (int c = 0; c < 3; c++) color.c[c] = lanes_unpack(&block->packing, lit->c[c]);
+  lanes alpha = composite(job->back_to_front, lanes_unpack(&block->packing, slab->opacity), color, pixels);
   return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
 }
 

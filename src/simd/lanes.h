@@ -293,9 +293,21 @@ LANES_INLINE lanes_int lanes_gather_bytes(const unsigned char *base, lanes_int o
 }
 
 /* One of sixteen words for every lane. */
-LANES_INLINE lanes_int lanes_look_up(lanes_int words, lanes_int index) {
+LANES_CALL lanes_int lanes_look_up(lanes_int words, lanes_int index) {
 #if defined(__AVX512F__)
   return (lanes_int)_mm512_permutexvar_epi32((__m512i)index, (__m512i)words);
+#elif defined(__AVX2__)
+  __m256i from[2], at[2];
+  memcpy(from, &words, sizeof from);
+  memcpy(at, &index, sizeof at);
+  for (int half = 0; half < 2; half++) {
+    __m256 low = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(from[0], at[half]));
+    __m256 high = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(from[1], at[half]));
+    __m256 upper = _mm256_castsi256_ps(_mm256_slli_epi32(at[half], 28));
+    at[half] = _mm256_castps_si256(_mm256_blendv_ps(low, high, upper));
+  }
+  memcpy(&index, at, sizeof index);
+  return index;
 #else
   unsigned char table[sizeof words];
   memcpy(table, &words, sizeof words);
@@ -358,7 +370,7 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #endif
 }
 
-/* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to 2: one load a lane instead of six. */
+/* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to 2: one load a lane, or two, instead of six. */
 LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lanes first[3], lanes second[3]) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;
@@ -374,6 +386,14 @@ LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lane
     first[c] = (lanes)_mm512_shuffle_f32x4(columns[0][c], columns[1][c], 0x88);
     second[c] = (lanes)_mm512_shuffle_f32x4(columns[0][c], columns[1][c], 0xdd);
   }
+#elif defined(__AVX2__)
+  lanes quad[2][4];
+  lanes_gather_quads(table, index * 4, quad[0]);
+  lanes_gather_quads(table + 4, index * 4, quad[1]);
+  for (int c = 0; c < 3; c++) {
+    first[c] = quad[0][c];
+    second[c] = quad[1][c];
+  }
 #else
   for (int c = 0; c < 3; c++) {
     first[c] = lanes_gather(table + c, index * 4);
@@ -381,6 +401,16 @@ LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lane
   }
 #endif
 }
+
+#if defined(__AVX2__)
+/* Two pairs of floats from anywhere: memcpy, for a double's load would want eight bytes' alignment. */
+LANES_INLINE __m128 two_pairs(const float *table, int32_t first, int32_t second) {
+  double pair[2];
+  memcpy(&pair[0], table + first, sizeof(double));
+  memcpy(&pair[1], table + second, sizeof(double));
+  return _mm_castpd_ps(_mm_set_pd(pair[1], pair[0]));
+}
+#endif
 
 /* table[index] and table[index + 1]: one load for both. */
 LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *first, lanes *second) {
@@ -390,17 +420,26 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
   __m512 pairs[2];
   for (int j = 0; j < 2; j++) {
     __m128 part[4];
-    for (int q = 0; q < 4; q++) {
-      double pair_of[2]; /* pairs of floats lie anywhere: memcpy, for a double's load would want eight bytes' alignment */
-      memcpy(&pair_of[0], table + offsets.at[4 * q + 2 * j], sizeof(double));
-      memcpy(&pair_of[1], table + offsets.at[4 * q + 2 * j + 1], sizeof(double));
-      part[q] = _mm_castpd_ps(_mm_set_pd(pair_of[1], pair_of[0]));
-    }
+    for (int q = 0; q < 4; q++) part[q] = two_pairs(table, offsets.at[4 * q + 2 * j], offsets.at[4 * q + 2 * j + 1]);
     __m512 pair = _mm512_insertf32x4(_mm512_castps128_ps512(part[0]), part[1], 1);
     pairs[j] = _mm512_insertf32x4(_mm512_insertf32x4(pair, part[2], 2), part[3], 3);
   }
   *first = (lanes)_mm512_shuffle_ps(pairs[0], pairs[1], 0x88);
   *second = (lanes)_mm512_shuffle_ps(pairs[0], pairs[1], 0xdd);
+#elif defined(__AVX2__)
+  lanes_offsets offsets;
+  lanes_store_offsets(&offsets, index);
+  __m256 columns[2][2];
+  for (int half = 0; half < 2; half++) {
+    const int32_t *at = offsets.at + 8 * half;
+    __m256 pairs[2];
+    for (int j = 0; j < 2; j++)
+      pairs[j] = _mm256_set_m128(two_pairs(table, at[4 + 2 * j], at[5 + 2 * j]), two_pairs(table, at[2 * j], at[1 + 2 * j]));
+    columns[0][half] = _mm256_shuffle_ps(pairs[0], pairs[1], 0x88);
+    columns[1][half] = _mm256_shuffle_ps(pairs[0], pairs[1], 0xdd);
+  }
+  memcpy(first, columns[0], sizeof *first);
+  memcpy(second, columns[1], sizeof *second);
 #else
   *first = lanes_gather(table, index);
   *second = lanes_gather(table + 1, index);
@@ -479,23 +518,30 @@ typedef struct lanes_packing {
   __m512i to;         /* of the lanes with a bit: where each goes */
   __mmask16 packed, bits;
 #else
-  int count, at;
-  unsigned char lane[LANES];
+  lanes_int from, to, packed, bits;
 #endif
 } lanes_packing;
 
 LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   lanes_packing packing;
+  uint32_t packed = ((1u << __builtin_popcount(bits)) - 1) << at;
 #if defined(__AVX512F__)
   const __m512i first = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
   packing.bits = (__mmask16)bits;
-  packing.packed = (__mmask16)(((1u << __builtin_popcount(bits)) - 1) << at);
+  packing.packed = (__mmask16)packed;
   packing.from = _mm512_maskz_expand_epi32(packing.packed, _mm512_maskz_compress_epi32(packing.bits, first));
   packing.to = _mm512_maskz_expand_epi32(packing.bits, _mm512_add_epi32(first, _mm512_set1_epi32(at)));
 #else
-  packing.count = 0;
-  packing.at = at;
-  for (; bits != 0; bits &= bits - 1) packing.lane[packing.count++] = (unsigned char)__builtin_ctz(bits);
+  int32_t from[LANES + 1] = {0}, to[LANES];
+  for (int lane = 0; lane < LANES; lane++) { /* a lane without a bit is written over by the next with one */
+    to[lane] = at % LANES;
+    from[at] = lane;
+    at += (int)(bits >> lane & 1);
+  }
+  packing.bits = lanes_from_bits(bits);
+  packing.packed = lanes_from_bits(packed);
+  memcpy(&packing.from, from, sizeof packing.from);
+  memcpy(&packing.to, to, sizeof packing.to);
 #endif
   return packing;
 }
@@ -505,11 +551,7 @@ LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_mask_permutexvar_ps((__m512)into, packing->packed, packing->from, (__m512)x);
 #else
-  float from[LANES], to[LANES];
-  lanes_store(from, x);
-  lanes_store(to, into);
-  for (int i = 0; i < packing->count; i++) to[packing->at + i] = from[packing->lane[i]];
-  return lanes_load(to);
+  return lanes_select(packing->packed, (lanes)lanes_look_up((lanes_int)x, packing->from), into);
 #endif
 }
 
@@ -518,10 +560,7 @@ LANES_CALL lanes lanes_unpack(const lanes_packing *packing, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_maskz_permutexvar_ps(packing->bits, packing->to, (__m512)x);
 #else
-  float from[LANES], to[LANES] = {0};
-  lanes_store(from, x);
-  for (int i = 0; i < packing->count; i++) to[packing->lane[i]] = from[packing->at + i];
-  return lanes_load(to);
+  return lanes_keep(packing->bits, (lanes)lanes_look_up((lanes_int)x, packing->to));
 #endif
 }
 
@@ -554,6 +593,22 @@ LANES_CALL lanes lanes_log2(lanes x) {
   series = lanes_fma(series, t2, lanes_set(1.0f));
   return lanes_add_scaled(lanes_from_int(n), t * series, 2.88539008178f);
 }
+
+#if defined(__AVX2__) && !defined(__AVX512F__)
+/* The least lane of each of four. */
+LANES_INLINE __m128i lanes_least_of_each(const lanes_int x[4]) {
+  __m128i of_four[4];
+  for (int i = 0; i < 4; i++) {
+    __m256i half[2];
+    memcpy(half, &x[i], sizeof half);
+    half[0] = _mm256_min_epi32(half[0], half[1]);
+    of_four[i] = _mm_min_epi32(_mm256_castsi256_si128(half[0]), _mm256_extracti128_si256(half[0], 1));
+  }
+  __m128i first = _mm_min_epi32(_mm_unpacklo_epi32(of_four[0], of_four[1]), _mm_unpackhi_epi32(of_four[0], of_four[1]));
+  __m128i last = _mm_min_epi32(_mm_unpacklo_epi32(of_four[2], of_four[3]), _mm_unpackhi_epi32(of_four[2], of_four[3]));
+  return _mm_min_epi32(_mm_unpacklo_epi64(first, last), _mm_unpackhi_epi64(first, last));
+}
+#endif
 
 LANES_INLINE float lanes_greatest(lanes x) {
   float greatest = x[0];

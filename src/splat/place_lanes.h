@@ -71,6 +71,11 @@ LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
   low[0] = _mm_cvtsi128_si32(_mm512_castsi512_si128(corners));
   low[1] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 1));
   low[2] = _mm_cvtsi128_si32(_mm512_extracti32x4_epi32(corners, 2));
+#elif defined(__AVX2__)
+  const lanes_int axes[4] = {cell[0], cell[1], cell[2], cell[2]};
+  int32_t least[4];
+  _mm_storeu_si128((__m128i *)(void *)least, lanes_least_of_each(axes));
+  for (int axis = 0; axis < 3; axis++) low[axis] = least[axis];
 #else
   for (int axis = 0; axis < 3; axis++) {
     low[axis] = cell[axis][0];

@@ -61,7 +61,7 @@ LANES_INLINE void join_slopes(uint32_t bits, lanes3 part, lanes3 *slope) {
                     lanes_select(mask, part.z, slope->z)};
 }
 
-#ifdef HL_WINDOWS
+#if defined(__AVX512BW__)
 LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window *window, int spread, const tap_slope_weights *w) {
   own_slices own;
   window_taps taps[4];
@@ -88,7 +88,7 @@ LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window 
   return (lanes3){sum.x * SLOPE_INVERSE, sum.y * WEIGHT_INVERSE, sum.z * WEIGHT_INVERSE};
 }
 
-LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *window, const tap_slope_weights *w) {
+LANES_INLINE lanes3 slopes_of_slices(hl_storage storage, const voxel_window *window, const tap_slope_weights *w) {
   switch (window->slices - 4) {
     case 0: return slopes_of_own_slices(storage, window, 0, w);
     case 1: return slopes_of_own_slices(storage, window, 1, w);
@@ -99,10 +99,10 @@ LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *win
 }
 
 static __attribute__((noinline)) lanes3 slopes_of_window_u8(const voxel_window *window, const tap_slope_weights *w) {
-  return slopes_of_window(HL_STORAGE_U8, window, w);
+  return slopes_of_slices(HL_STORAGE_U8, window, w);
 }
 static __attribute__((noinline)) lanes3 slopes_of_window_u16(const voxel_window *window, const tap_slope_weights *w) {
-  return slopes_of_window(HL_STORAGE_U16, window, w);
+  return slopes_of_slices(HL_STORAGE_U16, window, w);
 }
 static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window *window, const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -123,7 +123,6 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
   }
   return sum;
 }
-
 /* As many blocks to a window as fit. False where even one does not. */
 static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
                              const tap_slope_weights *w, lanes3 *slope) {
@@ -142,6 +141,64 @@ static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t
     join_slopes(together, part, slope);
     left &= ~together;
   }
+  return 1;
+}
+
+#elif defined(HL_WINDOWS)
+static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *copies, lanes_int taps_at, const tap_slope_weights *w) {
+  lanes_offsets offsets;
+  __m256 sums[3][2];
+  row_weights weights = weights_of_row(HL_STORAGE_U8, w->weight[0]);
+  row_slopes slopes = slopes_of_row(HL_STORAGE_U8, w->slope[0]);
+  apart_weights apart = set_apart(&weights.bytes);
+  lanes_store_offsets(&offsets, taps_at);
+#pragma GCC unroll 1
+  for (int half = 0; half < 2; half++) {
+    __m256i plain_of_two[4][4], slope_of_two[4][4];
+    __m256 x = _mm256_setzero_ps(), y = x, z = x;
+    for (int k = 0; k < 4; k++) {
+      pair_of_taps taps = taps_of_pair(copies, &offsets, half, k);
+      weights_of_two along = weights_of_pair(&apart, half, k);
+      slopes_of_two slope = slopes_of_pair(&slopes.bytes, half, k);
+      for (int slice = 0; slice < 4; slice++) {
+        __m256i of_slice = slice_of_two(&taps, slice);
+        plain_of_two[slice][k] = weigh_two(of_slice, &along);
+        slope_of_two[slice][k] = slope_two(of_slice, &slope);
+      }
+    }
+    for (int slice = 0; slice < 4; slice++) {
+      __m256 plain[4], sloped[4], weight = half_of(&w->weight[2][slice], half);
+      turn_rows(plain_of_two[slice], plain);
+      turn_rows(slope_of_two[slice], sloped);
+      x = _mm256_fmadd_ps(add_rows(sloped, w->weight[1], half), weight, x);
+      y = _mm256_fmadd_ps(add_rows(plain, w->slope[1], half), weight, y);
+      z = _mm256_fmadd_ps(add_rows(plain, w->weight[1], half), half_of(&w->slope[2][slice], half), z);
+    }
+    sums[0][half] = _mm256_mul_ps(x, _mm256_set1_ps(SLOPE_INVERSE));
+    sums[1][half] = _mm256_mul_ps(y, _mm256_set1_ps(WEIGHT_INVERSE));
+    sums[2][half] = _mm256_mul_ps(z, _mm256_set1_ps(WEIGHT_INVERSE));
+  }
+  lanes3 sum;
+  memcpy(&sum, sums, sizeof sum);
+  return sum;
+}
+
+/* As many blocks to a window as fit, and all windows' copies to one sum. False where even one block does not fit. */
+static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
+                             const tap_slope_weights *w, lanes3 *slope) {
+  window_copies copies[LANES];
+  voxel_window window;
+  lanes_int taps = lanes_set_int(0);
+  int count = 0;
+  for (uint32_t left = active; left != 0;) {
+    uint32_t together = left;
+    while (!open_window(grid, cell, together, &window))
+      if ((together = drop_last_block(together, starts)) == 0) return 0;
+    copy_window(&window, &copies[count]);
+    taps = lanes_select_int(lanes_from_bits(together), window.taps + count++ * (int32_t)sizeof copies[0], taps);
+    left &= ~together;
+  }
+  *slope = slopes_of_copies(copies, taps, w);
   return 1;
 }
 #endif

@@ -1,4 +1,5 @@
-/* splat/window_lanes.h - the voxels around a block of pixels, held in registers.
+/* splat/window_lanes.h - the voxels around a block of pixels, held in registers; where there is AVX2 alone, close by in memory
+ * (window_copies_lanes.h).
  *
  * Sixteen neighbouring pixels of a sheet draw on few voxels: most often on a window of 8x8 voxels and up to eight
  * slices. One slice of it fills one to four 512-bit registers, from which permutations take four neighbouring taps of every
@@ -8,11 +9,11 @@
 #ifndef HL_SPLAT_WINDOW_LANES_H
 #define HL_SPLAT_WINDOW_LANES_H
 
-#include "splat/columns_lanes.h"
-#include "splat/row_lanes.h"
-
 #if defined(__AVX512BW__)
 #define HL_WINDOWS 1
+
+#include "splat/columns_lanes.h"
+#include "splat/row_lanes.h"
 
 #if defined(HL_PERMUTES_BYTES)
 #include "splat/window_bytes_lanes.h"
@@ -214,7 +215,13 @@ LANES_INLINE lanes sum_of_window(hl_storage storage, const voxel_window *window,
          : storage == HL_STORAGE_U16 ? sum_window_u16(window, weight)
                                      : sum_window_f32(window, weight);
 }
+#elif defined(__AVX2__)
+#define HL_WINDOWS 1
 
+#include "splat/window_copies_lanes.h"
+#endif
+
+#ifdef HL_WINDOWS
 /* The sums of a block's active lanes, through one window or one for each half of it. all: every lane is active. False where its
  * taps lie too far apart. */
 LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, int all,
