@@ -511,6 +511,39 @@ LANES_CALL void lanes_gather_short_squares(const uint16_t *table, size_t stride,
   lanes_gather_short_pairs(table + stride, at, &square[2], &square[3]);
 }
 
+#if !defined(__AVX512F__)
+static const uint64_t NIBBLE_ONES = 0x1111111111111111u, NIBBLE_NUMBERS = 0xfedcba9876543210u;
+
+/* Sixteen numbers of four bits. */
+LANES_INLINE lanes_int lanes_from_nibbles(uint64_t nibbles) {
+  typedef uint32_t words __attribute__((vector_size(64)));
+  uint32_t low = (uint32_t)nibbles, high = (uint32_t)(nibbles >> 32);
+  const words places = {0, 4, 8, 12, 16, 20, 24, 28, 0, 4, 8, 12, 16, 20, 24, 28};
+  words both = {low, low, low, low, low, low, low, low, high, high, high, high, high, high, high, high};
+  return (lanes_int)(both >> places & 15);
+}
+
+/* Each of sixteen bits in a nibble of its own. */
+LANES_INLINE uint64_t spread_bits(uint64_t bits) {
+  bits = (bits | bits << 24) & 0x000000ff000000ffu;
+  bits = (bits | bits << 12) & 0x000f000f000f000fu;
+  bits = (bits | bits << 6) & 0x0303030303030303u;
+  return (bits | bits << 3) & NIBBLE_ONES;
+}
+
+/* The numbers of the nibbles that are chosen, moved together: each moves down by as many as are not chosen below it, by one, two,
+ * four and eight in turn (Warren, "Hacker's Delight", compress). before: how many are chosen below each. */
+LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
+  uint64_t all = chosen * 15, numbers = NIBBLE_NUMBERS & all, ways = (NIBBLE_NUMBERS - before) & all;
+  for (int step = 0; step < 4; step++) {
+    uint64_t moving = (ways >> step & NIBBLE_ONES) * 15, moved = numbers & moving, of_moved = ways & moving;
+    numbers = (numbers ^ moved) | moved >> (4 << step);
+    ways = (ways ^ of_moved) | of_moved >> (4 << step);
+  }
+  return numbers;
+}
+#endif
+
 /* Some of sixteen lanes, one bit each, that move together to the lanes `at` and on, in their order. */
 typedef struct lanes_packing {
 #if defined(__AVX512F__)
@@ -532,16 +565,11 @@ LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   packing.from = _mm512_maskz_expand_epi32(packing.packed, _mm512_maskz_compress_epi32(packing.bits, first));
   packing.to = _mm512_maskz_expand_epi32(packing.bits, _mm512_add_epi32(first, _mm512_set1_epi32(at)));
 #else
-  int32_t from[LANES + 1] = {0}, to[LANES];
-  for (int lane = 0; lane < LANES; lane++) { /* a lane without a bit is written over by the next with one */
-    to[lane] = at % LANES;
-    from[at] = lane;
-    at += (int)(bits >> lane & 1);
-  }
+  uint64_t chosen = spread_bits(bits), before = chosen * NIBBLE_ONES - chosen; /* products add up what is below */
   packing.bits = lanes_from_bits(bits);
   packing.packed = lanes_from_bits(packed);
-  memcpy(&packing.from, from, sizeof packing.from);
-  memcpy(&packing.to, to, sizeof packing.to);
+  packing.from = lanes_from_nibbles(chosen_numbers(chosen, before) << 4 * at);
+  packing.to = lanes_from_nibbles(before + (unsigned)at * NIBBLE_ONES);
 #endif
   return packing;
 }

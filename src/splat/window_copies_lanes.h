@@ -10,6 +10,7 @@
 #include "splat/row_lanes.h"
 
 enum { WINDOW_SIDE = GRID_COLUMN, WINDOW_SPREAD = WINDOW_SIDE - 4 }; /* voxels; how far lanes' first taps may lie apart */
+enum { USUAL_SLICES = 6 }; /* these are always copied: few blocks need more, and how many no processor foresees */
 enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BYTES };
 
 typedef struct voxel_window {
@@ -25,24 +26,24 @@ typedef struct window_copies { _Alignas(32) unsigned char slice[WINDOW_SIDE][SLI
 
 /* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. False where they do not fit a window. */
 LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, voxel_window *window) {
-  if (grid->columns == NULL || active == 0) return 0;
+  if (grid->columns == NULL || grid->dimension[2] < USUAL_SLICES || active == 0) return 0;
   lanes_int used[4] = {cell[0], cell[1], cell[2]}, beyond = lanes_set_int(0), taps = lanes_set_int(0);
   int first_lane = __builtin_ctz(active);
   if (active != 0xffff)
     for (int a = 0; a < 3; a++) used[a] = lanes_select_int(lanes_from_bits(active), cell[a], lanes_set_int(cell[a][first_lane]));
-  const int32_t scale[3] = {COPY_BYTES, 4, SLICE_BYTES};
+  const int32_t scale[3] = {COPY_BYTES, 4, SLICE_BYTES}, side[3] = {WINDOW_SIDE, WINDOW_SIDE, USUAL_SLICES};
   int32_t low[4];
   used[3] = -used[2];
   _mm_storeu_si128((__m128i *)(void *)low, lanes_least_of_each(used));
-  window->slices = 4 - low[3] - low[2];
   for (int a = 0; a < 3; a++) {
     low[a]--;
-    if (a < 2 && low[a] > grid->dimension[a] - WINDOW_SIDE) low[a] = grid->dimension[a] - WINDOW_SIDE;
+    if (low[a] > grid->dimension[a] - side[a]) low[a] = grid->dimension[a] - side[a];
     lanes_int offset = used[a] - (low[a] + 1);
     beyond |= offset + (WINDOW_SIDE - 1 - WINDOW_SPREAD);
     taps += offset * scale[a];
   }
   if (lanes_bits((beyond & -WINDOW_SIDE) != 0) != 0) return 0;
+  window->slices = 3 - low[3] - low[2];
   window->taps = taps;
   int32_t within = low[0] % GRID_COLUMN;
   window->slice_bytes = grid->column_slice_bytes;
@@ -69,21 +70,25 @@ LANES_INLINE void store_copy(unsigned char *copy, const __m256i rows[2], int upp
   _mm256_store_ps((float *)(void *)copy, upper ? _mm256_shuffle_ps(a, b, 0xdd) : _mm256_shuffle_ps(a, b, 0x88));
 }
 
-LANES_INLINE void copy_window(const voxel_window *window, window_copies *copies) {
+LANES_INLINE void copy_slice_of(const voxel_window *window, int slice, window_copies *copies) {
+  const unsigned char *first = window->first + (size_t)slice * window->slice_bytes, *beside = first + window->beside;
   __m128i left = _mm_cvtsi32_si128(window->shift), right = _mm_cvtsi32_si128(64 - window->shift);
-  for (int slice = 0; slice < window->slices; slice++) {
-    const unsigned char *first = window->first + (size_t)slice * window->slice_bytes, *beside = first + window->beside;
-    unsigned char *copy = copies->slice[slice];
-    __m256i rows[2];
-    for (int i = 0; i < 2; i++)
-      rows[i] = _mm256_or_si256(_mm256_srl_epi64(rows_apart(first + 2 * i * GRID_COLUMN), left),
-                                _mm256_sll_epi64(rows_apart(beside + 2 * i * GRID_COLUMN), right));
-    store_copy(copy + 4 * COPY_BYTES, rows, 1);
-    for (int x = 0; x < 4; x++) {
-      store_copy(copy + x * COPY_BYTES, rows, 0);
-      for (int i = 0; i < 2; i++) rows[i] = _mm256_srli_epi64(rows[i], 8);
-    }
+  unsigned char *copy = copies->slice[slice];
+  __m256i rows[2];
+  for (int i = 0; i < 2; i++)
+    rows[i] = _mm256_or_si256(_mm256_srl_epi64(rows_apart(first + 2 * i * GRID_COLUMN), left),
+                              _mm256_sll_epi64(rows_apart(beside + 2 * i * GRID_COLUMN), right));
+  store_copy(copy + 4 * COPY_BYTES, rows, 1);
+  for (int x = 0; x < 4; x++) {
+    store_copy(copy + x * COPY_BYTES, rows, 0);
+    for (int i = 0; i < 2; i++) rows[i] = _mm256_srli_epi64(rows[i], 8);
   }
+}
+
+LANES_INLINE void copy_window(const voxel_window *window, window_copies *copies) {
+  for (int slice = 0; slice < USUAL_SLICES; slice++) copy_slice_of(window, slice, copies);
+#pragma GCC unroll 1
+  for (int slice = USUAL_SLICES; slice < window->slices; slice++) copy_slice_of(window, slice, copies);
 }
 
 /* Of each half of eight lanes number k, in all of that half. */

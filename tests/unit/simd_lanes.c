@@ -107,8 +107,34 @@ static void test_powers(void **state) {
   assert_true(lanes_exp_negative(lanes_set(0))[0] == 1.0f);
 }
 
+/* Each choice of lanes moves together to where it is told, in its order, leaves the other lanes, and comes back. */
+static void test_packing(void **state) {
+  (void)state;
+  lanes x, into;
+  for (int lane = 0; lane < LANES; lane++) {
+    x[lane] = (float)(lane + 1);
+    into[lane] = (float)(-1 - lane);
+  }
+  for (uint32_t bits = 1; bits <= 0xffff; bits++) {
+    int room = LANES - __builtin_popcount(bits);
+    for (int at = 0; at <= room; at += room > 1 ? room : 1) {
+      lanes_packing packing = lanes_packing_of(bits, at);
+      lanes packed = lanes_pack(&packing, into, x), back = lanes_unpack(&packing, packed);
+      int next = at;
+      for (int lane = 0; lane < LANES; lane++) {
+        int chosen = (int)(bits >> lane & 1);
+        if (chosen) assert_true(packed[next++] == x[lane]);
+        assert_true(back[lane] == (chosen ? x[lane] : 0));
+      }
+      for (int lane = 0; lane < LANES; lane++)
+        if (lane < at || lane >= next) assert_true(packed[lane] == into[lane]);
+    }
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_fma_of_any), cmocka_unit_test(test_fma_near_the_middle),
-                                     cmocka_unit_test(test_fma_that_cancels), cmocka_unit_test(test_powers)};
+                                     cmocka_unit_test(test_fma_that_cancels), cmocka_unit_test(test_powers),
+                                     cmocka_unit_test(test_packing)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
