@@ -83,8 +83,9 @@ LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes)
 }
 #elif defined(__AVX2__)
 /* Those of the taps 0 and 2 share a word, and those of 1 and 3: one instruction multiplies signed numbers of 16 bits and adds the
- * two products. Weights in two of them: whole = high 256 + low. */
-typedef struct byte_weights { lanes_int high[2], low[2]; } byte_weights;
+ * two products. Weights above 32767 are less that much there, and biased: a byte a tap, which gives it back. */
+enum { BIAS = 7, BIAS_UNITS = 32767 / BIAS };
+typedef struct byte_weights { lanes_int pair[2], bias; } byte_weights;
 typedef struct byte_slopes { lanes_int pair[2]; } byte_slopes;
 
 LANES_INLINE byte_slopes split_slopes(const whole_weights *whole) {
@@ -94,11 +95,13 @@ LANES_INLINE byte_slopes split_slopes(const whole_weights *whole) {
 }
 
 LANES_INLINE byte_weights split_weights(const whole_weights *whole) {
+  typedef int16_t shorts __attribute__((vector_size(64)));
   byte_slopes both = split_slopes(whole);
-  byte_weights weights;
+  byte_weights weights = {.bias = lanes_set_int(0)};
   for (int i = 0; i < 2; i++) {
-    weights.high[i] = both.pair[i] >> 8 & 0x00ff00ff;
-    weights.low[i] = both.pair[i] & 0x00ff00ff;
+    shorts pair = (shorts)both.pair[i], above = pair >> 15; /* all bits, which are -1, or none */
+    weights.pair[i] = (lanes_int)((pair & 0x7fff) - above);
+    weights.bias |= (lanes_int)above & (BIAS * 0x00010001) << 8 * i;
   }
   return weights;
 }
@@ -107,7 +110,8 @@ LANES_INLINE lanes_int multiply_pairs(lanes_int taps, const lanes_int pair[2]) {
   return lanes_multiply_shorts(taps & 0x00ff00ff, pair[0]) + lanes_multiply_shorts((taps >> 8) & 0x00ff00ff, pair[1]);
 }
 LANES_INLINE lanes_int weigh_bytes(lanes_int taps, const byte_weights *weights) {
-  return (multiply_pairs(taps, weights->high) << 8) + multiply_pairs(taps, weights->low);
+  lanes_int biased = lanes_multiply_shorts(lanes_multiply_bytes(taps, weights->bias), lanes_set_int(BIAS_UNITS * 0x00010001));
+  return multiply_pairs(taps, weights->pair) + biased;
 }
 LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes) { return multiply_pairs(taps, slopes->pair); }
 #else

@@ -92,10 +92,14 @@ LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4
   return lanes_select_int(inside > count - 3, lanes_set_int(count - 3), inside);
 }
 
-LANES_INLINE lanes_int taps_inside(const grid *grid, const lanes_int cell[3]) {
-  lanes_int inside = lanes_set_int(-1);
-  for (int a = 0; a < 3; a++) inside &= (cell[a] >= 1) & (cell[a] < grid->dimension[a] - 2);
-  return inside;
+/* The lanes whose taps lie in the grid along an axis. */
+LANES_INLINE uint32_t taps_inside(lanes_int cell, int32_t count) { return lanes_bits((cell >= 1) & (cell < count - 2)); }
+
+/* The axes, one bit each, along which taps of active lanes lie outside. */
+LANES_INLINE int axes_to_fold(const grid *grid, const lanes_int cell[3], uint32_t active) {
+  int axes = 0;
+  for (int a = 0; a < 3; a++) axes |= ((taps_inside(cell[a], grid->dimension[a]) & active) != active) << a;
+  return axes;
 }
 
 /* Offsets from the first active lane's cell fit 32 bits in any volume; idle lanes read there. */
@@ -124,12 +128,14 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
   tap_weights(source->kernel, degree, place->point.y - lanes_from_int(cell[1]), weight[1]);
   tap_weights(source->kernel, degree, place->point.z - lanes_from_int(cell[2]), weight[2]);
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
-  if (!inside && (lanes_bits(taps_inside(grid, cell)) & active) != active) {
+  int outside = inside ? 0 : axes_to_fold(grid, cell, active);
+  if (outside != 0) {
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4) {
       if (storage == HL_STORAGE_U8) round_to_weights(weight[0]);
       return sum_in_thin_grid(grid, cell, active, weights);
     }
-    for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
+    for (int a = 0; a < 3; a++)
+      if (outside >> a & 1) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
 #ifdef HL_WINDOWS
   lanes sum;

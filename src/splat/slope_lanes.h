@@ -150,7 +150,6 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
   __m256 sums[3][2];
   row_weights weights = weights_of_row(HL_STORAGE_U8, w->weight[0]);
   row_slopes slopes = slopes_of_row(HL_STORAGE_U8, w->slope[0]);
-  apart_weights apart = set_apart(&weights.bytes);
   lanes_store_offsets(&offsets, taps_at);
 #pragma GCC unroll 1
   for (int half = 0; half < 2; half++) {
@@ -158,12 +157,12 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
     __m256 x = _mm256_setzero_ps(), y = x, z = x;
     for (int k = 0; k < 4; k++) {
       pair_of_taps taps = taps_of_pair(copies, &offsets, half, k);
-      weights_of_two along = weights_of_pair(&apart, half, k);
+      weights_of_two along = weights_of_pair(&weights.bytes, half, k);
       slopes_of_two slope = slopes_of_pair(&slopes.bytes, half, k);
       for (int slice = 0; slice < 4; slice++) {
-        __m256i of_slice = slice_of_two(&taps, slice);
-        plain_of_two[slice][k] = weigh_two(of_slice, &along);
-        slope_of_two[slice][k] = slope_two(of_slice, &slope);
+        taps_of_two of_slice = slice_of_two(&taps, slice);
+        plain_of_two[slice][k] = weigh_two(&of_slice, &along);
+        slope_of_two[slice][k] = multiply_two(&of_slice, slope.pair);
       }
     }
     for (int slice = 0; slice < 4; slice++) {
@@ -251,10 +250,12 @@ LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int
     tap_weights(kernel, degree, at[a] - lanes_from_int(cell[a]), w.weight[a]);
     tap_slopes(kernel, degree, at[a] - lanes_from_int(cell[a]), w.slope[a]);
   }
-  if ((lanes_bits(taps_inside(grid, cell)) & active) != active) {
+  int outside = axes_to_fold(grid, cell, active);
+  if (outside != 0) {
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return slopes_in_thin_grid(grid, cell, active, &w);
     for (int a = 0; a < 3; a++) {
+      if ((outside >> a & 1) == 0) continue;
       (void)fold_border(cell[a], grid->dimension[a], w.slope[a]);
       cell[a] = fold_border(cell[a], grid->dimension[a], w.weight[a]);
     }
