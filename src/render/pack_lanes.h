@@ -4,6 +4,7 @@
 #define HL_RENDER_PACK_LANES_H
 
 #include "render/slab_lanes.h"
+#include "simd/packing.h"
 
 /* Where a block's pixels went. */
 typedef struct packed_block { lanes_packing packing; int slab; } packed_block;

@@ -1,5 +1,5 @@
 /* splat/columns.h - u8 voxels once more, in columns eight wide: eight rows of one are 64 bytes in a line, so that a window of
- * 8x8 voxels comes from two columns in two loads, and neighbouring windows from the same lines of the cache whichever way
+ * 8x8 voxels comes from two columns in two loads (of 512 bits), and neighbouring windows from the same lines of the cache whichever way
  * the sheets lie. They are kept less 128, as numbers with a sign, as they are multiplied. */
 #ifndef HL_SPLAT_COLUMNS_H
 #define HL_SPLAT_COLUMNS_H

@@ -269,6 +269,8 @@ static void test_fill(void **unused) {
   for (int storage = 0; storage < 3; storage++) {
     check_fill((size_t[3]){13, 11, 12}, (hl_storage)storage, 17);
     check_fill((size_t[3]){5, 13, 9}, (hl_storage)storage, 19);
+    check_fill((size_t[3]){10, 8, 6}, (hl_storage)storage, 20); /* a window's slices, or fewer */
+    check_fill((size_t[3]){8, 9, 5}, (hl_storage)storage, 21);
     check_fill((size_t[3]){1, 7, 3}, (hl_storage)storage, 18);
   }
 }

@@ -1,5 +1,5 @@
-/* unit/simd_lanes.c - the arithmetic of lanes.h that the compiler's vectors do not have, as the baseline builds it, against the C
- * library's in floats and doubles. simd_equal.c holds the other instruction sets to it. */
+/* unit/simd_lanes.c - what of lanes.h and packing.h the compiler's vectors do not have, as the baseline builds it: arithmetic against the C
+ * library's in floats and doubles, every choice of lanes. simd_equal.c holds the other instruction sets to it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "simd/lanes.h"
+#include "simd/packing.h"
 
 static uint32_t next_random(uint64_t *state) {
   *state = *state * 6364136223846793005u + 1442695040888963407u;

@@ -1,0 +1,88 @@
+/* simd/packing.h - some of sixteen lanes moved together, and back. */
+#ifndef HL_SIMD_PACKING_H
+#define HL_SIMD_PACKING_H
+
+#include "simd/lanes.h"
+
+#if !defined(__AVX512F__)
+static const uint64_t NIBBLE_ONES = 0x1111111111111111u, NIBBLE_NUMBERS = 0xfedcba9876543210u;
+
+/* Sixteen numbers of four bits. */
+LANES_INLINE lanes_int lanes_from_nibbles(uint64_t nibbles) {
+  typedef uint32_t words __attribute__((vector_size(64)));
+  uint32_t low = (uint32_t)nibbles, high = (uint32_t)(nibbles >> 32);
+  const words places = {0, 4, 8, 12, 16, 20, 24, 28, 0, 4, 8, 12, 16, 20, 24, 28};
+  words both = {low, low, low, low, low, low, low, low, high, high, high, high, high, high, high, high};
+  return (lanes_int)(both >> places & 15);
+}
+
+/* Each of sixteen bits in a nibble of its own. */
+LANES_INLINE uint64_t spread_bits(uint64_t bits) {
+  bits = (bits | bits << 24) & 0x000000ff000000ffu;
+  bits = (bits | bits << 12) & 0x000f000f000f000fu;
+  bits = (bits | bits << 6) & 0x0303030303030303u;
+  return (bits | bits << 3) & NIBBLE_ONES;
+}
+
+/* The numbers of the nibbles that are chosen, moved together: each moves down by as many as are not chosen below it, by one, two,
+ * four and eight in turn (Warren, "Hacker's Delight", compress). before: how many are chosen below each. */
+LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
+  uint64_t all = chosen * 15, numbers = NIBBLE_NUMBERS & all, ways = (NIBBLE_NUMBERS - before) & all;
+  for (int step = 0; step < 4; step++) {
+    uint64_t moving = (ways >> step & NIBBLE_ONES) * 15, moved = numbers & moving, of_moved = ways & moving;
+    numbers = (numbers ^ moved) | moved >> (4 << step);
+    ways = (ways ^ of_moved) | of_moved >> (4 << step);
+  }
+  return numbers;
+}
+#endif
+
+/* Some of sixteen lanes, one bit each, that move together to the lanes `at` and on, in their order. */
+typedef struct lanes_packing {
+#if defined(__AVX512F__)
+  __m512i from;       /* of the packed lanes: where each comes from */
+  __m512i to;         /* of the lanes with a bit: where each goes */
+  __mmask16 packed, bits;
+#else
+  lanes_int from, to, packed, bits;
+#endif
+} lanes_packing;
+
+LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
+  lanes_packing packing;
+  uint32_t packed = ((1u << __builtin_popcount(bits)) - 1) << at;
+#if defined(__AVX512F__)
+  const __m512i first = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+  packing.bits = (__mmask16)bits;
+  packing.packed = (__mmask16)packed;
+  packing.from = _mm512_maskz_expand_epi32(packing.packed, _mm512_maskz_compress_epi32(packing.bits, first));
+  packing.to = _mm512_maskz_expand_epi32(packing.bits, _mm512_add_epi32(first, _mm512_set1_epi32(at)));
+#else
+  uint64_t chosen = spread_bits(bits), before = chosen * NIBBLE_ONES - chosen; /* products add up what is below */
+  packing.bits = lanes_from_bits(bits);
+  packing.packed = lanes_from_bits(packed);
+  packing.from = lanes_from_nibbles(chosen_numbers(chosen, before) << 4 * at);
+  packing.to = lanes_from_nibbles(before + (unsigned)at * NIBBLE_ONES);
+#endif
+  return packing;
+}
+
+/* The other lanes of `into` stay. */
+LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
+#if defined(__AVX512F__)
+  return (lanes)_mm512_mask_permutexvar_ps((__m512)into, packing->packed, packing->from, (__m512)x);
+#else
+  return lanes_select(packing->packed, (lanes)lanes_look_up((lanes_int)x, packing->from), into);
+#endif
+}
+
+/* Back to where they came from; the lanes without a bit are 0. */
+LANES_CALL lanes lanes_unpack(const lanes_packing *packing, lanes x) {
+#if defined(__AVX512F__)
+  return (lanes)_mm512_maskz_permutexvar_ps(packing->bits, packing->to, (__m512)x);
+#else
+  return lanes_keep(packing->bits, (lanes)lanes_look_up((lanes_int)x, packing->to));
+#endif
+}
+
+#endif
