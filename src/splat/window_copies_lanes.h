@@ -1,7 +1,7 @@
 /* splat/window_copies_lanes.h - the voxels around a block of pixels where there are no registers of 512 bits: u8 ones, in memory.
  *
- * A slice of a window, 8x8 voxels of the grid's columns, is written down five times, each time a voxel further along x and four
- * voxels wide: four rows of four taps of a lane are then sixteen bytes in a row, one load. Two lanes' taps share a register, those
+ * A slice of a window, 8x8 voxels of the grid's columns, is written down three times, or five, each time a voxel further along x and
+ * four voxels wide: four rows of four taps of a lane are then sixteen bytes in a row, one load. Two lanes' taps share a register, those
  * of lanes k and k + 4, and are weighed there; what comes out, a row of taps in each number, is turned so that lanes lie side by side. */
 #ifndef HL_SPLAT_WINDOW_COPIES_LANES_H
 #define HL_SPLAT_WINDOW_COPIES_LANES_H
@@ -18,7 +18,7 @@ typedef struct voxel_window {
   size_t slice_bytes;
   size_t beside;                 /* bytes to the next column, where the window reaches into it */
   int shift;                     /* bits from the column's first voxel to the window's, in every row */
-  int slices, copies;            /* of each slice, as far as lanes' first taps lie apart */
+  int slices, copies;            /* of each slice: as far as lanes' first taps lie apart, and one */
   lanes_int taps;                /* bytes to each lane's first in the copies */
 } voxel_window;
 
