@@ -216,19 +216,6 @@ LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
   return a;
 #endif
 }
-/* Each lane is four numbers of 8 bits, a's without a sign and b's with one: the sums of two products, in 16 bits each. */
-LANES_INLINE lanes_int lanes_multiply_bytes(lanes_int a, lanes_int b) {
-#if defined(__AVX512BW__)
-  return (lanes_int)_mm512_maddubs_epi16((__m512i)a, (__m512i)b);
-#else
-  __m256i x[2], y[2];
-  memcpy(x, &a, sizeof x);
-  memcpy(y, &b, sizeof y);
-  for (int i = 0; i < 2; i++) x[i] = _mm256_maddubs_epi16(x[i], y[i]);
-  memcpy(&a, x, sizeof a);
-  return a;
-#endif
-}
 #endif
 
 LANES_CALL lanes lanes_sqrt(lanes x) {

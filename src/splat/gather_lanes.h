@@ -43,14 +43,18 @@ LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_wind
       plane = lanes_fma(sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along), weight[1][y], plane);
     sum = lanes_fma(plane, weight[2][z], sum);
   }
-  return storage == HL_STORAGE_U8 ? sum * WEIGHT_INVERSE : sum;
+  return from_units(storage, sum);
 }
 
 static __attribute__((noinline)) lanes sum_u8(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
   return sum_taps(grid, HL_STORAGE_U8, window, weight);
 }
 static __attribute__((noinline)) lanes sum_u16(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
+#ifdef HL_SHORT_ROWS
+  return sum_short_rows(grid, window->voxels, &window->offsets, weight);
+#else
   return sum_taps(grid, HL_STORAGE_U16, window, weight);
+#endif
 }
 static __attribute__((noinline)) lanes sum_f32(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
   return sum_taps(grid, HL_STORAGE_F32, window, weight);
@@ -130,16 +134,15 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {
-    if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4) {
-      if (storage == HL_STORAGE_U8) round_to_weights(weight[0]);
+    if (weights_are_whole(storage)) round_to_weights(weight[0]); /* before they fold, as splatting takes them */
+    if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);
-    }
     for (int a = 0; a < 3; a++)
       if (outside >> a & 1) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
 #ifdef HL_WINDOWS
   lanes sum;
-  if (sum_of_windows(grid, cell, active, inside, weights, &sum)) return sum;
+  if (sum_of_windows(grid, cell, inside ? place->low : NULL, active, weights, &sum)) return sum;
 #endif
   tap_window window = window_at(grid, cell, active);
   if (storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);
@@ -169,7 +172,9 @@ LANES_INLINE int gather_place(const fill_source *source, const block_place *plac
 
 LANES_INLINE block_place place_in_tile(const fill_source *source, int tile_x, int tile_y, int block, int inside) {
   int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK;
-  return inside ? place_block_inside(source, x, y) : place_block(source, x, y);
+  block_place place = inside ? place_block_inside(source, x, y) : place_block(source, x, y);
+  lowest_of_block(place.cell, place.low);
+  return place;
 }
 
 /* All of the others are asked before the first block is gone into: which of them show something no processor foresees. */
@@ -180,7 +185,7 @@ LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, 
   for (uint32_t left = others; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
     place[block] = place_in_tile(source, tile_x, tile_y, block, inside);
-    blocks.filled |= (uint32_t)cells_show(source->grid, place[block].cell) << block;
+    blocks.filled |= (uint32_t)cells_show(source->grid, place[block].cell, place[block].low) << block;
   }
   for (uint32_t left = blocks.filled; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);

@@ -32,6 +32,7 @@ static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t
 typedef struct block_place {
   lanes3 point;     /* index space, clamped to [-1, n) */
   lanes_int cell[3]; /* floor(point): -1 .. n-1 */
+  int32_t low[3];    /* the least cell along each axis, where something asks for it (lowest_of_block) */
   lanes_int inside; /* within the grid or a little outside */
 } block_place;
 

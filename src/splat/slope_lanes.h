@@ -42,15 +42,18 @@ LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_w
     sum.y = lanes_fma(along_y, w->weight[2][z], sum.y);
     sum.z = lanes_fma(value, w->slope[2][z], sum.z);
   }
-  if (storage != HL_STORAGE_U8) return sum;
-  return (lanes3){sum.x * SLOPE_INVERSE, sum.y * WEIGHT_INVERSE, sum.z * WEIGHT_INVERSE};
+  return (lanes3){from_slope_units(storage, sum.x), from_units(storage, sum.y), from_units(storage, sum.z)};
 }
 
 static __attribute__((noinline)) lanes3 slopes_u8(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
   return sum_slopes(grid, HL_STORAGE_U8, window, w);
 }
 static __attribute__((noinline)) lanes3 slopes_u16(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
+#ifdef HL_SHORT_ROWS
+  return slopes_of_short_rows(grid, window->voxels, &window->offsets, w);
+#else
   return sum_slopes(grid, HL_STORAGE_U16, window, w);
+#endif
 }
 static __attribute__((noinline)) lanes3 slopes_f32(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
   return sum_slopes(grid, HL_STORAGE_F32, window, w);

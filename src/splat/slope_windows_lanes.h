@@ -4,9 +4,6 @@
 
 #include "splat/gather_lanes.h"
 
-/* Of the 64 taps, along each axis. */
-typedef struct tap_slope_weights { lanes weight[3][4], slope[3][4]; } tap_slope_weights;
-
 /* Without the last block's lanes. */
 LANES_INLINE uint32_t drop_last_block(uint32_t active, uint32_t starts) {
   uint32_t below = (2u << (31 - __builtin_clz(active))) - 1; /* up to the last lane */
@@ -43,8 +40,7 @@ LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window 
     sum.y = lanes_fma(along_y[z], w->weight[2][z], sum.y);
     sum.z = lanes_fma(value[z], w->slope[2][z], sum.z);
   }
-  if (storage != HL_STORAGE_U8) return sum;
-  return (lanes3){sum.x * SLOPE_INVERSE, sum.y * WEIGHT_INVERSE, sum.z * WEIGHT_INVERSE};
+  return (lanes3){from_slope_units(storage, sum.x), from_units(storage, sum.y), from_units(storage, sum.z)};
 }
 
 LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *window, const tap_slope_weights *w) {
@@ -105,56 +101,45 @@ static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t
 }
 
 #elif defined(HL_WINDOWS)
-static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *copies, lanes_int taps_at, const tap_slope_weights *w) {
-  lanes_offsets offsets;
-  __m256 sums[3][2];
+static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *copies, __m256i taps_at, const tap_slope_weights *w) {
+  narrow_offsets offsets;
+  lanes3 sum;
   row_weights weights = weights_of_row(HL_STORAGE_U8, w->weight[0]);
   row_slopes slopes = slopes_of_row(HL_STORAGE_U8, w->slope[0]);
-  lanes_store_offsets(&offsets, taps_at);
+  narrow_store(&offsets, taps_at);
 #pragma GCC unroll 1
   for (int half = 0; half < 2; half++) {
-    __m256i plain_of_two[4][4], slope_of_two[4][4];
-    __m256 x = _mm256_setzero_ps(), y = x, z = x;
+    sums_of_rows plain, sloped;
     for (int k = 0; k < 4; k++) {
-      pair_of_taps taps = taps_of_pair(copies, &offsets, half, k);
-      weights_of_two along = weights_of_pair(&weights.bytes, half, k);
-      slopes_of_two slope = slopes_of_pair(&slopes.bytes, half, k);
-      for (int slice = 0; slice < 4; slice++) {
-        taps_of_two of_slice = slice_of_two(&taps, slice);
-        plain_of_two[slice][k] = weigh_two(&of_slice, &along);
-        slope_of_two[slice][k] = multiply_two(&of_slice, slope.pair);
+      pair_of_taps taps = copied_taps_of_pair(copies, &offsets, half, k);
+      weights_of_two along = weights_of_pair(&weights.bytes, half, k), slope = weights_of_pair(&slopes.bytes, half, k);
+      for (int z = 0; z < 4; z++) {
+        taps_of_two of_slice = slice_of_two(&taps, z);
+        plain.of_two[z][k] = weigh_two(&of_slice, &along);
+        sloped.of_two[z][k] = weigh_two(&of_slice, &slope);
       }
     }
-    for (int slice = 0; slice < 4; slice++) {
-      __m256 plain[4], sloped[4], weight = half_of(&w->weight[2][slice], half);
-      turn_rows(plain_of_two[slice], plain);
-      turn_rows(slope_of_two[slice], sloped);
-      x = _mm256_fmadd_ps(add_rows(sloped, w->weight[1], half), weight, x);
-      y = _mm256_fmadd_ps(add_rows(plain, w->slope[1], half), weight, y);
-      z = _mm256_fmadd_ps(add_rows(plain, w->weight[1], half), half_of(&w->slope[2][slice], half), z);
-    }
-    sums[0][half] = _mm256_mul_ps(x, _mm256_set1_ps(SLOPE_INVERSE));
-    sums[1][half] = _mm256_mul_ps(y, _mm256_set1_ps(WEIGHT_INVERSE));
-    sums[2][half] = _mm256_mul_ps(z, _mm256_set1_ps(WEIGHT_INVERSE));
+    store_half(add_slopes(&plain, &sloped, w, half), half, &sum);
   }
-  lanes3 sum;
-  memcpy(&sum, sums, sizeof sum);
   return sum;
 }
+
+_Static_assert(LANES * sizeof(window_copies) <= INT16_MAX, "16 bits with a sign hold places in all windows' copies");
 
 /* As many blocks to a window as fit, and all windows' copies to one sum. False where even one block does not fit. */
 static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
                              const tap_slope_weights *w, lanes3 *slope) {
   window_copies copies[LANES];
   voxel_window window;
-  lanes_int taps = lanes_set_int(0);
+  __m256i taps = _mm256_setzero_si256();
   int count = 0;
   for (uint32_t left = active; left != 0;) {
     uint32_t together = left;
     while (!open_window(grid, cell, together, &window))
       if ((together = drop_last_block(together, starts)) == 0) return 0;
     copy_window(&window, &copies[count]);
-    taps = lanes_select_int(lanes_from_bits(together), window.taps + count++ * (int32_t)sizeof copies[0], taps);
+    __m256i in_copy = _mm256_add_epi16(window.taps, _mm256_set1_epi16((short)(count++ * (int)sizeof copies[0])));
+    taps = _mm256_blendv_epi8(taps, in_copy, narrow_shorts(lanes_from_bits(together)));
     left &= ~together;
   }
   *slope = slopes_of_copies(copies, taps, w);

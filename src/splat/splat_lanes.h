@@ -7,8 +7,8 @@
 
 #include "splat/gather_lanes.h"
 
-/* A tile's pixels in index space, and the bounds of each block there (lane = block). Of u8 voxels the four taps' weights along x are
- * those that gathering rounds to (byte_weights_lanes.h). */
+/* A tile's pixels in index space, and the bounds of each block there (lane = block). Of u8 and u16 voxels the four taps' weights along
+ * x are those that gathering rounds to (whole_weights_lanes.h). */
 typedef struct tile_place {
   block_place block[TILE_BLOCKS];
   lanes along_x[TILE_BLOCKS][4];
@@ -32,7 +32,7 @@ LANES_INLINE void weigh_along_x(const kernel *kernel, const block_place *place, 
 static void place_tile(const fill_source *source, int tile_x, int tile_y, tile_place *tile) {
   for (int block = 0; block < TILE_BLOCKS; block++) {
     tile->block[block] = place_block(source, tile_x * TILE + block % 4 * BLOCK, tile_y * TILE + block / 4 * BLOCK);
-    if (source->grid->storage == HL_STORAGE_U8) weigh_along_x(source->kernel, &tile->block[block], tile->along_x[block]);
+    if (weights_are_whole(source->grid->storage)) weigh_along_x(source->kernel, &tile->block[block], tile->along_x[block]);
     keep_relevant(source->grid, &tile->block[block]);
     const lanes3 *p = &tile->block[block].point;
     tile->low.x[block] = lanes_least(p->x);
@@ -62,7 +62,7 @@ LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
 /* The weights along x of voxel x at a block's pixels. */
 LANES_INLINE lanes weight_along_x(const fill_source *source, const tile_place *tile, int block, int degree, int32_t x) {
   const block_place *place = &tile->block[block];
-  if (source->grid->storage != HL_STORAGE_U8) return kernel_at(source->kernel, degree, place->point.x - (float)x);
+  if (!weights_are_whole(source->grid->storage)) return kernel_at(source->kernel, degree, place->point.x - (float)x);
   lanes weight = lanes_set(0);
   for (int tap = 0; tap < 4; tap++) weight = lanes_select(place->cell[0] == x + 1 - tap, tile->along_x[block][tap], weight);
   return weight;
@@ -94,7 +94,9 @@ static filled_blocks splat_tile(const fill_source *source, int tile_x, int tile_
   place_tile(source, tile_x, tile_y, &tile);
   for (uint32_t left = others; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
-    if (!source->grid->cell_bits_tell || cells_show(source->grid, tile.block[block].cell)) need |= 1u << block;
+    block_place *place = &tile.block[block];
+    lowest_of_block(place->cell, place->low);
+    if (!source->grid->cell_bits_tell || cells_show(source->grid, place->cell, place->low)) need |= 1u << block;
   }
   for (uint32_t left = need; left != 0; left &= left - 1)
     lanes_store(density + __builtin_ctz(left) * BLOCK_PIXELS, lanes_set(0));

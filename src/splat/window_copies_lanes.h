@@ -7,7 +7,8 @@
 #define HL_SPLAT_WINDOW_COPIES_LANES_H
 
 #include "splat/columns_lanes.h"
-#include "splat/row_lanes.h"
+#include "simd/narrow.h"
+#include "splat/rows_of_two_lanes.h"
 
 enum { WINDOW_SIDE = GRID_COLUMN, WINDOW_SPREAD = WINDOW_SIDE - 4 }; /* voxels; how far lanes' first taps may lie apart */
 enum { USUAL_SPREAD = 2, USUAL_SLICES = 4 + USUAL_SPREAD }; /* few blocks need more, and how many no processor foresees */
@@ -19,35 +20,32 @@ typedef struct voxel_window {
   size_t beside;                 /* bytes to the next column, where the window reaches into it */
   int shift;                     /* bits from the column's first voxel to the window's, in every row */
   int slices, copies;            /* of each slice: as far as lanes' first taps lie apart, and one */
-  lanes_int taps;                /* bytes to each lane's first in the copies */
+  __m256i taps;                  /* bytes to each lane's first in the copies (simd/narrow.h) */
 } voxel_window;
 
 typedef struct window_copies { _Alignas(32) unsigned char slice[WINDOW_SIDE][SLICE_BYTES]; } window_copies;
 
-/* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. False where they do not fit a window. */
-LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, voxel_window *window) {
-  if (grid->columns == NULL || grid->dimension[2] < USUAL_SLICES || active == 0) return 0;
-  const int32_t scale[3] = {COPY_BYTES, 4, SLICE_BYTES}, side[3] = {WINDOW_SIDE, WINDOW_SIDE, USUAL_SLICES};
-  lanes_int used[4] = {cell[0], cell[1], cell[2]}, far[3], beyond = lanes_set_int(0), taps = lanes_set_int(0);
-  int first_lane = __builtin_ctz(active);
-  if (active != 0xffff)
-    for (int a = 0; a < 3; a++) used[a] = lanes_select_int(lanes_from_bits(active), cell[a], lanes_set_int(cell[a][first_lane]));
-  int32_t low[4];
-  used[3] = used[2];
-  _mm_storeu_si128((__m128i *)(void *)low, lanes_least_of_each(used));
+/* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each axis. False where they do not
+ * fit a window. */
+LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3], uint32_t active,
+                                voxel_window *window) {
+  if (grid->columns == NULL || grid->dimension[2] < USUAL_SLICES) return 0;
+  const int32_t side[3] = {WINDOW_SIDE, WINDOW_SIDE, USUAL_SLICES};
+  int32_t low[3];
+  __m256i offset[3];
   for (int a = 0; a < 3; a++) {
-    low[a]--;
+    low[a] = lowest[a] - 1;
     if (low[a] > grid->dimension[a] - side[a]) low[a] = grid->dimension[a] - side[a];
-    lanes_int offset = used[a] - (low[a] + 1);
-    beyond |= offset + (WINDOW_SIDE - 1 - WINDOW_SPREAD);
-    far[a] = offset > USUAL_SPREAD;
-    taps += offset * scale[a];
+    offset[a] = narrow_shorts(cell[a] - (low[a] + 1));
+    if (active != 0xffff) offset[a] = _mm256_and_si256(offset[a], narrow_shorts(lanes_from_bits(active)));
   }
-  if (lanes_bits((beyond & -WINDOW_SIDE) != 0) != 0) return 0;
-  window->slices = lanes_bits(far[2]) == 0 ? USUAL_SLICES : WINDOW_SIDE;
+  if (any_short_above(_mm256_max_epu16(_mm256_max_epu16(offset[0], offset[1]), offset[2]), WINDOW_SPREAD)) return 0;
+  window->slices = any_short_above(offset[2], USUAL_SPREAD) ? WINDOW_SIDE : USUAL_SLICES;
   if (window->slices > grid->dimension[2] - low[2]) window->slices = grid->dimension[2] - low[2];
-  window->copies = lanes_bits(far[0]) == 0 ? USUAL_SPREAD + 1 : WINDOW_SPREAD + 1;
-  window->taps = taps;
+  window->copies = any_short_above(offset[0], USUAL_SPREAD) ? WINDOW_SPREAD + 1 : USUAL_SPREAD + 1;
+  __m256i slice = _mm256_mullo_epi16(offset[2], _mm256_set1_epi16(SLICE_BYTES));
+  __m256i copy = _mm256_mullo_epi16(offset[0], _mm256_set1_epi16(COPY_BYTES));
+  window->taps = _mm256_add_epi16(_mm256_add_epi16(slice, copy), _mm256_slli_epi16(offset[1], 2)); /* rows of four bytes */
   uint32_t first_voxel = (uint32_t)low[0], within = first_voxel % GRID_COLUMN;
   window->slice_bytes = grid->column_slice_bytes;
   window->first = grid->columns + (size_t)(first_voxel / GRID_COLUMN) * grid->column_bytes + (size_t)low[2] * grid->column_slice_bytes +
@@ -57,8 +55,16 @@ LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t
   return 1;
 }
 
-LANES_INLINE int open_window_of_block(const grid *grid, const lanes_int cell[3], voxel_window *window) {
-  return open_window(grid, cell, 0xffff, window);
+LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, voxel_window *window) {
+  if (active == 0) return 0;
+  lanes_int used[4] = {cell[0], cell[1], cell[2]};
+  int32_t lowest[4];
+  int first_lane = __builtin_ctz(active);
+  if (active != 0xffff)
+    for (int a = 0; a < 3; a++) used[a] = lanes_select_int(lanes_from_bits(active), cell[a], lanes_set_int(cell[a][first_lane]));
+  used[3] = used[2];
+  _mm_storeu_si128((__m128i *)(void *)lowest, lanes_least_of_each(used));
+  return open_window_at(grid, cell, lowest, active, window);
 }
 
 /* Two rows of eight voxels, and the two four rows below. */
@@ -101,96 +107,53 @@ LANES_INLINE void copy_window(const voxel_window *window, window_copies *copies)
   else copy_slices(window, WINDOW_SPREAD + 1, copies);
 }
 
-/* Of each half of eight lanes number k, in all of that half. */
-LANES_INLINE __m256i lanes_of_two(const lanes_int *x, int half, int k) {
-  __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)x + half);
-  return _mm256_shuffle_epi8(eight, _mm256_set1_epi32(0x03020100 + k * 0x04040404));
-}
-
-/* Two lanes' weights along x, each lane's in half a register, once for each row, as byte_weights has them; and their slopes. */
-typedef struct weights_of_two { __m256i pair[2], bias; } weights_of_two;
-typedef struct slopes_of_two { __m256i pair[2]; } slopes_of_two;
+/* Two lanes' weights along x, or slopes, each lane's in half a register, once for each row, as byte_weights has them. */
+typedef struct weights_of_two { __m256i pair[2]; } weights_of_two;
 
 LANES_INLINE weights_of_two weights_of_pair(const byte_weights *weights, int half, int k) {
-  return (weights_of_two){{lanes_of_two(&weights->pair[0], half, k), lanes_of_two(&weights->pair[1], half, k)},
-                          lanes_of_two(&weights->bias, half, k)};
-}
-LANES_INLINE slopes_of_two slopes_of_pair(const byte_slopes *slopes, int half, int k) {
-  return (slopes_of_two){{lanes_of_two(&slopes->pair[0], half, k), lanes_of_two(&slopes->pair[1], half, k)}};
+  return (weights_of_two){{lanes_of_two(&weights->pair[0], half, k), lanes_of_two(&weights->pair[1], half, k)}};
 }
 
-/* The taps of lanes k and k + 4 of a half. */
-typedef struct pair_of_taps { const unsigned char *first, *second; } pair_of_taps;
-
-LANES_INLINE pair_of_taps taps_of_pair(const void *copies, const lanes_offsets *taps, int half, int k) {
-  const int32_t *at = taps->at + 8 * half + k;
-  return (pair_of_taps){(const unsigned char *)copies + at[0], (const unsigned char *)copies + at[4]};
+/* The taps of lanes k and k + 4 of a half, in some windows' copies. */
+LANES_INLINE pair_of_taps copied_taps_of_pair(const window_copies *copies, const narrow_offsets *taps, int half, int k) {
+  const uint16_t *at = narrow_pair(taps, half, k);
+  return (pair_of_taps){&copies->slice[0][0] + at[0], &copies->slice[0][0] + at[NARROW_SECOND]};
 }
 
-/* Slice z of them: four rows of four each, and in 16 bits those that share a pair. */
-typedef struct taps_of_two { __m256i bytes, pair[2]; } taps_of_two;
+/* Slice z of them, four rows of four each, in 16 bits as they share a pair. */
+typedef struct taps_of_two { __m256i pair[2]; } taps_of_two;
 
 LANES_INLINE taps_of_two slice_of_two(const pair_of_taps *taps, int z) {
   __m128i first = _mm_loadu_si128((const __m128i *)(const void *)(taps->first + z * SLICE_BYTES));
   __m128i second = _mm_loadu_si128((const __m128i *)(const void *)(taps->second + z * SLICE_BYTES));
   __m256i bytes = _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
-  return (taps_of_two){bytes, {_mm256_and_si256(bytes, _mm256_set1_epi16(255)), _mm256_srli_epi16(bytes, 8)}};
+  return (taps_of_two){{_mm256_and_si256(bytes, _mm256_set1_epi16(255)), _mm256_srli_epi16(bytes, 8)}};
 }
 
 /* Each row's sum. */
-LANES_INLINE __m256i multiply_two(const taps_of_two *taps, const __m256i pair[2]) {
-  return _mm256_add_epi32(_mm256_madd_epi16(taps->pair[0], pair[0]), _mm256_madd_epi16(taps->pair[1], pair[1]));
-}
 LANES_INLINE __m256i weigh_two(const taps_of_two *taps, const weights_of_two *weights) {
-  __m256i biased = _mm256_madd_epi16(_mm256_maddubs_epi16(taps->bytes, weights->bias), _mm256_set1_epi16(BIAS_UNITS));
-  return _mm256_add_epi32(multiply_two(taps, weights->pair), biased);
-}
-
-/* From four rows of two lanes in each of four, to eight lanes in each row, as floats. */
-LANES_INLINE void turn_rows(const __m256i of_two[4], __m256 row[4]) {
-  __m256i a = _mm256_unpacklo_epi32(of_two[0], of_two[1]), b = _mm256_unpacklo_epi32(of_two[2], of_two[3]);
-  __m256i c = _mm256_unpackhi_epi32(of_two[0], of_two[1]), d = _mm256_unpackhi_epi32(of_two[2], of_two[3]);
-  row[0] = _mm256_cvtepi32_ps(_mm256_unpacklo_epi64(a, b));
-  row[1] = _mm256_cvtepi32_ps(_mm256_unpackhi_epi64(a, b));
-  row[2] = _mm256_cvtepi32_ps(_mm256_unpacklo_epi64(c, d));
-  row[3] = _mm256_cvtepi32_ps(_mm256_unpackhi_epi64(c, d));
-}
-
-/* Eight of sixteen lanes. */
-LANES_INLINE __m256 half_of(const lanes *x, int half) { return _mm256_loadu_ps((const float *)x + 8 * half); }
-
-/* Rows weighed along y and added to nothing, in their order. */
-LANES_INLINE __m256 add_rows(const __m256 row[4], const lanes weight[4], int half) {
-  __m256 plane = _mm256_setzero_ps();
-  for (int y = 0; y < 4; y++) plane = _mm256_fmadd_ps(row[y], half_of(&weight[y], half), plane);
-  return plane;
+  return _mm256_add_epi32(_mm256_madd_epi16(taps->pair[0], weights->pair[0]), _mm256_madd_epi16(taps->pair[1], weights->pair[1]));
 }
 
 static __attribute__((noinline)) lanes sum_window_u8(const voxel_window *window, const lanes weight[3][4]) {
   window_copies copies;
-  lanes_offsets offsets;
+  narrow_offsets offsets;
   __m256 sums[2];
   row_weights weights = weights_of_row(HL_STORAGE_U8, weight[0]);
   copy_window(window, &copies);
-  lanes_store_offsets(&offsets, window->taps);
+  narrow_store(&offsets, window->taps);
 #pragma GCC unroll 1
   for (int half = 0; half < 2; half++) {
-    __m256i of_two[4][4];
-    __m256 sum = _mm256_setzero_ps();
+    sums_of_rows rows;
     for (int k = 0; k < 4; k++) {
-      pair_of_taps taps = taps_of_pair(&copies, &offsets, half, k);
+      pair_of_taps taps = copied_taps_of_pair(&copies, &offsets, half, k);
       weights_of_two along = weights_of_pair(&weights.bytes, half, k);
       for (int z = 0; z < 4; z++) {
         taps_of_two of_slice = slice_of_two(&taps, z);
-        of_two[z][k] = weigh_two(&of_slice, &along);
+        rows.of_two[z][k] = weigh_two(&of_slice, &along);
       }
     }
-    for (int z = 0; z < 4; z++) {
-      __m256 row[4];
-      turn_rows(of_two[z], row);
-      sum = _mm256_fmadd_ps(add_rows(row, weight[1], half), half_of(&weight[2][z], half), sum);
-    }
-    sums[half] = _mm256_mul_ps(sum, _mm256_set1_ps(WEIGHT_INVERSE));
+    sums[half] = add_slices(&rows, weight, half);
   }
   lanes sum;
   memcpy(&sum, sums, sizeof sum);

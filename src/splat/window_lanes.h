@@ -100,13 +100,6 @@ LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t
   return open_window_at(grid, cell, lowest, active, window);
 }
 
-/* Of a block of neighbouring pixels, all of them active. */
-LANES_INLINE int open_window_of_block(const grid *grid, const lanes_int cell[3], voxel_window *window) {
-  int32_t lowest[3];
-  lowest_of_block(cell, lowest);
-  return open_window_at(grid, cell, lowest, 0xffff, window) || open_window(grid, cell, 0xffff, window);
-}
-
 LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window *window, int slice) {
   const unsigned char *first = window->first + (size_t)slice * window->slice_bytes;
   if (storage == HL_STORAGE_U8)
@@ -146,10 +139,10 @@ LANES_INLINE void own_taps(hl_storage storage, const own_slices *own, int spread
 }
 
 LANES_INLINE lanes weigh_taps(hl_storage storage, const window_taps *taps, const row_weights *weights) {
-  return storage == HL_STORAGE_U8 ? weigh_u8(taps, &weights->bytes) : weigh_u16(taps, weights->real);
+  return storage == HL_STORAGE_U8 ? weigh_u8(taps, &weights->bytes) : weigh_u16(taps, &weights->shorts);
 }
 LANES_INLINE lanes slope_of_taps(hl_storage storage, const window_taps *taps, const row_slopes *slopes) {
-  return storage == HL_STORAGE_U8 ? slope_u8(taps, &slopes->bytes) : weigh_u16(taps, slopes->real);
+  return storage == HL_STORAGE_U8 ? slope_u8(taps, &slopes->bytes) : slope_u16(taps, &slopes->shorts);
 }
 
 LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window, int spread, const lanes weight[3][4]) {
@@ -163,7 +156,7 @@ LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window
     for (int z = 0; z < 4; z++) plane[z] = lanes_fma(weigh_taps(storage, &taps[z], &along), weight[1][y], plane[z]);
   }
   for (int z = 0; z < 4; z++) sum = lanes_fma(plane[z], weight[2][z], sum);
-  return storage == HL_STORAGE_U8 ? sum * WEIGHT_INVERSE : sum;
+  return from_units(storage, sum);
 }
 
 LANES_INLINE lanes sum_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
@@ -217,19 +210,21 @@ LANES_INLINE lanes sum_of_window(hl_storage storage, const voxel_window *window,
 }
 #elif defined(__AVX2__)
 #define HL_WINDOWS 1
+#define HL_SHORT_ROWS 1
 
+#include "splat/short_rows_lanes.h"
 #include "splat/window_copies_lanes.h"
 #endif
 
 #ifdef HL_WINDOWS
-/* The sums of a block's active lanes, through one window or one for each half of it. all: every lane is active. False where its
- * taps lie too far apart. */
-LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, int all,
+/* The sums of a block's active lanes, through one window or one for each half of it. lowest: where every lane is active, the least
+ * cell along each axis, rounding apart; else null. False where its taps lie too far apart. */
+LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], const int32_t *lowest, uint32_t active,
                                 const lanes weight[3][4], lanes *sum) {
   hl_storage storage = grid->storage;
   voxel_window window, below;
   const uint32_t upper = 0x00ff; /* half of a block */
-  if (all ? open_window_of_block(grid, cell, &window) : open_window(grid, cell, active, &window)) {
+  if ((lowest != NULL && open_window_at(grid, cell, lowest, active, &window)) || open_window(grid, cell, active, &window)) {
     *sum = sum_of_window(storage, &window, weight);
     return 1;
   }

@@ -17,15 +17,17 @@ LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
 
 LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_si128((const __m128i *)row); }
 
-/* Four rows, and the three below them. */
+/* Four rows, and the three below them, less 32768. */
 LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)), lower = _mm512_castsi128_si512(row_of_shorts(row + 4 * row_bytes));
   upper = _mm512_inserti32x4(upper, row_of_shorts(row + row_bytes), 1);
   lower = _mm512_inserti32x4(lower, row_of_shorts(row + 5 * row_bytes), 1);
   upper = _mm512_inserti32x4(upper, row_of_shorts(row + 2 * row_bytes), 2);
-  slice.part[1] = _mm512_inserti32x4(lower, row_of_shorts(row + 6 * row_bytes), 2);
-  slice.part[0] = _mm512_inserti32x4(upper, row_of_shorts(row + 3 * row_bytes), 3);
+  lower = _mm512_inserti32x4(lower, row_of_shorts(row + 6 * row_bytes), 2);
+  upper = _mm512_inserti32x4(upper, row_of_shorts(row + 3 * row_bytes), 3);
+  slice.part[0] = _mm512_xor_si512(upper, _mm512_set1_epi32(VOXEL_SIGN));
+  slice.part[1] = _mm512_xor_si512(lower, _mm512_set1_epi32(VOXEL_SIGN));
   return slice;
 }
 
@@ -61,8 +63,11 @@ LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const w
   taps->part[1] = _mm512_mask_permutexvar_epi16(taps->part[1], (__mmask32)some, third_u16(index), rows->part[0]);
 }
 
-LANES_INLINE lanes weigh_u16(const window_taps *taps, const lanes weight[4]) {
-  return weigh_words((lanes_int)taps->part[0], (lanes_int)taps->part[1], weight);
+LANES_INLINE lanes weigh_u16(const window_taps *taps, const short_weights *weights) {
+  return lanes_from_int(weigh_signed((lanes_int)taps->part[0], (lanes_int)taps->part[1], weights));
+}
+LANES_INLINE lanes slope_u16(const window_taps *taps, const short_slopes *slopes) {
+  return lanes_from_int(slope_of_signed((lanes_int)taps->part[0], (lanes_int)taps->part[1], slopes));
 }
 
 /* ---- f32 ---- */

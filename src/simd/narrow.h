@@ -1,0 +1,38 @@
+/* simd/narrow.h - sixteen small numbers in half a register of AVX2, or a quarter: what is near each other is told by its distance from
+ * the least. Their order is the packing instructions': lanes 0-3, 8-11, 4-7, 12-15. */
+#ifndef HL_SIMD_NARROW_H
+#define HL_SIMD_NARROW_H
+
+#include "simd/lanes.h"
+
+#if defined(__AVX2__) && !defined(__AVX512F__)
+/* In 16 bits each, held within them. */
+LANES_INLINE __m256i narrow_shorts(lanes_int x) {
+  __m256i half[2];
+  memcpy(half, &x, sizeof half);
+  return _mm256_packs_epi32(half[0], half[1]);
+}
+/* In 8 bits each. */
+LANES_INLINE __m128i narrow_bytes(lanes_int x) {
+  __m256i shorts = narrow_shorts(x);
+  return _mm_packs_epi16(_mm256_castsi256_si128(shorts), _mm256_extracti128_si256(shorts, 1));
+}
+
+/* Whether any number without a sign is above a limit. */
+LANES_INLINE int any_short_above(__m256i x, int limit) {
+  __m256i above = _mm256_subs_epu16(x, _mm256_set1_epi16((short)limit));
+  return !_mm256_testz_si256(above, above);
+}
+
+/* Those numbers in memory, and where those of lanes k and k + 4 of a half are there. */
+typedef struct narrow_offsets { _Alignas(32) uint16_t at[LANES]; } narrow_offsets;
+
+LANES_INLINE void narrow_store(narrow_offsets *offsets, __m256i shorts) {
+  memcpy(offsets->at, &shorts, sizeof offsets->at);
+  __asm__ volatile("" : : "r"(offsets) : "memory"); /* as in lanes_store_offsets() */
+}
+LANES_INLINE const uint16_t *narrow_pair(const narrow_offsets *offsets, int half, int k) { return offsets->at + 4 * half + k; }
+enum { NARROW_SECOND = 8 /* from lane k's to lane k + 4's */ };
+#endif
+
+#endif
