@@ -2,6 +2,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -185,6 +186,47 @@ static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading
   stage_close(&set);
 }
 
+/* ---- types ---- */
+
+/* Voxels of nothing and of the most that there is, in clumps: the greatest sums, and slopes, that whole weights have to hold. */
+static void render_clumps(hl_voxel_type type, hl_kernel kernel, float *pixels) {
+  static const hl_opacity_point opacity[] = {{0, 0}, {0.2, 0}, {1, 0.6}};
+  static float voxels[VOXELS];
+  for (int i = 0; i < VOXELS; i++)
+    voxels[i] = stage_noise(0.6 * (i % GRID), 0.5 * (i / GRID % GRID), 0.7 * (i / GRID / GRID)) > 0.5f ? 1 : 0;
+  stage set;
+  stage_open(&set);
+  aim(&set);
+  set.type = type;
+  set.scene.render.kernel = kernel;
+  hl_scene_volume *volume = add_cube(&set, voxels);
+  volume->transfer_function.opacity = opacity;
+  volume->transfer_function.opacity_count = 3;
+  volume->shading = HL_SHADING_PHONG;
+  stage_render_sheets(&set, pixels);
+  stage_close(&set);
+}
+
+/* On average: where a surface turns away from the light a pixel may differ by more. */
+static void test_types_agree(void **state) {
+  (void)state;
+  static const hl_voxel_type whole[] = {HL_VOXEL_U8, HL_VOXEL_U16};
+  static float pixels[FLOATS], expected[FLOATS];
+  for (int kernel = HL_KERNEL_BSPLINE; kernel <= HL_KERNEL_LINEAR; kernel++) {
+    render_clumps(HL_VOXEL_F32, (hl_kernel)kernel, expected);
+    for (int type = 0; type < 2; type++) {
+      render_clumps(whole[type], (hl_kernel)kernel, pixels);
+      double apart = 0, seen = 0;
+      for (int i = 0; i < FLOATS; i++) {
+        apart += fabs((double)pixels[i] - (double)expected[i]) / FLOATS;
+        seen += (double)expected[i] / FLOATS;
+      }
+      assert_true(seen > 0.1);
+      assert_true(apart < 5e-5);
+    }
+  }
+}
+
 static void test_one_voxel_thick(void **state) {
   (void)state;
   static const size_t grids[][3] = {{1, 8, 8}, {8, 1, 8}, {8, 8, 1}, {1, 1, 8}, {8, 1, 1}, {1, 8, 1}, {1, 1, 1}, {1, 2, 3}};
@@ -276,7 +318,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_not_finite),      cmocka_unit_test(test_nothing_finite),
       cmocka_unit_test(test_all_equal),       cmocka_unit_test(test_units_of_data),
-      cmocka_unit_test(test_extremes_among_data), cmocka_unit_test(test_one_voxel_thick),
+      cmocka_unit_test(test_extremes_among_data), cmocka_unit_test(test_types_agree), cmocka_unit_test(test_one_voxel_thick),
       cmocka_unit_test(test_unit_distances_and_spacings), cmocka_unit_test(test_refused),
   };
   return cmocka_run_group_tests_name("numbers_voxels", tests, NULL, NULL);
