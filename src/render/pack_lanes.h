@@ -6,8 +6,8 @@
 #include "render/slab_lanes.h"
 #include "simd/packing.h"
 
-/* Where a block's pixels went. */
-typedef struct packed_block { lanes_packing packing; int slab; } packed_block;
+/* Where a block's pixels went. whole: to a slab of their own, all sixteen where they were; there is no packing then. */
+typedef struct packed_block { lanes_packing packing; int slab, whole; } packed_block;
 
 typedef struct packed_tile {
   block_slab slabs[TILE_BLOCKS];
@@ -19,17 +19,21 @@ typedef struct packed_tile {
 /* A block's volumes before they are packed, and those of the slabs: [1 + TILE_BLOCKS][patches]. */
 _Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES, "a volume's scratch holds its slabs");
 
-/* The first slab with so many lanes left; a new one has nothing in any lane. */
-LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_count, block_density *densities) {
-  int s = 0;
-  while (s < tile->slab_count && tile->filled[s] + lanes_wanted > LANES) s++;
-  if (s < tile->slab_count) return s;
-  tile->slab_count++;
+/* A new slab; there is nothing in any lane. */
+LANES_INLINE int add_slab(packed_tile *tile, int patch_count, block_density *densities) {
+  int s = tile->slab_count++;
   tile->filled[s] = 0;
   tile->slabs[s].u = tile->slabs[s].v = lanes_set(0);
   tile->slabs[s].starts = 0;
   for (int i = 0; i < patch_count; i++) densities[(size_t)s * (size_t)patch_count + (size_t)i].there = 0;
   return s;
+}
+
+/* The first slab with so many lanes left. */
+LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_count, block_density *densities) {
+  for (int s = 0; s < tile->slab_count; s++)
+    if (tile->filled[s] + lanes_wanted <= LANES) return s;
+  return add_slab(tile, patch_count, densities);
 }
 
 /* A way is lanes throughout. */
@@ -41,6 +45,28 @@ LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *fr
   for (int i = 0; i < WAY_LANES; i++) way[i] = lanes_pack(packing, into->there ? way[i] : lanes_set(0), source[i]);
   into->patch = from->patch;
   into->there = 1;
+}
+
+/* A block of which all pixels have a bit. */
+LANES_INLINE packed_block keep_block(packed_tile *tile, const block_slab *block, const block_density *ways, int patch_count,
+                                     block_density *densities) {
+  int s = add_slab(tile, patch_count, densities);
+  tile->slabs[s].u = block->u;
+  tile->slabs[s].v = block->v;
+  tile->slabs[s].starts = 1;
+  tile->slabs[s].open = lanes_set_int(-1);
+  tile->filled[s] = LANES;
+  for (int i = 0; i < patch_count; i++)
+    if (ways[i].there) {
+      block_density *into = &densities[(size_t)s * (size_t)patch_count + (size_t)i];
+      into->way = ways[i].way;
+      into->patch = ways[i].patch;
+      into->there = 1;
+    }
+  packed_block packed;
+  packed.slab = s;
+  packed.whole = 1;
+  return packed;
 }
 
 /* Moves the pixels of a block with a bit to a slab. densities: of all slabs. */
@@ -56,7 +82,7 @@ LANES_INLINE packed_block pack_block(packed_tile *tile, const block_slab *block,
   slab->open = lanes_from_bits((1u << tile->filled[s]) - 1);
   for (int i = 0; i < patch_count; i++)
     if (ways[i].there) pack_way(&packing, &ways[i], &densities[(size_t)s * (size_t)patch_count + (size_t)i]);
-  return (packed_block){packing, s};
+  return (packed_block){packing, s, 0};
 }
 
 #endif

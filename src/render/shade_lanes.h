@@ -302,9 +302,13 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
 /* Returns true while some pixel of the block is not opaque. */
 LANES_INLINE int composite_packed(const shade_job *job, const packed_block *block, const block_slab *slab,
                                   const color_lanes *lit, float *pixels) {
-  color_lanes color;
-  for (int c = 0; c < 3; c++) color.c[c] = lanes_unpack(&block->packing, lit->c[c]);
-  lanes alpha = composite(job->back_to_front, lanes_unpack(&block->packing, slab->opacity), color, pixels);
+  color_lanes color = *lit;
+  lanes opacity = slab->opacity;
+  if (!block->whole) {
+    for (int c = 0; c < 3; c++) color.c[c] = lanes_unpack(&block->packing, lit->c[c]);
+    opacity = lanes_unpack(&block->packing, opacity);
+  }
+  lanes alpha = composite(job->back_to_front, opacity, color, pixels);
   return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
 }
 
@@ -342,7 +346,8 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *pat
     slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits[block], ways, &slab);
     seen |= 1u << block;
     for (int c = 0; c < 3; c++) __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
-    tile.blocks[block] = pack_block(&tile, &slab, ways, patch_count, bits[block], densities);
+    tile.blocks[block] = bits[block] == 0xffff ? keep_block(&tile, &slab, ways, patch_count, densities)
+                                               : pack_block(&tile, &slab, ways, patch_count, bits[block], densities);
   }
   light_slabs(job, &tile, densities, patch_count, lit, samples);
   uint32_t open = blocks & ~seen;
