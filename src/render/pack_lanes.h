@@ -48,8 +48,8 @@ LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *fr
 }
 
 /* A block of which all pixels have a bit. */
-LANES_INLINE packed_block keep_block(packed_tile *tile, const block_slab *block, const block_density *ways, int patch_count,
-                                     block_density *densities) {
+LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const block_density *ways, int patch_count,
+                             block_density *densities, packed_block *packed) {
   int s = add_slab(tile, patch_count, densities);
   tile->slabs[s].u = block->u;
   tile->slabs[s].v = block->v;
@@ -63,15 +63,13 @@ LANES_INLINE packed_block keep_block(packed_tile *tile, const block_slab *block,
       into->patch = ways[i].patch;
       into->there = 1;
     }
-  packed_block packed;
-  packed.slab = s;
-  packed.whole = 1;
-  return packed;
+  packed->slab = s;
+  packed->whole = 1;
 }
 
 /* Moves the pixels of a block with a bit to a slab. densities: of all slabs. */
-LANES_INLINE packed_block pack_block(packed_tile *tile, const block_slab *block, const block_density *ways, int patch_count,
-                                     uint32_t bits, block_density *densities) {
+LANES_INLINE void pack_block(packed_tile *tile, const block_slab *block, const block_density *ways, int patch_count, uint32_t bits,
+                             block_density *densities, packed_block *packed) {
   int count = __builtin_popcount(bits), s = slab_with_room(tile, count, patch_count, densities), at = tile->filled[s];
   block_slab *slab = &tile->slabs[s];
   lanes_packing packing = lanes_packing_of(bits, at);
@@ -82,7 +80,7 @@ LANES_INLINE packed_block pack_block(packed_tile *tile, const block_slab *block,
   slab->open = lanes_from_bits((1u << tile->filled[s]) - 1);
   for (int i = 0; i < patch_count; i++)
     if (ways[i].there) pack_way(&packing, &ways[i], &densities[(size_t)s * (size_t)patch_count + (size_t)i]);
-  return (packed_block){packing, s, 0};
+  *packed = (packed_block){packing, s, 0};
 }
 
 #endif

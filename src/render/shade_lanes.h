@@ -346,8 +346,8 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *pat
     slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits[block], ways, &slab);
     seen |= 1u << block;
     for (int c = 0; c < 3; c++) __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
-    tile.blocks[block] = bits[block] == 0xffff ? keep_block(&tile, &slab, ways, patch_count, densities)
-                                               : pack_block(&tile, &slab, ways, patch_count, bits[block], densities);
+    if (bits[block] == 0xffff) keep_block(&tile, &slab, ways, patch_count, densities, &tile.blocks[block]);
+    else pack_block(&tile, &slab, ways, patch_count, bits[block], densities, &tile.blocks[block]);
   }
   light_slabs(job, &tile, densities, patch_count, lit, samples);
   uint32_t open = blocks & ~seen;
