@@ -32,11 +32,13 @@ static hl_scene_volume *add_cube(stage *set, const float *voxels) {
 
 /* ---- no numbers ---- */
 
-static void render_cube(const float *voxels, float *pixels) {
+static void render_cube_of(hl_voxel_type type, hl_kernel kernel, const float *voxels, float *pixels) {
   static const hl_opacity_point opacity[] = {{0, 0}, {0.2, 0}, {1, 0.6}};
   stage set;
   stage_open(&set);
   aim(&set);
+  set.type = type;
+  set.scene.render.kernel = kernel;
   hl_scene_volume *volume = add_cube(&set, voxels);
   volume->transfer_function.opacity = opacity;
   volume->transfer_function.opacity_count = 3;
@@ -44,6 +46,7 @@ static void render_cube(const float *voxels, float *pixels) {
   stage_render_sheets(&set, pixels);
   stage_close(&set);
 }
+static void render_cube(const float *voxels, float *pixels) { render_cube_of(HL_VOXEL_F32, HL_KERNEL_BSPLINE, voxels, pixels); }
 
 /* They are transparent: the picture is the one with the commonest transparent value in their place. */
 static void test_not_finite(void **state) {
@@ -188,34 +191,18 @@ static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading
 
 /* ---- types ---- */
 
-/* Voxels of nothing and of the most that there is, in clumps: the greatest sums, and slopes, that whole weights have to hold. */
-static void render_clumps(hl_voxel_type type, hl_kernel kernel, float *pixels) {
-  static const hl_opacity_point opacity[] = {{0, 0}, {0.2, 0}, {1, 0.6}};
-  static float voxels[VOXELS];
-  for (int i = 0; i < VOXELS; i++)
-    voxels[i] = stage_noise(0.6 * (i % GRID), 0.5 * (i / GRID % GRID), 0.7 * (i / GRID / GRID)) > 0.5f ? 1 : 0;
-  stage set;
-  stage_open(&set);
-  aim(&set);
-  set.type = type;
-  set.scene.render.kernel = kernel;
-  hl_scene_volume *volume = add_cube(&set, voxels);
-  volume->transfer_function.opacity = opacity;
-  volume->transfer_function.opacity_count = 3;
-  volume->shading = HL_SHADING_PHONG;
-  stage_render_sheets(&set, pixels);
-  stage_close(&set);
-}
-
-/* On average: where a surface turns away from the light a pixel may differ by more. */
+/* Voxels of nothing and of the most that there is, in clumps: the greatest sums, and slopes, that whole weights have to hold. On
+ * average: where a surface turns away from the light a pixel may differ by more. */
 static void test_types_agree(void **state) {
   (void)state;
   static const hl_voxel_type whole[] = {HL_VOXEL_U8, HL_VOXEL_U16};
-  static float pixels[FLOATS], expected[FLOATS];
+  static float voxels[VOXELS], pixels[FLOATS], expected[FLOATS];
+  for (int i = 0; i < VOXELS; i++)
+    voxels[i] = stage_noise(0.6 * (i % GRID), 0.5 * (i / GRID % GRID), 0.7 * (i / GRID / GRID)) > 0.5f ? 1 : 0;
   for (int kernel = HL_KERNEL_BSPLINE; kernel <= HL_KERNEL_LINEAR; kernel++) {
-    render_clumps(HL_VOXEL_F32, (hl_kernel)kernel, expected);
+    render_cube_of(HL_VOXEL_F32, (hl_kernel)kernel, voxels, expected);
     for (int type = 0; type < 2; type++) {
-      render_clumps(whole[type], (hl_kernel)kernel, pixels);
+      render_cube_of(whole[type], (hl_kernel)kernel, voxels, pixels);
       double apart = 0, seen = 0;
       for (int i = 0; i < FLOATS; i++) {
         apart += fabs((double)pixels[i] - (double)expected[i]) / FLOATS;
