@@ -5,19 +5,8 @@
 
 #include "splat/row_lanes.h"
 
-/* Of each half of eight lanes number k, in all of that half. */
-LANES_INLINE __m256i lanes_of_two(const lanes_int *x, int half, int k) {
-  __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)x + half);
-  return _mm256_shuffle_epi8(eight, _mm256_set1_epi32(0x03020100 + k * 0x04040404));
-}
-
 /* The taps of lanes k and k + 4 of a half. */
 typedef struct pair_of_taps { const unsigned char *first, *second; } pair_of_taps;
-
-LANES_INLINE pair_of_taps taps_of_pair(const void *copies, const lanes_offsets *taps, int half, int k) {
-  const int32_t *at = taps->at + 8 * half + k;
-  return (pair_of_taps){(const unsigned char *)copies + at[0], (const unsigned char *)copies + at[4]};
-}
 
 /* Eight lanes' rows, weighed along x: slice by slice, of lanes k and k + 4 four rows each. In units of weights. */
 typedef struct sums_of_rows { __m256i of_two[4][4]; } sums_of_rows;

@@ -5,6 +5,12 @@
 
 #include "splat/rows_of_two_lanes.h"
 
+/* voxels, offsets: bytes to every lane's first tap. */
+LANES_INLINE pair_of_taps short_taps_of_pair(const unsigned char *voxels, const lanes_offsets *offsets, int half, int k) {
+  const int32_t *at = offsets->at + 8 * half + k;
+  return (pair_of_taps){voxels + at[0], voxels + at[4]};
+}
+
 /* Two rows of a lane's taps. */
 LANES_INLINE __m128i two_short_rows(const unsigned char *first, size_t row_bytes) {
   double row[2];
@@ -42,7 +48,7 @@ LANES_INLINE __m256i weigh_short_slice(const short_slice *slice, __m256i weights
   return _mm256_add_epi32(slope_short_slice(slice, weights), _mm256_set1_epi32(LESS_BY));
 }
 
-/* voxels, offsets: bytes to every lane's first tap. */
+/* Of every lane; its place in the volume as above. */
 LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets, const lanes weight[3][4]) {
   size_t row_bytes = (size_t)grid->dimension[0] * 2, slice_bytes = row_bytes * (size_t)grid->dimension[1];
   row_weights weights = weights_of_row(HL_STORAGE_U16, weight[0]);
@@ -51,7 +57,7 @@ LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels,
   for (int half = 0; half < 2; half++) {
     sums_of_rows rows;
     for (int k = 0; k < 4; k++) {
-      pair_of_taps taps = taps_of_pair(voxels, offsets, half, k);
+      pair_of_taps taps = short_taps_of_pair(voxels, offsets, half, k);
       __m256i along = short_weights_of_pair(&weights.shorts, half, k);
       for (size_t z = 0; z < 4; z++) {
         short_slice slice = short_slice_of_two(&taps, z * slice_bytes, row_bytes);
@@ -74,7 +80,7 @@ LANES_INLINE lanes3 slopes_of_short_rows(const grid *grid, const unsigned char *
   for (int half = 0; half < 2; half++) {
     sums_of_rows plain, sloped;
     for (int k = 0; k < 4; k++) {
-      pair_of_taps taps = taps_of_pair(voxels, offsets, half, k);
+      pair_of_taps taps = short_taps_of_pair(voxels, offsets, half, k);
       __m256i along = short_weights_of_pair(&weights.shorts, half, k), slope = short_weights_of_pair(&slopes.shorts, half, k);
       for (size_t z = 0; z < 4; z++) {
         short_slice slice = short_slice_of_two(&taps, z * slice_bytes, row_bytes);

@@ -83,6 +83,7 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
 static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
                              const tap_slope_weights *w, lanes3 *slope) {
   voxel_window window;
+  if (!has_windows(grid)) return 0;
   for (uint32_t left = active; left != 0;) {
     uint32_t together = left;
     while (!open_window(grid, cell, together, &window))
@@ -133,6 +134,7 @@ static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t
   voxel_window window;
   __m256i taps = _mm256_setzero_si256();
   int count = 0;
+  if (!has_windows(grid)) return 0;
   for (uint32_t left = active; left != 0;) {
     uint32_t together = left;
     while (!open_window(grid, cell, together, &window))

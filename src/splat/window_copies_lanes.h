@@ -25,11 +25,13 @@ typedef struct voxel_window {
 
 typedef struct window_copies { _Alignas(32) unsigned char slice[WINDOW_SIDE][SLICE_BYTES]; } window_copies;
 
-/* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each axis. False where they do not
- * fit a window. */
+/* Whether a grid has windows at all. */
+LANES_INLINE int has_windows(const grid *grid) { return grid->columns != NULL && grid->dimension[2] >= USUAL_SLICES; }
+
+/* Of a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each
+ * axis. False where they do not fit a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3], uint32_t active,
                                 voxel_window *window) {
-  if (grid->columns == NULL || grid->dimension[2] < USUAL_SLICES) return 0;
   const int32_t side[3] = {WINDOW_SIDE, WINDOW_SIDE, USUAL_SLICES};
   int32_t low[3];
   __m256i offset[3];
@@ -105,6 +107,12 @@ LANES_INLINE void copy_slices(const voxel_window *window, int count, window_copi
 LANES_INLINE void copy_window(const voxel_window *window, window_copies *copies) {
   if (window->copies == USUAL_SPREAD + 1) copy_slices(window, USUAL_SPREAD + 1, copies);
   else copy_slices(window, WINDOW_SPREAD + 1, copies);
+}
+
+/* Of each half of eight lanes number k, in all of that half. */
+LANES_INLINE __m256i lanes_of_two(const lanes_int *x, int half, int k) {
+  __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)x + half);
+  return _mm256_shuffle_epi8(eight, _mm256_set1_epi32(0x03020100 + k * 0x04040404));
 }
 
 /* Two lanes' weights along x, or slopes, each lane's in half a register, once for each row, as byte_weights has them. */

@@ -69,8 +69,8 @@ LANES_INLINE int has_windows(const grid *grid) {
   return grid->dimension[0] >= WINDOW_SIDE && grid->dimension[1] >= WINDOW_SIDE;
 }
 
-/* cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each axis. False where they
- * do not fit a window. */
+/* Of a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each
+ * axis. False where they do not fit a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3], uint32_t active,
                                 voxel_window *window) {
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
@@ -78,7 +78,6 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
                            grid->storage == HL_STORAGE_U8 ? WINDOW_SIDE : WINDOW_ROWS, WINDOW_SIDE};
   int32_t low[3];
   __m512i offset[3];
-  if (!has_windows(grid)) return 0;
   for (int a = 0; a < 3; a++) {
     low[a] = lowest[a] - 1;
     if (a < 2 && low[a] > grid->dimension[a] - side[a]) low[a] = grid->dimension[a] - side[a];
@@ -224,6 +223,7 @@ LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], const
   hl_storage storage = grid->storage;
   voxel_window window, below;
   const uint32_t upper = 0x00ff; /* half of a block */
+  if (!has_windows(grid)) return 0;
   if ((lowest != NULL && open_window_at(grid, cell, lowest, active, &window)) || open_window(grid, cell, active, &window)) {
     *sum = sum_of_window(storage, &window, weight);
     return 1;

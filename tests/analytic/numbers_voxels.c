@@ -159,6 +159,31 @@ static void test_extremes_among_data(void **state) {
   }
 }
 
+/* ---- types ---- */
+
+/* Voxels of nothing and of the most that there is, in clumps: the greatest sums, and slopes, that whole weights have to hold. On
+ * average: where a surface turns away from the light a pixel may differ by more. */
+static void test_types_agree(void **state) {
+  (void)state;
+  static const hl_voxel_type whole[] = {HL_VOXEL_U8, HL_VOXEL_U16};
+  static float voxels[VOXELS], pixels[FLOATS], expected[FLOATS];
+  for (int i = 0; i < VOXELS; i++)
+    voxels[i] = stage_noise(0.6 * (i % GRID), 0.5 * (i / GRID % GRID), 0.7 * (i / GRID / GRID)) > 0.5f ? 1 : 0;
+  for (int kernel = HL_KERNEL_BSPLINE; kernel <= HL_KERNEL_LINEAR; kernel++) {
+    render_cube_of(HL_VOXEL_F32, (hl_kernel)kernel, voxels, expected);
+    for (int type = 0; type < 2; type++) {
+      render_cube_of(whole[type], (hl_kernel)kernel, voxels, pixels);
+      double apart = 0, seen = 0;
+      for (int i = 0; i < FLOATS; i++) {
+        apart += fabs((double)pixels[i] - (double)expected[i]) / FLOATS;
+        seen += (double)expected[i] / FLOATS;
+      }
+      assert_true(seen > 0.1);
+      assert_true(apart < 5e-5);
+    }
+  }
+}
+
 /* ---- one voxel along an axis ---- */
 
 /* A layer is a stack of equal thinner layers: its border values continue. Without shadows, whose buffers are as coarse as
@@ -187,31 +212,6 @@ static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading
   set.scene.render.sheet_spacing = 0.2 / smallest;
   stage_render_sheets(&set, pixels);
   stage_close(&set);
-}
-
-/* ---- types ---- */
-
-/* Voxels of nothing and of the most that there is, in clumps: the greatest sums, and slopes, that whole weights have to hold. On
- * average: where a surface turns away from the light a pixel may differ by more. */
-static void test_types_agree(void **state) {
-  (void)state;
-  static const hl_voxel_type whole[] = {HL_VOXEL_U8, HL_VOXEL_U16};
-  static float voxels[VOXELS], pixels[FLOATS], expected[FLOATS];
-  for (int i = 0; i < VOXELS; i++)
-    voxels[i] = stage_noise(0.6 * (i % GRID), 0.5 * (i / GRID % GRID), 0.7 * (i / GRID / GRID)) > 0.5f ? 1 : 0;
-  for (int kernel = HL_KERNEL_BSPLINE; kernel <= HL_KERNEL_LINEAR; kernel++) {
-    render_cube_of(HL_VOXEL_F32, (hl_kernel)kernel, voxels, expected);
-    for (int type = 0; type < 2; type++) {
-      render_cube_of(whole[type], (hl_kernel)kernel, voxels, pixels);
-      double apart = 0, seen = 0;
-      for (int i = 0; i < FLOATS; i++) {
-        apart += fabs((double)pixels[i] - (double)expected[i]) / FLOATS;
-        seen += (double)expected[i] / FLOATS;
-      }
-      assert_true(seen > 0.1);
-      assert_true(apart < 5e-5);
-    }
-  }
 }
 
 static void test_one_voxel_thick(void **state) {
