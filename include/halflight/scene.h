@@ -131,7 +131,8 @@ typedef enum hl_shadow_lookup {
   HL_LOOKUP_BILINEAR = 0,
   HL_LOOKUP_NEAREST = 1,
   HL_LOOKUP_CUBIC = 2,         /* cubic convolution: sharper; of sub-lights bilinear */
-  HL_LOOKUP_AUTO = 3           /* cubic, of coarser pixels, where shadows are a cascade and lights even; elsewhere bilinear */
+  HL_LOOKUP_AUTO = 3           /* cubic, of coarser pixels, where shadows are a cascade and lights even, and where they are hard and
+                                  sheets closer than 5/6 of a voxel; elsewhere bilinear */
 } hl_shadow_lookup;
 
 typedef struct hl_render_settings {

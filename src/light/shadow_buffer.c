@@ -65,6 +65,25 @@ static double pixel_edge(const light_source *source, vec3 normal, const shadow_e
   return fmax(pixel, sqrt(size[0] * size[1] / (double)extent->greatest_pixels));
 }
 
+/* A buffer's pixels along one axis. */
+typedef struct pixel_row { int count; double start, pixel; } pixel_row;
+
+static pixel_row row_around(double low, double high, double size, double pixel) {
+  int count = (int)ceil((size + 2 * BORDER_PIXELS * pixel) / pixel);
+  if (count > GREATEST_SIDE) count = GREATEST_SIDE;
+  return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
+}
+
+/* Pixels a little smaller, so that the first and the last one but the borders' have their middles just inside the bounds: light
+ * that runs along a box's face and is read beside it is then not mixed with what passes outside. */
+static pixel_row row_between(double low, double size, double pixel) {
+  const double inside = 1e-3 * fmin(pixel, size);
+  int steps = (int)ceil((size - 2 * inside) / pixel);
+  if (steps > GREATEST_SIDE - 2 * BORDER_PIXELS - 1) steps = GREATEST_SIDE - 2 * BORDER_PIXELS - 1;
+  pixel = (size - 2 * inside) / steps;
+  return (pixel_row){steps + 1 + 2 * BORDER_PIXELS, low + inside - (BORDER_PIXELS + 0.5) * pixel, pixel};
+}
+
 void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view) {
   double low[2], high[2], size[2];
   vec3 tilt = vec3_subtract(source->direction, vec3_scale(plane_normal, vec3_dot(source->direction, plane_normal)));
@@ -82,15 +101,19 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
   hl_lit_region(view, source, low, high);
   for (int axis = 0; axis < 2; axis++) size[axis] = fmax(high[axis] - low[axis], 1e-9);
   double pixel = pixel_edge(source, plane_normal, extent, size);
-  double margin = BORDER_PIXELS * pixel;
-  view->width = (int)ceil((size[0] + 2 * margin) / pixel);
-  view->height = (int)ceil((size[1] + 2 * margin) / pixel);
-  if (view->width > GREATEST_SIDE) view->width = GREATEST_SIDE;
-  if (view->height > GREATEST_SIDE) view->height = GREATEST_SIDE;
-  double u0 = (low[0] + high[0]) / 2 - view->width * pixel / 2, v0 = (low[1] + high[1]) / 2 - view->height * pixel / 2;
-  view->corner = vec3_add(view->corner, vec3_add(vec3_scale(u, u0), vec3_scale(v, v0)));
-  view->du = vec3_scale(u, pixel);
-  view->dv = vec3_scale(v, pixel);
+  pixel_row across, down;
+  if (source->shadows == HL_SHADOWS_SOFT) {
+    across = row_around(low[0], high[0], size[0], pixel);
+    down = row_around(low[1], high[1], size[1], pixel);
+  } else {
+    across = row_between(low[0], size[0], pixel);
+    down = row_between(low[1], size[1], pixel);
+  }
+  view->width = across.count;
+  view->height = down.count;
+  view->corner = vec3_add(view->corner, vec3_add(vec3_scale(u, across.start), vec3_scale(v, down.start)));
+  view->du = vec3_scale(u, across.pixel);
+  view->dv = vec3_scale(v, down.pixel);
   hl_view_finish(view);
 }
 

@@ -51,21 +51,25 @@ LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   weight[3] = both * way;
 }
 
-/* Between four by four pixels, which overshoot where light ends. Called: hard shadows, which are read otherwise, keep their
- * registers. */
+/* Between four by four pixels, within what the nearest four hold: beside an edge it would overshoot, and inside a box's face take
+ * more light than was taken. Called: shadows that are read otherwise keep their registers. */
 static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps, const float *buffer) {
   lanes across[4], down[4], pixel[4], sum = lanes_set(0);
   lanes_int at = taps->first.row * (int32_t)map->stride + taps->first.column;
   cubic_weights(taps->fx, across);
   cubic_weights(taps->fy, down);
+  lanes least = lanes_set(1.0f), greatest = lanes_set(0);
   const float *row = buffer - map->stride - 1;
   for (int y = 0; y < 4; y++, row += map->stride) {
     lanes_gather_quads(row, at, pixel);
     lanes along = pixel[0] * across[0];
     for (int x = 1; x < 4; x++) along = lanes_fma(pixel[x], across[x], along);
     sum = lanes_fma(along, down[y], sum);
+    if (y == 0 || y == 3) continue;
+    least = lanes_min(least, lanes_min(pixel[1], pixel[2]));
+    greatest = lanes_max(greatest, lanes_max(pixel[1], pixel[2]));
   }
-  return lanes_select(taps->inside, lanes_clamp(sum, 0, 1.0f), lanes_set(1.0f));
+  return lanes_select(taps->inside, lanes_min(lanes_max(sum, least), greatest), lanes_set(1.0f));
 }
 
 LANES_INLINE lanes look_up_part(const shadow_map *map, const shadow_taps *taps, const part_pixel *buffer, uint32_t active) {

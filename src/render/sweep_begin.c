@@ -8,8 +8,8 @@
  * at least; and somewhat coarser than the image's. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4, PART_PIXEL_PER_IMAGE_PIXEL = 1.5;
-/* Read by cubic convolution, penumbrae lose less on pixels so much larger than bilinear look-ups do on these. */
-static const double CUBIC_LARGER = 7.0 / 6;
+/* Read by cubic convolution, shadows lose no more on pixels larger by that part of a voxel than bilinear look-ups do on these. */
+static const double CUBIC_LARGER = 1.0 / 8;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
@@ -44,12 +44,21 @@ static double penumbra_margin(const sweep *sweep, const light_source *source, co
   return width * (1 / nearest - 1 / (nearest + depth));
 }
 
-/* image: of the light, null where it is even; the penumbrae of others have edges of their own. */
+/* What the sheets' distance allows, in voxels. */
+static double pixel_of_sheets(const sweep *sweep) {
+  double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing / sweep->frame->voxel;
+  return fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL), GREATEST_SHADOW_PIXEL);
+}
+
+/* Hard shadows where larger pixels do not exceed the greatest; the paper's as the paper has it. image: of the light, null where it
+ * is even; the penumbrae of others have edges of their own. */
 static bool is_read_cubic(const sweep *sweep, const light_source *source, const light_image *image) {
   hl_shadow_lookup lookup = sweep->scene->render.shadow_lookup;
   bool soft = source->shadows == HL_SHADOWS_SOFT;
   if (soft && source->soft_method == HL_SOFT_SUBLIGHTS) return false;
-  return lookup == HL_LOOKUP_CUBIC || (lookup == HL_LOOKUP_AUTO && soft && source->soft_method == HL_SOFT_CASCADE && image == NULL);
+  if (lookup != HL_LOOKUP_AUTO) return lookup == HL_LOOKUP_CUBIC;
+  if (soft) return source->soft_method == HL_SOFT_CASCADE && image == NULL;
+  return pixel_of_sheets(sweep) + CUBIC_LARGER <= GREATEST_SHADOW_PIXEL;
 }
 
 /* A bilinear look-up weighs two pixels by their distances p and 1 - p: a variance of p (1 - p), 1/6 on average. Cubic
@@ -58,13 +67,12 @@ static double lookup_variance(bool cubic) { return cubic ? 0 : 1.0 / 6; }
 
 static double shadow_pixel(const sweep *sweep, const light_source *source, bool cubic) {
   const frame *frame = sweep->frame;
-  double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing;
-  double pixel = fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL * frame->voxel), GREATEST_SHADOW_PIXEL * frame->voxel);
-  if (source->shadows != HL_SHADOWS_SOFT) return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->pixel, pixel);
+  double pixel = (pixel_of_sheets(sweep) + (cubic ? CUBIC_LARGER : 0)) * frame->voxel;
+  if (source->shadows != HL_SHADOWS_SOFT)
+    return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->pixel, fmin(pixel, GREATEST_SHADOW_PIXEL * frame->voxel));
   if (source->soft_method == HL_SOFT_SUBLIGHTS) return fmin(PART_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
   /* a pixel on the sheets is narrower seen along the light: as large as a hard shadow's there */
   double slant = source->parallel ? fabs(vec3_dot(source->direction, sweep->geometry->sheets.normal)) : 1;
-  if (cubic) pixel *= CUBIC_LARGER;
   return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel / sqrt(fmax(slant, 0.5)));
 }
 

@@ -64,6 +64,59 @@ static void test_size_under_point_light(void **state) {
   stage_close(&set);
 }
 
+static void render_hard(stage *set, double spacing, hl_shadow_lookup lookup, float *pixels) {
+  set->scene.render.sheet_spacing = spacing;
+  set->scene.render.shadow_lookup = lookup;
+  stage_render_sheets(set, pixels);
+}
+
+/* Light along the faces of a cube of haze, seen from the side: what is left falls by exp(-sigma way), and no light that passes beside
+ * the cube shines through its faces, wherever the pixels of the buffer lie. */
+static void test_light_along_faces(void **state) {
+  (void)state;
+  static float pixels[MOST * 4];
+  stage set;
+  stage_open(&set);
+  hl_scene_volume *cube = stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1}, (vec3){-10, -10, -10}, NULL);
+  stage_set_opacity(&set, cube, 0.1, 1);
+  stage_add_directional(&set, (vec3){1, 0, 0});
+  stage_look(&set, (vec3){0, -50, 0}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  set.scene.width = set.scene.height = 96;
+  set.scene.camera.height = 24;
+  set.scene.render.shadows = HL_SHADOWS_HARD;
+  for (double spacing = 0.25; spacing < 0.8; spacing += 0.1) {
+    set.scene.render.sheet_spacing = spacing;
+    stage_render_sheets(&set, pixels);
+    int first = 12, last = 83; /* more than a slab inside the faces that light enters and leaves by */
+    const float *row = &pixels[4 * 96 * 48];
+    double left = pow(0.9, (last - first) * 0.25);
+    assert_near((double)row[4 * last] / (double)row[4 * first], left, 0.005 * left);
+  }
+  stage_close(&set);
+}
+
+/* Where sheets lie closer than five sixths of a voxel, hard shadows are read by cubic convolution; elsewhere that would ask for
+ * pixels of more than three quarters of a voxel. */
+static void test_what_auto_reads(void **state) {
+  (void)state;
+  static float chosen[MOST * 4], cubic[MOST * 4], bilinear[MOST * 4];
+  const struct { double spacing; int cubic; } cases[] = {{0.5, 1}, {0.8, 1}, {0.9, 0}, {1, 0}, {2, 0}};
+  stage set;
+  stage_open(&set);
+  stage_plate(&set, (vec3){-2, -3, 4}, 4, 6);
+  stage_add_point(&set, (vec3){0.5, -0.5, 10});
+  set.scene.width = set.scene.height = 96;
+  set.scene.camera.height = 24;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    render_hard(&set, cases[i].spacing, HL_LOOKUP_AUTO, chosen);
+    render_hard(&set, cases[i].spacing, HL_LOOKUP_CUBIC, cubic);
+    render_hard(&set, cases[i].spacing, HL_LOOKUP_BILINEAR, bilinear);
+    assert_memory_not_equal(cubic, bilinear, sizeof cubic);
+    assert_memory_equal(chosen, cases[i].cubic ? cubic : bilinear, sizeof chosen);
+  }
+  stage_close(&set);
+}
+
 /* A slanted light moves the shadow by h tan(angle), whichever side the sheets are on. */
 static void test_offset_of_directional_light(void **state) {
   (void)state;
@@ -311,6 +364,8 @@ static void test_no_jump_where_the_axis_turns(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_size_under_point_light),
+      cmocka_unit_test(test_light_along_faces),
+      cmocka_unit_test(test_what_auto_reads),
       cmocka_unit_test(test_offset_of_directional_light),
       cmocka_unit_test(test_penumbra_of_cascade),
       cmocka_unit_test(test_penumbra_of_paper),

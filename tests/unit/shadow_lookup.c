@@ -88,6 +88,30 @@ static void test_light_stays_light(void **state) {
   assert_true(between > 100);
 }
 
+/* Of any pixels cubic convolution stays within the nearest four. */
+static void test_cubic_stays_within(void **state) {
+  (void)state;
+  static float pixels[STRIDE * STRIDE];
+  const shadow_map map = map_of_buffer();
+  uint64_t random = 9;
+  for (int i = 0; i < STRIDE * STRIDE; i++) pixels[i] = (float)(i * 40503 % 1000) / 1000;
+  const float *buffer = pixels + MARGIN * STRIDE + MARGIN;
+  int between = 0;
+  for (int round = 0; round < 1000; round++) {
+    places at = some_places(&random, 0.5f, SIDE - 0.5f);
+    shadow_taps taps = taps_of_place(&map, 0, at.u, at.v);
+    lanes cubic = look_up_cubic(&map, &taps, buffer);
+    for (int lane = 0; lane < LANES; lane++) {
+      const float *first = buffer + taps.first.row[lane] * STRIDE + taps.first.column[lane];
+      float least = fminf(fminf(first[0], first[1]), fminf(first[STRIDE], first[STRIDE + 1]));
+      float greatest = fmaxf(fmaxf(first[0], first[1]), fmaxf(first[STRIDE], first[STRIDE + 1]));
+      assert_true(cubic[lane] >= least && cubic[lane] <= greatest);
+      between += cubic[lane] > least && cubic[lane] < greatest;
+    }
+  }
+  assert_true(between > 100);
+}
+
 /* Squares of lanes that lie together and of those that do not. */
 static void test_short_squares(void **state) {
   (void)state;
@@ -109,6 +133,7 @@ static void test_short_squares(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_cubic_keeps_squares), cmocka_unit_test(test_light_stays_light),
+                                     cmocka_unit_test(test_cubic_stays_within),
                                      cmocka_unit_test(test_short_squares)};
   return cmocka_run_group_tests_name("shadow_lookup", tests, NULL, NULL);
 }
