@@ -75,7 +75,10 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
 }
 
 /* Pixels a little smaller, so that the first and the last one but the borders' have their middles just inside the bounds: light
- * that runs along a box's face and is read beside it is then not mixed with what passes outside. */
+ * that runs along a box's face and is read beside it is then not mixed with what passes outside. Soft shadows' are square, and
+ * so are those of what is thinner than this part of one. */
+static const double LEAST_FITTED = 0.25;
+
 static pixel_row row_between(double low, double size, double pixel) {
   const double inside = 1e-3 * fmin(pixel, size);
   int steps = (int)ceil((size - 2 * inside) / pixel);
@@ -101,19 +104,16 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
   hl_lit_region(view, source, low, high);
   for (int axis = 0; axis < 2; axis++) size[axis] = fmax(high[axis] - low[axis], 1e-9);
   double pixel = pixel_edge(source, plane_normal, extent, size);
-  pixel_row across, down;
-  if (source->shadows == HL_SHADOWS_SOFT) {
-    across = row_around(low[0], high[0], size[0], pixel);
-    down = row_around(low[1], high[1], size[1], pixel);
-  } else {
-    across = row_between(low[0], size[0], pixel);
-    down = row_between(low[1], size[1], pixel);
-  }
-  view->width = across.count;
-  view->height = down.count;
-  view->corner = vec3_add(view->corner, vec3_add(vec3_scale(u, across.start), vec3_scale(v, down.start)));
-  view->du = vec3_scale(u, across.pixel);
-  view->dv = vec3_scale(v, down.pixel);
+  pixel_row row[2];
+  for (int axis = 0; axis < 2; axis++)
+    row[axis] = source->shadows == HL_SHADOWS_SOFT || size[axis] < LEAST_FITTED * pixel
+                    ? row_around(low[axis], high[axis], size[axis], pixel)
+                    : row_between(low[axis], size[axis], pixel);
+  view->width = row[0].count;
+  view->height = row[1].count;
+  view->corner = vec3_add(view->corner, vec3_add(vec3_scale(u, row[0].start), vec3_scale(v, row[1].start)));
+  view->du = vec3_scale(u, row[0].pixel);
+  view->dv = vec3_scale(v, row[1].pixel);
   hl_view_finish(view);
 }
 

@@ -1,7 +1,7 @@
 /* light/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the current sheet.
  *
  * Perpendicular to the light's axis for hard shadows, parallel to the sheets for soft ones (fig. 17). Its
- * pixels are no larger than the image's where the volume is. Around it light is unattenuated: a margin of
+ * pixels are little larger than the image's where the volume is. Around it light is unattenuated: a margin of
  * ones, which blurs read. */
 #ifndef HL_LIGHT_SHADOW_BUFFER_H
 #define HL_LIGHT_SHADOW_BUFFER_H
