@@ -40,17 +40,21 @@ static double crossing(const float *row, int count, double left, double pitch, d
 
 /* ---- hard shadows ---- */
 
+static void open_under_point_light(stage *set) {
+  stage_open(set);
+  stage_plate(set, (vec3){-2, -3, 4}, 4, 6);
+  stage_add_point(set, (vec3){0.5, -0.5, 10});
+  set->scene.width = set->scene.height = 96;
+  set->scene.camera.height = 24;
+}
+
 /* Similar triangles: seen from a light at height H an edge at height h falls H / (H - h) as far out. The outline is
  * that of the plate's upper face here, which is the nearer to the light. Half of the smallest voxel edge. */
 static void test_size_under_point_light(void **state) {
   (void)state;
   static float pixels[MOST * 4];
   stage set;
-  stage_open(&set);
-  stage_plate(&set, (vec3){-2, -3, 4}, 4, 6);
-  stage_add_point(&set, (vec3){0.5, -0.5, 10});
-  set.scene.width = set.scene.height = 96;
-  set.scene.camera.height = 24;
+  open_under_point_light(&set);
   for (double spacing = 0.5; spacing <= 2; spacing *= 2) {
     set.scene.render.sheet_spacing = spacing;
     stage_render_sheets(&set, pixels);
@@ -102,11 +106,7 @@ static void test_what_auto_reads(void **state) {
   static float chosen[MOST * 4], cubic[MOST * 4], bilinear[MOST * 4];
   const struct { double spacing; int cubic; } cases[] = {{0.5, 1}, {0.8, 1}, {0.9, 0}, {1, 0}, {2, 0}};
   stage set;
-  stage_open(&set);
-  stage_plate(&set, (vec3){-2, -3, 4}, 4, 6);
-  stage_add_point(&set, (vec3){0.5, -0.5, 10});
-  set.scene.width = set.scene.height = 96;
-  set.scene.camera.height = 24;
+  open_under_point_light(&set);
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     render_hard(&set, cases[i].spacing, HL_LOOKUP_AUTO, chosen);
     render_hard(&set, cases[i].spacing, HL_LOOKUP_CUBIC, cubic);
