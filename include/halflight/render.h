@@ -33,7 +33,7 @@ typedef struct hl_render_statistics {
   double seconds_sort, seconds_fill_image, seconds_fill_light, seconds_shade, seconds_soften;
   double seconds_composite_light;                         /* the part of seconds_fill_light that is classification and
                                                              composite */
-  uint64_t pixels_filled_image, pixels_filled_light;      /* sheet pixels reconstructed */
+  uint64_t pixels_filled_image, pixels_filled_light;      /* sheet pixels reconstructed, to tell what is hidden too */
   uint64_t pixels_skipped_image, pixels_skipped_light;    /* in occupied places, but already opaque or dark */
 } hl_render_statistics;
 

@@ -304,33 +304,6 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   return place_pixels(renderer, scene, layers, pixels, row_stride, work, error);
 }
 
-static void add_counts(const sweep *sweep, hl_render_statistics *statistics) {
-  double fill = 0, shade = 0, light = 0, composite = 0;
-  for (int i = 0; i < hl_pool_threads(sweep->pool); i++) {
-    statistics->samples_shaded += sweep->counts[i].samples;
-    statistics->tiles_filled_image += sweep->counts[i].filled_image;
-    statistics->tiles_filled_light += sweep->counts[i].filled_light;
-    statistics->tiles_skipped_image += sweep->counts[i].skipped_image;
-    statistics->tiles_skipped_light += sweep->counts[i].skipped_light;
-    statistics->pixels_filled_image += sweep->counts[i].pixels_image;
-    statistics->pixels_filled_light += sweep->counts[i].pixels_light;
-    statistics->pixels_skipped_image += sweep->counts[i].pixels_skipped_image;
-    statistics->pixels_skipped_light += sweep->counts[i].pixels_skipped_light;
-    fill += sweep->counts[i].seconds_fill;
-    shade += sweep->counts[i].seconds_shade;
-    light += sweep->counts[i].seconds_light;
-    composite += sweep->counts[i].seconds_composite;
-  }
-  statistics->sheets += sweep->geometry->sheets.count;
-  statistics->seconds_sort += sweep->seconds_sort;
-  double share = fill + shade > 0 ? fill / (fill + shade) : 1;
-  statistics->seconds_fill_image += sweep->seconds_image * share;
-  statistics->seconds_shade += sweep->seconds_image * (1 - share);
-  statistics->seconds_fill_light += sweep->seconds_light;
-  if (light > 0) statistics->seconds_composite_light += sweep->seconds_light * composite / light;
-  statistics->seconds_soften += sweep->seconds_soften;
-}
-
 /* Three where matter takes colours apart, or light comes in several from several places. */
 static int attenuation_channels(const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->light_count; i++)
@@ -387,12 +360,12 @@ static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_descrip
 static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work, int index,
                            hl_render_statistics *statistics, hl_error *error) {
   sweep sweep = sweep_of(renderer, scene, work, index);
-  double start = hl_clock_seconds();
-  hl_status status = hl_sweep_begin(&sweep, renderer->buffers, renderer->cascades, error);
-  sweep.seconds_sort = hl_clock_seconds() - start;
+  hl_status status = sweep.geometry->back_to_front ? hl_sweep_find_hidden(&sweep, statistics, error) : HL_OK;
+  if (status == HL_OK) status = hl_sweep_begin(&sweep, renderer->buffers, renderer->cascades, error);
   if (status == HL_OK) status = hl_sweep_run(&sweep, error);
-  if (status == HL_OK) add_counts(&sweep, statistics);
+  if (status == HL_OK) hl_sweep_count(&sweep, statistics);
   hl_sweep_end(&sweep);
+  hl_release(renderer->context, sweep.shown_from);
   return status;
 }
 

@@ -25,7 +25,7 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     hl_sweep_shade(sweep, sheet);
     hl_sweep_attenuate(sweep, sheet);
     hl_sweep_soften(sweep, sheet);
-    if ((sheet & 7) == 0) hl_progress(sweep->context, "render", (double)sheet / sheets);
+    if ((sheet & 7) == 0 && sweep->covering == NULL) hl_progress(sweep->context, "render", (double)sheet / sheets);
     if (hl_pool_cancelled(sweep->pool)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   }
   return HL_OK;

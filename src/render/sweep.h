@@ -5,6 +5,8 @@
 #ifndef HL_RENDER_SWEEP_H
 #define HL_RENDER_SWEEP_H
 
+#include <halflight/render.h>
+
 #include "core/reserve.h"
 #include "light/soft_cascade.h"
 #include "light/soft_paper.h"
@@ -80,6 +82,7 @@ typedef struct sweep_light {
 typedef struct sweep_counts {
   _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image, skipped_light; /* pixels shaded; tiles */
   uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
+  uint64_t pixels_seen, pixels_covered; /* by a sweep that finds what is hidden */
   double seconds_fill, seconds_shade; /* of the image stage */
   double seconds_light, seconds_composite; /* of the light stage; the composite is part of it */
 } sweep_counts;
@@ -108,6 +111,9 @@ typedef struct sweep {
   int tiles_x, tiles_y;
   uint16_t *open;                 /* [tiles]; blocks not yet opaque */
   float *pixels;                  /* [tiles][16][4][16] */
+  int32_t *shown_from;            /* the caller's; [tiles][16]; slabs of a block before that one are hidden; null: none are */
+  int32_t *covering;              /* [tiles][16]; shown_from of another sweep, which this one finds instead of a picture; or null */
+  bool trying;                    /* covering: blocks stay open when they are opaque */
   sweep_light lights[FRAME_LIGHTS];
   /* the stage now running */
   int sheet;
@@ -126,9 +132,20 @@ typedef struct sweep {
   double seconds_sort, seconds_image, seconds_light, seconds_soften;
 } sweep;
 
+/* Of a sweep from back to front, before its steps: makes shown_from, which the caller releases (hidden.c). Pixels are zeros before
+ * and after. */
+hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, hl_error *error);
+/* Instead of steps 12 to 16 then, for one tile. Returns the blocks that stay open. */
+uint32_t hl_sweep_cover(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks, int worker,
+                        void *scratch);
+
 /* Steps 1 and 2, and memory. buffers: one per light of the sweep, kept by the caller between frames; so is memory,
  * [FRAME_LIGHTS], which sweeps share in turn. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error);
+/* All blocks of the picture are open. */
+void hl_sweep_open(sweep *sweep);
+/* Raises statistics by what the steps took. */
+void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics);
 void hl_sweep_end(sweep *sweep);
 
 /* What hl_sweep_begin would hold, bytes. */

@@ -1,6 +1,7 @@
 /* render/sweep_begin.c - steps 1 to 4: views, sorting, memory, full light. */
 #include "core/memory.h"
 #include "light/light_extent.h"
+#include "render/clock.h"
 #include "render/sweep.h"
 
 /* Pixels of shadow buffers are as coarse as adds little to the error that the sheets leave (measured against the
@@ -22,7 +23,7 @@ static hl_status allocate_image(sweep *sweep, hl_error *error) {
 }
 
 /* Blocks outside the picture are closed from the start. */
-static void open_blocks(sweep *sweep) {
+void hl_sweep_open(sweep *sweep) {
   for (size_t tile = 0; tile < sweep->tiles; tile++) {
     uint32_t open = 0;
     int x0 = (int)(tile % (size_t)sweep->tiles_x) * TILE, y0 = (int)(tile / (size_t)sweep->tiles_x) * TILE;
@@ -168,6 +169,7 @@ sweep_bytes hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads) {
   uint64_t tiles = (uint64_t)hl_tiles(sweep->frame->width) * (uint64_t)hl_tiles(sweep->frame->height);
   sweep_bytes bytes = {.passing = hl_view_sheets_bytes(sweep, &sweep->frame->eye, PIXEL_TO_SPARE)};
   bytes.passing += tiles * (sizeof *sweep->tasks + sizeof *sweep->open) + (uint64_t)threads * (uint64_t)sweep->volume_count * a_grid;
+  if (sweep->geometry->back_to_front) bytes.passing += tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     light_image *image = NULL; /* without memory for one, hl_sweep_begin tells */
     hl_status status = hl_light_image_create(sweep->context, &sweep->frame->lights[sweep->geometry->light[i]], &image, NULL);
@@ -331,10 +333,11 @@ static double longest_way(const sweep *sweep) {
 }
 
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error) {
+  double start = hl_clock_seconds();
   hl_status status = hl_view_sheets_begin(sweep, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image, error);
   if (status == HL_OK) status = allocate_image(sweep, error);
   if (status != HL_OK) return status;
-  open_blocks(sweep);
+  hl_sweep_open(sweep);
   vec3 *points = hl_allocate(sweep->context, (size_t)sweep->volume_count * CONTENT_POINTS + 1, sizeof *points);
   if (points == NULL) return hl_fail_memory(error, sizeof *points, "the content's corners");
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
@@ -346,7 +349,9 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *m
   sweep->longest_way = longest_way(sweep);
   set_up_shading(sweep);
   set_up_jobs(sweep);
-  return hl_sweep_layers_begin(sweep, error);
+  status = hl_sweep_layers_begin(sweep, error);
+  sweep->seconds_sort = hl_clock_seconds() - start;
+  return status;
 }
 
 void hl_sweep_end(sweep *sweep) {

@@ -26,11 +26,22 @@ static void fetch_opacities(const float *pixels, uint32_t blocks) {
   for (; blocks != 0; blocks &= blocks - 1) __builtin_prefetch(pixels + (__builtin_ctz(blocks) * 4 + 3) * BLOCK_PIXELS, 1);
 }
 
-/* Steps 6 and 8 to 11 for one tile: its patches with density in open blocks. */
-static int fill_image_tile(sweep *sweep, size_t tile, int worker, shade_patch *patches, uint32_t *blocks) {
+/* The blocks of a tile in which a slab is not hidden. */
+static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
+  uint32_t shown = 0;
+  if (sweep->shown_from == NULL) return ALL_BLOCKS;
+  for (size_t block = 0; block < TILE_BLOCKS; block++)
+    shown |= (uint32_t)(sweep->shown_from[tile * TILE_BLOCKS + block] <= slab) << block;
+  return shown;
+}
+
+/* Sheets are filled for a run of slabs at a time. */
+static int last_of_run(int slab) { return (slab - 1) / RUN_SLABS * RUN_SLABS + RUN_SLABS; }
+
+/* Steps 6 and 8 to 11 for one tile: its patches with density in the needed blocks. */
+static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker, shade_patch *patches, uint32_t *blocks) {
   view_sheets *sheets = &sweep->image;
   sweep_counts *counts = &sweep->counts[worker];
-  uint32_t need = sweep->open[tile];
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
     uint32_t g = sheets->occupancy.patch_grid[p];
@@ -46,10 +57,20 @@ static int fill_image_tile(sweep *sweep, size_t tile, int worker, shade_patch *p
   return count;
 }
 
+/* Steps 12 to 16 for one tile. Returns the blocks that stay open. */
+static uint32_t shade_blocks(const sweep *sweep, const shade_patch *patches, int count, size_t tile, uint32_t blocks, int worker,
+                             void *scratch) {
+  uint32_t open = sweep->hot->shade_tile(&sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
+                                         (int)(tile / (size_t)sweep->tiles_x), blocks, scratch,
+                                         sweep->pixels + tile * 4 * TILE_PIXELS, &sweep->counts[worker].samples);
+  hl_sweep_layers_tile(sweep, patches, count, tile, blocks, worker, scratch);
+  return open;
+}
+
 /* Steps 6 and 8 to 16 for one tile. */
 static void shade_one(sweep *sweep, size_t tile, int worker) {
   sweep_counts *counts = &sweep->counts[worker];
-  uint32_t blocks = 0, need = sweep->open[tile];
+  uint32_t blocks = 0, need = sweep->open[tile] & shown_blocks(sweep, tile, last_of_run(sweep->sheet));
   counts->pixels_skipped_image += hl_pixels_of_blocks(ALL_BLOCKS & ~need);
   if (need == 0) {
     counts->skipped_image++;
@@ -58,17 +79,16 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   shade_patch *patches = sweep->shade_patches + (size_t)worker * (size_t)sweep->volume_count;
   bool timed = is_timed(tile, sweep->sheet);
   double start = read_clock(timed);
-  int count = fill_image_tile(sweep, tile, worker, patches, &blocks);
+  int count = fill_image_tile(sweep, tile, need, worker, patches, &blocks);
   double filled = read_clock(timed);
   counts->filled_image++;
   counts->seconds_fill += filled - start;
+  blocks &= shown_blocks(sweep, tile, sweep->sheet);
   if (blocks == 0) return;
   void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * SHADE_SCRATCH_BYTES;
-  uint32_t open = sweep->hot->shade_tile(&sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
-                                         (int)(tile / (size_t)sweep->tiles_x), blocks, scratch,
-                                         sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
-  hl_sweep_layers_tile(sweep, patches, count, tile, blocks, worker, scratch);
-  sweep->open[tile] = (uint16_t)((need & ~blocks) | open);
+  uint32_t open = sweep->covering != NULL ? hl_sweep_cover(sweep, patches, count, tile, blocks, worker, scratch)
+                                          : shade_blocks(sweep, patches, count, tile, blocks, worker, scratch);
+  sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);
   counts->seconds_shade += read_clock(timed) - filled;
 }
 

@@ -123,6 +123,7 @@ static int end_of_bundle(const view_sheets *sheets, int sheet) {
 }
 
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
+  if (sheet == 1) reach_sheet(sweep, view, 0, sheets);
   if (first_of_run(sheet) == sheet - 1) reach_run(sweep, view, sheet - 1, sheets);
   if ((sheet - 1) % sheets->bundle != 0) return;
   for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++) reach_sheet(sweep, view, ahead, sheets);
@@ -136,7 +137,6 @@ hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spar
   if (status == HL_OK) status = set_up_entries(sweep, view, sheets, error);
   if (status == HL_OK) status = keep_patches(sweep, sheets, error);
   if (status != HL_OK) return status;
-  reach_sheet(sweep, view, 0, sheets);
   return hl_pool_cancelled(sweep->pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 

@@ -5,6 +5,7 @@
 #include "light/cascade_lanes.h"
 #include "light/sublight_lanes.h"
 #include "light/sublight_shift_lanes.h"
+#include "render/cover_lanes.h"
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
@@ -31,6 +32,7 @@ const hot_functions HL_HOT_TABLE = {
     .lit_blocks_tile = lit_blocks_tile,
     .shade_tile = shade_tile,
     .measure_tile = measure_tile,
+    .cover_tile = cover_tile,
     .blur_rows_tile = blur_rows_tile,
     .blur_columns_tile = blur_columns_tile,
     .field_blur_tile = field_blur_tile,

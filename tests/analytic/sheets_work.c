@@ -110,11 +110,39 @@ static void test_hidden(void **state) {
   assert_at_most(of[1].pixels_filled_image, of[0].pixels_filled_image, 1.05, "image, behind");
 }
 
+enum { LARGE = 256 }; /* tiles enough for some to be tried */
+
+/* Light from behind: sheets go back to front for the eye, and what is hidden is found before. The ball that is hidden casts its shadow
+ * on the one in front. */
+static void test_hidden_from_light_behind(void **state) {
+  (void)state;
+  float *pixels = malloc((size_t)LARGE * LARGE * 4 * sizeof *pixels);
+  assert_non_null(pixels);
+  hl_render_statistics of[3]; /* without shadows, with; with one more ball */
+  for (int i = 0; i < 3; i++) {
+    stage set;
+    open_scene(&set, i == 0 ? HL_SHADOWS_OFF : HL_SHADOWS_HARD);
+    set.scene.width = set.scene.height = LARGE;
+    set.scene.camera.height = 20;
+    vec3 away = vec3_scale(vec3_normalise((vec3){-60, 50, -40}), BALL);
+    double *direction = set.lights[0].direction;
+    direction[0] = 60, direction[1] = -35, direction[2] = 45;
+    stage_set_opacity(&set, add_ball(&set, BALL, (vec3){0, 0, 0}), 0.99, 1);
+    if (i == 2) stage_set_opacity(&set, add_ball(&set, BALL, away), 0.99, 1);
+    of[i] = stage_render_counted(&set, pixels);
+    stage_close(&set);
+  }
+  free(pixels);
+  assert_at_most(of[1].samples_shaded, of[0].samples_shaded, 1.2, "shaded, back to front");
+  assert_at_most(of[2].samples_shaded, of[1].samples_shaded, 1.05, "shaded, another behind");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_empty_space),
       cmocka_unit_test(test_out_of_sight),
       cmocka_unit_test(test_hidden),
+      cmocka_unit_test(test_hidden_from_light_behind),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

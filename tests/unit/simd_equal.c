@@ -546,7 +546,7 @@ typedef struct shade_state {
   shade_job job;
   shade_volume volumes[2];
   shade_patch patches[2];
-  int patch_count;
+  int patch_count, covers;
   shade_light lights[3];
   shadow_lookup lookups[3];
   part_lookup parts[3][3];
@@ -562,7 +562,8 @@ static void call_shade(const hot_functions *hot, void *state) {
   shade_state *s = state;
   s->out.samples = 0;
   _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
-  s->out.open = hot->shade_tile(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels, &s->out.samples);
+  shade_tile_function *function = s->covers ? hot->cover_tile : hot->shade_tile;
+  s->out.open = function(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels, &s->out.samples);
 }
 
 /* steepest: pixels that places lie apart at most, for each unit. */
@@ -641,6 +642,8 @@ static void test_shade(void **unused) {
     set_up_shade(&state, &seed, round);
     trial trial = {call_shade, &state, &state.out, sizeof state.out};
     try_it("shade_tile", &trial, round);
+    state.covers = 1;
+    try_it("cover_tile", &trial, round);
   }
 }
 
