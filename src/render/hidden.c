@@ -18,23 +18,22 @@ static frame_sweep turned_round(const frame_sweep *geometry) {
 /* Derived: what is opaque after slab k from the eye, of the n - 1 between n sheets, hides those before slab n - k from the light. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
-static uint32_t covered_blocks(const int32_t *shown_from) {
-  uint32_t covered = 0;
-  for (int block = 0; block < TILE_BLOCKS; block++) covered |= (uint32_t)(shown_from[block] > 0) << block;
-  return covered;
+uint32_t hl_shown_blocks(const int32_t shown_from[TILE_BLOCKS], int slab) {
+  uint32_t shown = 0;
+  for (int block = 0; block < TILE_BLOCKS; block++) shown |= (uint32_t)(shown_from[block] <= slab) << block;
+  return shown;
 }
 
 uint32_t hl_sweep_cover(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks, int worker,
                         void *scratch) {
   sweep_counts *counts = &sweep->counts[worker];
   int32_t *shown_from = sweep->covering + tile * TILE_BLOCKS;
-  uint32_t covered = covered_blocks(shown_from), seen = blocks & ~covered;
-  uint64_t samples = 0;
-  counts->pixels_covered += hl_pixels_of_blocks(blocks & covered);
+  uint32_t seen = blocks & hl_shown_blocks(shown_from, 0); /* 0: not covered yet */
+  counts->pixels_covered += hl_pixels_of_blocks(blocks & ~seen);
   counts->pixels_seen += hl_pixels_of_blocks(seen);
   uint32_t open = sweep->hot->cover_tile(&sweep->shade, patches, patch_count, (int)(tile % (size_t)sweep->tiles_x),
                                          (int)(tile / (size_t)sweep->tiles_x), seen, scratch,
-                                         sweep->pixels + tile * 4 * TILE_PIXELS, &samples);
+                                         sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
   for (uint32_t closed = seen & ~open; closed != 0; closed &= closed - 1)
     shown_from[__builtin_ctz(closed)] = first_shown(sweep, sweep->sheet);
   return sweep->trying ? blocks : open;
@@ -45,7 +44,8 @@ static bool is_tried(const sweep *sweep, size_t tile) {
   return (tile % (size_t)sweep->tiles_x + tile / (size_t)sweep->tiles_x * 11) % 32 == 0;
 }
 
-/* To find what covers a pixel takes about half of what it takes to fill and to light one that is covered (measured). */
+/* To find what covers a pixel takes about half of what it takes to fill and to light one that is covered (measured); and some more,
+ * as few tiles tell. */
 static const double COVERED_PER_SEEN = 0.75;
 
 static bool is_worth_while(const sweep *front) {
@@ -68,13 +68,12 @@ static hl_status go_through(sweep *front, bool trying, hl_error *error) {
 hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, hl_error *error) {
   size_t tiles = (size_t)hl_tiles(sweep->frame->width) * (size_t)hl_tiles(sweep->frame->height);
   frame_sweep turned = turned_round(sweep->geometry);
+  struct sweep front = *sweep;
   sweep->shown_from = hl_allocate_zeroed(sweep->context, tiles * TILE_BLOCKS, sizeof *sweep->shown_from);
   if (sweep->shown_from == NULL) return hl_fail_memory(error, tiles * TILE_BLOCKS * sizeof *sweep->shown_from, "what is hidden");
-  struct sweep front = *sweep;
   front.geometry = &turned;
   front.layer_pixels = NULL;
   front.first = front.measures = false;
-  front.shown_from = NULL;
   front.covering = sweep->shown_from;
   hl_status status = hl_sweep_begin(&front, NULL, NULL, error);
   if (status == HL_OK) status = go_through(&front, true, error);

@@ -135,6 +135,8 @@ typedef struct sweep {
 /* Of a sweep from back to front, before its steps: makes shown_from, which the caller releases (hidden.c). Pixels are zeros before
  * and after. */
 hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, hl_error *error);
+/* Of a tile's blocks, those that are shown in a slab. */
+uint32_t hl_shown_blocks(const int32_t shown_from[TILE_BLOCKS], int slab);
 /* Instead of steps 12 to 16 then, for one tile. Returns the blocks that stay open. */
 uint32_t hl_sweep_cover(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks, int worker,
                         void *scratch);

@@ -28,11 +28,7 @@ static void fetch_opacities(const float *pixels, uint32_t blocks) {
 
 /* The blocks of a tile in which a slab is not hidden. */
 static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
-  uint32_t shown = 0;
-  if (sweep->shown_from == NULL) return ALL_BLOCKS;
-  for (size_t block = 0; block < TILE_BLOCKS; block++)
-    shown |= (uint32_t)(sweep->shown_from[tile * TILE_BLOCKS + block] <= slab) << block;
-  return shown;
+  return sweep->shown_from == NULL ? ALL_BLOCKS : hl_shown_blocks(sweep->shown_from + tile * TILE_BLOCKS, slab);
 }
 
 /* Sheets are filled for a run of slabs at a time. */
