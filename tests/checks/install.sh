@@ -1,12 +1,14 @@
 #!/bin/sh
 # What `meson install` installs is whole: the example program in halflight.h compiles as C99 with the
-# flags of pkg-config, links, and turns a volume into a picture; program, manual and completion are there.
-# usage: install.sh BUILD_FOLDER MAKE_VOLUME CC [FLAG ...]
+# flags of pkg-config, links, and turns a volume into a picture; program, manual and completion are there. On a bare
+# Debian, without dpkg-dev, all of it goes where the loader and pkg-config look without being told.
+# usage: install.sh SOURCE_FOLDER BUILD_FOLDER MAKE_VOLUME CC [FLAG ...]
 set -eu
-build=$1 make_volume=$2
-shift 2
+source=$1 build=$2 make_volume=$3
+shift 3
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
+unset LD_LIBRARY_PATH
 meson install -C "$build" --no-rebuild --quiet --destdir "$folder/root"
 
 find_one() { find "$folder/root" -path "$1" | grep . || { echo "$1 is not installed"; exit 1; }; }
@@ -17,10 +19,22 @@ program=$(find_one '*/bin/halflight')
 find_one '*/man/man1/halflight.1*' >/dev/null
 find_one '*/bash-completion/completions/halflight' >/dev/null
 
+# Without dpkg-dev Meson cannot ask dpkg-architecture; it must still choose "lib".
+mkdir "$folder/no-dpkg-dev"
+ln -s /bin/false "$folder/no-dpkg-dev/dpkg-architecture"
+PATH="$folder/no-dpkg-dev:$PATH" meson introspect --buildoptions "$source/meson.build" >"$folder/options.json"
+place=$(python3 -c "import json, sys
+print(*(option['value'] for option in json.load(open(sys.argv[1])) if option['name'] == 'libdir'))" "$folder/options.json")
+[ "$place" = lib ] || { echo "without dpkg-dev the library would go to $place"; exit 1; }
+
+# The program starts where it was put: nothing tells the loader where.
+"$program" --version >/dev/null || { echo "the installed program does not start"; exit 1; }
+"$make_volume" ball 24 "$folder/ball_24x24x24_uint8.raw"
+"$program" info "$folder/ball_24x24x24_uint8.raw" | grep -q '24 x 24 x 24'
+
 PKG_CONFIG_PATH=$(dirname "$pc")
 PKG_CONFIG_SYSROOT_DIR=$folder/root
-LD_LIBRARY_PATH=$(dirname "$library")
-export PKG_CONFIG_PATH PKG_CONFIG_SYSROOT_DIR LD_LIBRARY_PATH
+export PKG_CONFIG_PATH PKG_CONFIG_SYSROOT_DIR
 
 sed -n '/^ \*     #include/,/^ \*     }$/s/^ \*     \{0,1\}//p' "$header" >"$folder/picture.c"
 grep -q 'int main' "$folder/picture.c"
@@ -28,12 +42,30 @@ grep -q 'int main' "$folder/picture.c"
 "$@" -std=c99 -pedantic-errors -Wall -Wextra -Werror "$folder/picture.c" -o "$folder/picture" \
   $(pkg-config --cflags --libs halflight)
 
-"$make_volume" ball 24 "$folder/ball_24x24x24_uint8.raw"
-"$folder/picture" "$folder/ball_24x24x24_uint8.raw" "$folder/ball.png"
+picture() { LD_LIBRARY_PATH=$(dirname "$library") "$folder/picture" "$@"; }
+picture "$folder/ball_24x24x24_uint8.raw" "$folder/ball.png"
 head -c 8 "$folder/ball.png" | od -An -tx1 | grep -q '89 50 4e 47 0d 0a 1a 0a'
-if "$folder/picture" "$folder/missing.nrrd" "$folder/missing.png" 2>"$folder/message"; then
+if picture "$folder/missing.nrrd" "$folder/missing.png" 2>"$folder/message"; then
   echo "a missing volume went unnoticed"
   exit 1
 fi
 grep -q missing.nrrd "$folder/message"
-"$program" info "$folder/ball_24x24x24_uint8.raw" | grep -q '24 x 24 x 24'
+
+# In a root folder that has nothing but Debian's own libraries and its loader's list of folders, both programs start.
+if [ "$(id -u)" = 0 ]; then as_root=; else as_root='unshare -r'; fi
+if [ ! -x "$folder/root/usr/local/bin/halflight" ] || ! $as_root chroot / true 2>/dev/null; then
+  echo "not tried in a root folder of its own: that takes the prefix /usr/local and the right to chroot"
+  exit 0
+fi
+for name in $(LD_LIBRARY_PATH=$(dirname "$library") ldd "$folder/picture" | grep -o '/[^ ]*' | grep -v "^$folder"); do
+  mkdir -p "$folder/root$(dirname "$name")"
+  cp -L "$name" "$folder/root$name"
+done
+mkdir -p "$folder/root/etc" "$folder/root/tmp"
+cp -r /etc/ld.so.conf /etc/ld.so.conf.d "$folder/root/etc"
+cp "$folder/picture" "$folder/ball_24x24x24_uint8.raw" "$folder/root"
+PATH=$PATH:/usr/sbin:/sbin
+$as_root ldconfig -r "$folder/root"
+$as_root chroot "$folder/root" /usr/local/bin/halflight info /ball_24x24x24_uint8.raw | grep -q '24 x 24 x 24'
+$as_root chroot "$folder/root" /picture /ball_24x24x24_uint8.raw /tmp/ball.png
+cmp "$folder/ball.png" "$folder/root/tmp/ball.png"
