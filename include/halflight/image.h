@@ -43,6 +43,13 @@ HL_API void hl_image_write_options_defaults(hl_image_write_options *options);
 HL_API HL_WARN_UNUSED hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                                                const hl_image_write_options *options, hl_error *error);
 
+/* The same bytes in memory; format: "png", "exr" or "npy". *bytes: [*length], owned by the caller (hl_bytes_release()).
+ * Layers fit into "exr" alone. */
+HL_API HL_WARN_UNUSED hl_status hl_image_encode(hl_context *context, const hl_image *image, const char *format,
+                                                const hl_image_write_options *options, unsigned char **bytes,
+                                                size_t *length, hl_error *error);
+HL_API void hl_bytes_release(hl_context *context, unsigned char *bytes); /* null is allowed */
+
 /* Reads .png (sRGB decoded), .exr (R, G, B, A; missing A is 1) and .npy (float32, height x width x 1, 3 or 4). */
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);

@@ -35,7 +35,9 @@ static void list_choices(const cli_option *option, const char *separator, char *
 static void describe_numbers(const cli_option *option, char *text, size_t size) {
   const char *kind = option->whole ? "whole number" : "number";
   char range[80];
-  if (isinf(option->high))
+  if (isinf(option->high) && isinf(option->low))
+    snprintf(range, sizeof range, "that is finite");
+  else if (isinf(option->high))
     snprintf(range, sizeof range, "%s %.9g", option->above ? "above" : "of at least", option->low);
   else if (option->above)
     snprintf(range, sizeof range, "above %.9g, up to %.9g", option->low, option->high);
@@ -74,6 +76,9 @@ static int refuse_value(const cli_option *option, const char *text) {
     case OPTION_BYTES:
       return fail(EXIT_CODE_USAGE, "--%s: '%s' is not a whole number above 0 with an optional K, M, G or T",
                   option->name, text);
+    case OPTION_COLOR:
+      return fail(EXIT_CODE_USAGE, "--%s: '%s' is no colour: give linear R,G,B each from %.9g to %.9g, #rrggbb, or a CSS name%s",
+                  option->name, text, option->low, option->high, option->choices != NULL ? ", or transparent" : "");
     case OPTION_SWITCH:
     case OPTION_TEXT: break;
   }
@@ -136,8 +141,14 @@ static int parse_value(const cli_option *option, const char *text, cli_value *va
       good = parse_choice(option, text, value) || parse_numbers(option, text, value);
       break;
     case OPTION_BYTES: good = parse_bytes(text, value); break;
+    case OPTION_COLOR:
+      good = parse_choice(option, text, value) || parse_color(text, option->low, option->high, value->number);
+      break;
   }
   if (!good) return refuse_value(option, text);
+  if (option->repeatable && value->count == MAXIMUM_REPEATS)
+    return fail(EXIT_CODE_USAGE, "--%s is given more than %d times", option->name, MAXIMUM_REPEATS);
+  value->texts[value->count++] = text;
   value->given = true;
   value->text = text;
   return EXIT_CODE_OK;
@@ -167,6 +178,11 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   size_t length = argument[1] == '-' ? strcspn(argument + 2, "=") : 0;
   snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), argument + 2);
   const char *meant = length > 0 ? nearest_name(name, option_name, command) : NULL;
+  const char *does = synonym_of(name, command);
+  if (does != NULL && meant != NULL && strcmp(does, meant) != 0)
+    return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s, or --%s?", name, command->name, does,
+                meant);
+  if (does != NULL) meant = does;
   if (meant != NULL)
     return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s?", name, command->name,
                 meant);
@@ -191,7 +207,7 @@ static int parse_option(const cli_command *command, int argument_count, char **a
   if (option->reserved)
     return fail(EXIT_CODE_UNSUPPORTED, "--%s is not yet in this version (%s)", option->name, hl_version());
   cli_value *value = &values[option - command->options];
-  if (value->given) return fail(EXIT_CODE_USAGE, "--%s is given twice: give it once", option->name);
+  if (value->given && !option->repeatable) return fail(EXIT_CODE_USAGE, "--%s is given twice: give it once", option->name);
   if (option->kind == OPTION_SWITCH) {
     if (attached != NULL)
       return fail(EXIT_CODE_USAGE, "--%s takes no value, but '%s' was given", option->name, attached);

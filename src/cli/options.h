@@ -16,7 +16,8 @@ typedef enum cli_option_kind {
   OPTION_TEXT,    /* any text but an empty one */
   OPTION_CHOICE,  /* one of choices */
   OPTION_NUMBERS, /* count numbers joined by separator; or one of choices, if there are any */
-  OPTION_BYTES    /* a whole number with an optional K, M, G or T (powers of 1024) */
+  OPTION_BYTES,   /* a whole number with an optional K, M, G or T (powers of 1024) */
+  OPTION_COLOR    /* linear R,G,B or a grey, #rgb, #rrggbb, a CSS name; or one of choices, if there are any */
 } cli_option_kind;
 
 /* The value of a choice that is known, but not in this version: not listed, refused when given. */
@@ -40,12 +41,17 @@ typedef struct cli_option {
   bool whole;           /* whole numbers only */
   bool above;           /* low itself is excluded */
   double low, high;     /* the accepted range */
+  bool repeatable;      /* OPTION_TEXT: each time adds a text */
   bool reserved;        /* known, but not in this version: not shown in help, refused when given */
 } cli_option;
 
+enum { MAXIMUM_REPEATS = 32 };
+
 typedef struct cli_value {
   bool given;
-  const char *text;  /* as given */
+  const char *text;  /* as given; of a repeatable option the last one */
+  const char *texts[MAXIMUM_REPEATS]; /* all of them; [count] */
+  int count;
   bool chosen;       /* one of the choices was given, and choice is its value */
   int choice;
   double number[3];
@@ -65,7 +71,7 @@ typedef struct cli_command {
   int (*run)(const cli_value *values, char **operands);
 } cli_command;
 
-enum { MAXIMUM_OPTIONS = 48, MAXIMUM_OPERANDS = 16 };
+enum { MAXIMUM_OPTIONS = 96, MAXIMUM_OPERANDS = 16 };
 
 /* Parses what follows the subcommand's name. Returns EXIT_CODE_OK, or another exit code after having
  * printed one line. *help is set, and parsing stops, at --help or -h. */
@@ -74,6 +80,13 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
 
 /* Prints the help text of a subcommand on stdout. */
 void options_print_help(const cli_command *command);
+
+/* The subcommand's option that does what a word of other programs means ("rotate" -> "azimuth"); null: none is known. */
+const char *synonym_of(const char *word, const cli_command *command);
+
+/* A colour as OPTION_COLOR takes it, as linear RGB: numbers between low and high are linear already, #rgb, #rrggbb and
+ * CSS names are sRGB. False if text is none. */
+bool parse_color(const char *text, double low, double high, double color[3]);
 
 /* The candidate nearest to text, or null if none is near. candidate(data, i) is null past the last. */
 const char *nearest_name(const char *text, const char *(*candidate)(const void *data, size_t index),

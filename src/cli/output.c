@@ -62,6 +62,11 @@ int output_check(const char *path, const char *const *extensions, char *const *i
   return check_folder(path);
 }
 
+int output_to_stdout(const unsigned char *bytes, size_t length) {
+  if (fwrite(bytes, 1, length, stdout) != length && ferror(stdout) == 0) errno = EIO;
+  return finish_stdout();
+}
+
 char *output_default_name(const char *input, const char *extension) {
   const char *base = input_base_name(input);
   size_t length = strlen(base);

@@ -17,6 +17,7 @@ typedef struct render_job {
   const cli_value *values;
   char *input;
   char *output;    /* owned */
+  bool to_stdout;  /* OUT is "-" */
   bool bare;       /* INPUT is a volume file */
   hl_scene *scene; /* owned */
   hl_image *image; /* owned */
@@ -25,13 +26,36 @@ typedef struct render_job {
   render_result result;
 } render_job;
 
+static const char *const format_names[] = {"png", "exr", "npy"};
+
+/* The extension that --format asks for; .png without it. */
+static const char *wanted_extension(const cli_value *values) {
+  static const char *const extensions[] = {".png", ".exr", ".npy"};
+  return extensions[values[RENDER_FORMAT].given ? values[RENDER_FORMAT].choice : 0];
+}
+
+/* OUT, or what stands for it. */
+static int choose_output(render_job *job) {
+  const cli_value *values = job->values, *output = &values[RENDER_OUTPUT];
+  job->to_stdout = output->given && strcmp(output->text, "-") == 0;
+  job->output = output->given ? strdup(output->text) : output_default_name(job->input, wanted_extension(values));
+  if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  if (values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
+  if (job->to_stdout && isatty(STDOUT_FILENO))
+    return fail(EXIT_CODE_USAGE, "--output: standard output is a terminal, which shows no picture: redirect it");
+  if (job->to_stdout && values[RENDER_JSON].given)
+    return fail(EXIT_CODE_USAGE, "--json: standard output is the picture's: give --output a name, or leave --json out");
+  if (job->to_stdout) return EXIT_CODE_OK;
+  if (values[RENDER_FORMAT].given && !has_extension(job->output, wanted_extension(values)))
+    return fail(EXIT_CODE_USAGE, "--format %s: '%s' does not end in %s: rename OUT, or leave --format out",
+                values[RENDER_FORMAT].text, job->output, wanted_extension(values));
+  return output_check(job->output, picture_extensions, &job->input, 1);
+}
+
 static int job_open(render_job *job) {
   const cli_value *values = job->values;
   int exit_code = render_check_options(values);
-  if (exit_code != EXIT_CODE_OK) return exit_code;
-  job->output = values[RENDER_OUTPUT].given ? strdup(values[RENDER_OUTPUT].text) : output_default_name(job->input, ".png");
-  if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  exit_code = output_check(job->output, picture_extensions, &job->input, 1);
+  if (exit_code == EXIT_CODE_OK) exit_code = choose_output(job);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,
@@ -123,11 +147,35 @@ static int job_render(render_job *job) {
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
+static hl_status write_to_stdout(render_job *job, const hl_image_write_options *options, int *exit_code, hl_error *error) {
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  const char *format = format_names[job->values[RENDER_FORMAT].given ? job->values[RENDER_FORMAT].choice : 0];
+  hl_status status = hl_image_encode(job->host.context, job->image, format, options, &bytes, &length, error);
+  host_clear_bar(&job->host);
+  if (status == HL_OK) *exit_code = output_to_stdout(bytes, length);
+  hl_bytes_release(job->host.context, bytes);
+  return status;
+}
+
+/* --print-scene: what would be rendered. */
+static int job_print_scene(render_job *job) {
+  char *text = NULL;
+  hl_error error = {0};
+  hl_status status = hl_scene_to_json(job->host.context, job->scene, &text, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
+  host_clear_bar(&job->host);
+  int exit_code = output_to_stdout((const unsigned char *)text, strlen(text));
+  hl_text_release(job->host.context, text);
+  return exit_code;
+}
+
 static int job_write(render_job *job) {
   const hl_scene_description *description = job->result.description;
   double started = clock_seconds();
   hl_error error = {0};
   char *scene_json = NULL;
+  int exit_code = EXIT_CODE_OK;
   hl_status status = host_interrupted() ? HL_ERROR_CANCELLED : HL_OK;
   if (status == HL_OK) status = hl_scene_to_json(job->host.context, job->scene, &scene_json, &error);
   if (status == HL_OK) {
@@ -137,16 +185,17 @@ static int job_write(render_job *job) {
     memcpy(options.background, description->background, sizeof options.background);
     options.background_transparent = description->background_transparent;
     options.scene_json = scene_json;
-    status = hl_image_write(job->host.context, job->image, job->output, &options, &error);
+    status = job->to_stdout ? write_to_stdout(job, &options, &exit_code, &error)
+                            : hl_image_write(job->host.context, job->image, job->output, &options, &error);
   }
   hl_text_release(job->host.context, scene_json);
   job->result.seconds.write = clock_seconds() - started;
-  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
+  return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
 static int job_report(render_job *job) {
   host_clear_bar(&job->host);
-  job->result.output = job->output;
+  job->result.output = job->to_stdout ? "standard output" : job->output;
   job->result.seconds.total = clock_seconds() - job->started;
   if (job->values[RENDER_JSON].given) return render_print_json(&job->result);
   if (!job->host.quiet) render_print_summary(&job->result);
@@ -167,9 +216,11 @@ static int run_render(const cli_value *values, char **operands) {
   job.result.reference = values[RENDER_REFERENCE].given;
   int exit_code = job_open(&job);
   if (exit_code == EXIT_CODE_OK) exit_code = job_load(&job);
-  if (exit_code == EXIT_CODE_OK) exit_code = job_render(&job);
-  if (exit_code == EXIT_CODE_OK) exit_code = job_write(&job);
-  if (exit_code == EXIT_CODE_OK) exit_code = job_report(&job);
+  bool picture = !values[RENDER_PRINT_SCENE].given;
+  if (exit_code == EXIT_CODE_OK && !picture) exit_code = job_print_scene(&job);
+  if (exit_code == EXIT_CODE_OK && picture) exit_code = job_render(&job);
+  if (exit_code == EXIT_CODE_OK && picture) exit_code = job_write(&job);
+  if (exit_code == EXIT_CODE_OK && picture) exit_code = job_report(&job);
   job_close(&job);
   return exit_code;
 }

@@ -7,6 +7,7 @@
 
 enum render_option {
   RENDER_OUTPUT,
+  RENDER_FORMAT,
   RENDER_SIZE,
   RENDER_DEPTH,
   RENDER_BACKGROUND,
@@ -18,7 +19,11 @@ enum render_option {
   RENDER_ORTHO,
   RENDER_TF,
   RENDER_COLORMAP,
+  RENDER_RANGE,
+  RENDER_THRESHOLD,
+  RENDER_CLIP,
   RENDER_SHADING,
+  RENDER_AMBIENT,
   RENDER_LIGHT,
   RENDER_LIGHT_SIZE,
   RENDER_SHADOWS,
@@ -37,6 +42,7 @@ enum render_option {
   RENDER_THREADS,
   RENDER_INSTRUCTION_SET,
   RENDER_MAX_MEMORY,
+  RENDER_PRINT_SCENE,
   RENDER_JSON,
   RENDER_QUIET,
   RENDER_OPTION_COUNT
@@ -54,10 +60,26 @@ int render_check_options(const cli_value *values);
  * volume file, so that camera and key light follow the options. Returns the exit code. */
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
 
-/* The transfer function that --tf and --colormap ask for on one volume. The points of *function are
- * owned by the caller (hl_transfer_function_release); the volume's own function is left alone. */
-int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_volume *volume,
-                             hl_transfer_function *function);
+/* Whether --tf, --colormap, --range or --threshold were given. */
+bool render_recolors(const cli_value *values);
+
+/* The transfer function that they make of that of volume number `index`. Its points are owned by the caller, also after a
+ * failure (render_release_function); the volume's own function is left alone. */
+int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_description *description,
+                             size_t index, hl_transfer_function *function);
+void render_release_function(hl_transfer_function *function);
+
+/* What --tf NAME=... calls a volume: its name in the scene, else its file's without folder and extensions. */
+void render_volume_name(const hl_scene_volume *volume, size_t index, char *name, size_t size);
+
+/* Refuses --tf NAME=... for names that no volume has. */
+int render_check_names(const cli_value *values, const hl_scene_description *description);
+
+/* Refuses what is no range. */
+int render_check_clip(const cli_value *clip);
+
+/* Cuts a volume's clip box as --clip says. */
+int render_clip(const cli_value *clip, hl_scene_volume *volume);
 
 /* The layers that --layers asks for: buffers of the picture's. */
 typedef struct render_layers {

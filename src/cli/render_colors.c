@@ -1,7 +1,11 @@
-/* cli/render_colors.c - the transfer function that --tf and --colormap ask for. */
+/* cli/render_colors.c - the transfer function that --tf, --colormap, --range and --threshold ask for. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "input.h"
 #include "render.h"
 
 static const char *preset_name(const void *data, size_t index) {
@@ -28,6 +32,70 @@ static int refuse_name(const char *option, const char *name, const char *kind, c
     return fail(EXIT_CODE_USAGE, "--%s: '%s' is no %s: did you mean %s?", option, name, kind, meant);
   return fail(EXIT_CODE_USAGE, "--%s: '%s' is no %s: see 'halflight help %s'", option, name, kind, topic);
 }
+
+/* ---- names ---- */
+
+void render_volume_name(const hl_scene_volume *volume, size_t index, char *name, size_t size) {
+  if (volume->name != NULL) {
+    snprintf(name, size, "%s", volume->name);
+  } else if (volume->file != NULL) {
+    const char *base = input_base_name(volume->file), *dot = strchr(base + (base[0] == '.'), '.');
+    snprintf(name, size, "%.*s", dot != NULL ? (int)(dot - base) : (int)strlen(base), base);
+  } else {
+    snprintf(name, size, "volume%zu", index + 1);
+  }
+}
+
+static bool is_volume(const hl_scene_description *description, const char *name, size_t length) {
+  for (size_t v = 0; v < description->volume_count; v++) {
+    char own[256];
+    render_volume_name(&description->volumes[v], v, own, sizeof own);
+    if (strlen(own) == length && memcmp(own, name, length) == 0) return true;
+  }
+  return false;
+}
+
+/* Where "NAME=..." goes on after the name; null: for every volume. A file that is there may have a '=' in its name. */
+static const char *after_name(const char *text) {
+  const char *equals = strchr(text, '=');
+  return equals == NULL || access(text, F_OK) == 0 ? NULL : equals + 1;
+}
+
+int render_check_names(const cli_value *values, const hl_scene_description *description) {
+  const cli_value *functions = &values[RENDER_TF];
+  for (int n = 0; n < functions->count; n++) {
+    const char *rest = after_name(functions->texts[n]);
+    if (rest != NULL && is_volume(description, functions->texts[n], (size_t)(rest - functions->texts[n]) - 1)) continue;
+    if (rest == NULL && functions->count == 1) continue;
+    char names[600] = "";
+    size_t used = 0;
+    for (size_t v = 0; v < description->volume_count && used < sizeof names; v++) {
+      char own[256];
+      render_volume_name(&description->volumes[v], v, own, sizeof own);
+      used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", v > 0 ? ", " : "", own);
+    }
+    if (rest == NULL)
+      return fail(EXIT_CODE_USAGE, "--tf: '%s' beside another --tf: say whose each is, NAME=FILE (volumes: %s)",
+                  functions->texts[n], names);
+    return fail(EXIT_CODE_USAGE, "--tf: '%s': no volume has the name before '=': there is %s", functions->texts[n], names);
+  }
+  return EXIT_CODE_OK;
+}
+
+/* What --tf says of a volume; null: nothing. The last word counts. */
+static const char *function_of(const cli_value *values, const hl_scene_volume *volume, size_t index) {
+  char own[256];
+  const char *chosen = NULL;
+  render_volume_name(volume, index, own, sizeof own);
+  for (int n = 0; n < values[RENDER_TF].count; n++) {
+    const char *text = values[RENDER_TF].texts[n], *rest = after_name(text);
+    if (rest == NULL) chosen = text;
+    else if (strlen(own) == (size_t)(rest - text) - 1 && memcmp(own, text, strlen(own)) == 0) chosen = rest;
+  }
+  return chosen;
+}
+
+/* ---- functions ---- */
 
 static int load_function(cli_host *host, const char *name, const hl_volume *volume,
                          hl_transfer_function *function) {
@@ -60,20 +128,108 @@ static void visible_range(const hl_volume *volume, const hl_transfer_function *f
   if (high > range[0] && high < range[1]) range[1] = high;
 }
 
-int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_volume *volume,
-                             hl_transfer_function *function) {
-  memset(function, 0, sizeof *function);
-  if (values[RENDER_TF].given) {
-    int exit_code = load_function(host, values[RENDER_TF].text, volume->volume, function);
-    if (exit_code != EXIT_CODE_OK) return exit_code;
+/* Opacity and colours are spread anew, so that what was seen from visible[0] to visible[1] is from range[0] to range[1]. */
+static void spread(hl_transfer_function *function, const double visible[2], const double range[2]) {
+  double factor = (range[1] - range[0]) / (visible[1] - visible[0]);
+  hl_opacity_point *opacity = (hl_opacity_point *)function->opacity;
+  hl_color_point *color = (hl_color_point *)function->color;
+  for (size_t n = 0; n < function->opacity_count; n++)
+    opacity[n].value = range[0] + (opacity[n].value - visible[0]) * factor;
+  for (size_t n = 0; n < function->color_count; n++) color[n].value = range[0] + (color[n].value - visible[0]) * factor;
+}
+
+/* Clear below, then nearly opaque within a voxel's edge. The ramp before it gives surfaces a slope that is shaded without
+ * stairs; it is a twentieth of the volume's values wide. */
+static int make_opaque_from(const hl_volume *volume, double threshold, hl_transfer_function *function) {
+  enum { POINTS = 2 };
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume, &info) != HL_OK) return fail(EXIT_CODE_FAILURE, "--threshold: the volume is not known");
+  if (threshold > info.range[1] || threshold <= info.range[0])
+    warn("--threshold %.9g: the volume's values go from %.9g to %.9g: %s", threshold, info.range[0], info.range[1],
+         threshold > info.range[1] ? "nothing is opaque" : "everything is");
+  hl_opacity_point *points = realloc((void *)function->opacity, POINTS * sizeof *points);
+  if (points == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
+  double ramp = fmax((info.range[1] - info.range[0]) / 20, fabs(threshold) * 1e-9);
+  points[0] = (hl_opacity_point){threshold - ramp, 0};
+  points[1] = (hl_opacity_point){threshold, 0.95};
+  function->opacity = points;
+  function->opacity_count = POINTS;
+  function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]);
+  return EXIT_CODE_OK;
+}
+
+/* A function whose points are the caller's own (free); null where there are none. */
+static int copy_function(const hl_transfer_function *from, hl_transfer_function *to) {
+  size_t opacity_bytes = from->opacity_count * sizeof *from->opacity, color_bytes = from->color_count * sizeof *from->color;
+  hl_opacity_point *opacity = malloc(opacity_bytes + 1);
+  hl_color_point *color = malloc(color_bytes + 1);
+  if (opacity_bytes > 0 && opacity != NULL) memcpy(opacity, from->opacity, opacity_bytes);
+  if (color_bytes > 0 && color != NULL) memcpy(color, from->color, color_bytes);
+  *to = (hl_transfer_function){from->unit_distance, opacity, from->opacity_count, color, from->color_count};
+  return opacity != NULL && color != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
+}
+
+void render_release_function(hl_transfer_function *function) {
+  free((void *)function->opacity);
+  free((void *)function->color);
+}
+
+/* The points that there are take the place of the old ones. */
+static int replace(const hl_transfer_function *loaded, hl_transfer_function *function) {
+  hl_transfer_function old = *function, copy;
+  hl_transfer_function both = *loaded;
+  if (loaded->opacity == NULL) {
+    both.unit_distance = old.unit_distance;
+    both.opacity = old.opacity;
+    both.opacity_count = old.opacity_count;
   }
-  if (!values[RENDER_COLORMAP].given) return EXIT_CODE_OK;
-  const char *name = values[RENDER_COLORMAP].text;
+  int exit_code = copy_function(&both, &copy);
+  render_release_function(&old);
+  *function = copy;
+  return exit_code;
+}
+
+static int color_by_name(cli_host *host, const char *name, const double range[2], hl_transfer_function *function) {
+  hl_transfer_function colors = {0};
+  hl_error error = {0};
   if (!is_known(name, colormap_name))
     return refuse_name("colormap", name, "colormap", "colormaps", colormap_name);
-  double range[2];
-  visible_range(volume->volume, function->opacity != NULL ? function : &volume->transfer_function, range);
-  hl_error error = {0};
-  hl_status status = hl_transfer_function_colormap(host->context, name, range[0], range[1], function, &error);
-  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_CHANGE, status, &error);
+  hl_status status = hl_transfer_function_colormap(host->context, name, range[0], range[1], &colors, &error);
+  if (status != HL_OK) return host_fail(host, PHASE_CHANGE, status, &error);
+  int exit_code = replace(&colors, function);
+  hl_transfer_function_release(host->context, &colors);
+  return exit_code;
+}
+
+bool render_recolors(const cli_value *values) {
+  return values[RENDER_TF].given || values[RENDER_COLORMAP].given || values[RENDER_RANGE].given ||
+         values[RENDER_THRESHOLD].given;
+}
+
+int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_description *description,
+                             size_t index, hl_transfer_function *function) {
+  const hl_scene_volume *volume = &description->volumes[index];
+  const char *named = function_of(values, volume, index);
+  int exit_code = copy_function(&volume->transfer_function, function);
+  if (exit_code == EXIT_CODE_OK && named != NULL) {
+    hl_transfer_function loaded = {0};
+    exit_code = load_function(host, named, volume->volume, &loaded);
+    if (exit_code == EXIT_CODE_OK) exit_code = replace(&loaded, function);
+    hl_transfer_function_release(host->context, &loaded);
+  }
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  double visible[2];
+  visible_range(volume->volume, function, visible);
+  if (values[RENDER_RANGE].given && !values[RENDER_THRESHOLD].given) {
+    spread(function, visible, values[RENDER_RANGE].number);
+    memcpy(visible, values[RENDER_RANGE].number, sizeof visible);
+  }
+  if (values[RENDER_THRESHOLD].given) {
+    exit_code = make_opaque_from(volume->volume, values[RENDER_THRESHOLD].number[0], function);
+    visible_range(volume->volume, function, visible);
+    if (values[RENDER_RANGE].given) memcpy(visible, values[RENDER_RANGE].number, sizeof visible);
+  }
+  if (exit_code == EXIT_CODE_OK && values[RENDER_COLORMAP].given)
+    exit_code = color_by_name(host, values[RENDER_COLORMAP].text, visible, function);
+  return exit_code;
 }

@@ -1,6 +1,7 @@
 /* cli/render_layers.c - `halflight render --layers`: the layers of a picture, in buffers of the picture's own. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "output.h"
 #include "render.h"
@@ -34,8 +35,13 @@ hl_status render_layers_create(hl_image *image, size_t light_count, render_layer
 void render_layers_release(render_layers *layers) { free(layers->lights); }
 
 int render_layers_check(const cli_value *values) {
+  const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
   if (!values[RENDER_LAYERS].given) return EXIT_CODE_OK;
-  const cli_value *output = &values[RENDER_OUTPUT];
+  bool to_stdout = output->given && strcmp(output->text, "-") == 0;
+  bool exr = format->given && strcmp(format->text, "exr") == 0, npy = format->given && strcmp(format->text, "npy") == 0;
+  if (to_stdout && exr) return EXIT_CODE_OK;
+  if (to_stdout) return fail(EXIT_CODE_USAGE, "--layers: standard output takes one file: add --format exr");
+  if (!output->given && (exr || npy)) return EXIT_CODE_OK;
   if (output->given && (has_extension(output->text, ".exr") || has_extension(output->text, ".npy")))
     return EXIT_CODE_OK;
   if (output->given)

@@ -1,10 +1,12 @@
 /* cli/render_options.c - the options of `halflight render`: one table, and what contradicts. */
 #include <math.h>
+#include <string.h>
 
 #include "output.h"
 #include "render.h"
 
 static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
+static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {NULL, 0}};
 static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
 static const cli_choice shadings[] = {{"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {NULL, 0}};
 static const cli_choice shadow_kinds[] = {
@@ -40,6 +42,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .argument = "OUT",
          .group = "Picture",
          .help = "file to write: .png, .exr or .npy\n(default: INPUT's name with .png, in this folder)"},
+    [RENDER_FORMAT] = {.name = "format",
+                       .kind = OPTION_CHOICE,
+                       .choices = formats,
+                       .help = "of OUT, where its name does not say it\n(default png)"},
     [RENDER_SIZE] = {.name = "size",
                      .kind = OPTION_NUMBERS,
                      .argument = "WxH",
@@ -54,12 +60,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .choices = depths,
                       .help = "bits per channel of a .png (default 8)"},
     [RENDER_BACKGROUND] = {.name = "background",
-                           .kind = OPTION_NUMBERS,
-                           .argument = "R,G,B|transparent",
-                           .help = "linear 0..1, under a .png (default black)",
+                           .kind = OPTION_COLOR,
+                           .argument = "COLOR|transparent",
+                           .help = "under a .png (default black): linear R,G,B 0..1,\n#rrggbb or a CSS name (both sRGB)",
                            .choices = backgrounds,
-                           .count = 3,
-                           .separator = ',',
                            .low = 0,
                            .high = 1},
     [RENDER_LAYERS] = {.name = "layers",
@@ -103,25 +107,53 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_TF] =
         {.name = "tf",
          .kind = OPTION_TEXT,
-         .argument = "FILE|PRESET",
+         .argument = "[NAME=]FILE|PRESET",
          .group = "Look (of every volume)",
          .help = "transfer function: a JSON file (Halflight's,\nParaView's, Slicer's .vp.json) or a preset,\n"
-                 "see 'halflight help presets'"},
+                 "see 'halflight help presets'; of volume NAME\nalone (again for others)",
+         .repeatable = true},
     [RENDER_COLORMAP] =
         {.name = "colormap",
          .kind = OPTION_TEXT,
          .argument = "NAME",
          .help = "colours over the range that is not transparent,\nsee 'halflight help colormaps'"},
+    [RENDER_RANGE] = {.name = "range",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "LO,HI",
+                      .help = "values that opacity and colours spread over",
+                      .count = 2,
+                      .separator = ',',
+                      .low = -INFINITY,
+                      .high = INFINITY},
+    [RENDER_THRESHOLD] = {.name = "threshold",
+                          .kind = OPTION_NUMBERS,
+                          .argument = "V",
+                          .help = "opaque from the value V on, clear below",
+                          .count = 1,
+                          .low = -INFINITY,
+                          .high = INFINITY},
+    [RENDER_CLIP] = {.name = "clip",
+                     .kind = OPTION_TEXT,
+                     .argument = "AXIS=LO:HI",
+                     .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or the file's own units (x=10mm:40mm);\n"
+                             "again for other axes",
+                     .repeatable = true},
     [RENDER_SHADING] = {.name = "shading",
                         .kind = OPTION_CHOICE,
                         .choices = shadings,
                         .help = "surfaces, or a medium such as smoke"},
 
+    [RENDER_AMBIENT] = {.name = "ambient",
+                        .kind = OPTION_COLOR,
+                        .argument = "COLOR",
+                        .group = "Light and shadows",
+                        .help = "light from everywhere: a number for grey, linear\nR,G,B, #rrggbb or a CSS name (default 0.2)",
+                        .low = 0,
+                        .high = 1000},
     [RENDER_LIGHT] =
         {.name = "light",
          .kind = OPTION_NUMBERS,
          .argument = "AZ,EL",
-         .group = "Light and shadows",
          .help = "direction of the first light, seen from the\ncamera: 0,0 is a headlight, -40,40 upper left",
          .count = 2,
          .separator = ',',
@@ -223,15 +255,31 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .kind = OPTION_BYTES,
                            .argument = "BYTES",
                            .help = "fail rather than hold more; suffix K, M, G or T"},
+    [RENDER_PRINT_SCENE] = {.name = "print-scene",
+                            .kind = OPTION_SWITCH,
+                            .help = "the scene on standard output, no picture: a\nscene file that gives the same bytes"},
     [RENDER_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "statistics on standard output"},
     [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
 };
 
 int render_check_options(const cli_value *values) {
-  const cli_value *output = &values[RENDER_OUTPUT];
-  if (values[RENDER_DEPTH].given && output->given && !has_extension(output->text, ".png"))
+  const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
+  bool named = output->given && strcmp(output->text, "-") != 0;
+  if (values[RENDER_DEPTH].given && named && !has_extension(output->text, ".png"))
     return fail(EXIT_CODE_USAGE,
                 "--depth is for .png pictures, not for '%s': .exr and .npy hold 32-bit floats", output->text);
+  if (values[RENDER_DEPTH].given && format->given && format->choice != 0)
+    return fail(EXIT_CODE_USAGE, "--depth is for .png pictures: %s holds 32-bit floats", format->text);
+  if (values[RENDER_RANGE].given && values[RENDER_RANGE].number[0] >= values[RENDER_RANGE].number[1])
+    return fail(EXIT_CODE_USAGE, "--range: '%s': LO must be below HI", values[RENDER_RANGE].text);
+  if (values[RENDER_THRESHOLD].given && values[RENDER_RANGE].given && !values[RENDER_COLORMAP].given)
+    return fail(EXIT_CODE_USAGE, "--threshold says what is opaque: --range beside it needs --colormap, to spread");
+  static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT, RENDER_DEPTH, RENDER_LAYERS, RENDER_REFERENCE, RENDER_JSON};
+  for (size_t n = 0; values[RENDER_PRINT_SCENE].given && n < sizeof pictures / sizeof *pictures; n++)
+    if (values[pictures[n]].given)
+      return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s", render_options[pictures[n]].name);
+  int exit_code = render_check_clip(&values[RENDER_CLIP]);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
   if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
     return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
   for (int which = RENDER_LIGHT_POINTS; which <= RENDER_STEP; which++)

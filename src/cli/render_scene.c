@@ -183,33 +183,31 @@ static int change_lights(scene_change *change, const hl_camera *camera_before) {
   return change_first_light(change);
 }
 
+static int change_volume(scene_change *change, size_t index) {
+  const cli_value *values = change->values;
+  hl_scene_volume *volume = &change->volumes[index];
+  if (values[RENDER_SHADING].given) volume->shading = (hl_shading)values[RENDER_SHADING].choice;
+  int exit_code = values[RENDER_CLIP].given ? render_clip(&values[RENDER_CLIP], volume) : EXIT_CODE_OK;
+  if (exit_code != EXIT_CODE_OK || !render_recolors(values)) return exit_code;
+  exit_code = render_transfer_function(change->host, values, &change->description, index, &change->functions[index]);
+  volume->transfer_function = change->functions[index];
+  return exit_code;
+}
+
 static int change_volumes(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
-  bool recolored = values[RENDER_TF].given || values[RENDER_COLORMAP].given;
-  if ((!recolored && !values[RENDER_SHADING].given) || description->volume_count == 0) return EXIT_CODE_OK;
+  bool changed = render_recolors(values) || values[RENDER_SHADING].given || values[RENDER_CLIP].given;
+  if (!changed || description->volume_count == 0) return EXIT_CODE_OK;
   change->volumes = calloc(description->volume_count, sizeof *change->volumes);
   change->functions = calloc(description->volume_count, sizeof *change->functions);
   if (change->volumes == NULL || change->functions == NULL)
     return fail(EXIT_CODE_FAILURE, "out of memory for the scene's volumes");
   memcpy(change->volumes, description->volumes, description->volume_count * sizeof *change->volumes);
   description->volumes = change->volumes;
-  for (size_t i = 0; i < description->volume_count; i++) {
-    hl_scene_volume *volume = &change->volumes[i];
-    if (values[RENDER_SHADING].given) volume->shading = (hl_shading)values[RENDER_SHADING].choice;
-    if (!recolored) continue;
-    hl_transfer_function *made = &change->functions[i];
-    int exit_code = render_transfer_function(change->host, values, volume, made);
-    if (exit_code != EXIT_CODE_OK) return exit_code;
-    if (made->opacity != NULL) {
-      volume->transfer_function.unit_distance = made->unit_distance;
-      volume->transfer_function.opacity = made->opacity;
-      volume->transfer_function.opacity_count = made->opacity_count;
-    }
-    volume->transfer_function.color = made->color;
-    volume->transfer_function.color_count = made->color_count;
-  }
-  return EXIT_CODE_OK;
+  int exit_code = render_check_names(values, description);
+  for (size_t i = 0; i < description->volume_count && exit_code == EXIT_CODE_OK; i++) exit_code = change_volume(change, i);
+  return exit_code;
 }
 
 static void change_settings(const cli_value *values, hl_scene_description *description) {
@@ -227,6 +225,8 @@ static void change_settings(const cli_value *values, hl_scene_description *descr
     settings->reconstruction = (hl_reconstruction)values[RENDER_RECONSTRUCTION].choice;
   if (values[RENDER_SLICING].given) settings->slicing = (hl_slicing)values[RENDER_SLICING].choice;
   if (values[RENDER_THREADS].given) settings->threads = (int)values[RENDER_THREADS].number[0];
+  if (values[RENDER_AMBIENT].given)
+    memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
   const cli_value *background = &values[RENDER_BACKGROUND];
   if (!background->given) return;
   description->background_transparent = background->chosen;
@@ -252,7 +252,7 @@ static void warn_of_idle_options(const scene_change *change) {
 static void change_release(scene_change *change) {
   if (change->functions != NULL)
     for (size_t i = 0; i < change->description.volume_count; i++)
-      hl_transfer_function_release(change->host->context, &change->functions[i]);
+      render_release_function(&change->functions[i]);
   free(change->functions);
   free(change->volumes);
   free(change->lights);

@@ -13,6 +13,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "core/output_memory.h"
 
 typedef struct picture_format {
   const char *extension, *title;
@@ -142,6 +143,38 @@ hl_status hl_image_write(hl_context *context, const hl_image *image, const char 
   if (status == HL_OK) hl_progress(context, "write", 1);
   return status;
 }
+
+hl_status hl_image_encode(hl_context *context, const hl_image *image, const char *format_name,
+                          const hl_image_write_options *options, unsigned char **bytes, size_t *length, hl_error *error) {
+  if (context == NULL || image == NULL || format_name == NULL || bytes == NULL || length == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_encode: context, image, format, bytes and length must not be null");
+  *bytes = NULL;
+  *length = 0;
+  hl_image_write_options chosen;
+  hl_image_write_options_defaults(&chosen);
+  if (options == NULL) options = &chosen;
+  hl_status status = check_options(options, error);
+  if (status != HL_OK) return status;
+  char extension[8];
+  snprintf(extension, sizeof extension, ".%.6s", format_name);
+  const picture_format *format = format_by_name(extension);
+  if (format == NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_image_encode: unknown picture format \"%.20s\": give png, exr or npy",
+                   format_name);
+  if (image->layer_count > 0 && !format->holds_layers)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_image_encode: %s cannot hold layers in one stream: give exr",
+                   format->title);
+  hl_output_memory memory;
+  status = hl_output_memory_begin(context, "a picture in memory", &memory, error);
+  if (status != HL_OK) return status;
+  status = format->encode(image, options, &memory.output, error);
+  if (status == HL_OK) status = hl_output_memory_commit(&memory, bytes, length, error);
+  else hl_output_memory_abort(&memory);
+  if (status == HL_OK) hl_progress(context, "write", 1);
+  return status;
+}
+
+void hl_bytes_release(hl_context *context, unsigned char *bytes) { hl_release(context, bytes); }
 
 hl_status hl_image_read(hl_context *context, const char *path, hl_image **image, hl_error *error) {
   if (image != NULL) *image = NULL;

@@ -62,6 +62,13 @@ def coverage(path):
     print(max(xs) - min(xs) + 1, max(ys) - min(ys) + 1)
 
 
+def ratio(path, other):
+    """How many times as great the second picture's sums of R, G, B and A are."""
+    height, width, channels, a = read_npy(path)
+    b = read_npy(other)[3]
+    print(*(f"{sum(b[c::4]) / sum(a[c::4]):.4f}" for c in range(4)))
+
+
 def sum_layers(picture, *layers):
     """The layers of three channels sum to the picture's RGB."""
     height, width, channels, numbers = read_npy(picture)
@@ -131,10 +138,10 @@ def png_pixel(path, x, y):
 
 def json_get(path, expression):
     """Evaluates a Python expression in which `d` is the parsed file."""
-    print(eval(expression, {"d": json.load(open(path)), "len": len, "sum": sum, "sorted": sorted, "abs": abs, "max": max}))
+    print(eval(expression, {"d": json.load(open(path)), "len": len, "sum": sum, "sorted": sorted, "abs": abs, "max": max, "min": min, "round": round}))
 
 
-COMMANDS = {"ball": ball, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage,
+COMMANDS = {"ball": ball, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
             "sum_layers": sum_layers,
             "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel, "json": json_get}
 COMMANDS[sys.argv[1]](*sys.argv[2:])

@@ -77,6 +77,40 @@ static void exr_and_npy_keep_every_bit(void **state) {
   end_context(context);
 }
 
+/* The bytes in memory are those of the file. */
+static void encoding_gives_the_file(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_image *image = make_structured(context, 37, 21);
+  hl_error error = {0};
+  char folder[64], path[100];
+  make_folder(folder);
+  static const char *const formats[] = {"png", "exr", "npy"};
+  for (int n = 0; n < 3; n++) {
+    unsigned char *encoded = NULL, *written = NULL;
+    size_t encoded_bytes = 0, written_bytes = 0;
+    snprintf(path, sizeof path, "%s/a.%s", folder, formats[n]);
+    assert_int_equal(hl_image_write(context, image, path, NULL, &error), HL_OK);
+    assert_int_equal(hl_image_encode(context, image, formats[n], NULL, &encoded, &encoded_bytes, &error), HL_OK);
+    assert_int_equal(hl_file_read(context, path, 1 << 20, &written, &written_bytes, &error), HL_OK);
+    assert_int_equal(encoded_bytes, written_bytes);
+    assert_memory_equal(encoded, written, written_bytes);
+    hl_release(context, written);
+    hl_bytes_release(context, encoded);
+  }
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  assert_int_equal(hl_image_encode(context, image, "jpg", NULL, &bytes, &length, &error), HL_ERROR_UNSUPPORTED);
+  float *layer = NULL;
+  assert_int_equal(hl_image_add_layer(image, "depth", "Z", &layer, &error), HL_OK);
+  assert_int_equal(hl_image_encode(context, image, "npy", NULL, &bytes, &length, &error), HL_ERROR_UNSUPPORTED);
+  assert_int_equal(hl_image_encode(context, NULL, "npy", NULL, &bytes, &length, &error), HL_ERROR_ARGUMENT);
+  assert_null(bytes);
+  hl_image_destroy(image);
+  remove_folder(folder);
+  end_context(context);
+}
+
 /* More channels than the library's quick store, at other strides, beside the picture's own. */
 static void exr_takes_layers(void **state) {
   (void)state;
@@ -407,6 +441,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(sizes_have_limits),
                                      cmocka_unit_test(memory_limit_is_kept),
                                      cmocka_unit_test(exr_and_npy_keep_every_bit),
+                                     cmocka_unit_test(encoding_gives_the_file),
                                      cmocka_unit_test(exr_takes_layers),
                                      cmocka_unit_test(pictures_hold_layers),
                                      cmocka_unit_test(exr_halves_and_offsets_are_read),

@@ -287,6 +287,30 @@ static void comparing_may_run_out_of_memory(void **state) {
   end_context(context);
 }
 
+/* Each allocation of an encoded picture may fail: the error is told, nothing is left. */
+static void encoding_may_run_out_of_memory(void **state) {
+  (void)state;
+  static const char *const formats[] = {"png", "exr", "npy"};
+  callbacks c = {0};
+  hl_context *context = make_callback_context(&c);
+  hl_image *image = make_structured(context, 20, 20);
+  for (int n = 0; n < 3; n++) {
+    hl_status status = HL_ERROR_MEMORY;
+    for (int at = 1; status != HL_OK && at < 100; at++) {
+      unsigned char *bytes = NULL;
+      size_t length = 0;
+      c = (callbacks){.fail_at = at};
+      status = hl_image_encode(context, image, formats[n], NULL, &bytes, &length, NULL);
+      assert_true(status == HL_OK || status == HL_ERROR_MEMORY);
+      assert_true((bytes != NULL) == (status == HL_OK));
+      hl_bytes_release(context, bytes);
+    }
+    assert_int_equal(status, HL_OK);
+  }
+  hl_image_destroy(image);
+  end_context(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(arguments_are_checked), cmocka_unit_test(layers_are_checked),
                                      cmocka_unit_test(reading_goes_by_content),
@@ -295,6 +319,7 @@ int main(void) {
                                      cmocka_unit_test(disk_that_fills_up_keeps_the_old_file),
                                      cmocka_unit_test(cancelling_leaves_nothing),
                                      cmocka_unit_test(every_allocation_may_fail),
-                                     cmocka_unit_test(comparing_may_run_out_of_memory)};
+                                     cmocka_unit_test(comparing_may_run_out_of_memory),
+                                     cmocka_unit_test(encoding_may_run_out_of_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,97 @@
+/* cli/render_clip.c - `--clip AXIS=LO:HI`: a part of each volume along an axis of its own world.
+ *
+ * A bare number is a fraction of the box around the volume's cells; a number with a unit is a coordinate. A side that is
+ * left out stays where the box, or the scene's own clip box, ends.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render.h"
+
+/* The box around the cells of a volume's voxels, in its file's world. */
+static bool volume_box(const hl_volume *volume, double low[3], double high[3]) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume, &info) != HL_OK) return false;
+  for (int row = 0; row < 3; row++) {
+    low[row] = high[row] = info.origin[row];
+    for (int axis = 0; axis < 3; axis++) {
+      double step = info.direction[row][axis] * info.spacing[axis];
+      double first = -0.5 * step, last = ((double)info.dimensions[axis] - 0.5) * step;
+      low[row] += fmin(first, last);
+      high[row] += fmax(first, last);
+    }
+  }
+  return true;
+}
+
+/* One end of a range. */
+typedef struct clip_end {
+  bool given, fraction;
+  double number;
+} clip_end;
+
+typedef struct clip_range {
+  int axis;
+  clip_end ends[2];
+} clip_range;
+
+/* "0.25", "10mm" or nothing; text moves past it. False if something else is there. */
+static bool read_end(const char **text, clip_end *end) {
+  size_t length = strspn(*text, "0123456789+-.eE");
+  char *rest;
+  *end = (clip_end){.given = length > 0};
+  if (length == 0) return true;
+  end->number = strtod(*text, &rest);
+  if (rest != *text + length || !isfinite(end->number)) return false;
+  *text = rest + (strncmp(rest, "mm", 2) == 0 ? 2 : *rest == 'u' ? 1 : 0);
+  end->fraction = *text == rest;
+  return !end->fraction || (end->number >= 0 && end->number <= 1);
+}
+
+static bool read_range(const char *text, clip_range *range) {
+  range->axis = text[0] >= 'x' && text[0] <= 'z' ? text[0] - 'x' : -1;
+  if (range->axis < 0 || text[1] != '=') return false;
+  clip_end *low = &range->ends[0], *high = &range->ends[1];
+  const char *at = text + 2;
+  if (!read_end(&at, low) || *at++ != ':' || !read_end(&at, high) || *at != '\0') return false;
+  bool comparable = low->given && high->given && low->fraction == high->fraction;
+  return (low->given || high->given) && (!comparable || low->number < high->number);
+}
+
+int render_check_clip(const cli_value *clip) {
+  clip_range range;
+  for (int n = 0; n < clip->count; n++)
+    if (!read_range(clip->texts[n], &range))
+      return fail(EXIT_CODE_USAGE,
+                  "--clip: '%s' is not AXIS=LO:HI with LO below HI: fractions from 0 to 1 (x=0:0.5), or coordinates in the "
+                  "file's own unit, which is written mm or u whatever it is (x=10mm:40mm)",
+                  clip->texts[n]);
+  return EXIT_CODE_OK;
+}
+
+static double place_of(const clip_end *end, double otherwise, double low, double high) {
+  if (!end->given) return otherwise;
+  return end->fraction ? low + end->number * (high - low) : end->number;
+}
+
+int render_clip(const cli_value *clip, hl_scene_volume *volume) {
+  double low[3], high[3];
+  if (!volume_box(volume->volume, low, high)) return fail(EXIT_CODE_FAILURE, "--clip: the volume's place is not known");
+  if (!volume->clipped) {
+    memcpy(volume->clip_min, low, sizeof low);
+    memcpy(volume->clip_max, high, sizeof high);
+    volume->clipped = 1;
+  }
+  for (int n = 0; n < clip->count; n++) {
+    clip_range range;
+    if (!read_range(clip->texts[n], &range)) continue; /* refused before: render_check_clip() */
+    double *least = &volume->clip_min[range.axis], *greatest = &volume->clip_max[range.axis];
+    *least = place_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
+    *greatest = place_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);
+    if (!(*least < *greatest))
+      return fail(EXIT_CODE_USAGE, "--clip: '%s': nothing is left between %.9g and %.9g; the volume goes from %.9g to %.9g",
+                  clip->texts[n], *least, *greatest, low[range.axis], high[range.axis]);
+  }
+  return EXIT_CODE_OK;
+}

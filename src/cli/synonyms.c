@@ -1,0 +1,80 @@
+/* cli/synonyms.c - what people type who know ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba or a plotting library.
+ *
+ * A word leads to the option that does the same; a subcommand that lacks this option offers nothing.
+ */
+#include <string.h>
+
+#include "options.h"
+
+/* words: separated by blanks, in lower case */
+static const struct {
+  const char *option, *words;
+} meanings[] = {
+    {"output", "out outfile output-file file save screenshot image png write destination dest render-output"},
+    {"format", "type filetype file-format output-format ext extension render-format"},
+    {"size", "width height w h resolution res geometry resize scale dimensions image-size view-size window-size pixels "
+             "film-size imagesize"},
+    {"depth", "bits bit-depth color-depth"},
+    {"background", "bg background-color bgcolor background-colour canvas backdrop world-color transparent alpha"},
+    {"layers", "passes aov aovs channels buffers depth-map zbuffer normals render-layers"},
+    {"azimuth", "rotate rotation yaw theta angle turn spin orbit rotate-z heading azim camera-position camera"},
+    {"elevation", "pitch phi tilt altitude elev rotate-x inclination"},
+    {"roll", "rotate-y bank twist"},
+    {"up", "view-up viewup up-vector orientation"},
+    {"view", "viewpoint front side top camera-preset view-direction"},
+    {"zoom", "dolly distance magnification crop-factor"},
+    {"fovy", "fov field-of-view view-angle focal-length perspective vfov angle-of-view"},
+    {"ortho", "orthographic parallel parallel-projection orthogonal ortho-scale"},
+    {"tf", "transfer-function transferfunction opacity alpha-map transfer ctf otf preset opacity-function"},
+    {"colormap", "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
+    {"range", "clim window level window-level vmin vmax scalar-range data-range color-range rescale-range clims min max "
+              "limits contrast"},
+    {"threshold", "iso isovalue isosurface iso-value contour level-set cutoff surface lower-threshold"},
+    {"clip", "crop cut roi cutplane clipping slab extent subset box clip-box slice bbox clipping-plane"},
+    {"shading", "shade shader material lighting phong"},
+    {"ambient", "ambient-light ambient-color fill-light ambient-occlusion environment"},
+    {"exposure", "brightness gain gamma intensity stops"},
+    {"look", "style mode mip blend-mode projection rendering-mode"},
+    {"light", "light-direction light-position sun key-light lamp light-angle key"},
+    {"light-size", "softness light-radius angular-diameter sun-size penumbra blur source-size"},
+    {"shadows", "shadow cast-shadows shadowing"},
+    {"soft-method", "method shadow-method soft-shadows integrator algorithm"},
+    {"light-samples", "samples spp sample-count shadow-samples nsamples sublights quality"},
+    {"shadow-resolution", "shadow-map-size shadow-map shadow-map-resolution"},
+    {"sheet-spacing", "sample-distance sampling-rate step-size slice-distance sampling-distance rate"},
+    {"kernel", "interpolation filter reconstruction-filter interp"},
+    {"reference", "raymarch ray-march raytrace ground-truth"},
+    {"step", "ray-step stepsize"},
+    {"spacing", "voxel-size voxelsize pixdim voxel-spacing pixel-size aspect sampling voxel"},
+    {"array", "field scalars variable dataset array-name scalar variable-name"},
+    {"component", "channel vector-component band time timestep frame index volume-index t"},
+    {"threads", "jobs j cores cpus nthreads cpu num-threads workers"},
+    {"max-memory", "memory mem ram memory-limit mem-limit"},
+    {"instruction-set", "simd isa avx arch"},
+    {"json", "stats statistics report info verbose"},
+    {"quiet", "silent no-progress q batch"},
+    {"print-scene", "dump dump-scene save-scene export-scene scene print dry-run write-scene"},
+    {"data", "data-dir data-folder include"},
+    {"max-rmse", "rmse tolerance threshold metric fuzz"},
+    {"frames", "runs repeat iterations n"},
+};
+
+static bool has_word(const char *words, const char *word) {
+  size_t length = strlen(word);
+  for (const char *at = words; (at = strstr(at, word)) != NULL; at++)
+    if ((at == words || at[-1] == ' ') && (at[length] == ' ' || at[length] == '\0')) return true;
+  return false;
+}
+
+static bool takes(const cli_command *command, const char *name) {
+  for (size_t i = 0; i < command->option_count; i++)
+    if (!command->options[i].reserved && strcmp(command->options[i].name, name) == 0) return true;
+  return false;
+}
+
+const char *synonym_of(const char *word, const cli_command *command) {
+  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
+  for (size_t n = 0; n < sizeof meanings / sizeof *meanings; n++)
+    if (has_word(meanings[n].words, word) && takes(command, meanings[n].option)) return meanings[n].option;
+  return NULL;
+}

@@ -1,0 +1,1 @@
+halflight render x.nrrd --print-scene -o a.png

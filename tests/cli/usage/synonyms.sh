@@ -1,0 +1,8 @@
+# Words of other programs lead to the option that does the same; the nearest word is told beside it.
+for word in rotate pitch width samples iso bg cmap resolution clim crop dump fov spp; do
+  halflight render --$word 1 x.nrrd 2>>told || true
+done
+sed 's/.*unknown option //' told
+# Of the subcommand's own options only.
+halflight diff --threshold 1 a.png b.png 2>told || true
+cat told
