@@ -32,6 +32,7 @@ typedef struct hl_image_write_options {
   double background[3];    /* linear RGB; PNG only */
   int background_transparent; /* PNG keeps alpha (unassociated, as PNG demands) */
   const char *scene_json;  /* stored in the PNG as the text chunk "halflight:scene"; may be null */
+  double exposure;         /* stops, -32 to 32; PNG only: the picture's light is multiplied by 2^exposure, the background is not */
 } hl_image_write_options;
 
 HL_API void hl_image_write_options_defaults(hl_image_write_options *options);

@@ -1,7 +1,7 @@
 /* halflight/layers.h - what a picture is made of, kept apart: lights, shadows, depth, normals.
  *
- * The sum of all lights' pictures and the ambient picture is the picture's RGB, up to rounding: lights can be
- * turned up, down and to other colours without rendering again. The other layers are means along each ray, every
+ * The sum of all lights' pictures, the ambient picture and the emission is the picture's RGB, up to rounding: lights can
+ * be turned up, down and to other colours without rendering again. The other layers are means along each ray, every
  * sample weighted by what it adds to the picture's alpha (its opacity times what is left of the ray); they are
  * divided by alpha, not premultiplied. Top row first, like the picture. */
 #ifndef HALFLIGHT_LAYERS_H
@@ -30,6 +30,8 @@ typedef struct hl_layers {
                          medium has none and counts as 0; 0 where alpha is 0 */
   const hl_light_layers *lights; /* [light_count], in the order of the scene's lights; or null */
   size_t light_count;            /* the scene's; or 0 */
+  float *emission;    /* [height][width][3]; what volumes add to the linear premultiplied RGB without any light: by their
+                         material's emission, or shaded flat */
 } hl_layers;
 
 /* Depths are world lengths along the pixel's ray: from the eye, or, orthographic, from the plane through the camera's

@@ -96,9 +96,16 @@ typedef struct hl_transfer_function {
   size_t color_count;
 } hl_transfer_function;
 
-typedef enum hl_shading { HL_SHADING_PHONG = 0, HL_SHADING_NONE = 1 } hl_shading;
+typedef enum hl_shading {
+  HL_SHADING_PHONG = 0,
+  HL_SHADING_NONE = 1,         /* a medium: lit and shadowed, without a surface */
+  HL_SHADING_FLAT = 2          /* the transfer function's colour itself: no light, no shadow received */
+} hl_shading;
 
-typedef struct hl_material { double ambient, diffuse, specular, shininess; } hl_material; /* ka kd ks n */
+typedef struct hl_material {
+  double ambient, diffuse, specular, shininess; /* ka kd ks n */
+  double emission;             /* ke: the part of the colour that is sent without any light; 0 by default */
+} hl_material;
 
 typedef struct hl_scene_volume {
   const char *name;             /* may be null */
@@ -116,6 +123,7 @@ typedef struct hl_scene_volume {
   int visible, casts_shadow, receives_shadow;
   int clipped;                  /* non-zero: only the box clip_min..clip_max is there */
   double clip_min[3], clip_max[3]; /* world units of the volume's own file, before the transform */
+  double axis_scale[3];         /* times `scale`: along x, y and z of the volume's own file, before the rotation */
 } hl_scene_volume;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
@@ -161,6 +169,7 @@ typedef struct hl_scene_description {
   size_t volume_count;
   hl_render_settings render;
   const char *description;     /* one sentence on the scene; may be null */
+  double exposure;             /* stops: a PNG shows the volumes' light times 2^exposure; 0 by default */
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* immutable and counted */

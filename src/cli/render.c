@@ -136,7 +136,7 @@ static int job_render(render_job *job) {
   hl_status status =
       hl_image_create(job->host.context, description->width, description->height, &job->image, &error);
   if (status == HL_OK && job->values[RENDER_LAYERS].given)
-    status = render_layers_create(job->image, description->light_count, &job->layers, &error);
+    status = render_layers_create(job->image, description, &job->layers, &error);
   if (status == HL_OK)
     status = job->result.reference ? render_reference(job, description, &error)
                                    : render_sheets(job, description, &error);
@@ -184,6 +184,7 @@ static int job_write(render_job *job) {
     if (job->values[RENDER_DEPTH].given) options.png_depth = job->values[RENDER_DEPTH].choice;
     memcpy(options.background, description->background, sizeof options.background);
     options.background_transparent = description->background_transparent;
+    options.exposure = description->exposure;
     options.scene_json = scene_json;
     status = job->to_stdout ? write_to_stdout(job, &options, &exit_code, &error)
                             : hl_image_write(job->host.context, job->image, job->output, &options, &error);

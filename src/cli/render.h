@@ -11,6 +11,7 @@ enum render_option {
   RENDER_SIZE,
   RENDER_DEPTH,
   RENDER_BACKGROUND,
+  RENDER_EXPOSURE,
   RENDER_LAYERS,
   RENDER_AZIMUTH,
   RENDER_ELEVATION,
@@ -87,9 +88,9 @@ typedef struct render_layers {
   hl_light_layers *lights; /* owned */
 } render_layers;
 
-/* Adds a layer "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean" and "normal" to the picture.
- * Released in any case. */
-hl_status render_layers_create(hl_image *image, size_t light_count, render_layers *layers, hl_error *error);
+/* Adds a layer "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean" and "normal" to the picture, and
+ * "emission" where a volume shines by itself. Released in any case. */
+hl_status render_layers_create(hl_image *image, const hl_scene_description *description, render_layers *layers, hl_error *error);
 void render_layers_release(render_layers *layers);
 
 /* Refuses --layers for an OUT that cannot hold them. */

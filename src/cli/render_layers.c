@@ -14,7 +14,20 @@ static hl_status add_light(hl_image *image, size_t index, hl_light_layers *light
   return status == HL_OK ? hl_image_add_layer(image, name, "RGB", &light->shadow, error) : status;
 }
 
-hl_status render_layers_create(hl_image *image, size_t light_count, render_layers *layers, hl_error *error) {
+static bool shines(const hl_scene_volume *volume) {
+  return volume->shading == HL_SHADING_FLAT || volume->material.emission > 0;
+}
+
+/* Where no volume shines there is no layer for it, as before volumes could. */
+static hl_status add_emission(hl_image *image, const hl_scene_description *description, hl_layers *layers, hl_error *error) {
+  for (size_t i = 0; i < description->volume_count; i++)
+    if (shines(&description->volumes[i])) return hl_image_add_layer(image, "emission", "RGB", &layers->emission, error);
+  return HL_OK;
+}
+
+hl_status render_layers_create(hl_image *image, const hl_scene_description *description, render_layers *layers,
+                               hl_error *error) {
+  size_t light_count = description->light_count;
   *layers = (render_layers){.all = {.struct_size = sizeof layers->all}};
   layers->lights = calloc(light_count + 1, sizeof *layers->lights);
   if (layers->lights == NULL) {
@@ -24,6 +37,7 @@ hl_status render_layers_create(hl_image *image, size_t light_count, render_layer
   layers->all.lights = layers->lights;
   layers->all.light_count = light_count;
   hl_status status = hl_image_add_layer(image, "ambient", "RGB", &layers->all.ambient, error);
+  if (status == HL_OK) status = add_emission(image, description, &layers->all, error);
   for (size_t i = 0; i < light_count && status == HL_OK; i++)
     status = add_light(image, i, &layers->lights[i], error);
   if (status == HL_OK) status = hl_image_add_layer(image, "depth_first", "Z", &layers->all.depth_first, error);

@@ -8,7 +8,7 @@
 static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
 static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {NULL, 0}};
 static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
-static const cli_choice shadings[] = {{"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {NULL, 0}};
+static const cli_choice shadings[] = {{"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {"flat", HL_SHADING_FLAT}, {NULL, 0}};
 static const cli_choice shadow_kinds[] = {
     {"off", HL_SHADOWS_OFF}, {"hard", HL_SHADOWS_HARD}, {"soft", HL_SHADOWS_SOFT}, {NULL, 0}};
 static const cli_choice soft_methods[] = {
@@ -66,6 +66,13 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .choices = backgrounds,
                            .low = 0,
                            .high = 1},
+    [RENDER_EXPOSURE] = {.name = "exposure",
+                         .kind = OPTION_NUMBERS,
+                         .argument = "STOPS",
+                         .help = "a .png shows the volumes' light times 2^STOPS\n(default 0; the background stays)",
+                         .count = 1,
+                         .low = -32,
+                         .high = 32},
     [RENDER_LAYERS] = {.name = "layers",
                        .kind = OPTION_SWITCH,
                        .help = "each light, its shadow, ambient, depth, normals:\nchannels of an .exr, files beside an .npy"},
@@ -141,7 +148,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_SHADING] = {.name = "shading",
                         .kind = OPTION_CHOICE,
                         .choices = shadings,
-                        .help = "surfaces, or a medium such as smoke"},
+                        .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light"},
 
     [RENDER_AMBIENT] = {.name = "ambient",
                         .kind = OPTION_COLOR,
@@ -280,6 +287,11 @@ int render_check_options(const cli_value *values) {
       return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s", render_options[pictures[n]].name);
   int exit_code = render_check_clip(&values[RENDER_CLIP]);
   if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (values[RENDER_EXPOSURE].given && named && !has_extension(output->text, ".png"))
+    return fail(EXIT_CODE_USAGE, "--exposure is for .png pictures, not for '%s': .exr and .npy hold linear light as it is",
+                output->text);
+  if (values[RENDER_EXPOSURE].given && format->given && format->choice != 0)
+    return fail(EXIT_CODE_USAGE, "--exposure is for .png pictures: %s holds linear light as it is", format->text);
   if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
     return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
   for (int which = RENDER_LIGHT_POINTS; which <= RENDER_STEP; which++)

@@ -227,6 +227,7 @@ static void change_settings(const cli_value *values, hl_scene_description *descr
   if (values[RENDER_THREADS].given) settings->threads = (int)values[RENDER_THREADS].number[0];
   if (values[RENDER_AMBIENT].given)
     memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
+  if (values[RENDER_EXPOSURE].given) description->exposure = values[RENDER_EXPOSURE].number[0];
   const cli_value *background = &values[RENDER_BACKGROUND];
   if (!background->given) return;
   description->background_transparent = background->chosen;

@@ -66,6 +66,9 @@ static hl_status check_options(const hl_image_write_options *options, hl_error *
   if (options->png_depth != 8 && options->png_depth != 16)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: png_depth is %d, expected 8 or 16",
                    options->png_depth);
+  if (!(fabs(options->exposure) <= HL_IMAGE_EXPOSURE_MAX))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: exposure is %g, expected stops from -%d to %d",
+                   options->exposure, (int)HL_IMAGE_EXPOSURE_MAX, (int)HL_IMAGE_EXPOSURE_MAX);
   for (int c = 0; c < 3; c++)
     if (!isfinite(options->background[c]))
       return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: background[%d] is not a finite number", c);

@@ -3,7 +3,7 @@
  * In: linear premultiplied floats, a linear background. Out: sRGB codes, RGB over the background or, with
  * background_transparent, unassociated RGBA; the scene as a compressed text chunk.
  *
- * Compositing and alpha division are done in linear light; the curve is applied last (srgb.h).
+ * Exposure, compositing and alpha division are done in linear light; the curve is applied last (srgb.h).
  *
  * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws contours, 10 pixels wide
  * and more, that the eye finds. Measured on a penumbra-like gradient of 0.004 to 0.034 linear over 256 x 256
@@ -31,6 +31,7 @@ typedef struct png_writing {
   hl_error *error;
   hl_status status;
   float background[3]; /* linear */
+  float exposure;      /* what the picture's light is multiplied by */
   hl_srgb_encoder encoder;
   png_structp png;
   png_infop info;
@@ -100,9 +101,9 @@ static bool is_empty(const float pixel[4]) {
 
 /* The linear value that colour c of a pixel is stored as. */
 static float stored_value(const png_writing *writing, const float pixel[4], int c) {
-  if (!writing->options->background_transparent) return pixel[c] + (1 - pixel[3]) * writing->background[c];
+  if (!writing->options->background_transparent) return pixel[c] * writing->exposure + (1 - pixel[3]) * writing->background[c];
   /* Light above alpha (emission) cannot be told in unassociated colour: it saturates. */
-  return pixel[3] > 0 ? pixel[c] / pixel[3] : 0;
+  return pixel[3] > 0 ? pixel[c] / pixel[3] * writing->exposure : 0;
 }
 
 static void encode_row(png_writing *writing, int y) {
@@ -155,6 +156,7 @@ hl_status hl_png_encode(const hl_image *image, const hl_image_write_options *opt
                         hl_error *error) {
   png_writing writing = {.image = image, .options = options, .output = output, .error = error};
   for (int c = 0; c < 3; c++) writing.background[c] = (float)options->background[c];
+  writing.exposure = (float)hl_exposure_factor(options->exposure);
   hl_status status = hl_srgb_encoder_create(output->context, options->png_depth == 16 ? 65535 : 255,
                                             &writing.encoder, error);
   if (status != HL_OK) return status;

@@ -22,6 +22,20 @@ static double fifth_root(double value, double guess) {
   return r;
 }
 
+/* Derived: with the fraction's binary digits b1 b2 ..., 2^0.b1b2... is the product of 2^(1/2) where b1 is 1, 2^(1/4) where b2
+ * is, and so on; square roots are exact to the last bit everywhere, powers are not. */
+double hl_exposure_factor(double stops) {
+  double whole = floor(stops), fraction = stops - whole, root = 2, factor = 1;
+  for (int digit = 0; digit < 53 && fraction > 0; digit++) {
+    root = sqrt(root);
+    fraction *= 2;
+    if (fraction < 1) continue;
+    fraction -= 1;
+    factor *= root;
+  }
+  return ldexp(factor, (int)whole);
+}
+
 /* IEC 61966-2-1: c/12.92 up to 0.04045, ((c + 0.055)/1.055)^2.4 above. u^2.4 = u^2 (u^2)^(1/5). */
 double hl_srgb_decode(double encoded) {
   if (encoded < 0) return -hl_srgb_decode(-encoded);

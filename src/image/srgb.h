@@ -6,6 +6,9 @@
 
 #include "core/error.h"
 
+/* 2^stops, for |stops| up to 32, the same on every machine. */
+double hl_exposure_factor(double stops);
+
 /* The linear value of an encoded one, for |encoded| up to a little above 1; odd (f(-c) = -f(c)). */
 double hl_srgb_decode(double encoded);
 

@@ -13,7 +13,10 @@ void hl_reference_parts_add(reference_parts *parts, const reference_parts *other
   parts->weight += scale * other->weight;
   parts->depth += scale * other->depth;
   parts->normal = vec3_add(parts->normal, vec3_scale(other->normal, scale));
-  for (int c = 0; c < 3; c++) parts->ambient[c] += scale * other->ambient[c];
+  for (int c = 0; c < 3; c++) {
+    parts->ambient[c] += scale * other->ambient[c];
+    parts->emission[c] += scale * other->emission[c];
+  }
   for (size_t l = 0; l < light_count; l++)
     for (int c = 0; c < 3; c++) {
       parts->lights[l].picture[c] += scale * other->lights[l].picture[c];
@@ -35,6 +38,7 @@ void hl_reference_parts_write(const reference_parts *parts, double depth_first, 
   if (layers->depth_mean != NULL) layers->depth_mean[pixel] = alpha > 0 ? (float)(parts->depth / alpha) : INFINITY;
   for (size_t c = 0; c < 3; c++) {
     if (layers->ambient != NULL) layers->ambient[3 * pixel + c] = (float)parts->ambient[c];
+    if (layers->emission != NULL) layers->emission[3 * pixel + c] = (float)parts->emission[c];
     if (layers->normal != NULL) layers->normal[3 * pixel + c] = alpha > 0 ? (float)(normal[c] / alpha) : 0;
   }
   for (size_t l = 0; l < layers->light_count; l++) write_light(&parts->lights[l], alpha, &layers->lights[l], pixel);

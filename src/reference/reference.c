@@ -138,7 +138,7 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
 /* The picture is the sum of its parts. */
 static void write_pixel(const reference_parts *ray, size_t light_count, float rgba[4]) {
   for (int c = 0; c < 3; c++) {
-    double sum = ray->ambient[c];
+    double sum = ray->ambient[c] + ray->emission[c];
     for (size_t l = 0; l < light_count; l++) sum += ray->lights[l].picture[c];
     rgba[c] = (float)sum;
   }

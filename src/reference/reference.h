@@ -106,7 +106,7 @@ typedef struct light_part { double picture[3], shadow[3]; } light_part;
 /* What a sample or a whole ray is made of; sums, weighted by extinction (a sample) or by opacity (a ray). */
 typedef struct reference_parts {
   double weight;              /* of a ray: alpha */
-  double ambient[3];
+  double ambient[3], emission[3];
   vec3 normal;
   double depth;
   light_part *lights;         /* [light_count] */

@@ -2,7 +2,9 @@
  *
  *     surface   C = c ka Ia + c kd I max(N.L, 0) + ks I max(E.R, 0)^n     (specular only where N.L > 0)
  *     medium    C = c (ka Ia + I)
+ *     flat      C = c, whatever the light
  *
+ * Emission adds c ke to a surface and to a medium.
  * A sample of a volume shaded "phong" goes from medium to surface as its gradient grows from nothing.
  */
 #include <string.h>
@@ -25,7 +27,7 @@ static const double *light_reach(const reference *all, const reference_volume *v
  * towards the empty value, so that lobes of either sign are lit from outside. */
 static vec3 find_normal(const reference_volume *volume, vec3 index_point, double value, double *surface) {
   *surface = 0;
-  if (volume->described->shading == HL_SHADING_NONE) return (vec3){0, 0, 0};
+  if (volume->described->shading != HL_SHADING_PHONG) return (vec3){0, 0, 0};
   vec3 gradient = hl_reference_gradient(volume, index_point);
   double size = vec3_length(gradient);
   if (!(size > 0)) return (vec3){0, 0, 0};
@@ -75,6 +77,12 @@ static void shade_light(const reference *all, const reference_volume *volume, si
     part->picture[c] = (own[c] * matt + surface * gloss) * arrived->incoming[c] * reach[c];
 }
 
+/* Flat colours receive no shadow: their layers show full light. */
+static void add_no_light(const reference *all, double weight, reference_parts *sample) {
+  for (size_t l = 0; l < all->scene->light_count && all->all_shadows; l++)
+    for (int c = 0; c < 3; c++) sample->lights[l].shadow[c] += weight;
+}
+
 void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
                         double value, double weight, vec3 to_eye, reference_worker *worker) {
   reference_parts *sample = &worker->sample;
@@ -83,9 +91,14 @@ void hl_reference_shade(const reference *all, const reference_volume *volume, ve
   vec3 normal = find_normal(volume, index_point, value, &surface);
   sample->weight += weight;
   sample->normal = vec3_add(sample->normal, vec3_scale(normal, weight * surface));
-  for (int c = 0; c < 3; c++)
-    sample->ambient[c] += weight * own[c] * volume->described->material.ambient * all->scene->ambient[c];
-  for (size_t l = 0; l < all->scene->light_count; l++) {
+  const hl_material *material = &volume->described->material;
+  bool flat = volume->described->shading == HL_SHADING_FLAT;
+  for (int c = 0; c < 3; c++) {
+    sample->emission[c] += weight * own[c] * (flat ? 1 : material->emission);
+    if (!flat) sample->ambient[c] += weight * own[c] * material->ambient * all->scene->ambient[c];
+  }
+  if (flat) add_no_light(all, weight, sample);
+  for (size_t l = 0; l < all->scene->light_count && !flat; l++) {
     light_part part;
     shade_light(all, volume, l, point, own, normal, surface, to_eye, worker, &part);
     for (int c = 0; c < 3; c++) {

@@ -23,6 +23,7 @@ uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volu
 uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *layers) {
   uint64_t tiles = (uint64_t)hl_tiles(frame->width) * (uint64_t)hl_tiles(frame->height), floats = 4 * (uint64_t)sweep_count;
   if (layers != NULL && layers->ambient != NULL) floats += 4;
+  if (layers != NULL && layers->emission != NULL) floats += 4;
   if (hl_layers_measure(layers)) floats += MEASURES;
   for (int i = 0; i < frame->light_count && layers != NULL && layers->light_count > 0; i++) {
     const hl_light_layers *light = &layers->lights[frame->lights[i].light_index];

@@ -45,6 +45,7 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
   if (pixels->lights == NULL)
     return hl_fail_memory(error, pixels->light_count * sizeof *pixels->lights, "the lights' layers");
   if (wanted->ambient != NULL) pixels->ambient = allocate_pixels(&room, COLORS, &status, error);
+  if (wanted->emission != NULL) pixels->emission = allocate_pixels(&room, COLORS, &status, error);
   if (hl_layers_measure(wanted)) pixels->measures = allocate_pixels(&room, MEASURES, &status, error);
   for (size_t i = 0; i < pixels->light_count && wanted->light_count > 0; i++) {
     const hl_light_layers *asked = &wanted->lights[frame->lights[i].light_index];
@@ -63,6 +64,7 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
   }
   hl_release(context, pixels->lights);
   hl_release(context, pixels->ambient);
+  hl_release(context, pixels->emission);
   hl_release(context, pixels->measures);
 }
 
@@ -78,6 +80,7 @@ static void set_up_white_volumes(sweep *sweep) {
     layers->white_volumes[g] = sweep->shade_volumes[g];
     layers->white_volumes[g].classifier = &layers->white[g];
     layers->white_volumes[g].phong = 0;
+    layers->white_volumes[g].lit = 1;
   }
 }
 
@@ -93,7 +96,7 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
   hl_context *context = sweep->context;
   sweep_layers *layers = &sweep->layers;
   size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->volume_count;
-  layers->passes = hl_allocate_zeroed(context, 2 * lights + 2, sizeof *layers->passes);
+  layers->passes = hl_allocate_zeroed(context, 2 * lights + 3, sizeof *layers->passes);
   layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
   layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
   layers->white_patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->pool), sizeof *layers->white_patches);
@@ -105,7 +108,7 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
-/* The sweep's shading of given lights, without ambient light. Null where the layer is not wanted. */
+/* The sweep's shading of given lights, without ambient light and emission. Null where the layer is not wanted. */
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
   layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
@@ -113,6 +116,7 @@ static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *ligh
   pass->job.lights = lights;
   pass->job.light_count = light_count;
   for (int c = 0; c < 3; c++) pass->job.ambient[c] = 0;
+  pass->job.emission = 0;
   return pass;
 }
 
@@ -132,6 +136,8 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   }
   layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
   for (int c = 0; c < 3 && ambient != NULL; c++) ambient->job.ambient[c] = sweep->shade.ambient[c];
+  layer_pass *emission = sweep->first ? add_pass(sweep, pixels->emission, NULL, 0) : NULL;
+  if (emission != NULL) emission->job.emission = sweep->shade.emission;
   layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
   if (measures != NULL) {
     measures->shade = sweep->hot->measure_tile;
@@ -244,6 +250,7 @@ static void write_row(void *data, size_t index, int worker) {
   const hl_layers *to = pixels->wanted;
   int row = (int)index;
   if (to->ambient != NULL) write_colors(job->grid, row, pixels->ambient, false, false, to->ambient);
+  if (to->emission != NULL) write_colors(job->grid, row, pixels->emission, false, false, to->emission);
   if (hl_layers_measure(to)) write_measures(job->grid, row, pixels->measures, to);
   for (size_t i = 0; i < pixels->light_count && to->light_count > 0; i++) {
     const light_pixels *from = &pixels->lights[i];

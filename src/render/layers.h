@@ -1,6 +1,6 @@
 /* render/layers.h - layers: the sweep's own shading, asked once more for each of them.
  *
- * A light's picture is what the sweep would show with this light alone and no ambient light; its shadow is the picture
+ * A light's picture is what the sweep would show with this light alone, no ambient light and no emission; its shadow is the picture
  * of white volumes without surfaces under that light in white. Both are made by the same function from the same
  * sheets, tile by tile after the picture's own; without layers nothing of this runs. Depth and normals are measured
  * from a sweep that goes front to back for the eye. */
@@ -21,7 +21,7 @@ typedef struct light_pixels {
 
 typedef struct layer_pixels {
   const hl_layers *wanted; /* the caller's; null: none */
-  float *ambient;          /* R G B A */
+  float *ambient, *emission; /* R G B A */
   float *measures;         /* MEASURES */
   light_pixels *lights;    /* owned; [light_count] */
   size_t light_count;      /* of the frame */
@@ -30,7 +30,7 @@ typedef struct layer_pixels {
 /* One more shading of the sweep's tiles. */
 typedef struct layer_pass {
   shade_tile_function *shade;
-  shade_job job;           /* the sweep's, but for lights and ambient light */
+  shade_job job;           /* the sweep's, but for lights, ambient light and emission */
   bool white;              /* of white volumes */
   float *pixels;
   size_t tile_floats;

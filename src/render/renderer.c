@@ -230,6 +230,13 @@ static double widest_ray(const frame *frame) {
   return acos(fmax(least, -1));
 }
 
+/* Flat colours alone ask no light how much of it arrives. */
+static bool is_lit(const hl_scene_description *scene) {
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (scene->volumes[i].visible && scene->volumes[i].shading != HL_SHADING_FLAT) return true;
+  return false;
+}
+
 /* Lights in frame space; those that no sheets serve in sectors. A narrow spot light and a screen leave one direction. */
 static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
@@ -238,6 +245,7 @@ static void set_up_lights(const hl_scene_description *scene, frame *frame) {
     const hl_light *light = &scene->lights[i];
     light_source source = hl_light_source(light, &scene->render, frame->middle);
     source.light_index = (int)i;
+    if (!is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
     bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) || light->texture.pixels != NULL;
     bool whole = source.shadows == HL_SHADOWS_OFF || narrow || hl_frame_serves(frame, &scene->render, &source);
     for (int sector = 0; sector < (whole ? 1 : LIGHT_SECTORS); sector++)

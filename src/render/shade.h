@@ -19,7 +19,9 @@ typedef struct shade_volume {
   const grid *grid;
   const kernel *kernel;
   int phong, visible, receives_shadow;
+  int lit;                               /* 0: shaded flat, no light changes it */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
+  float emission;                        /* ke; of a volume shaded flat 1 */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
 } shade_volume;
@@ -62,6 +64,7 @@ typedef struct shade_job {
   const shade_light *lights;
   int light_count;
   float ambient[3];               /* Ia; zero in all sweeps but the first */
+  float emission;                 /* what emission counts: 1 in the first sweep, zero in others */
   int channels;                   /* of light attenuation: 1 or 3 */
 } shade_job;
 

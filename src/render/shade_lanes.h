@@ -165,7 +165,8 @@ LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int s
   lanes_int faced = lanes_set_int(0);
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
-    if (d->there && d->patch->volume->visible) faced |= (d->surface < 1.0f) | (dot3(d->normal, towards) > 0.0f);
+    if (d->there && d->patch->volume->visible && d->patch->volume->lit)
+      faced |= (d->surface < 1.0f) | (dot3(d->normal, towards) > 0.0f);
   }
   return lanes_bits(faced & seen) != 0;
 }
@@ -216,13 +217,15 @@ LANES_INLINE lanes power(lanes base, float exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Step 15: eqs. (3) and (4) at the light's centre; a medium where there is no surface (algorithm, optical model). */
+/* Step 15: eqs. (3) and (4) at the light's centre; a medium where there is no surface (algorithm, optical model). What
+ * shines by itself is added; flat colours are nothing else. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color) {
   const shade_volume *volume = d->patch->volume;
   color_lanes lit;
-  for (int c = 0; c < 3; c++) lit.c[c] = color.c[c] * (volume->ambient * job->ambient[c]);
-  for (int i = 0; i < job->light_count; i++) {
+  float own = volume->emission * job->emission;
+  for (int c = 0; c < 3; c++) lit.c[c] = color.c[c] * (volume->ambient * job->ambient[c] + own);
+  for (int i = 0; i < job->light_count && volume->lit; i++) {
     if (lights[i].dark) continue;
     const color_lanes *intensity = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full;
     lanes facing = dot3(d->normal, lights[i].towards);

@@ -157,7 +157,7 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_geometry *g, blo
     d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
     d->sloped = seen & (d->extinction > 0.0f);
     if (!volume->phong) d->sloped &= d->extinction * g->path > THIN_DEPTH;
-    uint32_t active = volume->visible && (volume->phong || shadowed) ? lanes_bits(d->sloped) : 0;
+    uint32_t active = volume->visible && (volume->phong || (volume->lit && shadowed)) ? lanes_bits(d->sloped) : 0;
     if (active == 0) d->sloped = lanes_set_int(0);
     else
       d->slope = gradient(volume, add_scaled3(g->start, g->step_sheet, lanes_fma(d->way.part.length, d->seen, d->way.part.begin)),

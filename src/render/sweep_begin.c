@@ -245,12 +245,15 @@ static void set_up_shading(sweep *sweep) {
                             .grid = &sweep->grids[g],
                             .kernel = sweep->kernel,
                             .phong = volume->shading == HL_SHADING_PHONG,
+                            .lit = volume->shading != HL_SHADING_FLAT,
                             .visible = volume->visible,
                             .receives_shadow = volume->receives_shadow,
                             .ambient = (float)volume->material.ambient,
                             .diffuse = (float)volume->material.diffuse,
                             .specular = (float)volume->material.specular,
                             .shininess = (float)volume->material.shininess};
+    shade->emission = shade->lit ? (float)volume->material.emission : 1;
+    if (!shade->lit) shade->ambient = shade->receives_shadow = 0;
     for (int c = 0; c < HL_CHANNELS; c++)
       shade->cast[c] = volume->casts_shadow ? (float)volume->attenuation_color[c] : 0;
     const grid *grid = &sweep->grids[g];
@@ -303,6 +306,7 @@ static void set_up_jobs(sweep *sweep) {
     vec3_store(shade->towards_eye, vec3_scale(eye->direction, -1));
   }
   for (int c = 0; c < 3 && sweep->first; c++) shade->ambient[c] = (float)sweep->scene->ambient[c];
+  shade->emission = sweep->first ? 1 : 0;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     set_up_light(sweep, &sweep->lights[i], &sweep->shade_lights[i]);
     attenuate_job *job = &sweep->attenuate[i];

@@ -80,7 +80,10 @@ static hl_status check_image(const hl_scene_description *d, hl_error *error) {
   const char *mend = "give a number of pixels from 1 to 32768";
   if ((status = check_range(&check, "width", d->width, 1, HL_LIMIT_PIXELS, mend)) != HL_OK) return status;
   if ((status = check_range(&check, "height", d->height, 1, HL_LIMIT_PIXELS, mend)) != HL_OK) return status;
-  return check_vector(&check, "background", d->background, 0, 1, "give linear RGB, each from 0 to 1");
+  if ((status = check_vector(&check, "background", d->background, 0, 1, "give linear RGB, each from 0 to 1")) != HL_OK)
+    return status;
+  return check_range(&check, "exposure", d->exposure, -HL_LIMIT_EXPOSURE, HL_LIMIT_EXPOSURE,
+                     "give stops from -32 to 32: each doubles the light");
 }
 
 static hl_status check_camera(const hl_camera *camera, hl_error *error) {
@@ -334,10 +337,23 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   return status == HL_OK ? check_color_points(&check, function) : status;
 }
 
+/* One factor, or three of which each is told. */
+static hl_status check_scale(const checker *check, const hl_scene_volume *volume) {
+  const double *axis = volume->axis_scale;
+  const char *mend = "give a factor above 0";
+  hl_status status = check_positive(check, "scale", volume->scale, HL_LIMIT_LENGTH, mend);
+  for (int a = 0; a < 3 && status == HL_OK && (axis[0] != 1 || axis[1] != 1 || axis[2] != 1); a++) {
+    char element[16];
+    snprintf(element, sizeof element, "scale/%d", a);
+    status = check_positive(check, element, hl_scene_volume_scale(volume, a), HL_LIMIT_LENGTH, mend);
+  }
+  return status;
+}
+
 static hl_status check_transform(const hl_scene_volume *volume, const char *parent, hl_error *error) {
   checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "%s/transform", parent);
-  hl_status status = check_positive(&check, "scale", volume->scale, HL_LIMIT_LENGTH, "give a factor above 0");
+  hl_status status = check_scale(&check, volume);
   if (status != HL_OK) return status;
   if (volume->rotate_angle_deg != 0 &&
       (status = check_direction(&check, "rotate/axis", volume->rotate_axis)) != HL_OK) return status;
@@ -354,8 +370,10 @@ static hl_status check_material(const hl_material *material, const char *parent,
   if ((status = check_range(&check, "ambient", material->ambient, 0, 1000, mend)) != HL_OK) return status;
   if ((status = check_range(&check, "diffuse", material->diffuse, 0, 1000, mend)) != HL_OK) return status;
   if ((status = check_range(&check, "specular", material->specular, 0, 1000, mend)) != HL_OK) return status;
-  return check_range(&check, "shininess", material->shininess, 0, HL_LIMIT_SHININESS,
-                     "give an exponent from 0 to 10000");
+  if ((status = check_range(&check, "shininess", material->shininess, 0, HL_LIMIT_SHININESS,
+                            "give an exponent from 0 to 10000")) != HL_OK) return status;
+  return check_range(&check, "emission", material->emission, 0, HL_LIMIT_EMISSION,
+                     "give the part of the colour that shines by itself, from 0 to 1e6");
 }
 
 static hl_status check_clip(const hl_scene_volume *volume, const char *parent, hl_error *error) {
@@ -414,7 +432,7 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
   char place[80];
   snprintf(place, sizeof place, "/volumes/%zu/transfer_function", index);
   if ((status = hl_transfer_function_check(&volume->transfer_function, place, error)) != HL_OK) return status;
-  if ((status = check_choice(&check, "shading", (int)volume->shading, 0, HL_SHADING_NONE)) != HL_OK)
+  if ((status = check_choice(&check, "shading", (int)volume->shading, 0, HL_SHADING_FLAT)) != HL_OK)
     return status;
   if ((status = check_material(&volume->material, check.place, error)) != HL_OK) return status;
   if ((status = check_vector(

@@ -11,7 +11,7 @@ const char *const hl_camera_type_names[] = {"perspective", "orthographic", NULL}
 const char *const hl_light_type_names[] = {"directional", "point", "spot", "rect", "disk", "polygon", NULL};
 const char *const hl_shadows_names[] = {"off", "hard", "soft", NULL}; /* from HL_SHADOWS_OFF on */
 const char *const hl_falloff_names[] = {"none", "inverse_square", NULL};
-const char *const hl_shading_names[] = {"phong", "none", NULL};
+const char *const hl_shading_names[] = {"phong", "none", "flat", NULL};
 const char *const hl_soft_method_names[] = {"cascade", "paper", "sublights", NULL};
 const char *const hl_kernel_names[] = {"bspline", "gaussian", "linear", NULL};
 const char *const hl_reconstruction_names[] = {"auto", "splat", "gather", NULL};
@@ -90,7 +90,7 @@ size_t hl_json_enter_index(hl_json_reader *reader, size_t index) {
 
 void hl_json_leave(hl_json_reader *reader, size_t mark) { reader->place[mark] = 0; }
 
-static const char *type_name(const json_t *value) {
+const char *hl_json_type_name(const json_t *value) {
   switch (json_typeof(value)) {
     case JSON_OBJECT: return "an object";
     case JSON_ARRAY: return "an array";
@@ -111,7 +111,7 @@ static bool listed(const char *const *names, const char *name) {
 
 hl_status hl_json_object(hl_json_reader *reader, const json_t *value, const char *const *keys) {
   if (!json_is_object(value))
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "is %s: give an object, { ... }", type_name(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "is %s: give an object, { ... }", hl_json_type_name(value));
   const char *key;
   json_t *member;
   json_object_foreach((json_t *)value, key, member) {
@@ -126,7 +126,7 @@ hl_status hl_json_object(hl_json_reader *reader, const json_t *value, const char
 
 hl_status hl_json_array(hl_json_reader *reader, const json_t *value, size_t least, size_t most) {
   if (!json_is_array(value))
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "is %s: give an array, [ ... ]", type_name(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "is %s: give an array, [ ... ]", hl_json_type_name(value));
   size_t count = json_array_size(value);
   if (count >= least && count <= most) return HL_OK;
   if (least == most)
@@ -138,7 +138,7 @@ hl_status hl_json_number(hl_json_reader *reader, const json_t *object, const cha
   const json_t *value = json_object_get(object, key);
   if (value == NULL) return HL_OK;
   if (!json_is_number(value))
-    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give a number", type_name(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give a number", hl_json_type_name(value));
   *number = json_number_value(value);
   return HL_OK;
 }
@@ -147,7 +147,7 @@ hl_status hl_json_integer(hl_json_reader *reader, const json_t *object, const ch
   const json_t *value = json_object_get(object, key);
   if (value == NULL) return HL_OK;
   if (!json_is_integer(value))
-    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give a whole number", type_name(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give a whole number", hl_json_type_name(value));
   json_int_t integer = json_integer_value(value);
   if (integer < -1000000000 || integer > 1000000000)
     return hl_json_fail(reader, HL_ERROR_INPUT, key, "%lld is out of range: give a smaller number",
@@ -160,7 +160,7 @@ hl_status hl_json_flag(hl_json_reader *reader, const json_t *object, const char 
   const json_t *value = json_object_get(object, key);
   if (value == NULL) return HL_OK;
   if (!json_is_boolean(value))
-    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give true or false", type_name(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give true or false", hl_json_type_name(value));
   *flag = json_is_true(value);
   return HL_OK;
 }
@@ -169,7 +169,7 @@ hl_status hl_json_text(hl_json_reader *reader, const json_t *object, const char 
   const json_t *value = json_object_get(object, key);
   if (value == NULL) return HL_OK;
   if (!json_is_string(value))
-    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give a string", type_name(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, key, "is %s: give a string", hl_json_type_name(value));
   *text = json_string_value(value);
   return HL_OK;
 }
@@ -197,7 +197,7 @@ hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *k
     char index[24];
     snprintf(index, sizeof index, "%zu", n);
     if (json_is_number(element)) numbers[n] = json_number_value(element);
-    else status = hl_json_fail(reader, HL_ERROR_INPUT, index, "is %s: give a number", type_name(element));
+    else status = hl_json_fail(reader, HL_ERROR_INPUT, index, "is %s: give a number", hl_json_type_name(element));
   }
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;

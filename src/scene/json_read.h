@@ -35,6 +35,9 @@ __attribute__((format(printf, 4, 5))) hl_status hl_json_fail(hl_json_reader *rea
 /* Puts "NAME: " (and the place, if not null) before a message that is already there; returns its code. */
 hl_status hl_json_prefix(hl_json_reader *reader, const char *place);
 
+/* "an object", "a string", ... */
+const char *hl_json_type_name(const json_t *value);
+
 /* Goes into a member or an element; the mark that leave() needs comes back. */
 size_t hl_json_enter(hl_json_reader *reader, const char *key);
 size_t hl_json_enter_index(hl_json_reader *reader, size_t index);

@@ -32,12 +32,21 @@ static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_sce
   return status;
 }
 
+/* One factor, or three along the axes of the volume's own file. */
+static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  const json_t *scale = json_object_get(value, "scale");
+  if (json_is_array(scale)) return hl_json_numbers(reader, value, "scale", 3, volume->axis_scale);
+  if (scale != NULL && !json_is_number(scale))
+    return hl_json_fail(reader, HL_ERROR_INPUT, "scale", "is %s: give a number or three, [x, y, z]", hl_json_type_name(scale));
+  return hl_json_number(reader, value, "scale", &volume->scale);
+}
+
 static hl_status read_transform(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   static const char *const keys[] = {"scale", "rotate", "translate", NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "transform");
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = hl_json_number(reader, value, "scale", &volume->scale);
+  if (status == HL_OK) status = read_scale(reader, value, volume);
   if (status == HL_OK) status = read_rotate(reader, json_object_get(value, "rotate"), volume);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "translate", 3, volume->translate);
   if (status == HL_OK) hl_json_leave(reader, mark);
@@ -45,7 +54,7 @@ static hl_status read_transform(hl_json_reader *reader, const json_t *value, hl_
 }
 
 static hl_status read_material(hl_json_reader *reader, const json_t *value, hl_material *material) {
-  static const char *const keys[] = {"ambient", "diffuse", "specular", "shininess", NULL};
+  static const char *const keys[] = {"ambient", "diffuse", "specular", "shininess", "emission", NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "material");
   hl_status status = hl_json_object(reader, value, keys);
@@ -53,6 +62,7 @@ static hl_status read_material(hl_json_reader *reader, const json_t *value, hl_m
   if (status == HL_OK) status = hl_json_number(reader, value, "diffuse", &material->diffuse);
   if (status == HL_OK) status = hl_json_number(reader, value, "specular", &material->specular);
   if (status == HL_OK) status = hl_json_number(reader, value, "shininess", &material->shininess);
+  if (status == HL_OK) status = hl_json_number(reader, value, "emission", &material->emission);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }

@@ -130,6 +130,7 @@ static void write_image(writer *w, const hl_scene_description *d) {
   write_number(w, "height", d->height);
   write_row(w, "background", d->background, 3);
   if (d->background_transparent) write_flag(w, "background_transparent", 1);
+  if (d->exposure != 0) write_number(w, "exposure", d->exposure);
   close_bracket(w, "}");
 }
 
@@ -225,7 +226,10 @@ static void write_transfer_function(writer *w, const hl_transfer_function *funct
 
 static void write_transform(writer *w, const hl_scene_volume *volume) {
   open_bracket(w, "transform", "{");
-  write_number(w, "scale", volume->scale);
+  const double *axis = volume->axis_scale;
+  if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) write_number(w, "scale", volume->scale);
+  else write_row(w, "scale", (double[3]){hl_scene_volume_scale(volume, 0), hl_scene_volume_scale(volume, 1),
+                                         hl_scene_volume_scale(volume, 2)}, 3);
   open_bracket(w, "rotate", "{");
   write_row(w, "axis", volume->rotate_axis, 3);
   write_number(w, "angle_deg", volume->rotate_angle_deg);
@@ -290,6 +294,7 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
   write_number(w, "diffuse", volume->material.diffuse);
   write_number(w, "specular", volume->material.specular);
   write_number(w, "shininess", volume->material.shininess);
+  if (volume->material.emission != 0) write_number(w, "emission", volume->material.emission);
   close_bracket(w, "}");
   write_row(w, "attenuation_color", volume->attenuation_color, 3);
   write_flag(w, "visible", volume->visible);

@@ -2,12 +2,15 @@
  * it. */
 #include "scene/scene.h"
 
+double hl_scene_volume_scale(const hl_scene_volume *volume, int axis) { return volume->scale * volume->axis_scale[axis]; }
+
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
   mat3 turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   if (volume->rotate_angle_deg != 0)
     turn =
         mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), volume->rotate_angle_deg * HL_PI / 180);
-  for (int r = 0; r < 3; r++) turn.row[r] = vec3_scale(turn.row[r], volume->scale);
+  const double x = hl_scene_volume_scale(volume, 0), y = hl_scene_volume_scale(volume, 1), z = hl_scene_volume_scale(volume, 2);
+  for (int r = 0; r < 3; r++) turn.row[r] = (vec3){turn.row[r].x * x, turn.row[r].y * y, turn.row[r].z * z};
   return affine3_multiply((affine3){turn, vec3_of(volume->translate)}, volume->volume->index_to_world);
 }
 

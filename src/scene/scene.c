@@ -38,6 +38,7 @@ void hl_scene_volume_defaults(hl_scene_volume *volume) {
       .visible = 1,
       .casts_shadow = 1,
       .receives_shadow = 1,
+      .axis_scale = {1, 1, 1},
   };
 }
 

@@ -14,6 +14,9 @@ struct hl_scene {
   hl_scene_description description; /* its arrays and texts are owned by the scene */
 };
 
+/* Along x, y or z (0 to 2) of the world of the volume's own file. */
+double hl_scene_volume_scale(const hl_scene_volume *volume, int axis);
+
 /* Index space of scene volume -> world: the volume's own placement, then scale, rotate, translate. */
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);
 

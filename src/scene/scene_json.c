@@ -40,7 +40,7 @@ static void release(hl_context *context, gathered *g) {
 }
 
 static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene_description *d) {
-  static const char *const keys[] = {"width", "height", "background", "background_transparent", NULL};
+  static const char *const keys[] = {"width", "height", "background", "background_transparent", "exposure", NULL};
   const json_t *value = json_object_get(root, "image");
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "image");
@@ -50,6 +50,7 @@ static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene
   if (status == HL_OK) status = hl_json_numbers(reader, value, "background", 3, d->background);
   if (status == HL_OK)
     status = hl_json_flag(reader, value, "background_transparent", &d->background_transparent);
+  if (status == HL_OK) status = hl_json_number(reader, value, "exposure", &d->exposure);
   if (status != HL_OK) return status;
   if (d->width < 1 || d->height < 1 || d->width > HL_LIMIT_PIXELS || d->height > HL_LIMIT_PIXELS)
     return hl_json_fail(reader, HL_ERROR_INPUT,

@@ -65,7 +65,9 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
                     ? 0
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
-  double edge = mat3_shortest_column(volume->volume->index_to_world.linear) * volume->scale;
+  mat3 placed = volume->volume->index_to_world.linear; /* but for the rotation, which keeps lengths */
+  for (int axis = 0; axis < 3; axis++) placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
+  double edge = mat3_shortest_column(placed) * volume->scale;
   return (float)fmin(fmax(1e-3 * span / edge * entries_per_value, 1e-30), 1e30);
 }
 

@@ -95,6 +95,14 @@ static void make_balls_medium(stage *set) {
   make_balls(set);
   set->volumes[0].shading = HL_SHADING_NONE;
 }
+static void make_balls_shining(stage *set) {
+  make_balls(set);
+  set->volumes[0].material.emission = 0.6;
+}
+static void make_balls_flat(stage *set) {
+  make_balls(set);
+  set->volumes[0].shading = HL_SHADING_FLAT;
+}
 static void make_balls_bytes(stage *set) {
   set->type = HL_VOXEL_U8;
   make_balls_medium(set);
@@ -206,6 +214,10 @@ static void make_clipped(stage *set) {
   memcpy(volume->clip_max, high, sizeof high);
   look_from_corner(set);
   stage_add_directional(set, (vec3){-0.5, 0.3, -1});
+}
+static void make_stretched(stage *set) {
+  make_clipped(set);
+  memcpy(set->volumes[0].axis_scale, (double[3]){0.8, 1.3, 1.7}, sizeof set->volumes[0].axis_scale);
 }
 static void make_clipped_perspective(stage *set) {
   make_clipped(set);
@@ -353,6 +365,8 @@ static void make_spot_in_smoke(stage *set) { /* a sharp cone across the view; wi
 static const scenario SCENARIOS[] = {
     {"balls", make_balls, 0.006},
     {"balls-medium", make_balls_medium, 0.006},
+    {"balls-shining", make_balls_shining, 0.006},
+    {"balls-flat", make_balls_flat, 0.006},
     {"balls-u8", make_balls_bytes, 0.006},
     {"balls-u16", make_balls_words, 0.006},
     {"balls-gaussian", make_balls_gaussian, 0.006},
@@ -374,6 +388,7 @@ static const scenario SCENARIOS[] = {
     {"oblique-phong", make_oblique_phong, 0.006},
     {"two-volumes", make_two_volumes, 0.006},
     {"clipped", make_clipped, 0.006},
+    {"stretched", make_stretched, 0.006},
     {"clipped-perspective", make_clipped_perspective, 0.006},
     {"eye-inside", make_eye_inside, 0.006},
     {"lamp-inside", make_lamp_inside, 0.006},

@@ -15,7 +15,7 @@ enum { SIDE = 28, PIXELS = SIDE * SIDE };
 
 /* Buffers of every layer. */
 typedef struct layer_set {
-  float pixels[PIXELS * 4], ambient[PIXELS * 3], first[PIXELS], mean[PIXELS], normal[PIXELS * 3];
+  float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], first[PIXELS], mean[PIXELS], normal[PIXELS * 3];
   float pictures[STAGE_LIGHTS][PIXELS * 3], shadows[STAGE_LIGHTS][PIXELS * 3];
   hl_light_layers lights[STAGE_LIGHTS];
   hl_layers all;
@@ -31,7 +31,7 @@ static void ask_for_all(const stage *set, layer_set *layers) {
   for (size_t l = 0; l < STAGE_LIGHTS; l++)
     layers->lights[l] = (hl_light_layers){layers->pictures[l], layers->shadows[l]};
   layers->all = (hl_layers){.struct_size = sizeof layers->all, .ambient = layers->ambient,
-                            .depth_first = layers->first, .depth_mean = layers->mean, .normal = layers->normal,
+                            .depth_first = layers->first, .depth_mean = layers->mean, .normal = layers->normal, .emission = layers->emission,
                             .lights = layers->lights, .light_count = set->scene.light_count};
 }
 
@@ -268,6 +268,7 @@ static void build_scene(stage *set) {
     volume->transfer_function.opacity_count = sizeof SOFT_EDGE / sizeof *SOFT_EDGE;
     stage_set_color(set, volume, 0.9, 0.5 + 0.3 * v, 0.3);
     volume->shading = v == 0 ? HL_SHADING_PHONG : HL_SHADING_NONE;
+    volume->material.emission = v == 0 ? 0.3 : 0;
   }
   set->scene.render.shadows = HL_SHADOWS_SOFT;
   set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
@@ -290,7 +291,7 @@ static void open_scene(stage *set, int distance) {
 }
 
 static double sum_at(const layer_set *layers, size_t lights, int pixel, int c) {
-  double sum = (double)layers->ambient[3 * pixel + c];
+  double sum = (double)layers->ambient[3 * pixel + c] + (double)layers->emission[3 * pixel + c];
   for (size_t l = 0; l < lights; l++) sum += (double)layers->pictures[l][3 * pixel + c];
   return sum;
 }
@@ -329,7 +330,7 @@ static void test_relighting(void **state) {
   stage_render_sheets(&set, again);
   for (int pixel = 0; pixel < PIXELS; pixel++)
     for (int c = 0; c < 3; c++) {
-      double sum = 0.5 * (double)layers.ambient[3 * pixel + c];
+      double sum = 0.5 * (double)layers.ambient[3 * pixel + c] + (double)layers.emission[3 * pixel + c];
       for (int l = 0; l < 3; l++) sum += gain[l] * (double)layers.pictures[l][3 * pixel + c];
       assert_near(again[4 * pixel + c], sum, 4e-6);
     }

@@ -122,6 +122,11 @@ static bool draw_scene_volume(fuzz_source *source, scene_parts *parts, int index
     volume->material.specular = fuzz_unit(source);
     volume->material.shininess = 100 * fuzz_unit(source);
   }
+  if (more & 64) {
+    volume->material.emission = fabs(fuzz_number(source));
+    for (int a = 0; a < 3; a++) volume->axis_scale[a] = draw_factor(source);
+  }
+  if (more & 128) volume->shading = HL_SHADING_FLAT;
   draw_function(source, parts, index);
   return true;
 }

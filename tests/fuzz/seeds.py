@@ -70,6 +70,9 @@ def scenes():
     for n, function in enumerate(functions):
         write("scene", f"function-{n}.json", text({"halflight": 1, "volumes": [dict(volume, transfer_function=function)]}))
         write("transfer", f"own-{n}.json", text(function))
+    write("scene", "shine.json", text({
+        "halflight": 1, "image": {"width": 8, "height": 6, "exposure": -1.5}, "volumes": [
+            dict(volume, shading="flat", material={"emission": 2.5}, transform={"scale": [1, 2, 0.5]}, visible=True)]}))
     write("scene", "render.json", text({
         "halflight": 1, "image": {"width": 8, "height": 6, "background": [0, 0.1, 0.2]},
         "camera": {"type": "orthographic", "position": [0, -9, 0], "target": [0, 0, 0], "up": [0, 0, 1], "height": 5},

@@ -111,6 +111,50 @@ static void composites_in_linear_light(void **state) {
   end(&f);
 }
 
+/* 2^stops times the picture's light, and nothing of the background's; whole and other stops, with and without alpha. */
+static void exposure_multiplies_the_light(void **state) {
+  (void)state;
+  static const double stops[] = {0, 1, -2, 0.5, -3.7, 32, -32};
+  fixture f = begin();
+  hl_image *image = make_image(f.context, 1, 1);
+  memcpy(pixel_at(image, 0, 0), (float[4]){0.08f, 0.03f, 0.2f, 0.5f}, 16);
+  for (size_t n = 0; n < sizeof stops / sizeof *stops; n++)
+    for (int transparent = 0; transparent < 2; transparent++) {
+      hl_image_write_options options;
+      hl_image_write_options_defaults(&options);
+      options.png_depth = 16;
+      options.exposure = stops[n];
+      options.background_transparent = transparent;
+      for (int c = 0; c < 3; c++) options.background[c] = 0.1;
+      assert_int_equal(hl_image_write(f.context, image, f.path, &options, NULL), HL_OK);
+      png_samples s = load_samples(f.path);
+      for (int c = 0; c < 3; c++) {
+        double light = (double)pixel_at(image, 0, 0)[c] * exp2(stops[n]);
+        int expected = closed_form_code(transparent ? light / 0.5 : light + 0.05, 65535);
+        assert_true(abs(sample(&s, 0, 0, c) - expected) <= 1); /* a float's rounding */
+      }
+      free(s.bytes);
+    }
+  hl_image_destroy(image);
+  end(&f);
+}
+
+/* Beyond what the format has, and not a number. */
+static void exposure_out_of_range_is_refused(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_image *image = make_image(context, 1, 1);
+  const double stops[] = {32.5, -33, NAN, INFINITY};
+  for (size_t n = 0; n < sizeof stops / sizeof *stops; n++) {
+    hl_image_write_options options;
+    hl_image_write_options_defaults(&options);
+    options.exposure = stops[n];
+    assert_int_equal(hl_image_write(context, image, "/tmp/unwritten.png", &options, NULL), HL_ERROR_ARGUMENT);
+  }
+  hl_image_destroy(image);
+  end_context(context);
+}
+
 static void flat_backgrounds_stay_flat(void **state) {
   (void)state;
   fixture f = begin();
@@ -342,7 +386,8 @@ static void every_kind_is_read(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(composites_in_linear_light),
-                                     cmocka_unit_test(flat_backgrounds_stay_flat),
+                                     cmocka_unit_test(exposure_multiplies_the_light),
+      cmocka_unit_test(exposure_out_of_range_is_refused), cmocka_unit_test(flat_backgrounds_stay_flat),
                                      cmocka_unit_test(transparent_pictures_keep_colour_and_alpha),
                                      cmocka_unit_test(nan_is_black),
                                      cmocka_unit_test(dither_removes_bands),

@@ -157,6 +157,9 @@ SPOIL(emission_on_sharp_light, glow(p); p->light.type = HL_LIGHT_DIRECTIONAL)
 SPOIL(volumes_none, p->description.volume_count = 0)
 SPOIL(volume_null, p->scene_volume.volume = NULL)
 SPOIL(scale_zero, p->scene_volume.scale = 0)
+SPOIL(axis_scale_zero, p->scene_volume.axis_scale[1] = 0)
+SPOIL(exposure_nan, p->description.exposure = NAN)
+SPOIL(emission_negative, p->scene_volume.material.emission = -1)
 SPOIL(axis_zero, p->scene_volume.rotate_angle_deg = 10; p->scene_volume.rotate_axis[2] = 0)
 SPOIL(angle_nan, p->scene_volume.rotate_angle_deg = NAN)
 SPOIL(translate_far, p->scene_volume.translate[1] = 1e20)
@@ -167,7 +170,7 @@ SPOIL(opacity_high, p->opacity[3].opacity = 1.5)
 SPOIL(opacity_nan, p->opacity[3].value = NAN)
 SPOIL(color_unsorted, p->color[1].value = -5)
 SPOIL(color_high, p->color[1].color[1] = 128)
-SPOIL(shading_unknown, p->scene_volume.shading = (hl_shading)2)
+SPOIL(shading_unknown, p->scene_volume.shading = (hl_shading)3)
 SPOIL(diffuse_negative, p->scene_volume.material.diffuse = -0.7)
 SPOIL(shininess_huge, p->scene_volume.material.shininess = 1e9)
 SPOIL(attenuation_negative, p->scene_volume.attenuation_color[0] = -1)
@@ -277,6 +280,10 @@ static const refusal refusals[] = {
     {"/volumes: is empty: name at least one volume", HL_ERROR_INPUT, volumes_none},
     {"/volumes/0/volume: is null: give a volume", HL_ERROR_ARGUMENT, volume_null},
     {"/volumes/0/transform/scale: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, scale_zero},
+    {"/volumes/0/transform/scale/1: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, axis_scale_zero},
+    {"/image/exposure: nan is not a number: give stops from -32 to 32: each doubles the light", HL_ERROR_INPUT, exposure_nan},
+    {"/volumes/0/material/emission: -1 is negative: give the part of the colour that shines by itself, from 0 to 1e6",
+     HL_ERROR_INPUT, emission_negative},
     {"/volumes/0/transform/rotate/axis: has no length: give the direction as three numbers, not all 0",
      HL_ERROR_INPUT, axis_zero},
     {"/volumes/0/transform/rotate/angle_deg: nan is not a number: give an angle in degrees", HL_ERROR_INPUT,
@@ -300,7 +307,7 @@ static const refusal refusals[] = {
      color_unsorted},
     {"/volumes/0/transfer_function/color/1/2: 128 is out of range: give linear RGB, each from 0 to 1",
      HL_ERROR_INPUT, color_high},
-    {"/volumes/0/shading: 2 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,
+    {"/volumes/0/shading: 3 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,
      shading_unknown},
     {"/volumes/0/material/diffuse: -0.7 is negative: give a factor from 0 to 1000", HL_ERROR_INPUT,
      diffuse_negative},
@@ -460,6 +467,27 @@ static void empty_value_is_the_commonest_transparent_one(void **state) {
   hl_context_destroy(context);
 }
 
+/* The three stretch the file's own axes, whatever the rotation turns them to. */
+static void three_scales_come_before_the_rotation(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  p.scene_volume.scale = 2;
+  memcpy(p.scene_volume.axis_scale, (double[3]){1, 3, 0.5}, sizeof p.scene_volume.axis_scale);
+  p.scene_volume.rotate_angle_deg = 90; /* about z: x becomes y, y becomes -x */
+  vec3 world = affine3_apply(hl_scene_volume_index_to_world(&p.scene_volume), (vec3){1, 2, 3});
+  assert_near(world.x, -12, 1e-12);
+  assert_near(world.y, 2, 1e-12);
+  assert_near(world.z, 3, 1e-12);
+  hl_scene_volume clipped = p.scene_volume;
+  clipped.clipped = 1; /* in the file's world, before any scale */
+  for (int a = 0; a < 3; a++) clipped.clip_min[a] = 0.25, clipped.clip_max[a] = 1.5;
+  double low[3], high[3];
+  hl_scene_volume_box(&clipped, low, high);
+  for (int a = 0; a < 3; a++) assert_true(low[a] == 0.25 && high[a] == 1.5);
+  parts_release(&p);
+}
+
 static void transform_is_scale_then_rotate_then_translate(void **state) {
   (void)state;
   parts p;
@@ -496,6 +524,7 @@ int main(void) {
       cmocka_unit_test(visible_agrees_with_sampling),
       cmocka_unit_test(empty_value_is_the_commonest_transparent_one),
       cmocka_unit_test(transform_is_scale_then_rotate_then_translate),
+      cmocka_unit_test(three_scales_come_before_the_rotation),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

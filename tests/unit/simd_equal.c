@@ -613,7 +613,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   s->job = (shade_job){.rays = random_rays(seed, round), .through = {0.1f, 0.2f, 0.5f}, .towards_eye = {0, 0.6f, -0.8f},
                        .normal = {0, 0, 1}, .path = 0.6f, .height = 1, .spacing = 0.5f, .back_to_front = round % 4 == 2,
                        .lights = s->lights, .light_count = round % 4,
-                       .ambient = {0.1f, 0.2f, 0}, .channels = round % 3 ? 3 : 1};
+                       .ambient = {0.1f, 0.2f, 0}, .emission = 1, .channels = round % 3 ? 3 : 1};
   s->patch_count = 1 + round % 2;
   if (round == 0) s->job.light_count = 2;
   set_up_lights(s, seed, round);
@@ -622,7 +622,8 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
     if (round % 8 == 3) s->density[2 * v][20] = NAN;
     s->volumes[v] = (shade_volume){&classifier_bench.classifier, &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
                                    hl_kernel_get((hl_kernel)(round % 3)),
-                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, 0.5f, 0.8f, 0.3f, 25, {1, 0.5f, 0},
+                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, (round + v) % 6 != 5, 0.5f, 0.8f, 0.3f, 25,
+                                   round % 3 ? 0.4f : 0, {1, 0.5f, 0},
                                    {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}}, {-0.5f, -0.5f, -0.5f},
                                    {8.5f, 9.5f, 10.5f}};
     s->patches[v] = (shade_patch){&s->volumes[v], s->density[2 * v], s->density[2 * v + 1],

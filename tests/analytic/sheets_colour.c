@@ -1,0 +1,205 @@
+/* analytic/sheets_colour.c - what colours come out as: flat shading, emission, three scales. Closed forms, each asked of the
+ * sheets and of the reference. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 24, PIXELS = SIDE * SIDE };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance)) fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* A homogeneous slab across the picture, 4 thick; two lights that shine from its two sides, in sweeps of their own. */
+static hl_scene_volume *open_slab(stage *set, double opacity) {
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 12;
+  set->scene.ambient[0] = 0.3;
+  set->scene.ambient[1] = 0.5;
+  hl_scene_volume *slab = stage_add_grid(set, (size_t[3]){16, 16, 4}, (double[3]){1, 1, 1}, (vec3){-8, -8, -2}, NULL);
+  stage_set_opacity(set, slab, opacity, 1);
+  stage_set_color(set, slab, 0.2, 0.5, 0.8);
+  stage_look(set, (vec3){3, 2, 30}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  stage_add_directional(set, (vec3){0.3, 0.2, -1});
+  stage_add_directional(set, (vec3){0.2, -0.4, 1});
+  set->lights[0].intensity = 1.7;
+  return slab;
+}
+
+static void render(stage *set, bool reference, float *pixels) {
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.light_points = 4;
+  if (reference) stage_render(set, &options, pixels);
+  else stage_render_sheets(set, pixels);
+}
+
+/* ---- flat ---- */
+
+static const double ASKED[3] = {0.2, 0.5, 0.8};
+
+/* The asked colour times alpha, in every pixel, whatever lights, shadows and material say. */
+static void test_flat_colour_is_the_asked_one(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const double opacities[] = {0.05, 0.4, 0.9999};
+  for (int k = 0; k < 12; k++) {
+    stage set;
+    hl_scene_volume *slab = open_slab(&set, opacities[k % 3]);
+    slab->shading = HL_SHADING_FLAT;
+    slab->material.emission = 3;
+    set.scene.render.shadows = k / 3 % 2 ? HL_SHADOWS_SOFT : HL_SHADOWS_HARD;
+    set.lights[1].angular_diameter_deg = 20;
+    render(&set, k >= 6, pixels);
+    for (int i = 0; i < PIXELS; i++) {
+      const float *pixel = &pixels[4 * i];
+      assert_true(pixel[3] > 0.1f);
+      for (int c = 0; c < 3; c++) assert_near((double)pixel[c], ASKED[c] * (double)pixel[3], 2e-6);
+    }
+    if (k % 3 == 2) assert_true(pixels[3] > 0.9995f);
+    stage_close(&set);
+  }
+}
+
+/* A flat plate between a lamp and a slab takes the slab's light away, and keeps its own. */
+static void test_flat_casts_and_receives_no_shadow(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  for (int reference = 0; reference < 2; reference++) {
+    for (int flat = 0; flat < 2; flat++) {
+      stage set;
+      (void)open_slab(&set, 0.9999);
+      hl_scene_volume *plate = stage_add_grid(&set, (size_t[3]){16, 16, 2}, (double[3]){1, 1, 1}, (vec3){-8, -8, 8}, NULL);
+      stage_set_opacity(&set, plate, 0.9999, 0.1);
+      plate->shading = flat ? HL_SHADING_FLAT : HL_SHADING_NONE;
+      plate->visible = 0;
+      for (int c = 0; c < 3; c++) set.scene.ambient[c] = 0;
+      set.scene.light_count = 1;
+      render(&set, reference == 1, pixels[flat]);
+      stage_close(&set);
+    }
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+    const float *middle = &pixels[0][4 * (SIDE / 2 * SIDE + SIDE / 2)];
+    assert_true(middle[3] > 0.99f && middle[0] < 1e-3f && middle[2] < 1e-3f);
+  }
+}
+
+/* ---- emission ---- */
+
+/* Nothing shines on the medium: c (ke + ka Ia) (1 - T), in several sweeps counted once. */
+static void test_emission_of_a_medium(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 8; k++) {
+    stage set;
+    hl_scene_volume *slab = open_slab(&set, 0.2);
+    slab->material.emission = k % 2 ? 2.5 : 0.25;
+    slab->material.ambient = 0.6;
+    slab->shading = k / 2 % 2 ? HL_SHADING_PHONG : HL_SHADING_NONE; /* its inside has no surface */
+    set.lights[0].intensity = set.lights[1].intensity = 0;
+    render(&set, k >= 4, pixels);
+    for (int y = 0; y < SIDE; y++)
+      for (int x = 0; x < SIDE; x++) {
+        vec3 origin, direction;
+        stage_eye_ray(&set, x, y, &origin, &direction);
+        double chord = stage_chord((vec3){-8, -8, -2}, (vec3){8, 8, 2}, origin, direction);
+        for (int c = 0; c < 3; c++)
+          assert_near((double)pixels[4 * (y * SIDE + x) + c],
+                      ASKED[c] * (slab->material.emission + 0.6 * set.scene.ambient[c]) * (1 - pow(0.8, chord)), 1e-3);
+      }
+    stage_close(&set);
+  }
+}
+
+/* Emission is added to what the lights give. */
+static void test_emission_adds_to_light(void **state) {
+  (void)state;
+  static float lit[PIXELS * 4], both[PIXELS * 4];
+  for (int reference = 0; reference < 2; reference++) {
+    stage set;
+    hl_scene_volume *slab = open_slab(&set, 0.3);
+    slab->shading = HL_SHADING_PHONG;
+    render(&set, reference == 1, lit);
+    slab->material.emission = 0.7;
+    render(&set, reference == 1, both);
+    for (int i = 0; i < PIXELS; i++)
+      for (int c = 0; c < 3; c++)
+        assert_near((double)both[4 * i + c], (double)lit[4 * i + c] + 0.7 * ASKED[c] * (double)lit[4 * i + 3], 3e-6);
+    stage_close(&set);
+  }
+}
+
+/* ---- three scales ---- */
+
+static const double STRETCH[3] = {1, 1.5, 0.5};
+
+/* A cut ball in a grid of the given spacing; the clip box is in the file's own world, so it is given in voxels there. */
+static hl_scene_volume *add_ball(stage *set, const double spacing[3]) {
+  enum { N = 16 };
+  static float voxels[N * N * N];
+  static const hl_opacity_point soft[] = {{0, 0}, {0.4, 0}, {0.6, 0.6}};
+  for (int i = 0; i < N * N * N; i++) {
+    double x = i % N - 7.5, y = i / N % N - 7.5, z = i / N / N - 7.5;
+    voxels[i] = (float)(1 / (1 + exp(sqrt(x * x + y * y + z * z) - 5.5)));
+  }
+  hl_scene_volume *ball = stage_add_grid(set, (size_t[3]){N, N, N}, spacing,
+                                         (vec3){-6 * spacing[0], -8 * spacing[1], -9 * spacing[2]}, voxels);
+  ball->transfer_function.opacity = soft;
+  ball->transfer_function.opacity_count = 3;
+  ball->shading = HL_SHADING_PHONG;
+  ball->rotate_angle_deg = 35;
+  memcpy(ball->rotate_axis, (double[3]){1, 2, 0.5}, sizeof ball->rotate_axis);
+  memcpy(ball->translate, (double[3]){0.5, -1, 0.25}, sizeof ball->translate);
+  ball->clipped = 1;
+  for (int a = 0; a < 3; a++) {
+    ball->clip_min[a] = -4.5 * spacing[a];
+    ball->clip_max[a] = 5.5 * spacing[a];
+  }
+  return ball;
+}
+
+/* Spacing 1 with three scales is a grid of that spacing, to the last bit: placement, clip box, normals and shadows. */
+static void test_three_scales_are_another_spacing(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  for (int k = 0; k < 4; k++) {
+    for (int scaled = 0; scaled < 2; scaled++) {
+      stage set;
+      stage_open(&set);
+      set.scene.width = set.scene.height = SIDE;
+      set.scene.camera.height = 22;
+      stage_look(&set, (vec3){12, -20, 26}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+      stage_add_directional(&set, (vec3){-0.5, 0.3, -1})->angular_diameter_deg = 8;
+      set.scene.render.shadows = HL_SHADOWS_SOFT;
+      set.scene.render.reconstruction = k == 1 ? HL_RECONSTRUCTION_SPLAT : HL_RECONSTRUCTION_GATHER;
+      double spacing[3];
+      for (int a = 0; a < 3; a++) spacing[a] = scaled ? 1 : (k == 3 ? 2 : 1) * STRETCH[a];
+      hl_scene_volume *ball = add_ball(&set, spacing);
+      if (scaled) memcpy(ball->axis_scale, STRETCH, sizeof STRETCH);
+      if (scaled && k == 3) ball->scale = 2; /* times each of the three */
+      render(&set, k == 2, pixels[scaled]);
+      stage_close(&set);
+    }
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+    int seen = 0;
+    for (int i = 0; i < PIXELS; i++) seen += pixels[0][4 * i + 3] > 0.5f;
+    assert_true(seen > 40);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_flat_colour_is_the_asked_one),
+      cmocka_unit_test(test_flat_casts_and_receives_no_shadow),
+      cmocka_unit_test(test_emission_of_a_medium),
+      cmocka_unit_test(test_emission_adds_to_light),
+      cmocka_unit_test(test_three_scales_are_another_spacing),
+  };
+  return cmocka_run_group_tests_name("sheets_colour", tests, NULL, NULL);
+}
