@@ -22,7 +22,8 @@ typedef enum hl_voxel_type {
   HL_VOXEL_F32 = 7,
   HL_VOXEL_F64 = 8,
   HL_VOXEL_U64 = 9,  /* 64 and 32 bit integers and doubles are kept to 24 bits, as float */
-  HL_VOXEL_I64 = 10
+  HL_VOXEL_I64 = 10,
+  HL_VOXEL_F16 = 11  /* IEEE 754 binary16, kept as float */
 } hl_voxel_type;
 
 typedef struct hl_volume hl_volume;
@@ -64,10 +65,35 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
                                                  const hl_volume_description *description,
                                                  hl_volume **volume, hl_error *error);
 
-/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti and legacy .vtk files, told by content
- * first and by name where the content has no mark. */
+/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk and NumPy .npy files (axes [z][y][x]), told by
+ * content first and by name where the content has no mark. Of several arrays and components one is taken by default
+ * (hl_volume_load_options), and a warning tells it. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path,
                                                hl_volume **volume, hl_error *error);
+
+/* Instead of the index of a component. */
+enum {
+  HL_COMPONENT_DEFAULT = -1,  /* the only one; of vectors of 2 or 3 the magnitude; else the first */
+  HL_COMPONENT_MAGNITUDE = -2 /* the square root of the sum of squares, as float */
+};
+
+typedef struct hl_volume_load_options {
+  size_t struct_size; /* set by hl_volume_load_options_defaults() */
+  const char *array;  /* name of one of the file's arrays; null: the file's active one, else the first scalar, else the first */
+  int component;      /* from 0 on, or an HL_COMPONENT_ value; default HL_COMPONENT_DEFAULT. Volumes of a series (time)
+                         are components too */
+  double spacing[3];  /* distance of voxels along i, j, k, world units, in place of the file's; all 0 (default): the file's */
+  const void *bytes;  /* the file's content, borrowed during the call, in place of a file; path then names it. Default null */
+  size_t byte_count;
+} hl_volume_load_options;
+
+HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);
+
+/* hl_volume_load() of what the options (null: the defaults) say. A name or a component that is not there is
+ * HL_ERROR_INPUT, with a list of what there is. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const char *path,
+                                                    const hl_volume_load_options *options, hl_volume **volume,
+                                                    hl_error *error);
 
 /* Writes .nrrd (gzip), .raw or .raw.gz, told by the name's end; bare voxels need their size and type in the name,
  * as for reading. Data values are kept: as 8 or 16 bit integers where the volume has such without a scale, else as
@@ -79,6 +105,21 @@ HL_API void hl_volume_retain(hl_volume *volume);
 HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info);
+
+/* An array of the file that a volume was loaded from. */
+typedef struct hl_volume_array {
+  size_t struct_size;  /* set by the caller */
+  const char *name;    /* "" where the format has no names; the volume's */
+  size_t components;   /* values per voxel, or volumes of a series */
+  hl_voxel_type type;  /* 0: of a kind that is not read */
+  int of_cells;        /* VTK: values between the points */
+  int chosen;          /* the volume is made of it */
+  int component;       /* of the chosen one: what was read; HL_COMPONENT_MAGNITUDE for that */
+} hl_volume_array;
+
+/* How many arrays the file has (those beyond 256 are not listed); 0: the volume came from memory or shapes. */
+HL_API size_t hl_volume_array_count(const hl_volume *volume);
+HL_API HL_WARN_UNUSED hl_status hl_volume_get_array(const hl_volume *volume, size_t index, hl_volume_array *array);
 
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */
 HL_API double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k);

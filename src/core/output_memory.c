@@ -27,6 +27,7 @@ static bool reserve(hl_output_memory *memory, size_t end) {
 static ssize_t on_write(void *cookie, const char *bytes, size_t length) {
   hl_output_memory *memory = cookie;
   if (memory->place > SIZE_MAX - length || !reserve(memory, memory->place + length)) {
+    memory->full = true;
     errno = ENOMEM;
     return 0;
   }

@@ -10,6 +10,7 @@ typedef struct hl_output_memory {
   hl_output output;        /* its path is a name for messages, its file is this memory */
   unsigned char *bytes;    /* owned; [capacity], of which length are written */
   size_t length, capacity, place;
+  bool full;               /* the context had no more memory */
 } hl_output_memory;
 
 /* memory must not move until it is committed or aborted. */

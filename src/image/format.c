@@ -171,6 +171,7 @@ hl_status hl_image_encode(hl_context *context, const hl_image *image, const char
   status = hl_output_memory_begin(context, "a picture in memory", &memory, error);
   if (status != HL_OK) return status;
   status = format->encode(image, options, &memory.output, error);
+  if (memory.full) status = hl_fail_memory(error, memory.capacity, "a picture in memory");
   if (status == HL_OK) status = hl_output_memory_commit(&memory, bytes, length, error);
   else hl_output_memory_abort(&memory);
   if (status == HL_OK) hl_progress(context, "write", 1);

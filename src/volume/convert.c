@@ -18,9 +18,10 @@ static const struct {
     [HL_VOXEL_U32] = {"uint32", 4, HL_STORAGE_F32, 0},  [HL_VOXEL_I32] = {"int32", 4, HL_STORAGE_F32, 0},
     [HL_VOXEL_F32] = {"float32", 4, HL_STORAGE_F32, 0}, [HL_VOXEL_F64] = {"float64", 8, HL_STORAGE_F32, 0},
     [HL_VOXEL_U64] = {"uint64", 8, HL_STORAGE_F32, 0},  [HL_VOXEL_I64] = {"int64", 8, HL_STORAGE_F32, 0},
+    [HL_VOXEL_F16] = {"float16", 2, HL_STORAGE_F32, 0},
 };
 
-static bool known(hl_voxel_type type) { return (int)type >= HL_VOXEL_U8 && (int)type <= HL_VOXEL_I64; }
+static bool known(hl_voxel_type type) { return (int)type >= HL_VOXEL_U8 && (int)type <= HL_VOXEL_F16; }
 
 const char *hl_voxel_type_name(hl_voxel_type type) { return known(type) ? types[type].name : "unknown"; }
 size_t hl_voxel_type_bytes(hl_voxel_type type) { return known(type) ? types[type].bytes : 0; }
@@ -111,6 +112,28 @@ static void store_f64(bool swap, const unsigned char *source, size_t count, unsi
   }
 }
 
+/* IEEE 754 binary16: a sign, five bits of exponent (bias 15), ten of fraction. */
+static float half_to_float(uint16_t half) {
+  uint32_t sign = (uint32_t)(half & 0x8000) << 16, exponent = half >> 10 & 31, fraction = half & 0x3ff, bits;
+  if (exponent == 0) {
+    float value = (float)fraction * 0x1p-24f; /* subnormal: fraction / 2^10 times 2^-14 */
+    return sign != 0 ? -value : value;
+  }
+  bits = sign | (exponent == 31 ? 255 : exponent + 112) << 23 | fraction << 13;
+  float value;
+  memcpy(&value, &bits, 4);
+  return value;
+}
+
+static void store_f16(bool swap, const unsigned char *source, size_t count, unsigned char *destination) {
+  for (size_t n = 0; n < count; n++) {
+    uint16_t half;
+    memcpy(&half, source + 2 * n, 2);
+    float value = half_to_float(swap ? (uint16_t)(half << 8 | half >> 8) : half);
+    memcpy(destination + 4 * n, &value, 4);
+  }
+}
+
 void hl_voxels_store(hl_voxel_type type, bool swap, const void *source, size_t count, void *destination) {
   switch (type) {
     case HL_VOXEL_U8: store_8(0, source, count, destination); break;
@@ -123,5 +146,6 @@ void hl_voxels_store(hl_voxel_type type, bool swap, const void *source, size_t c
     case HL_VOXEL_F64: store_f64(swap, source, count, destination); break;
     case HL_VOXEL_U64: store_u64(swap, source, count, destination); break;
     case HL_VOXEL_I64: store_i64(swap, source, count, destination); break;
+    case HL_VOXEL_F16: store_f16(swap, source, count, destination); break;
   }
 }

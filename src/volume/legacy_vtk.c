@@ -1,7 +1,9 @@
 /* volume/legacy_vtk.c - legacy .vtk files with STRUCTURED_POINTS, ASCII or BINARY (big-endian).
  *
- * After three lines (mark, title, ASCII or BINARY) come keywords; the first array of one component
- * under POINT_DATA is the volume, whether it is SCALARS, COLOR_SCALARS or part of a FIELD.
+ * After three lines (mark, title, ASCII or BINARY) come keywords. A first pass lists the arrays under POINT_DATA (SCALARS,
+ * COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the parts of a FIELD) as far as they are understood; a
+ * second stops at the values of the chosen one. What cannot be read twice, a pipe, is read once, up to the first array of
+ * one component or of the wanted name.
  */
 #include <string.h>
 
@@ -16,7 +18,10 @@ typedef struct vtk_header {
   int line;
   bool has_dimensions, in_point_data;
   size_t tuples;     /* of the POINT_DATA or CELL_DATA section; of the volume's array once it is found */
-  size_t components; /* of the last array that was passed over for having several; 0: none */
+  hl_load_request *request;
+  bool lists;        /* first pass: arrays are listed */
+  bool once;         /* and there is no second one: stop at the first that will do */
+  size_t arrays;     /* under POINT_DATA so far */
   bool found;        /* the stream is at the voxels */
 } vtk_header;
 
@@ -84,21 +89,35 @@ static hl_status skip_values(vtk_header *header, size_t count, size_t value_byte
   return HL_OK;
 }
 
+/* Whether the array of this number and name, under POINT_DATA, is where this pass stops. */
+static bool is_wanted(const vtk_header *header, const char *name, size_t components, size_t index) {
+  const hl_load_request *request = header->request;
+  if (!header->lists) return index == request->chosen;
+  if (!header->once) return false;
+  return request->array != NULL ? strcmp(request->array, name) == 0 : components == 1;
+}
+
 /* An array's values come next: stop there if they are the volume. */
-static hl_status meet_array(vtk_header *header, const char *type_name, size_t components, size_t tuples,
+static hl_status meet_array(vtk_header *header, const char *name, const char *type_name, size_t components, size_t tuples,
                             hl_error *error) {
   hl_voxel_type type = HL_VOXEL_U8;
-  bool wanted = header->in_point_data && components == 1;
   hl_status status = read_type(header, type_name, &type, error);
   if (status != HL_OK) return status;
-  if (header->in_point_data && components > 1) header->components = components;
-  if (!wanted) {
+  size_t index = header->arrays;
+  if (header->in_point_data) header->arrays++;
+  if (header->in_point_data && header->lists)
+    status = hl_arrays_add(header->request, name, components, type, false, error);
+  if (status != HL_OK) return status;
+  if (!header->in_point_data || !is_wanted(header, name, components, index)) {
     size_t values;
     if (__builtin_mul_overflow(tuples, components, &values) || values > SIZE_MAX / 8)
       return fail(header, "impossible number of values in an array of type", type_name, error);
     return skip_values(header, values, hl_voxel_type_bytes(type), error);
   }
+  if (header->once) header->request->chosen = index;
   header->payload.grid.type = type;
+  header->payload.components = components;
+  header->payload.block = 1;
   header->tuples = tuples;
   header->found = true;
   return HL_OK;
@@ -119,7 +138,38 @@ static hl_status read_scalars(vtk_header *header, const char *arguments, hl_erro
     bool ended;
     status = next_line(header, line, &ended, error);
   }
-  return status == HL_OK ? meet_array(header, type, components, header->tuples, error) : status;
+  return status == HL_OK ? meet_array(header, name, type, components, header->tuples, error) : status;
+}
+
+/* "VECTORS name type", and others of so many components. */
+static hl_status read_vectors(vtk_header *header, size_t components, const char *arguments, hl_error *error) {
+  char name[WORD_BYTES], type[WORD_BYTES];
+  const char *cursor = arguments;
+  if (!hl_text_word(&cursor, name, sizeof name) || !hl_text_word(&cursor, type, sizeof type))
+    return fail(header, "expected \"name type\", not", arguments, error);
+  return meet_array(header, name, type, components, header->tuples, error);
+}
+
+/* "TEXTURE_COORDINATES name components type" */
+static hl_status read_coordinates(vtk_header *header, const char *arguments, hl_error *error) {
+  char name[WORD_BYTES], dimension[WORD_BYTES], type[WORD_BYTES];
+  const char *cursor = arguments;
+  size_t components;
+  if (!hl_text_word(&cursor, name, sizeof name) || !hl_text_word(&cursor, dimension, sizeof dimension) ||
+      !hl_text_word(&cursor, type, sizeof type) || hl_text_sizes(dimension, &components, 1) != 1 || components < 1 ||
+      components > 1024)
+    return fail(header, "expected \"name components type\", not", arguments, error);
+  return meet_array(header, name, type, components, header->tuples, error);
+}
+
+/* "LOOKUP_TABLE name size" with four bytes, or numbers, for each colour: passed over. */
+static hl_status skip_table(vtk_header *header, const char *arguments, hl_error *error) {
+  char name[WORD_BYTES];
+  const char *cursor = arguments;
+  size_t colors;
+  if (!hl_text_word(&cursor, name, sizeof name) || hl_text_sizes(cursor, &colors, 1) != 1 || colors > SIZE_MAX / 8)
+    return fail(header, "expected \"LOOKUP_TABLE name size\", not", arguments, error);
+  return skip_values(header, 4 * colors, 1, error);
 }
 
 /* "COLOR_SCALARS name components", which VTK writes for 8 bit scalars: bytes, or fractions of 255 as text. */
@@ -130,7 +180,7 @@ static hl_status read_color_scalars(vtk_header *header, const char *arguments, h
   if (!hl_text_word(&cursor, name, sizeof name) || hl_text_sizes(cursor, &components, 1) != 1 ||
       components < 1 || components > 1024)
     return fail(header, "expected \"COLOR_SCALARS name components\", not", arguments, error);
-  hl_status status = meet_array(header, "unsigned_char", components, header->tuples, error);
+  hl_status status = meet_array(header, name, "unsigned_char", components, header->tuples, error);
   header->payload.text_is_fraction = header->found;
   return status;
 }
@@ -163,12 +213,12 @@ static hl_status read_fields(vtk_header *header, const char *arguments, hl_error
       if (status != HL_OK) return status;
       continue;
     }
-    char sizes[2 * WORD_BYTES], second[WORD_BYTES];
+    char sizes[2 * WORD_BYTES], second[WORD_BYTES], type[WORD_BYTES];
     if (!hl_text_word(&cursor, sizes, WORD_BYTES) || !hl_text_word(&cursor, second, sizeof second) ||
         hl_text_sizes(sizes, &shape[0], 1) != 1 || hl_text_sizes(second, &shape[1], 1) != 1 ||
-        !hl_text_word(&cursor, word, sizeof word))
+        !hl_text_word(&cursor, type, sizeof type) || shape[0] < 1)
       return fail(header, "expected \"name components tuples type\", not", line, error);
-    status = meet_array(header, word, shape[0], shape[1], error);
+    status = meet_array(header, word, type, shape[0], shape[1], error);
     if (status != HL_OK) return status;
     arrays--;
   }
@@ -218,6 +268,11 @@ static hl_status read_keyword(vtk_header *header, const char *keyword, const cha
   if (hl_text_equal(keyword, "SCALARS")) return read_scalars(header, arguments, error);
   if (hl_text_equal(keyword, "COLOR_SCALARS")) return read_color_scalars(header, arguments, error);
   if (hl_text_equal(keyword, "FIELD")) return read_fields(header, arguments, error);
+  if (hl_text_is_one_of(keyword, "VECTORS|NORMALS")) return read_vectors(header, 3, arguments, error);
+  if (hl_text_equal(keyword, "TENSORS")) return read_vectors(header, 9, arguments, error);
+  if (hl_text_equal(keyword, "TENSORS6")) return read_vectors(header, 6, arguments, error);
+  if (hl_text_equal(keyword, "TEXTURE_COORDINATES")) return read_coordinates(header, arguments, error);
+  if (hl_text_equal(keyword, "LOOKUP_TABLE")) return skip_table(header, arguments, error);
   if (hl_text_equal(keyword, "METADATA")) return skip_metadata(header, error);
   return HL_FAIL_LINE(
       error, HL_ERROR_UNSUPPORTED, header->stream, header->line,
@@ -225,20 +280,14 @@ static hl_status read_keyword(vtk_header *header, const char *keyword, const cha
       hl_text_printable(shown, keyword));
 }
 
+/* The keywords up to the volume's values, or to the file's end. */
 static hl_status read_header(vtk_header *header, hl_error *error) {
   char line[HL_LINE_BYTES], keyword[WORD_BYTES];
   hl_status status = read_opening(header, error);
   while (status == HL_OK && !header->found) {
     bool ended;
     status = next_line(header, line, &ended, error);
-    if (status != HL_OK) return status;
-    if (ended && header->components > 1)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "%s: voxels of %zu components: only one value per voxel is read", header->stream->path,
-                     header->components);
-    if (ended)
-      return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "%s",
-                          "the file ends without POINT_DATA and SCALARS, which hold the volume");
+    if (status != HL_OK || ended) return status;
     const char *cursor = hl_text_trim(line);
     if (*cursor == 0) continue;
     if (!hl_text_word(&cursor, keyword, sizeof keyword))
@@ -249,21 +298,57 @@ static hl_status read_header(vtk_header *header, hl_error *error) {
   return status;
 }
 
-hl_status hl_load_legacy_vtk(hl_stream **stream, hl_volume **volume, hl_error *error) {
-  vtk_header header = {.stream = *stream};
+static vtk_header begin(hl_stream *stream, hl_load_request *request, bool lists) {
+  vtk_header header = {.stream = stream, .request = request, .lists = lists, .once = lists && !hl_stream_can_restart(stream)};
   hl_payload_defaults(&header.payload);
   header.payload.trailing = HL_TRAILING_IGNORED;
-  hl_status status = read_header(&header, error);
+  return header;
+}
+
+/* Whether what was found before the file broke off or was not understood is the volume. */
+static bool is_enough(const hl_load_request *request, hl_status status) {
+  if (status != HL_ERROR_INPUT && status != HL_ERROR_UNSUPPORTED) return false;
+  for (size_t n = 0; n < request->array_count; n++)
+    if (request->array != NULL ? strcmp(request->arrays[n].name, request->array) == 0 : request->arrays[n].components == 1)
+      return true;
+  return false;
+}
+
+/* Comes to the values of the chosen array. What is wrong behind them does not matter. */
+static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_header *header, hl_error *error) {
+  *header = begin(*stream, request, true);
+  hl_error first = {0};
+  hl_status status = read_header(header, &first);
+  if (status != HL_OK && !is_enough(request, status)) {
+    if (error != NULL) *error = first;
+    return status;
+  }
+  if (request->array_count == 0)
+    return HL_FAIL_LINE(error, HL_ERROR_INPUT, *stream, header->line, "%s",
+                        "the file ends without POINT_DATA and SCALARS, which hold the volume");
+  if (header->once && header->found) return HL_OK;
+  status = hl_arrays_choose(request, (*stream)->path, -1, error);
+  if (status == HL_OK) status = hl_stream_restart(stream, error);
+  if (status == HL_OK) status = hl_stream_inflate_if_gzip(stream, error);
+  if (status != HL_OK) return status;
+  *header = begin(*stream, request, false);
+  return read_header(header, error);
+}
+
+hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  vtk_header header;
+  hl_status status = find_volume(stream, request, &header, error);
   if (status != HL_OK) return status;
   if (!header.has_dimensions)
     return HL_FAIL_LINE(error, HL_ERROR_INPUT, *stream, header.line, "%s", "the file has no DIMENSIONS");
   status = hl_volume_check_grid(&header.payload.grid, (*stream)->path, error);
   if (status != HL_OK) return status;
   const size_t *dimension = header.payload.grid.dimensions;
-  if (header.tuples != dimension[0] * dimension[1] * dimension[2])
+  if (!header.found || header.tuples != dimension[0] * dimension[1] * dimension[2])
     return hl_fail(error, HL_ERROR_INPUT,
                    "%s: POINT_DATA has %zu values, DIMENSIONS %zu x %zu x %zu need %zu", (*stream)->path,
                    header.tuples, dimension[0], dimension[1], dimension[2],
                    dimension[0] * dimension[1] * dimension[2]);
-  return hl_payload_read(*stream, &header.payload, volume, error);
+  status = hl_component_choose(request, (*stream)->path, false, &header.payload, error);
+  return status == HL_OK ? hl_payload_read(*stream, &header.payload, request->spacing, volume, error) : status;
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/memory.h"
 #include "volume/format.h"
 #include "volume/text.h"
 
@@ -158,17 +159,7 @@ static hl_status read_header(hl_stream *stream, meta_header *header, hl_error *e
                  header->has_sizes ? "ElementType" : "DimSize");
 }
 
-static hl_status make_grid(const meta_header *header, hl_volume_description *grid, hl_error *error) {
-  for (int axis = 3; axis < header->dimension; axis++)
-    if (header->size[axis] != 1)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "%s: %d dimensions, and dimension %d has %zu samples: at most three "
-                     "may have more than one",
-                     header->stream->path, header->dimension, axis + 1, header->size[axis]);
-  if (header->channels != 1)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: voxels of %zu components: only one value per voxel is read", header->stream->path,
-                   header->channels);
+static void make_grid(const meta_header *header, hl_volume_description *grid) {
   const double *spacing = header->has_spacing        ? header->spacing
                           : header->has_element_size ? header->element_size
                                                      : NULL;
@@ -185,6 +176,22 @@ static hl_status make_grid(const meta_header *header, hl_volume_description *gri
   grid->type = header->type;
   grid->value_scale = header->slope;
   grid->value_offset = header->intercept;
+}
+
+/* Several channels of a voxel lie side by side; samples along a fourth axis and more are volumes after each other. */
+static hl_status find_components(const meta_header *header, bool *is_series, hl_payload *payload, hl_error *error) {
+  size_t series = 1;
+  for (int axis = 3; axis < header->dimension; axis++)
+    if (!hl_multiply(series, header->size[axis], &series)) series = SIZE_MAX;
+  *is_series = series != 1;
+  if (series == 0 || header->channels == 0)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the header states %s: each must be at least 1", header->stream->path,
+                   series == 0 ? "a size of 0" : "0 channels");
+  if (series > 1 && header->channels > 1)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu channels in each of %zu volumes: save one of them",
+                   header->stream->path, header->channels, series);
+  payload->components = series > 1 ? series : header->channels;
+  payload->block = series > 1 ? payload->grid.dimensions[0] * payload->grid.dimensions[1] * payload->grid.dimensions[2] : 1;
   return HL_OK;
 }
 
@@ -205,15 +212,18 @@ static hl_status go_to_voxels(hl_stream **stream, const meta_header *header, con
   return status == HL_OK && header->compressed ? hl_stream_push_inflate(stream, error) : status;
 }
 
-hl_status hl_load_metaimage(hl_stream **stream, hl_volume **volume, hl_error *error) {
+hl_status hl_load_metaimage(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   meta_header header = {.dimension = 0};
   hl_payload payload;
   hl_payload_defaults(&payload);
   hl_status status = read_header(*stream, &header, error);
-  if (status == HL_OK) status = make_grid(&header, &payload.grid, error);
+  bool is_series = false;
+  if (status == HL_OK) make_grid(&header, &payload.grid);
   if (status == HL_OK) status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
+  if (status == HL_OK) status = find_components(&header, &is_series, &payload, error);
+  if (status == HL_OK) status = hl_component_only(request, (*stream)->path, is_series, &payload, error);
   payload.big_endian = header.big_endian;
   payload.text = header.text;
   if (status == HL_OK) status = go_to_voxels(stream, &header, &payload, error);
-  return status == HL_OK ? hl_payload_read(*stream, &payload, volume, error) : status;
+  return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }

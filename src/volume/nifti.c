@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/memory.h"
 #include "volume/format.h"
 #include "volume/text.h"
 
@@ -103,7 +104,9 @@ static hl_status read_header(hl_stream *stream, nifti_header *header, hl_error *
   return HL_OK;
 }
 
-static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3], hl_error *error) {
+/* Of the first three axes; *series: the volumes along the fourth, *others: those along the ones after it. */
+static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3], size_t *series, size_t *others,
+                                 hl_error *error) {
   int64_t count = load_dimension(header, 0);
   if (count < 1 || count > 7)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->dim,
@@ -115,38 +118,32 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
       return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->dim,
                             "%s, byte %zu: dim[%d] is %lld, must be at least 1", header->path,
                             header->layout->dim, n, (long long)size);
-    if (n <= 3)
-      dimensions[n - 1] = (size_t)size;
-    else if (size > 1)
-      return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, (int64_t)header->layout->dim,
-                            "%s: %s %lld (dim[%d]): only single volumes of one value per voxel are read",
-                            header->path, n == 4 ? "a series of volumes," : "voxels of several components,",
-                            (long long)size, n);
+    size_t *product = n == 4 ? series : others;
+    if (n <= 3) dimensions[n - 1] = (size_t)size;
+    else if (!hl_multiply(*product, (size_t)size, product)) *product = SIZE_MAX;
   }
   return HL_OK;
 }
 
-static hl_status read_type(const nifti_header *header, hl_voxel_type *type, hl_error *error) {
+/* components: numbers that lie side by side in each voxel, as of colours. */
+static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size_t *components, hl_error *error) {
   static const struct {
     int code;
     hl_voxel_type type;
-  } types[] = {{2, HL_VOXEL_U8},     {256, HL_VOXEL_I8},  {512, HL_VOXEL_U16}, {4, HL_VOXEL_I16},
-               {768, HL_VOXEL_U32},  {8, HL_VOXEL_I32},   {16, HL_VOXEL_F32},  {64, HL_VOXEL_F64},
-               {1280, HL_VOXEL_U64}, {1024, HL_VOXEL_I64}};
+    size_t components;
+  } types[] = {{2, HL_VOXEL_U8, 1},     {256, HL_VOXEL_I8, 1},  {512, HL_VOXEL_U16, 1}, {4, HL_VOXEL_I16, 1},
+               {768, HL_VOXEL_U32, 1},  {8, HL_VOXEL_I32, 1},   {16, HL_VOXEL_F32, 1},  {64, HL_VOXEL_F64, 1},
+               {1280, HL_VOXEL_U64, 1}, {1024, HL_VOXEL_I64, 1}, {32, HL_VOXEL_F32, 2},  {1792, HL_VOXEL_F64, 2},
+               {128, HL_VOXEL_U8, 3},   {2304, HL_VOXEL_U8, 4}};
   static const struct {
     int code;
     const char *name;
-  } others[] = {{1, "one bit"},
-                {32, "complex, 2 components"},
-                {128, "RGB, 3 components"},
-                {1536, "float128"},
-                {1792, "complex, 2 components"},
-                {2048, "complex, 2 components"},
-                {2304, "RGBA, 4 components"}};
+  } others[] = {{1, "one bit"}, {1536, "float128"}, {2048, "complex float128"}};
   int64_t code = load_short(header, header->layout->datatype);
   for (size_t n = 0; n < sizeof types / sizeof *types; n++)
     if (types[n].code == code) {
       *type = types[n].type;
+      *components = types[n].components;
       return HL_OK;
     }
   for (size_t n = 0; n < sizeof others / sizeof *others; n++)
@@ -269,18 +266,35 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
 }
 
-hl_status hl_load_nifti(hl_stream **stream, hl_volume **volume, hl_error *error) {
+/* Colours lie side by side; volumes of a series and components along further axes follow each other. */
+static hl_status find_components(const nifti_header *header, size_t side_by_side, size_t series, size_t others,
+                                 hl_payload *payload, hl_error *error) {
+  const size_t *dimension = payload->grid.dimensions;
+  size_t volumes;
+  if (!hl_multiply(series, others, &volumes)) volumes = SIZE_MAX;
+  if (side_by_side > 1 && volumes > 1)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu components in each of %zu volumes: save one of them", header->path,
+                   side_by_side, volumes);
+  payload->components = side_by_side > 1 ? side_by_side : volumes;
+  payload->block = side_by_side > 1 ? 1 : dimension[0] * dimension[1] * dimension[2];
+  return HL_OK;
+}
+
+hl_status hl_load_nifti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   nifti_header header = {.layout = NULL};
   hl_payload payload;
+  size_t side_by_side = 1, series = 1, others = 1;
   hl_payload_defaults(&payload);
   hl_status status = read_header(*stream, &header, error);
-  if (status == HL_OK) status = read_dimensions(&header, payload.grid.dimensions, error);
-  if (status == HL_OK) status = read_type(&header, &payload.grid.type, error);
+  if (status == HL_OK) status = read_dimensions(&header, payload.grid.dimensions, &series, &others, error);
+  if (status == HL_OK) status = read_type(&header, &payload.grid.type, &side_by_side, error);
   if (status == HL_OK) status = read_scale(&header, &payload.grid, error);
   if (status != HL_OK) return status;
   place(&header, &payload.grid);
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
   payload.big_endian = header.big_endian;
+  if (status == HL_OK) status = find_components(&header, side_by_side, series, others, &payload, error);
+  if (status == HL_OK) status = hl_component_only(request, (*stream)->path, series > 1, &payload, error);
   if (status == HL_OK) status = go_to_voxels(stream, &header, &payload, error);
-  return status == HL_OK ? hl_payload_read(*stream, &payload, volume, error) : status;
+  return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }

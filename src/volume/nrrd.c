@@ -308,42 +308,66 @@ static hl_status read_header(hl_stream *stream, nrrd_header *header, hl_error *e
 /* Whether the samples along an axis are several values of one voxel. */
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
   if (header->has_directions) return !axis->has_direction;
-  return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|time|none|???");
+  int space = 0;
+  for (int n = 0; n < header->dimension; n++) space += hl_text_is_one_of(header->axis[n].kind, "domain|space");
+  if (hl_text_equal(axis->kind, "time")) return space >= 3;
+  return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
 }
 
-/* Of the axes that are not components, at most three: while there are more, the last of one sample goes. */
-static int drop_thin_axes(const nrrd_axis *axes[MOST_AXES], int count) {
+/* Of four axes and more that nothing is said of, a first one of at most four samples holds the components of voxels. */
+static bool is_first_of_components(const nrrd_header *header) {
+  bool unsaid = header->axis[0].size <= 4 && !header->has_directions;
+  int thick = 0;
+  for (int n = 0; n < header->dimension; n++) {
+    unsaid = unsaid && header->axis[n].kind[0] == 0;
+    thick += header->axis[n].size > 1;
+  }
+  return unsaid && thick > 3;
+}
+
+/* Of the axes that are not components, at most three: while there are more, the last of one sample goes, and then the
+ * last of all, a series. */
+static int drop_thin_axes(int axes[MOST_AXES], const nrrd_header *header, int count) {
   for (int n = count - 1; n >= 0 && count > 3; n--)
-    if (axes[n]->size == 1) {
+    if (header->axis[axes[n]].size == 1) {
       memmove(&axes[n], &axes[n + 1], (size_t)(count - 1 - n) * sizeof *axes);
       count--;
     }
-  return count;
+  return count > 3 ? 3 : count;
 }
 
 /* The axes of the grid, fastest first. */
-static hl_status choose_axes(const nrrd_header *header, const nrrd_axis *chosen[MOST_AXES], int *count,
-                             hl_error *error) {
-  size_t components = 1;
-  *count = 0;
+static int choose_axes(const nrrd_header *header, int chosen[MOST_AXES]) {
+  int count = 0;
+  for (int n = 0; n < header->dimension; n++)
+    if (!is_component_axis(header, &header->axis[n]) && !(n == 0 && is_first_of_components(header))) chosen[count++] = n;
+  return drop_thin_axes(chosen, header, count);
+}
+
+/* The other axes hold components, which must follow each other: the grid's axes come before and after them. */
+static hl_status find_components(const nrrd_header *header, const int chosen[MOST_AXES], int count, bool *is_series,
+                                 hl_payload *payload, hl_error *error) {
+  size_t before = 1, since = 1; /* voxels of the axes before the components, and since the last of them */
+  int grid_axis = 0;
+  *is_series = false;
   for (int n = 0; n < header->dimension; n++) {
     const nrrd_axis *axis = &header->axis[n];
-    if (!is_component_axis(header, axis))
-      chosen[(*count)++] = axis;
-    else if (!hl_multiply(components, axis->size, &components))
-      components = SIZE_MAX;
+    if (grid_axis < count && chosen[grid_axis] == n) {
+      size_t *product = payload->components == 1 ? &before : &since;
+      if (!hl_multiply(*product, axis->size, product)) *product = SIZE_MAX;
+      grid_axis++;
+      continue;
+    }
+    if (axis->size == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: axis %d has 0 samples", header->stream->path, n + 1);
+    if (axis->size == 1) continue;
+    if (payload->components > 1 && since > 1)
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: components along axes that do not follow each other: take one out with unu slice",
+                     header->stream->path);
+    if (!hl_multiply(payload->components, axis->size, &payload->components)) payload->components = SIZE_MAX;
+    *is_series = *is_series || hl_text_is_one_of(axis->kind, "list|time|domain|space") || grid_axis >= 3;
   }
-  *count = drop_thin_axes(chosen, *count);
-  if (components != 1)
-    return hl_fail(
-        error, HL_ERROR_UNSUPPORTED,
-        "%s: voxels of %zu components: only one value per voxel is read (unu slice or unu project)",
-        header->stream->path, components);
-  if (*count > 3)
-    return hl_fail(
-        error, HL_ERROR_UNSUPPORTED,
-        "%s: %d dimensions, and the one after the third has %zu samples: take one out with unu slice",
-        header->stream->path, header->dimension, chosen[3]->size);
+  payload->block = before;
   return HL_OK;
 }
 
@@ -370,22 +394,18 @@ static void complete_axes(hl_volume_description *grid, int count) {
   }
 }
 
-static hl_status make_grid(const nrrd_header *header, hl_volume_description *grid, hl_error *error) {
-  const nrrd_axis *chosen[MOST_AXES];
-  int count;
-  hl_status status = choose_axes(header, chosen, &count, error);
-  if (status != HL_OK) return status;
+static void make_grid(const nrrd_header *header, const int chosen[MOST_AXES], int count, hl_volume_description *grid) {
   for (int n = 0; n < count; n++) {
-    grid->dimensions[n] = chosen[n]->size;
+    const nrrd_axis *axis = &header->axis[chosen[n]];
+    grid->dimensions[n] = axis->size;
     if (header->has_directions)
-      memcpy(grid->axis[n], chosen[n]->direction, sizeof grid->axis[n]);
+      memcpy(grid->axis[n], axis->direction, sizeof grid->axis[n]);
     else
-      place_axis(chosen[n], &grid->axis[n][n], &grid->origin[n]);
+      place_axis(axis, &grid->axis[n][n], &grid->origin[n]);
   }
   if (header->has_directions) complete_axes(grid, count);
   if (header->has_space_origin) memcpy(grid->origin, header->space_origin, sizeof grid->origin);
   grid->type = header->type;
-  return HL_OK;
 }
 
 static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, const hl_payload *payload,
@@ -408,13 +428,18 @@ static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, c
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
 }
 
-hl_status hl_load_nrrd(hl_stream **stream, hl_volume **volume, hl_error *error) {
+hl_status hl_load_nrrd(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   nrrd_header header = {.dimension = 0};
   hl_payload payload;
   hl_payload_defaults(&payload);
   hl_status status = read_header(*stream, &header, error);
-  if (status == HL_OK) status = make_grid(&header, &payload.grid, error);
-  if (status == HL_OK) status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
+  if (status != HL_OK) return status;
+  int chosen[MOST_AXES], count = choose_axes(&header, chosen);
+  bool is_series = false;
+  make_grid(&header, chosen, count, &payload.grid);
+  status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
+  if (status == HL_OK) status = find_components(&header, chosen, count, &is_series, &payload, error);
+  if (status == HL_OK) status = hl_component_only(request, (*stream)->path, is_series, &payload, error);
   if (status != HL_OK) return status;
   payload.big_endian = header.big_endian;
   payload.text = header.encoding == NRRD_TEXT;
@@ -423,5 +448,5 @@ hl_status hl_load_nrrd(hl_stream **stream, hl_volume **volume, hl_error *error) 
            (*stream)->path);
   if (header.data_file[0] != 0) status = hl_stream_switch(stream, header.data_file, error);
   if (status == HL_OK) status = skip_to_voxels(stream, &header, &payload, error);
-  return status == HL_OK ? hl_payload_read(*stream, &payload, volume, error) : status;
+  return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }

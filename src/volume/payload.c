@@ -11,6 +11,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "volume/convert.h"
+#include "volume/payload_parts.h"
 #include "volume/text.h"
 
 enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192 };
@@ -21,17 +22,26 @@ void hl_payload_defaults(hl_payload *payload) {
   memset(payload, 0, sizeof *payload);
   hl_volume_description_defaults(&payload->grid);
   for (int axis = 0; axis < 3; axis++) payload->grid.dimensions[axis] = 1;
+  payload->components = 1;
   payload->trailing = HL_TRAILING_WARNS;
   payload->promiser = "the header";
 }
 
-static size_t voxel_count(const hl_payload *payload) {
+size_t hl_payload_voxels(const hl_payload *payload) {
   const size_t *dimension = payload->grid.dimensions;
   return dimension[0] * dimension[1] * dimension[2];
 }
 
+/* Of all components; the greatest number there is where there are more. */
+static uint64_t value_count(const hl_payload *payload) {
+  uint64_t values;
+  return __builtin_mul_overflow((uint64_t)hl_payload_voxels(payload), payload->components, &values) ? UINT64_MAX : values;
+}
+
 uint64_t hl_payload_bytes(const hl_payload *payload) {
-  return (uint64_t)voxel_count(payload) * hl_voxel_type_bytes(payload->grid.type);
+  uint64_t bytes;
+  bool beyond = __builtin_mul_overflow(value_count(payload), hl_voxel_type_bytes(payload->grid.type), &bytes);
+  return beyond ? UINT64_MAX : bytes;
 }
 
 static hl_status check_promise(const hl_stream *stream, const hl_payload *payload, hl_error *error) {
@@ -39,7 +49,8 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
   if (status != HL_OK) return status;
   uint64_t most = hl_stream_at_most(stream), promised = hl_payload_bytes(payload);
   if (payload->text)
-    promised = 2 * (uint64_t)voxel_count(payload) - 1; /* a digit each, and what separates them */
+    promised = value_count(payload) > UINT64_MAX / 2 ? UINT64_MAX
+                                                     : 2 * value_count(payload) - 1; /* a digit each, and what separates them */
   if (promised <= most) return HL_OK;
   return hl_fail_offset(
       error, HL_ERROR_INPUT, (int64_t)stream->offset,
@@ -51,7 +62,7 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
 }
 
 /* Progress, and whether to go on. */
-static hl_status report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
+hl_status hl_payload_report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
   hl_progress(stream->context, "load", (double)done / (double)count);
   return hl_cancelled(stream->context) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path)
                                        : HL_OK;
@@ -68,24 +79,31 @@ static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, 
                         stream->cut_short ? ": the file is cut short" : ": correct its sizes or type");
 }
 
+/* done values are read; reads so many more, through raw where that is not their place. */
+static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count, void *raw,
+                            void *place, hl_error *error) {
+  hl_voxel_type type = payload->grid.type;
+  size_t file_bytes = hl_voxel_type_bytes(type), got;
+  hl_status status = hl_stream_read(stream, raw, count * file_bytes, &got, error);
+  if (status != HL_OK) return status;
+  if (got < count * file_bytes) return fail_short(stream, payload, done * file_bytes + got, error);
+  hl_voxels_store(type, payload->big_endian != native_is_big_endian, raw, count, place);
+  return HL_OK;
+}
+
 static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsigned char *voxels,
                              hl_error *error) {
   hl_voxel_type type = payload->grid.type;
   size_t file_bytes = hl_voxel_type_bytes(type), stored_bytes = hl_storage_bytes(hl_voxel_type_storage(type));
-  size_t count = voxel_count(payload),
-         piece = file_bytes > stored_bytes ? STAGE_VOXELS : PIECE_BYTES / file_bytes;
+  bool in_place = file_bytes == stored_bytes;
+  size_t count = hl_payload_voxels(payload), piece = in_place ? PIECE_BYTES / file_bytes : STAGE_VOXELS;
   unsigned char stage[STAGE_VOXELS * 8];
-  bool swap = payload->big_endian != native_is_big_endian;
   for (size_t done = 0; done < count;) {
-    size_t wanted = count - done < piece ? count - done : piece, got;
-    unsigned char *place = voxels + done * stored_bytes, *raw = file_bytes > stored_bytes ? stage : place;
-    hl_status status = hl_stream_read(stream, raw, wanted * file_bytes, &got, error);
-    if (status != HL_OK) return status;
-    if (got < wanted * file_bytes)
-      return fail_short(stream, payload, (uint64_t)done * file_bytes + got, error);
-    hl_voxels_store(type, swap, raw, wanted, place);
+    size_t wanted = count - done < piece ? count - done : piece;
+    unsigned char *place = voxels + done * stored_bytes;
+    hl_status status = read_piece(stream, payload, done, wanted, in_place ? place : stage, place, error);
     done += wanted;
-    status = report(stream, done, count, error);
+    if (status == HL_OK) status = hl_payload_report(stream, done, count, error);
     if (status != HL_OK) return status;
   }
   return HL_OK;
@@ -130,7 +148,7 @@ static bool fits_type(hl_voxel_type type, double value) {
       [HL_VOXEL_U8] = UINT8_MAX,  [HL_VOXEL_I8] = INT8_MAX,    [HL_VOXEL_U16] = UINT16_MAX,
       [HL_VOXEL_I16] = INT16_MAX, [HL_VOXEL_U32] = UINT32_MAX, [HL_VOXEL_I32] = INT32_MAX,
       [HL_VOXEL_U64] = 0x1p64,    [HL_VOXEL_I64] = 0x1p63};
-  if (type == HL_VOXEL_F32 || type == HL_VOXEL_F64) return true;
+  if (type == HL_VOXEL_F16 || type == HL_VOXEL_F32 || type == HL_VOXEL_F64) return true;
   return value >= low[type] && value <= high[type] && value == floor(value);
 }
 
@@ -143,32 +161,52 @@ static void store_number(const hl_volume_description *grid, double value, size_t
   }
 }
 
+/* The next number of a text, which is that of value number done. */
+static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index, void *voxels,
+                                 hl_error *error) {
+  double value;
+  bool found;
+  hl_status status = next_number(stream, &value, &found, error);
+  if (status != HL_OK) return status;
+  if (!found)
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                          "%s: %s promises %llu voxels, but only %llu numbers follow", stream->path,
+                          payload->promiser, (unsigned long long)value_count(payload), (unsigned long long)done);
+  if (payload->text_is_fraction) value = floor(255 * value + 0.5);
+  if (!fits_type(payload->grid.type, value))
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
+                          "%s, before byte %llu: %.17g does not fit the type %s", stream->path,
+                          (unsigned long long)stream->offset, value,
+                          hl_voxel_type_name(payload->grid.type));
+  store_number(&payload->grid, value, index, voxels);
+  return HL_OK;
+}
+
 static hl_status read_text(hl_stream *stream, const hl_payload *payload, void *voxels, hl_error *error) {
-  size_t count = voxel_count(payload);
+  size_t count = hl_payload_voxels(payload);
   for (size_t done = 0; done < count; done++) {
-    double value;
-    bool found;
-    hl_status status = next_number(stream, &value, &found, error);
-    if (status == HL_OK && done % PIECE_BYTES == 0) status = report(stream, done, count, error);
+    hl_status status = read_text_value(stream, payload, done, done, voxels, error);
+    if (status == HL_OK && done % PIECE_BYTES == 0) status = hl_payload_report(stream, done, count, error);
     if (status != HL_OK) return status;
-    if (!found)
-      return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
-                            "%s: %s promises %zu voxels, but only %zu numbers follow", stream->path,
-                            payload->promiser, count, done);
-    if (payload->text_is_fraction) value = floor(255 * value + 0.5);
-    if (!fits_type(payload->grid.type, value))
-      return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
-                            "%s, before byte %llu: %.17g does not fit the type %s", stream->path,
-                            (unsigned long long)stream->offset, value,
-                            hl_voxel_type_name(payload->grid.type));
-    store_number(&payload->grid, value, done, voxels);
   }
   return HL_OK;
 }
 
+hl_status hl_payload_stage(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count, void *stage,
+                           hl_error *error) {
+  unsigned char raw[STAGE_VOXELS * 8];
+  if (!payload->text) return read_piece(stream, payload, done, count, raw, stage, error);
+  hl_status status = HL_OK;
+  for (size_t n = 0; n < count && status == HL_OK; n++)
+    status = read_text_value(stream, payload, done + n, n, stage, error);
+  return status;
+}
+
 /* Asking for one byte more also lets a decompressor check its sum. */
 static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_error *error) {
-  if (payload->trailing == HL_TRAILING_IGNORED) return HL_OK;
+  bool to_the_end = payload->components == 1 || payload->component == HL_COMPONENT_MAGNITUDE ||
+                    payload->block < hl_payload_voxels(payload);
+  if (payload->trailing == HL_TRAILING_IGNORED || !to_the_end) return HL_OK;
   const unsigned char *bytes;
   size_t available;
   hl_status status = hl_stream_peek(stream, 1, &bytes, &available, error);
@@ -191,20 +229,38 @@ static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_erro
   return HL_OK;
 }
 
-hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, hl_volume **volume, hl_error *error) {
+/* What the volume is: of a magnitude, floats whose scale is applied. */
+static hl_volume_description grid_of(const hl_payload *payload, const double spacing[3]) {
+  hl_volume_description grid = payload->grid;
+  if (payload->components > 1 && payload->component == HL_COMPONENT_MAGNITUDE) {
+    grid.type = HL_VOXEL_F32;
+    grid.value_scale = 1;
+    grid.value_offset = 0;
+  }
+  for (int axis = 0; axis < 3 && spacing[0] > 0; axis++) {
+    double length = vec3_length(vec3_of(grid.axis[axis]));
+    for (int row = 0; row < 3; row++) grid.axis[axis][row] *= spacing[axis] / length;
+  }
+  return grid;
+}
+
+hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const double spacing[3], hl_volume **volume,
+                          hl_error *error) {
   hl_status status = check_promise(stream, payload, error);
   if (status != HL_OK) return status;
-  size_t stored_bytes = hl_storage_bytes(hl_voxel_type_storage(payload->grid.type));
-  void *voxels = hl_allocate(stream->context, voxel_count(payload), stored_bytes);
-  if (voxels == NULL) return hl_fail_memory(error, voxel_count(payload) * stored_bytes, stream->path);
-  status = report(stream, 0, voxel_count(payload), error);
+  hl_volume_description grid = grid_of(payload, spacing);
+  size_t stored_bytes = hl_storage_bytes(hl_voxel_type_storage(grid.type));
+  void *voxels = hl_allocate(stream->context, hl_payload_voxels(payload), stored_bytes);
+  if (voxels == NULL) return hl_fail_memory(error, hl_payload_voxels(payload) * stored_bytes, stream->path);
+  status = hl_payload_report(stream, 0, hl_payload_voxels(payload), error);
   if (status == HL_OK)
-    status = payload->text ? read_text(stream, payload, voxels, error)
-                           : read_binary(stream, payload, voxels, error);
+    status = payload->components > 1 ? hl_components_read(stream, payload, voxels, error)
+             : payload->text         ? read_text(stream, payload, voxels, error)
+                                     : read_binary(stream, payload, voxels, error);
   if (status == HL_OK) status = check_end(stream, payload, error);
   if (status != HL_OK) {
     hl_release(stream->context, voxels);
     return status;
   }
-  return hl_volume_adopt(stream->context, &payload->grid, stream->path, voxels, volume, error);
+  return hl_volume_adopt(stream->context, &grid, stream->path, voxels, volume, error);
 }

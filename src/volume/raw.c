@@ -31,7 +31,7 @@ static bool scan_sizes(const char **cursor, size_t sizes[3]) {
 static bool ends_word(char c) { return c == 0 || c == '.' || c == '_'; }
 
 static bool scan_type(const char **cursor, hl_voxel_type *type, bool *big_endian) {
-  for (int candidate = HL_VOXEL_U8; candidate <= HL_VOXEL_I64; candidate++) {
+  for (int candidate = HL_VOXEL_U8; candidate <= HL_VOXEL_F16; candidate++) {
     const char *name = hl_voxel_type_name((hl_voxel_type)candidate);
     const char *rest = *cursor + strlen(name);
     if (!hl_text_starts(*cursor, name) || !ends_word(*rest)) continue;
@@ -58,7 +58,7 @@ bool hl_raw_name(const char *path, hl_payload *payload) {
   return false;
 }
 
-hl_status hl_load_raw(hl_stream **stream, hl_volume **volume, hl_error *error) {
+hl_status hl_load_raw(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_payload payload;
   if (!hl_raw_name((*stream)->path, &payload))
     return hl_fail(
@@ -67,7 +67,8 @@ hl_status hl_load_raw(hl_stream **stream, hl_volume **volume, hl_error *error) {
         "(uint8, int8, uint16, ... int64, float32 or float64; _be after the type for "
         "big-endian; .raw or .raw.gz)",
         (*stream)->path);
-  return hl_payload_read(*stream, &payload, volume, error);
+  hl_status status = hl_component_only(request, (*stream)->path, false, &payload, error);
+  return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
 bool hl_is_raw_descriptor(const unsigned char *bytes, size_t length) {
@@ -109,7 +110,7 @@ static hl_status read_field(const hl_stream *stream, int line_number, const char
                               hl_text_printable(shown, value));
 }
 
-hl_status hl_load_raw_descriptor(hl_stream **stream, hl_volume **volume, hl_error *error) {
+hl_status hl_load_raw_descriptor(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   descriptor header = {.has_sizes = false};
   hl_payload_defaults(&header.payload);
   header.payload.promiser = "the .dat descriptor";
@@ -132,7 +133,8 @@ hl_status hl_load_raw_descriptor(hl_stream **stream, hl_volume **volume, hl_erro
                    (*stream)->path);
   hl_status status = hl_stream_switch(stream, header.data_file, error);
   if (status == HL_OK) status = hl_volume_check_grid(&header.payload.grid, (*stream)->path, error);
+  if (status == HL_OK) status = hl_component_only(request, (*stream)->path, false, &header.payload, error);
   if (status == HL_OK && hl_stream_at_most(*stream) != hl_payload_bytes(&header.payload))
     status = hl_stream_inflate_if_gzip(stream, error);
-  return status == HL_OK ? hl_payload_read(*stream, &header.payload, volume, error) : status;
+  return status == HL_OK ? hl_payload_read(*stream, &header.payload, request->spacing, volume, error) : status;
 }

@@ -15,6 +15,7 @@ typedef struct file_stream {
   int descriptor; /* -1 until open */
   bool regular;
   uint64_t size, position; /* of a regular file, bytes */
+  const unsigned char *memory; /* borrowed; [size]: the content, instead of a file's; else null */
 } file_stream;
 
 hl_stream *hl_stream_make(hl_context *context, size_t size, hl_stream *below) {
@@ -47,6 +48,16 @@ static hl_status file_pull(hl_stream *stream, unsigned char *bytes, size_t capac
   hl_status status = hl_file_pull(stream->context, file->descriptor, stream->path, bytes, capacity, count, error);
   file->position += *count;
   return status;
+}
+
+static hl_status memory_pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+  (void)error;
+  file_stream *file = (file_stream *)stream;
+  uint64_t left = file->size - file->position;
+  *count = left < capacity ? (size_t)left : capacity;
+  memcpy(bytes, file->memory + file->position, *count);
+  file->position += *count;
+  return HL_OK;
 }
 
 static uint64_t file_at_most(const hl_stream *stream) {
@@ -94,6 +105,27 @@ hl_status hl_stream_open(hl_context *context, const char *path, bool regular_onl
   return status;
 }
 
+hl_status hl_stream_open_memory(hl_context *context, const char *path, const void *bytes, size_t byte_count,
+                                hl_stream **stream, hl_error *error) {
+  *stream = NULL;
+  file_stream *file = (file_stream *)hl_stream_make(context, sizeof *file, NULL);
+  if (file == NULL) return hl_fail_memory(error, HL_STREAM_BUFFER_BYTES, path);
+  file->descriptor = -1;
+  file->base.pull = memory_pull;
+  file->base.at_most = file_at_most;
+  file->base.close = file_close;
+  file->regular = true;
+  file->memory = bytes;
+  file->size = byte_count;
+  file->base.path = hl_copy_text(context, path);
+  if (file->base.path == NULL) {
+    hl_stream_close(&file->base);
+    return hl_fail_memory(error, strlen(path), path);
+  }
+  *stream = &file->base;
+  return HL_OK;
+}
+
 hl_status hl_stream_switch(hl_stream **stream, const char *name, hl_error *error) {
   hl_context *context = (*stream)->context;
   char *folder = hl_path_folder(context, (*stream)->path);
@@ -110,9 +142,19 @@ hl_status hl_stream_switch(hl_stream **stream, const char *name, hl_error *error
   return HL_OK;
 }
 
+static const file_stream *file_of(const hl_stream *stream) {
+  while (stream->below != NULL) stream = stream->below;
+  return (const file_stream *)stream;
+}
+
+bool hl_stream_can_restart(const hl_stream *stream) { return file_of(stream)->regular; }
+
 hl_status hl_stream_restart(hl_stream **stream, hl_error *error) {
+  const file_stream *file = file_of(*stream);
   hl_stream *opened;
-  hl_status status = hl_stream_open((*stream)->context, (*stream)->path, true, &opened, error);
+  hl_status status = file->memory != NULL
+                         ? hl_stream_open_memory((*stream)->context, (*stream)->path, file->memory, file->size, &opened, error)
+                         : hl_stream_open((*stream)->context, (*stream)->path, true, &opened, error);
   if (status != HL_OK) return status;
   hl_stream_close(*stream);
   *stream = opened;

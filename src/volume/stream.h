@@ -35,9 +35,15 @@ struct hl_stream {
 /* Opens a file. regular_only: refuse pipes and devices (files that are named by another file). */
 hl_status hl_stream_open(hl_context *context, const char *path, bool regular_only, hl_stream **stream,
                          hl_error *error);
+/* The same of a file's content that is in the caller's memory, which must outlive the stream; path names it, and is where
+ * files that it names are looked for. */
+hl_status hl_stream_open_memory(hl_context *context, const char *path, const void *bytes, size_t byte_count,
+                                hl_stream **stream, hl_error *error);
 /* Replaces *stream by the file that its own file names (relative to its folder). */
 hl_status hl_stream_switch(hl_stream **stream, const char *name, hl_error *error);
-/* Opens *stream's file, which must be a regular one, again from the start. */
+/* Whether *stream's file can be read again: an ordinary one, or memory. */
+bool hl_stream_can_restart(const hl_stream *stream);
+/* Opens *stream's file, which must be one of these, again from the start. */
 hl_status hl_stream_restart(hl_stream **stream, hl_error *error);
 void hl_stream_close(hl_stream *stream); /* the whole chain; null is allowed */
 

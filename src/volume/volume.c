@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "volume/arrays.h"
 #include "volume/convert.h"
 
 void hl_volume_description_defaults(hl_volume_description *description) {
@@ -212,6 +213,7 @@ void hl_volume_retain(hl_volume *volume) {
 
 void hl_volume_release(hl_volume *volume) {
   if (volume == NULL || atomic_fetch_sub(&volume->references, 1) != 1) return;
+  hl_arrays_release(volume->context, volume->arrays, volume->array_count);
   hl_release(volume->context, volume->owned_voxels);
   hl_release(volume->context, volume);
 }
@@ -235,6 +237,18 @@ hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info) {
   info->mean = volume->mean;
   info->nonfinite_count = volume->nonfinite_count;
   memcpy(info->histogram, volume->histogram, sizeof info->histogram);
+  return HL_OK;
+}
+
+size_t hl_volume_array_count(const hl_volume *volume) { return volume != NULL ? volume->array_count : 0; }
+
+hl_status hl_volume_get_array(const hl_volume *volume, size_t index, hl_volume_array *array) {
+  if (volume == NULL || array == NULL || array->struct_size != sizeof *array || index >= volume->array_count)
+    return HL_ERROR_ARGUMENT;
+  const hl_array_entry *entry = &volume->arrays[index];
+  bool chosen = index == volume->chosen_array;
+  *array = (hl_volume_array){sizeof *array, entry->name, entry->components, entry->type, entry->of_cells, chosen,
+                             chosen ? volume->component : HL_COMPONENT_DEFAULT};
   return HL_OK;
 }
 

@@ -7,12 +7,21 @@
 #define HL_VOLUME_VOLUME_H
 
 #include <stdatomic.h>
+#include <stdbool.h>
 
 #include <halflight/volume.h>
 
 #include "core/vector.h"
 
 typedef enum hl_storage { HL_STORAGE_U8 = 0, HL_STORAGE_U16 = 1, HL_STORAGE_F32 = 2 } hl_storage;
+
+/* An array of the file that a volume was loaded from. */
+typedef struct hl_array_entry {
+  char *name;         /* owned */
+  size_t components;
+  hl_voxel_type type; /* 0: values that are not read */
+  bool of_cells;
+} hl_array_entry;
 
 struct hl_volume {
   hl_context *context;
@@ -29,6 +38,9 @@ struct hl_volume {
   double mean;
   uint64_t nonfinite_count;
   uint64_t histogram[HL_HISTOGRAM_BINS];
+  hl_array_entry *arrays;    /* owned; [array_count]; null unless loaded */
+  size_t array_count, chosen_array;
+  int component;             /* that was read, or HL_COMPONENT_MAGNITUDE */
 };
 
 static inline size_t hl_storage_bytes(hl_storage storage) {

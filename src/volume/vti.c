@@ -1,12 +1,13 @@
 /* volume/vti.c - VTK XML image data (.vti): ascii, base64 and appended arrays, plain or in zlib blocks.
  *
- * A first pass over the tags chooses the array: the active scalars, else the first of one component, of the
- * points, else of the cells. A second goes to its values. World: Origin + Direction * (Spacing * index),
+ * A first pass over the tags lists the arrays. Of those that nobody named, the active scalars are the volume, else the
+ * first of one component, of the points, else of the cells. A second pass goes to the values. World: Origin + Direction * (Spacing * index),
  * where indices count from the extent's start.
  */
 #include <math.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "volume/format.h"
 #include "volume/text.h"
 #include "volume/xml.h"
@@ -17,9 +18,7 @@ typedef enum section { SECTION_NONE, SECTION_POINTS, SECTION_CELLS } section;
 typedef enum array_format { FORMAT_ASCII, FORMAT_BINARY, FORMAT_APPENDED } array_format;
 
 typedef struct vti_array {
-  bool present, is_active;
   char type[NAME_BYTES];
-  size_t components;
   array_format format;
   uint64_t place; /* of inline values: offset in the file; of appended ones: in the appended data */
 } vti_array;
@@ -31,10 +30,12 @@ typedef struct vti_header {
   double extent[6];    /* first and last point index along x, y, z */
   double origin[3], spacing[3], direction[9];
   bool has_extent, has_piece;
+  bool is_whole;       /* its last tag was seen, or the appended data */
   section section;
   char active[NAME_BYTES]; /* name of the section's active scalars */
-  vti_array point, cell;   /* the best array so far of each kind */
-  size_t components;       /* of an array that was passed over for having several; 0: none */
+  vti_array *arrays;       /* owned; [HL_ARRAYS_MOST]; null before the first */
+  int active_points, active_cells; /* index of the active scalars; -1: none */
+  hl_load_request *request; /* lists the same arrays */
   uint64_t appended;       /* offset in the file of the appended data's first byte; 0: none */
   bool appended_is_base64;
 } vti_header;
@@ -117,37 +118,56 @@ static void begin_section(vti_header *header, const hl_xml_tag *tag, section whi
   if (active != NULL && strlen(active) < NAME_BYTES) strcpy(header->active, active);
 }
 
-/* Keeps the array if it is better than what there is. */
-static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_error *error) {
-  const char *type = hl_xml_attribute(tag, "type"), *name = hl_xml_attribute(tag, "Name");
-  const char *format = hl_xml_attribute(tag, "format"),
-             *components = hl_xml_attribute(tag, "NumberOfComponents");
+static bool find_type(const char *name, hl_voxel_type *type) {
+  static const hl_named_type types[] = {
+      {"UInt8", HL_VOXEL_U8},   {"Int8", HL_VOXEL_I8},   {"UInt16", HL_VOXEL_U16},  {"Int16", HL_VOXEL_I16},
+      {"UInt32", HL_VOXEL_U32}, {"Int32", HL_VOXEL_I32}, {"Float32", HL_VOXEL_F32}, {"Float64", HL_VOXEL_F64},
+      {"UInt64", HL_VOXEL_U64}, {"Int64", HL_VOXEL_I64}};
+  return hl_find_type(types, sizeof types / sizeof *types, name, type);
+}
+
+/* Where an array's values are and how they are written. */
+static hl_status read_array_place(const vti_header *header, const hl_xml_tag *tag, vti_array *array, hl_error *error) {
+  const char *type = hl_xml_attribute(tag, "type"), *format = hl_xml_attribute(tag, "format");
   const char *offset = hl_xml_attribute(tag, "offset");
-  if (header->section == SECTION_NONE) return HL_OK;
-  vti_array array = {.present = true, .components = 1, .place = header->stream->offset};
   size_t appended = 0;
+  *array = (vti_array){.place = header->stream->offset};
   if (type == NULL || strlen(type) >= NAME_BYTES)
     return refuse(header, HL_ERROR_INPUT, "a DataArray's type", type == NULL ? "" : type, error);
-  strcpy(array.type, type);
-  if (components != NULL && (hl_text_sizes(components, &array.components, 1) != 1 || array.components == 0))
-    return refuse(header, HL_ERROR_INPUT, "NumberOfComponents", components, error);
-  array.format = format == NULL || strcmp(format, "ascii") == 0 ? FORMAT_ASCII
-                 : strcmp(format, "appended") == 0              ? FORMAT_APPENDED
-                                                                : FORMAT_BINARY;
-  if (array.format == FORMAT_BINARY && strcmp(format, "binary") != 0)
+  strcpy(array->type, type);
+  array->format = format == NULL || strcmp(format, "ascii") == 0 ? FORMAT_ASCII
+                  : strcmp(format, "appended") == 0              ? FORMAT_APPENDED
+                                                                 : FORMAT_BINARY;
+  if (array->format == FORMAT_BINARY && strcmp(format, "binary") != 0)
     return refuse(header, HL_ERROR_INPUT, "a DataArray's format", format, error);
-  if (array.format == FORMAT_APPENDED) {
-    if (offset == NULL || hl_text_sizes(offset, &appended, 1) != 1)
-      return refuse(header, HL_ERROR_INPUT, "an appended DataArray's offset", offset == NULL ? "" : offset,
-                    error);
-    array.place = appended;
+  if (array->format != FORMAT_APPENDED) return HL_OK;
+  if (offset == NULL || hl_text_sizes(offset, &appended, 1) != 1)
+    return refuse(header, HL_ERROR_INPUT, "an appended DataArray's offset", offset == NULL ? "" : offset, error);
+  array->place = appended;
+  return HL_OK;
+}
+
+static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_error *error) {
+  if (header->section == SECTION_NONE) return HL_OK;
+  const char *name = hl_xml_attribute(tag, "Name"), *stated = hl_xml_attribute(tag, "NumberOfComponents");
+  vti_array array;
+  size_t components = 1, index = header->request->array_count;
+  hl_voxel_type type = 0;
+  bool cells = header->section == SECTION_CELLS;
+  hl_status status = read_array_place(header, tag, &array, error);
+  if (status != HL_OK) return status;
+  if (stated != NULL && (hl_text_sizes(stated, &components, 1) != 1 || components == 0))
+    return refuse(header, HL_ERROR_INPUT, "NumberOfComponents", stated, error);
+  find_type(array.type, &type);
+  status = hl_arrays_add(header->request, name != NULL ? name : "", components, type, cells, error);
+  if (status != HL_OK || header->request->array_count == index) return status;
+  if (header->arrays == NULL) {
+    header->arrays = hl_allocate(header->request->context, HL_ARRAYS_MOST, sizeof *header->arrays);
+    if (header->arrays == NULL) return hl_fail_memory(error, HL_ARRAYS_MOST * sizeof array, header->stream->path);
   }
-  array.is_active = header->active[0] != 0 && name != NULL && strcmp(name, header->active) == 0;
-  vti_array *best = header->section == SECTION_POINTS ? &header->point : &header->cell;
-  if (!array.is_active && array.components != 1)
-    header->components = array.components;
-  else if (!best->present || (array.is_active && !best->is_active))
-    *best = array;
+  header->arrays[index] = array;
+  int *active = cells ? &header->active_cells : &header->active_points;
+  if (header->active[0] != 0 && name != NULL && strcmp(name, header->active) == 0 && *active < 0) *active = (int)index;
   return HL_OK;
 }
 
@@ -178,6 +198,7 @@ static hl_status read_tag(vti_header *header, const hl_xml_tag *tag, hl_error *e
   if (!tag->is_start) {
     if (strcmp(tag->name, "PointData") == 0 || strcmp(tag->name, "CellData") == 0)
       header->section = SECTION_NONE;
+    if (strcmp(tag->name, "VTKFile") == 0) header->is_whole = true;
     return HL_OK;
   }
   if (header->header_bytes == 0 && strcmp(tag->name, "VTKFile") != 0)
@@ -204,11 +225,7 @@ static hl_status read_tags(vti_header *header, hl_error *error) {
 }
 
 static hl_status read_type(const vti_header *header, const char *name, hl_voxel_type *type, hl_error *error) {
-  static const hl_named_type types[] = {
-      {"UInt8", HL_VOXEL_U8},   {"Int8", HL_VOXEL_I8},   {"UInt16", HL_VOXEL_U16},  {"Int16", HL_VOXEL_I16},
-      {"UInt32", HL_VOXEL_U32}, {"Int32", HL_VOXEL_I32}, {"Float32", HL_VOXEL_F32}, {"Float64", HL_VOXEL_F64},
-      {"UInt64", HL_VOXEL_U64}, {"Int64", HL_VOXEL_I64}};
-  if (hl_find_type(types, sizeof types / sizeof *types, name, type)) return HL_OK;
+  if (find_type(name, type)) return HL_OK;
   bool known = hl_text_is_one_of(name, "String|Bit");
   return refuse(header, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, "a DataArray of type", name, error);
 }
@@ -275,35 +292,55 @@ static hl_status decode_array(hl_stream **stream, const vti_header *header, cons
              : read_length(*stream, header, promised, error);
 }
 
-static hl_status choose_array(const vti_header *header, const vti_array **chosen, hl_error *error) {
-  const vti_array *array = header->point.present ? &header->point : &header->cell;
-  *chosen = array;
-  size_t components = array->present ? array->components : header->components;
-  if (components > 1)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: voxels of %zu components: only one value per voxel is read", header->stream->path,
-                   components);
-  if (!array->present || !header->has_extent)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the file has no %s", header->stream->path,
-                   header->has_extent ? "DataArray in PointData or CellData" : "WholeExtent or Extent");
-  return HL_OK;
+/* The active scalars of the points; where the points have no array of one component, those of the cells. */
+static int active_array(const vti_header *header) {
+  if (header->active_points >= 0) return header->active_points;
+  for (size_t n = 0; n < header->request->array_count; n++)
+    if (!header->request->arrays[n].of_cells && header->request->arrays[n].components == 1) return -1;
+  return header->active_cells;
 }
 
-hl_status hl_load_vti(hl_stream **stream, hl_volume **volume, hl_error *error) {
-  vti_header header = {.stream = *stream, .spacing = {1, 1, 1}, .direction = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+static hl_status choose_array(const vti_header *header, hl_error *error) {
+  if (header->request->array_count > 0 && header->has_extent) {
+    hl_status status = hl_arrays_choose(header->request, header->stream->path, active_array(header), error);
+    const hl_array_entry *chosen = &header->request->arrays[header->request->chosen];
+    bool is_last_resort = header->request->array == NULL && (chosen->of_cells || chosen->components > 1);
+    if (status == HL_OK && is_last_resort && !header->is_whole && header->appended == 0)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: the file is cut short: it ends before </VTKFile>", header->stream->path);
+    return status;
+  }
+  return hl_fail(error, HL_ERROR_INPUT, "%s: the file has no %s", header->stream->path,
+                 header->has_extent ? "DataArray in PointData or CellData" : "WholeExtent or Extent");
+}
+
+/* Goes to the chosen array and makes the volume of it. */
+static hl_status read_array(hl_stream **stream, const vti_header *header, hl_volume **volume, hl_error *error) {
+  hl_load_request *request = header->request;
+  const vti_array *array = &header->arrays[request->chosen];
+  const hl_array_entry *entry = &request->arrays[request->chosen];
   hl_payload payload;
   hl_payload_defaults(&payload);
   payload.trailing = HL_TRAILING_IGNORED;
-  const vti_array *array = NULL;
-  hl_status status = read_tags(&header, error);
-  if (status == HL_OK) status = choose_array(&header, &array, error);
-  if (status == HL_OK) status = read_type(&header, array->type, &payload.grid.type, error);
+  hl_status status = read_type(header, array->type, &payload.grid.type, error);
   if (status != HL_OK) return status;
-  make_grid(&header, array == &header.cell, &payload.grid);
-  payload.big_endian = header.big_endian;
+  make_grid(header, entry->of_cells, &payload.grid);
+  payload.big_endian = header->big_endian;
   payload.text = array->format == FORMAT_ASCII;
+  payload.components = entry->components;
+  payload.block = 1;
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
-  if (status == HL_OK) status = go_to_array(stream, &header, array, error);
-  if (status == HL_OK) status = decode_array(stream, &header, array, &payload, error);
-  return status == HL_OK ? hl_payload_read(*stream, &payload, volume, error) : status;
+  if (status == HL_OK) status = hl_component_choose(request, (*stream)->path, false, &payload, error);
+  if (status == HL_OK) status = go_to_array(stream, header, array, error);
+  if (status == HL_OK) status = decode_array(stream, header, array, &payload, error);
+  return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
+}
+
+hl_status hl_load_vti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  vti_header header = {.stream = *stream, .spacing = {1, 1, 1}, .direction = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                       .active_points = -1, .active_cells = -1, .request = request};
+  hl_status status = read_tags(&header, error);
+  if (status == HL_OK) status = choose_array(&header, error);
+  if (status == HL_OK) status = read_array(stream, &header, volume, error);
+  hl_release(request->context, header.arrays);
+  return status;
 }

@@ -17,7 +17,8 @@ typedef struct seed_kind {
 static const seed_kind kinds[] = {{"nrrd", ".nrrd", "v.raw"},     {"nrrd", ".nhdr", "v.raw"},  {"metaimage", ".mha", "v.raw"},
                                   {"metaimage", ".mhd", "v.raw"}, {"nifti", ".nii", NULL},     {"nifti", ".nii.gz", NULL},
                                   {"nifti", ".hdr", NULL},        {"legacy_vtk", ".vtk", NULL}, {"vti", ".vti", NULL},
-                                  {"raw", ".raw", NULL},          {"raw", ".raw.gz", NULL},    {"raw", ".dat", "v.raw"}};
+                                  {"raw", ".raw", NULL},          {"raw", ".raw.gz", NULL},    {"raw", ".dat", "v.raw"},
+                                  {"npy", ".npy", NULL}};
 
 enum { EVERY = 7 }; /* prime to the samples' periods: one in so many is written */
 

@@ -92,6 +92,26 @@ static void check_volume(hl_volume *volume) {
   if (fuzz_check_answer(status, &error, function.opacity != NULL)) hl_transfer_function_release(fuzz_context(), &function);
 }
 
+/* The same content from memory, of other components, at another spacing. */
+static void load_otherwise(const char *path, const uint8_t *data, size_t size) {
+  static const int components[] = {HL_COMPONENT_MAGNITUDE, 1};
+  for (size_t n = 0; n < 2; n++) {
+    hl_volume_load_options options;
+    hl_volume_load_options_defaults(&options);
+    options.component = components[n];
+    options.array = n == 1 ? "" : NULL;
+    options.bytes = data;
+    options.byte_count = size;
+    for (int axis = 0; axis < 3; axis++) options.spacing[axis] = 0.5 * (axis + 1);
+    hl_volume *volume = NULL;
+    hl_error error = {0};
+    hl_status status = hl_volume_load_with(fuzz_context(), path, &options, &volume, &error);
+    if (fuzz_check_answer(status, &error, volume != NULL)) check_volume(volume);
+    hl_volume_release(volume);
+    fuzz_check_nothing_held();
+  }
+}
+
 void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *data, size_t size) {
   static const char cut[] = "\n%%%%\n";
   const uint8_t *second = memmem(data, size, cut, sizeof cut - 1);
@@ -105,6 +125,7 @@ void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *
   if (fuzz_check_answer(status, &error, volume != NULL)) check_volume(volume);
   hl_volume_release(volume);
   fuzz_check_nothing_held();
+  load_otherwise(path, data, first_size);
 }
 
 unsigned fuzz_byte(fuzz_source *source) {

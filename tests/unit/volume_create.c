@@ -85,6 +85,14 @@ static double write_value(hl_voxel_type type, size_t n, unsigned char *place) {
       memcpy(place, &v, 8);
       return (double)v;
     }
+    case HL_VOXEL_F16: { /* a whole number: sign, exponent + 15, ten bits of fraction */
+      int size = abs(value), exponent = 0;
+      while (size >> (exponent + 1) != 0) exponent++;
+      unsigned bits = size == 0 ? 0 : (unsigned)(exponent + 15) << 10 | ((unsigned)size << 10 >> exponent & 0x3ff);
+      uint16_t v = (uint16_t)(bits | (value < 0 ? 0x8000u : 0));
+      memcpy(place, &v, 2);
+      return value;
+    }
     case HL_VOXEL_F64: {
       double v = value * 0.125;
       memcpy(place, &v, 8);
@@ -142,7 +150,7 @@ static void test_types_and_strides(void **state) {
   const ptrdiff_t packed[3] = {1, NI, NI * NJ}, spread[3] = {2, 2 * NI, 2 * NI * NJ},
                   transposed[3] = {NJ * NK, NK, 1};
   const ptrdiff_t backwards[3] = {-1, -NI, -NI * NJ};
-  for (int type = HL_VOXEL_U8; type <= HL_VOXEL_I64; type++) {
+  for (int type = HL_VOXEL_U8; type <= HL_VOXEL_F16; type++) {
     check_type((hl_voxel_type)type, packed, 0, 1, 0);
     check_type((hl_voxel_type)type, packed, 0, -0.5, 7);
     check_type((hl_voxel_type)type, spread, 5, 1, 0);
@@ -238,7 +246,7 @@ static void test_nonfinite_voxels(void **state) {
 static void test_constant_volume(void **state) {
   (void)state;
   hl_context *context = make_context();
-  for (int type = HL_VOXEL_U8; type <= HL_VOXEL_I64; type++) {
+  for (int type = HL_VOXEL_U8; type <= HL_VOXEL_F16; type++) {
     unsigned char voxels[27 * 8];
     size_t bytes = hl_voxel_type_bytes((hl_voxel_type)type);
     double value = 0;
@@ -311,7 +319,7 @@ static void test_impossible_descriptions(void **state) {
         for (int axis = 0; axis < 3; axis++) description.dimensions[axis] = INT32_MAX;
         break;
       case 3: description.type = (hl_voxel_type)0; break;
-      case 4: description.type = (hl_voxel_type)11; break;
+      case 4: description.type = (hl_voxel_type)12; break;
       case 5: description.axis[1][1] = 0; break;
       case 6: description.axis[1][1] = NAN; break;
       case 7: memcpy(description.axis[2], description.axis[0], sizeof description.axis[0]); break;
@@ -363,7 +371,7 @@ static void test_memory_limit_and_counting(void **state) {
 /* Swapped input gives what native input gives, also in place and from odd addresses. */
 static void test_byte_order(void **state) {
   (void)state;
-  for (int t = HL_VOXEL_U8; t <= HL_VOXEL_I64; t++) {
+  for (int t = HL_VOXEL_U8; t <= HL_VOXEL_F16; t++) {
     hl_voxel_type type = (hl_voxel_type)t;
     size_t bytes = hl_voxel_type_bytes(type);
     unsigned char native[8 * 5 + 1], swapped[8 * 5 + 1], from_native[40], from_swapped[40];

@@ -27,6 +27,7 @@ double voxel_value(hl_voxel_type type, int n) {
     case HL_VOXEL_I32: return 268435456.0 * (n - 7) + 65536;
     case HL_VOXEL_F32: return 0.25 * n - 1.5;
     case HL_VOXEL_F64: return 0.125 * n - 0.5;
+    case HL_VOXEL_F16: return 0.25 * n - 1.5;
     case HL_VOXEL_U64: return 0x1p59 * n + 0x1p40;
     case HL_VOXEL_I64: return 0x1p59 * (n - 7) + 0x1p40;
   }
@@ -58,7 +59,12 @@ void add_integer(byte_buffer *target, uint64_t value, size_t length, bool big_en
 
 static void add_float(byte_buffer *target, double value, size_t length, bool big_endian) {
   uint64_t bits;
-  if (length == 4) {
+  if (length == 2) { /* of numbers that binary16 holds: the float's exponent and first ten bits of its fraction */
+    float narrow = (float)value;
+    uint32_t wide;
+    memcpy(&wide, &narrow, 4);
+    bits = value == 0 ? 0 : (wide >> 16 & 0x8000) | (((wide >> 23 & 255) - 112) << 10) | (wide >> 13 & 0x3ff);
+  } else if (length == 4) {
     float narrow = (float)value;
     uint32_t narrow_bits;
     memcpy(&narrow_bits, &narrow, 4);
@@ -71,7 +77,7 @@ static void add_float(byte_buffer *target, double value, size_t length, bool big
 
 void add_voxels(byte_buffer *target, hl_voxel_type type, bool big_endian) {
   for (int n = 0; n < VOXELS; n++)
-    if (type == HL_VOXEL_F32 || type == HL_VOXEL_F64)
+    if (type == HL_VOXEL_F16 || type == HL_VOXEL_F32 || type == HL_VOXEL_F64)
       add_float(target, voxel_value(type, n), hl_voxel_type_bytes(type), big_endian);
     else
       add_integer(target, (uint64_t)(int64_t)voxel_value(type, n), hl_voxel_type_bytes(type), big_endian);
@@ -111,10 +117,8 @@ static void add_hex(byte_buffer *target, const byte_buffer *source) {
   for (size_t n = 0; n < source->length; n++) add_text(target, n % 2 ? "%02X\n" : "%02x", source->data[n]);
 }
 
-static volume_sample begin(hl_voxel_type type, const char *name, ...) __attribute__((format(printf, 2, 3)));
-
 /* A sample with unit axes; the rest of its name describes it in failing tests. */
-static volume_sample begin(hl_voxel_type type, const char *name, ...) {
+volume_sample begin_sample(hl_voxel_type type, const char *name, ...) {
   volume_sample made = {.type = type, .scale = 1, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   va_list arguments;
   va_start(arguments, name);
@@ -129,7 +133,7 @@ static void raw_samples(sample_function *function, void *data) {
   for (size_t t = 0; t < TYPES; t++)
     for (int big = 0; big < 2; big++)
       for (int gzip = 0; gzip < 2; gzip++) {
-        volume_sample made = begin(all_types[t], "a4x4_3x2x2_%s%s.raw%s", hl_voxel_type_name(all_types[t]),
+        volume_sample made = begin_sample(all_types[t], "a4x4_3x2x2_%s%s.raw%s", hl_voxel_type_name(all_types[t]),
                                    big ? "_be" : "", gzip ? ".gz" : "");
         byte_buffer voxels = {.length = 0};
         add_voxels(&voxels, made.type, big);
@@ -139,7 +143,7 @@ static void raw_samples(sample_function *function, void *data) {
           made.file = voxels;
         function(&made, data);
       }
-  volume_sample made = begin(HL_VOXEL_U16, "described.dat");
+  volume_sample made = begin_sample(HL_VOXEL_U16, "described.dat");
   add_text(&made.file,
            "ObjectFileName: voxels.raw\r\nTaggedFileName: ---\r\nResolution: 3 2 2\r\n"
            "SliceThickness: 0.5 1 1.5\r\nFormat: USHORT\r\n\r\n");
@@ -200,7 +204,7 @@ static void nrrd_samples(sample_function *function, void *data) {
       for (int variant = 0; variant < 4; variant++) {
         bool big = variant & 1, detached = variant & 2;
         size_t line_end = (t + e + (size_t)variant) % 3;
-        volume_sample made = begin(all_types[t], "%s_%s_%zu_%d.%s", hl_voxel_type_name(all_types[t]),
+        volume_sample made = begin_sample(all_types[t], "%s_%s_%zu_%d.%s", hl_voxel_type_name(all_types[t]),
                                    encodings[e], line_end, big, detached ? "nhdr" : "nrrd");
         add_nrrd_header(&made, line_ends[line_end], encodings[e], big);
         if (detached) {
@@ -240,7 +244,7 @@ static void nrrd_variants(sample_function *function, void *data) {
        {0, 0, 0}},
   };
   for (size_t n = 0; n < sizeof variants / sizeof *variants; n++) {
-    volume_sample made = begin(HL_VOXEL_U8, "variant_%zu.nrrd", n);
+    volume_sample made = begin_sample(HL_VOXEL_U8, "variant_%zu.nrrd", n);
     add_text(&made.file, "NRRD000%zu\n%stype: uint8\nencoding: raw\n\n", n % 5 + 1, variants[n].fields);
     add_voxels(&made.file, HL_VOXEL_U8, false);
     memcpy(made.origin, variants[n].origin, sizeof made.origin);
@@ -248,7 +252,7 @@ static void nrrd_variants(sample_function *function, void *data) {
     function(&made, data);
   }
   for (int last = 0; last < 2; last++) {
-    volume_sample made = begin(HL_VOXEL_I16, "skip_%d.nhdr", last);
+    volume_sample made = begin_sample(HL_VOXEL_I16, "skip_%d.nhdr", last);
     add_text(
         &made.file,
         "NRRD0004\ntype: short\nendian: little\ndimension: 3\nsizes: 3 2 2\nencoding: raw\nbyteskip: %d\n"
@@ -271,7 +275,7 @@ static void meta_samples(sample_function *function, void *data) {
     for (int variant = 0; variant < 12; variant++) {
       bool big = variant & 1, detached = variant & 2;
       int coding = variant / 4; /* 0 raw, 1 zlib, 2 text */
-      volume_sample made = begin(all_types[t], "%s_%d.%s", hl_voxel_type_name(all_types[t]), variant,
+      volume_sample made = begin_sample(all_types[t], "%s_%d.%s", hl_voxel_type_name(all_types[t]), variant,
                                  detached ? "mhd" : "mha");
       byte_buffer voxels = {.length = 0}, *target = detached ? &made.other : &made.file;
       add_text(&made.file,
@@ -292,7 +296,7 @@ static void meta_samples(sample_function *function, void *data) {
       place_obliquely(&made);
       function(&made, data);
     }
-  volume_sample made = begin(HL_VOXEL_U8, "four dimensions.mha");
+  volume_sample made = begin_sample(HL_VOXEL_U8, "four dimensions.mha");
   add_text(
       &made.file,
       "NDims = 4\r\nDimSize = 3 2 2 1\r\nElementSize = 1 2 3 4\r\nElementToIntensityFunctionSlope = 2\r\n"
@@ -378,7 +382,7 @@ static void nifti_samples(sample_function *function, void *data) {
       int version = variant & 2 ? 2 : 1, kind = variant / 4;
       nifti_place place = (nifti_place)((t + (size_t)variant) % 4);
       volume_sample made =
-          begin(all_types[t], "%s_%d%s", hl_voxel_type_name(all_types[t]), variant, endings[kind]);
+          begin_sample(all_types[t], "%s_%d%s", hl_voxel_type_name(all_types[t]), variant, endings[kind]);
       bool pair = kind >= 2, scaled = t % 3 == 0;
       made.scale = scaled ? 0.5 : 1;
       made.shift = scaled ? -3 : 0;
@@ -459,7 +463,7 @@ static void vti_samples(sample_function *function, void *data) {
       bool big = variant & 1, wide = variant & 2, compressed = variant & 4;
       int coding = variant == 24 ? 0 : variant / 8 + 1; /* text, base64, appended base64, appended raw */
       size_t header_bytes = wide ? 8 : 4;
-      volume_sample made = begin(all_types[t], "%s_%d.vti", hl_voxel_type_name(all_types[t]), variant);
+      volume_sample made = begin_sample(all_types[t], "%s_%d.vti", hl_voxel_type_name(all_types[t]), variant);
       add_vti_head(&made.file, big, header_bytes, compressed);
       bool appended = coding >= 2;
       /* Two arrays: one to pass over, and the active one. */
@@ -492,7 +496,7 @@ static void legacy_samples(sample_function *function, void *data) {
     for (int variant = 0; variant < 6; variant++) {
       bool text = variant & 1;
       int kind = variant / 2; /* SCALARS with a lookup table, without, FIELD */
-      volume_sample made = begin(all_types[t], "%s_%d.vtk", hl_voxel_type_name(all_types[t]), variant);
+      volume_sample made = begin_sample(all_types[t], "%s_%d.vtk", hl_voxel_type_name(all_types[t]), variant);
       add_text(&made.file,
                "# vtk DataFile Version %s\ntitle\n%s%s\n%sDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\n%s "
                "0.5 1 3\n"
@@ -529,7 +533,7 @@ static void legacy_samples(sample_function *function, void *data) {
       function(&made, data);
     }
   for (int text = 0; text < 2; text++) {
-    volume_sample made = begin(HL_VOXEL_U8, "colors_%d.vtk", text);
+    volume_sample made = begin_sample(HL_VOXEL_U8, "colors_%d.vtk", text);
     add_text(&made.file,
              "# vtk DataFile Version 3.0\n\n%s\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nPOINT_DATA 12\n"
              "COLOR_SCALARS density 1\n",
@@ -549,6 +553,8 @@ void for_each_sample(sample_function *function, void *data) {
   nifti_samples(function, data);
   vti_samples(function, data);
   legacy_samples(function, data);
+  for_each_numpy_sample(function, data);
+  for_each_component_sample(function, data);
 }
 
 /* ---- files ---- */

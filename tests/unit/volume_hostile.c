@@ -15,6 +15,10 @@
 #define VTK        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\n"
 #define VTI        "<VTKFile type=\"ImageData\">"
 #define IMAGE      VTI "<ImageData WholeExtent=\"0 2 0 1 0 1\"><PointData>"
+/* At least the 257 bytes of a header whose length is "\1\1". */
+#define SPACES_64 "                                                                "
+#define LONG_LINE SPACES_64 SPACES_64 SPACES_64 SPACES_64 SPACES_64
+#define NPY "\x93NUMPY\1.\1\1{'descr': '<f4', 'fortran_order': False, "
 #define TWELVE     "123456789012"
 
 typedef struct malformed {
@@ -100,9 +104,13 @@ static const malformed files[] = {
      "only 9 numbers follow"},
     {"vectors.nrrd",
      NRRD "dimension: 4\nsizes: 3 3 2 2\ntype: uchar\nencoding: raw\nkinds: vector domain domain domain\n\n",
-     HL_ERROR_UNSUPPORTED, "voxels of 3 components"},
-    {"series.nrrd", NRRD "dimension: 4\nsizes: 3 2 2 7\ntype: uchar\nencoding: raw\n\n", HL_ERROR_UNSUPPORTED,
-     "7 samples"},
+     HL_ERROR_INPUT, "promises 36 bytes"},
+    {"series.nrrd", NRRD "dimension: 4\nsizes: 7 2 2 7\ntype: uchar\nencoding: raw\n\n", HL_ERROR_INPUT,
+     "promises 196 bytes"},
+    {"apart.nrrd", NRRD "dimension: 5\nsizes: 3 2 2 2 3\ntype: uchar\nencoding: raw\n"
+                   "kinds: vector domain domain domain list\n\n", HL_ERROR_UNSUPPORTED, "do not follow each other"},
+    {"components.nrrd", NRRD "dimension: 5\nsizes: 3 2 2 18446744073709551615 9\ntype: uchar\nencoding: raw\n"
+                   "kinds: domain domain domain vector vector\n\n", HL_ERROR_INPUT, "promises 18446744073709551615 bytes"},
     /* MetaImage */
     {"dims.mha", "NDims = 11\n", HL_ERROR_INPUT, "line 1: NDims cannot be \"11\""},
     {"size.mha", "NDims = 3\nDimSize = 3 2\n", HL_ERROR_INPUT, "line 2: DimSize cannot be \"3 2\""},
@@ -117,9 +125,14 @@ static const malformed files[] = {
     {"endless.mha", META "ElementType = MET_UCHAR\n", HL_ERROR_INPUT, "without ElementDataFile"},
     {"line.mha", META "what is this\n", HL_ERROR_INPUT, "line 3: expected \"Key = value\""},
     {"rgb.mha", META "ElementNumberOfChannels = 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n",
-     HL_ERROR_UNSUPPORTED, "voxels of 3 components"},
+     HL_ERROR_INPUT, "promises 36 bytes"},
+    {"channels.mha", META "ElementNumberOfChannels = 0\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n",
+     HL_ERROR_INPUT, "0 channels"},
     {"time.mha", "NDims = 4\nDimSize = 3 2 2 5\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n",
-     HL_ERROR_UNSUPPORTED, "dimension 4 has 5 samples"},
+     HL_ERROR_INPUT, "promises 60 bytes"},
+    {"both.mha",
+     "NDims = 4\nDimSize = 3 2 2 5\nElementNumberOfChannels = 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n",
+     HL_ERROR_UNSUPPORTED, "3 channels in each of 5 volumes"},
     {"list.mhd", META "ElementType = MET_UCHAR\nElementDataFile = LIST\na.raw\n", HL_ERROR_UNSUPPORTED,
      "several files"},
     {"tube.mha", "ObjectType = Tube\n", HL_ERROR_INPUT, "ObjectType cannot be \"Tube\""},
@@ -128,6 +141,22 @@ static const malformed files[] = {
      "promises 24 bytes of voxels (3 x 2 x 2 int16), the file has only 12"},
     {"zlib.mha", META "CompressedData = True\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" TWELVE,
      HL_ERROR_INPUT, "damaged"},
+    /* NumPy; a mark, version 1.0, the header's length as its two bytes */
+    {"version.npy", "\x93NUMPY\4.\1\1", HL_ERROR_UNSUPPORTED, "version 4 of the format"},
+    {"length.npy", "\x93NUMPY\1.\1a{", HL_ERROR_INPUT, "the file ends here"},
+    {"list.npy", "\x93NUMPY\1.\1\1[1, 2]" LONG_LINE, HL_ERROR_INPUT, "begins with '{'"},
+    {"record.npy", "\x93NUMPY\1.\1\1{'descr': [('a', '<f4')]}" LONG_LINE, HL_ERROR_UNSUPPORTED, "one plain type"},
+    {"object.npy", "\x93NUMPY\1.\1\1{'descr': '|O'}" LONG_LINE, HL_ERROR_UNSUPPORTED, "not elements of type \"|O\""},
+    {"key.npy", "\x93NUMPY\1.\1\1{'order': 1}" LONG_LINE, HL_ERROR_INPUT, "not \"order\""},
+    {"order.npy", "\x93NUMPY\1.\1\1{'fortran_order': Perhaps}" LONG_LINE, HL_ERROR_INPUT, "True or False"},
+    {"lacks.npy", "\x93NUMPY\1.\1\1{'descr': '<f4', 'shape': (2, 2, 2)}" LONG_LINE, HL_ERROR_INPUT, "lacks fortran_order"},
+    {"shape.npy", NPY "'shape': (2, -2, 2)}" LONG_LINE, HL_ERROR_INPUT, "expected a count"},
+    {"line.npy", NPY "'shape': (8,)}" LONG_LINE, HL_ERROR_UNSUPPORTED, "1 axes"},
+    {"five.npy", NPY "'shape': (2, 2, 2, 2, 2)}" LONG_LINE, HL_ERROR_UNSUPPORTED, "more than four axes"},
+    {"zero.npy", NPY "'shape': (2, 0, 2)}" LONG_LINE, HL_ERROR_INPUT, "has a zero"},
+    {"none.npy", NPY "'shape': (2, 2, 2, 0)}" LONG_LINE, HL_ERROR_INPUT, "has a zero"},
+    {"vast.npy", NPY "'shape': (99999999999, 99999999999, 2)}" LONG_LINE, HL_ERROR_INPUT, "beyond any memory"},
+    {"promise.npy", NPY "'shape': (999, 999, 999)}" LONG_LINE, HL_ERROR_INPUT, "promises 3988011996 bytes"},
     /* legacy VTK */
     {"coding.vtk", "# vtk DataFile Version 3.0\nt\nMORSE\n", HL_ERROR_INPUT,
      "line 3: expected ASCII or BINARY"},
@@ -142,9 +171,10 @@ static const malformed files[] = {
     {"type.vtk", VTK "POINT_DATA 12\nSCALARS a quark\n", HL_ERROR_INPUT, "\"quark\" are not read"},
     {"bit.vtk", VTK "POINT_DATA 12\nSCALARS a bit\n", HL_ERROR_UNSUPPORTED, "\"bit\" are not read"},
     {"scalars.vtk", VTK "POINT_DATA 12\nSCALARS a\n", HL_ERROR_INPUT, "expected \"SCALARS name type"},
-    {"rgb.vtk", VTK "POINT_DATA 1\nSCALARS a char 3\nLOOKUP_TABLE default\n1 2 3\n", HL_ERROR_UNSUPPORTED,
-     "3 components"},
-    {"vectors.vtk", VTK "POINT_DATA 12\nVECTORS v float\n", HL_ERROR_UNSUPPORTED, "\"VECTORS\" is not read"},
+    {"rgb.vtk", VTK "POINT_DATA 1\nSCALARS a char 3\nLOOKUP_TABLE default\n1 2 3\n", HL_ERROR_INPUT,
+     "POINT_DATA has 1 values"},
+    {"vectors.vtk", VTK "POINT_DATA 12\nVECTORS v float\n", HL_ERROR_INPUT, "promises 71 bytes of voxels as text"},
+    {"pairs.vtk", VTK "POINT_DATA 12\nPAIRS v float\n", HL_ERROR_UNSUPPORTED, "\"PAIRS\" is not read"},
     {"field.vtk", VTK "POINT_DATA 12\nFIELD f many\n", HL_ERROR_INPUT, "expected \"FIELD name number\""},
     {"array.vtk", VTK "POINT_DATA 12\nFIELD f 1\na 1\n", HL_ERROR_INPUT,
      "expected \"name components tuples type\""},
@@ -175,8 +205,11 @@ static const malformed files[] = {
     {"quark.vti", IMAGE "<DataArray type=\"Quark\">1</DataArray>", HL_ERROR_INPUT, "\"Quark\" is impossible"},
     {"format.vti", IMAGE "<DataArray type=\"Int8\" format=\"wax\">1</DataArray>", HL_ERROR_INPUT,
      "format \"wax\""},
-    {"rgb.vti", IMAGE "<DataArray type=\"Int8\" NumberOfComponents=\"3\">1</DataArray>", HL_ERROR_UNSUPPORTED,
-     "3 components"},
+    {"rgb.vti", IMAGE "<DataArray type=\"Int8\" NumberOfComponents=\"3\">1</DataArray>", HL_ERROR_INPUT,
+     "ends before </VTKFile>"},
+    {"rgb_whole.vti",
+     IMAGE "<DataArray type=\"Int8\" NumberOfComponents=\"3\">1</DataArray></PointData></ImageData></VTKFile>",
+     HL_ERROR_INPUT, "promises 71 bytes of voxels as text"},
     {"offset.vti", IMAGE "<DataArray type=\"Int8\" format=\"appended\"/>", HL_ERROR_INPUT, "offset"},
     {"appended.vti", IMAGE "<DataArray type=\"Int8\" format=\"appended\" offset=\"0\"/></PointData>",
      HL_ERROR_INPUT, "AppendedData"},
@@ -281,9 +314,11 @@ static void test_malformed_nifti(void **unused) {
   } faults[] = {{40, "\0\0", 2, HL_ERROR_INPUT, "dim[0] is 0"},
                 {40, "\x08\0", 2, HL_ERROR_INPUT, "dim[0] is 8"},
                 {42, "\xff\xff", 2, HL_ERROR_INPUT, "dim[1] is -1"},
-                {40, "\4\0\3\0\2\0\2\0\5\0", 10, HL_ERROR_UNSUPPORTED, "a series of volumes, 5 (dim[4])"},
-                {40, "\5\0\3\0\2\0\2\0\1\0\3\0", 12, HL_ERROR_UNSUPPORTED, "several components, 3 (dim[5])"},
-                {70, "\x80\0", 2, HL_ERROR_UNSUPPORTED, "RGB, 3 components"},
+                {40, "\4\0\3\0\2\0\2\0\5\0", 10, HL_ERROR_INPUT, "promises 60 bytes"},
+                {40, "\5\0\3\0\2\0\2\0\1\0\3\0", 12, HL_ERROR_INPUT, "promises 36 bytes"},
+                {40, "\5\0\3\0\2\0\2\0\x03\0\3\0", 12, HL_ERROR_INPUT, "promises 108 bytes"},
+                {70, "\x80\0", 2, HL_ERROR_INPUT, "promises 36 bytes"},
+                {70, "\x00\x08", 2, HL_ERROR_UNSUPPORTED, "complex float128"},
                 {70, "\x00\6", 2, HL_ERROR_UNSUPPORTED, "float128"},
                 {70, "\x39\5", 2, HL_ERROR_INPUT, "no NIfTI datatype 1337"},
                 {112, "\0\0\x80\x3f\0\0\xc0\x7f", 8, HL_ERROR_INPUT, "scl_inter is not a finite number"},

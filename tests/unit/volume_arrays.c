@@ -1,0 +1,242 @@
+/* tests/unit/volume_arrays.c - which array and component is read, what is told, and the other options of loading. */
+#include "volume_files.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/context.h"
+
+typedef struct told {
+  int warnings;
+  char last[1000];
+} told;
+
+static void on_log(void *user_data, hl_log_level level, const char *message) {
+  told *t = user_data;
+  if (level != HL_LOG_WARNING) return;
+  t->warnings++;
+  snprintf(t->last, sizeof t->last, "%s", message);
+}
+
+static hl_context *make_context(told *t) {
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.user_data = t;
+  options.log = on_log;
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
+  return context;
+}
+
+static hl_volume_load_options load_options(const char *array, int component) {
+  hl_volume_load_options options;
+  hl_volume_load_options_defaults(&options);
+  options.array = array;
+  options.component = component;
+  return options;
+}
+
+/* Loads a file's content from memory. */
+static hl_volume *load(hl_context *context, const byte_buffer *file, const char *array, int component, hl_error *error) {
+  hl_volume_load_options options = load_options(array, component);
+  options.bytes = file->data;
+  options.byte_count = file->length;
+  hl_volume *volume = NULL;
+  hl_status status = hl_volume_load_with(context, "memory", &options, &volume, error);
+  assert_true((status == HL_OK) == (volume != NULL));
+  return volume;
+}
+
+static const char two_arrays[] =
+    "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><PointData Scalars=\"b\">"
+    "<DataArray type=\"UInt8\" Name=\"a\">1 2 3 4 5 6 7 8</DataArray><DataArray type=\"Int16\" Name=\"b\">9 10 11 12 13 14 15 16"
+    "</DataArray><DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"3\">3 4 0 0 0 1 0 0 2 0 0 3 0 0 4 0 0 5 0 0 6 2 3 6"
+    "</DataArray></PointData></ImageData></VTKFile>";
+
+static void test_arrays_are_chosen_by_name(void **state) {
+  (void)state;
+  told t = {0};
+  hl_context *context = make_context(&t);
+  byte_buffer file = {.length = 0};
+  add(&file, two_arrays, strlen(two_arrays));
+  hl_error error = {0};
+  hl_volume *volume = load(context, &file, NULL, HL_COMPONENT_DEFAULT, &error); /* the active one */
+  assert_true(hl_volume_value(volume, 0, 0, 0) == 9);
+  assert_int_equal(t.warnings, 1);
+  assert_non_null(strstr(t.last, "of 3 arrays, b is taken"));
+  assert_non_null(strstr(t.last, "a; b; v (3 components)"));
+  hl_volume_array array = {.struct_size = sizeof array};
+  assert_int_equal(hl_volume_array_count(volume), 3);
+  assert_int_equal(hl_volume_get_array(volume, 1, &array), HL_OK);
+  assert_true(array.chosen && strcmp(array.name, "b") == 0 && array.type == HL_VOXEL_I16 && array.component == 0);
+  assert_int_equal(hl_volume_get_array(volume, 2, &array), HL_OK);
+  assert_true(!array.chosen && array.components == 3 && array.type == HL_VOXEL_F32 && !array.of_cells);
+  assert_int_equal(hl_volume_get_array(volume, 3, &array), HL_ERROR_ARGUMENT);
+  hl_volume_release(volume);
+  volume = load(context, &file, "a", HL_COMPONENT_DEFAULT, &error);
+  assert_true(hl_volume_value(volume, 1, 1, 1) == 8);
+  hl_volume_release(volume);
+  assert_int_equal(t.warnings, 1); /* what was named needs no word */
+  assert_null(load(context, &file, "c", HL_COMPONENT_DEFAULT, &error));
+  assert_int_equal(error.code, HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "no array \"c\": there is a; b; v (3 components)"));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void test_components(void **state) {
+  (void)state;
+  told t = {0};
+  hl_context *context = make_context(&t);
+  byte_buffer file = {.length = 0};
+  add(&file, two_arrays, strlen(two_arrays));
+  hl_error error = {0};
+  for (int component = 0; component < 3; component++) {
+    hl_volume *volume = load(context, &file, "v", component, &error);
+    assert_true(hl_volume_value(volume, 1, 1, 1) == (component == 0 ? 2 : component == 1 ? 3 : 6));
+    hl_volume_release(volume);
+  }
+  assert_int_equal(t.warnings, 0);
+  hl_volume *volume = load(context, &file, "v", HL_COMPONENT_MAGNITUDE, &error);
+  assert_true(hl_volume_value(volume, 0, 0, 0) == 5 && hl_volume_value(volume, 1, 1, 1) == 7);
+  hl_volume_release(volume);
+  assert_int_equal(t.warnings, 0);
+  volume = load(context, &file, "v", HL_COMPONENT_DEFAULT, &error); /* of three the magnitude, told */
+  assert_true(hl_volume_value(volume, 0, 0, 0) == 5);
+  assert_int_equal(t.warnings, 1);
+  assert_non_null(strstr(t.last, "their magnitude is taken"));
+  hl_volume_array array = {.struct_size = sizeof array};
+  assert_int_equal(hl_volume_get_array(volume, 2, &array), HL_OK);
+  assert_true(array.chosen && array.component == HL_COMPONENT_MAGNITUDE);
+  hl_volume_release(volume);
+  assert_null(load(context, &file, "v", 3, &error));
+  assert_non_null(strstr(error.message, "no component 3: choose 0 to 2, or magnitude"));
+  assert_null(load(context, &file, "a", 1, &error));
+  assert_null(load(context, &file, "a", HL_COMPONENT_MAGNITUDE, &error));
+  assert_non_null(strstr(error.message, "one component, 0"));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* A series: each volume is a component; scaled values; the magnitude of signed, scaled planes. */
+static void test_series(void **state) {
+  (void)state;
+  told t = {0};
+  hl_context *context = make_context(&t);
+  byte_buffer file = {.length = 0};
+  add_text(&file, "NDims = 4\nDimSize = 2 1 1 3\nElementType = MET_CHAR\nElementToIntensityFunctionSlope = 0.5\n"
+                  "ElementToIntensityFunctionOffset = 1\nElementDataFile = LOCAL\n");
+  add(&file, (const signed char[]){2, 4, 6, -8, 10, -12}, 6);
+  hl_error error = {0};
+  for (int step = 0; step < 3; step++) {
+    hl_volume *volume = load(context, &file, NULL, step, &error);
+    assert_true(hl_volume_value(volume, 0, 0, 0) == 2 + 2 * step);
+    hl_volume_release(volume);
+  }
+  assert_int_equal(t.warnings, 0);
+  hl_volume *volume = load(context, &file, NULL, HL_COMPONENT_MAGNITUDE, &error);
+  assert_true(fabs(hl_volume_value(volume, 0, 0, 0) - sqrt(4 + 16 + 36)) < 1e-6);
+  assert_true(fabs(hl_volume_value(volume, 1, 0, 0) - sqrt(9 + 9 + 25)) < 1e-6);
+  hl_volume_release(volume);
+  volume = load(context, &file, NULL, HL_COMPONENT_DEFAULT, &error);
+  assert_true(hl_volume_value(volume, 1, 0, 0) == 3);
+  assert_int_equal(t.warnings, 1);
+  assert_non_null(strstr(t.last, "a series of volumes: the first, 0, is taken"));
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* More values than a stage holds, in blocks that are read and blocks that are passed over. */
+static void test_large_components(void **state) {
+  (void)state;
+  enum { W = 300, H = 300, STEPS = 4 };
+  told t = {0};
+  hl_context *context = make_context(&t);
+  unsigned char *bytes = malloc(200 + STEPS * W * H);
+  for (int side_by_side = 0; side_by_side < 2; side_by_side++) {
+    int head = sprintf((char *)bytes, "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 4\n%s\n\n",
+                       side_by_side ? "sizes: 4 300 150 2\nkinds: vector domain domain domain"
+                                    : "sizes: 300 150 2 4\nkinds: domain domain domain time");
+    for (int c = 0; c < STEPS; c++)
+      for (int n = 0; n < W * H; n++)
+        bytes[head + (side_by_side ? STEPS * n + c : c * W * H + n)] = (unsigned char)(n * 7 + n / 255 + 50 * c);
+    for (int c = 0; c < STEPS; c++) {
+      hl_volume_load_options options = load_options(NULL, c);
+      options.bytes = bytes;
+      options.byte_count = (size_t)head + STEPS * W * H;
+      hl_volume *volume = NULL;
+      assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, NULL), HL_OK);
+      for (size_t n = 0; n < W * H; n += 97)
+        assert_true(hl_volume_value(volume, n % W, n / W % (H / 2), n / W / (H / 2)) == (unsigned char)(n * 7 + n / 255 + 50 * (size_t)c));
+      hl_volume_release(volume);
+    }
+  }
+  free(bytes);
+  hl_context_destroy(context);
+}
+
+static void test_spacing_takes_the_place_of_the_files(void **state) {
+  (void)state;
+  told t = {0};
+  hl_context *context = make_context(&t);
+  byte_buffer file = {.length = 0};
+  add_text(&file, "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 3\nsizes: 2 1 1\n"
+                  "space directions: (0,3,0) (1,0,0) (0,0,1)\nspace origin: (5,6,7)\n\n12");
+  hl_volume_load_options options = load_options(NULL, HL_COMPONENT_DEFAULT);
+  options.bytes = file.data;
+  options.byte_count = file.length;
+  options.spacing[0] = 0.5, options.spacing[1] = 2, options.spacing[2] = 4;
+  hl_volume *volume = NULL;
+  hl_volume_info info = {.struct_size = sizeof info};
+  assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, NULL), HL_OK);
+  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
+  for (int axis = 0; axis < 3; axis++) assert_true(info.spacing[axis] == options.spacing[axis]);
+  assert_true(info.direction[1][0] == 1 && info.origin[0] == 5 && info.origin[2] == 7);
+  hl_volume_release(volume);
+  hl_error error = {0};
+  for (int fault = 0; fault < 3; fault++) {
+    options.spacing[1] = fault == 0 ? 0 : fault == 1 ? -1 : INFINITY;
+    assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, &error), HL_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "spacing[1]"));
+  }
+  options.struct_size = 8;
+  assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, &error), HL_ERROR_ARGUMENT);
+  hl_context_destroy(context);
+}
+
+/* IEEE 754 binary16: subnormal, normal, greatest, negative, infinite. */
+static void test_values_of_half_floats(void **state) {
+  (void)state;
+  told t = {0};
+  hl_context *context = make_context(&t);
+  static const struct {
+    unsigned bits;
+    double value;
+  } halves[] = {{0x0001, 0x1p-24}, {0x03ff, 0x3ffp-24}, {0x0400, 0x1p-14}, {0x3c00, 1}, {0x7bff, 65504}, {0xc000, -2},
+                {0x8000, 0}, {0x3555, 0.333251953125}, {0x7c00, INFINITY}, {0x7e00, NAN}};
+  enum { COUNT = sizeof halves / sizeof *halves };
+  byte_buffer file = {.length = 0};
+  for (int n = 0; n < COUNT; n++) add_integer(&file, halves[n].bits, 2, false);
+  hl_volume_load_options options = load_options(NULL, HL_COMPONENT_DEFAULT);
+  options.bytes = file.data;
+  options.byte_count = file.length;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_load_with(context, "h_10x1x1_float16.raw", &options, &volume, NULL), HL_OK);
+  for (size_t n = 0; n < COUNT; n++) {
+    double value = hl_volume_value(volume, n, 0, 0);
+    assert_true(isfinite(halves[n].value) ? value == halves[n].value : isnan(value));
+  }
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_arrays_are_chosen_by_name), cmocka_unit_test(test_components),
+      cmocka_unit_test(test_series), cmocka_unit_test(test_large_components),
+      cmocka_unit_test(test_spacing_takes_the_place_of_the_files), cmocka_unit_test(test_values_of_half_floats)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,145 @@
+/* tests/unit/volume_files_more.c - samples of volume_files.h: NumPy arrays, and voxels of several components. */
+#include "volume_files.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- NumPy ---- */
+
+static const struct {
+  hl_voxel_type type;
+  const char *name;
+} numpy_types[] = {{HL_VOXEL_U8, "u1"},  {HL_VOXEL_I8, "i1"},  {HL_VOXEL_U16, "u2"}, {HL_VOXEL_I16, "i2"},
+                   {HL_VOXEL_U32, "u4"}, {HL_VOXEL_I32, "i4"}, {HL_VOXEL_U64, "u8"}, {HL_VOXEL_I64, "i8"},
+                   {HL_VOXEL_F16, "f2"}, {HL_VOXEL_F32, "f4"}, {HL_VOXEL_F64, "f8"}};
+
+/* version: 1 to 3; the text is padded to 64 bytes as NumPy does. */
+static void add_numpy_header(byte_buffer *file, int version, const char *type, bool big, bool fortran, const char *shape) {
+  char text[200];
+  int length = snprintf(text, sizeof text, "{'descr': '%s%s', 'fortran_order': %s, 'shape': %s, }",
+                        type[1] == '1' ? "|" : big ? ">" : "<", type, fortran ? "True" : "False", shape);
+  size_t before = version == 1 ? 10 : 12, whole = (before + (size_t)length + 1 + 63) / 64 * 64;
+  add(file, "\x93NUMPY", 6);
+  add_integer(file, (uint64_t)version, 2, false);
+  add_integer(file, whole - before, before - 8, false);
+  add_text(file, "%s%*s\n", text, (int)(whole - before - (size_t)length - 1), "");
+}
+
+/* The voxels of add_voxels() with z fastest and x slowest. */
+static void add_turned_voxels(byte_buffer *file, hl_voxel_type type, bool big) {
+  byte_buffer straight = {.length = 0};
+  size_t bytes = hl_voxel_type_bytes(type);
+  add_voxels(&straight, type, big);
+  for (size_t x = 0; x < NI; x++)
+    for (size_t y = 0; y < NJ; y++)
+      for (size_t z = 0; z < NK; z++) add(file, straight.data + ((z * NJ + y) * NI + x) * bytes, bytes);
+}
+
+void for_each_numpy_sample(sample_function *function, void *data) {
+  for (size_t t = 0; t < sizeof numpy_types / sizeof *numpy_types; t++)
+    for (int variant = 0; variant < 12; variant++) {
+      bool big = variant & 1, fortran = variant & 2;
+      int version = 1 + variant / 4;
+      volume_sample made = begin_sample(numpy_types[t].type, "%s_%d.npy", numpy_types[t].name, variant);
+      add_numpy_header(&made.file, version, numpy_types[t].name, big, fortran, "(2, 2, 3)");
+      if (fortran) add_turned_voxels(&made.file, made.type, big);
+      else add_voxels(&made.file, made.type, big);
+      function(&made, data);
+    }
+}
+
+/* ---- several components ---- */
+
+enum { COMPONENTS = 5 };
+
+/* The voxels as component 0, and bytes of another kind as the others: side by side, or after each other. */
+static void add_components(byte_buffer *file, hl_voxel_type type, size_t components, bool side_by_side) {
+  byte_buffer voxels = {.length = 0};
+  size_t bytes = hl_voxel_type_bytes(type);
+  add_voxels(&voxels, type, false);
+  for (size_t n = 0; n < VOXELS * components; n++) {
+    size_t voxel = side_by_side ? n / components : n % VOXELS, component = side_by_side ? n % components : n / VOXELS;
+    if (component == 0) add(file, voxels.data + voxel * bytes, bytes);
+    else for (size_t b = 0; b < bytes; b++) add_integer(file, 77 + component, 1, false);
+  }
+}
+
+static void nrrd_components(sample_function *function, void *data) {
+  static const struct {
+    const char *fields;
+    bool side_by_side;
+    size_t components;
+  } layouts[] = {
+      {"dimension: 4\nsizes: 5 3 2 2\nkinds: vector domain domain domain\n", true, 5},
+      {"dimension: 4\nsizes: 3 2 2 5\nkinds: domain domain domain list\n", false, 5},
+      {"dimension: 4\nsizes: 5 3 2 2\nkinds: time space space space\n", true, 5},
+      {"dimension: 4\nsizes: 5 3 2 2\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\n", true, 5},
+      {"dimension: 5\nsizes: 2 2 3 2 2\nkinds: vector vector domain domain domain\n", true, 4}};
+  for (size_t n = 0; n < sizeof layouts / sizeof *layouts; n++) {
+    volume_sample made = begin_sample(HL_VOXEL_I16, "components_%zu.nrrd", n);
+    add_text(&made.file, "NRRD0005\ntype: short\nendian: little\nencoding: raw\n%s\n", layouts[n].fields);
+    add_components(&made.file, made.type, layouts[n].components, layouts[n].side_by_side);
+    function(&made, data);
+  }
+  /* a component axis between those of the grid */
+  volume_sample made = begin_sample(HL_VOXEL_U8, "components_within.nrrd");
+  add_text(&made.file, "NRRD0005\ntype: uchar\nencoding: raw\ndimension: 4\nsizes: 3 2 4 2\nkinds: domain domain vector domain\n\n");
+  byte_buffer voxels = {.length = 0};
+  add_voxels(&voxels, HL_VOXEL_U8, false);
+  for (size_t k = 0; k < NK; k++)
+    for (size_t c = 0; c < 4; c++)
+      for (size_t n = 0; n < NI * NJ; n++) {
+        if (c == 0) add(&made.file, voxels.data + k * NI * NJ + n, 1);
+        else add_integer(&made.file, c, 1, false);
+      }
+  function(&made, data);
+}
+
+static void meta_components(sample_function *function, void *data) {
+  volume_sample made = begin_sample(HL_VOXEL_I16, "channels.mha");
+  add_text(&made.file, "NDims = 3\nDimSize = 3 2 2\nElementNumberOfChannels = %d\nElementType = MET_SHORT\nElementDataFile = LOCAL\n",
+           COMPONENTS);
+  add_components(&made.file, made.type, COMPONENTS, true);
+  function(&made, data);
+  volume_sample series = begin_sample(HL_VOXEL_F32, "series.mha");
+  add_text(&series.file, "NDims = 4\nDimSize = 3 2 2 %d\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n", COMPONENTS);
+  add_components(&series.file, series.type, COMPONENTS, false);
+  function(&series, data);
+}
+
+static void vtk_components(sample_function *function, void *data) {
+  for (int first = 0; first < 2; first++) { /* the volume before and after a vector; and one that is not understood */
+    /* Cut before its scalars, a file of vectors is whole: the type keeps the second out of that test. */
+    volume_sample made = begin_sample(first ? HL_VOXEL_U16 : HL_VOXEL_U8, "vectors_%d.vtk", first);
+    add_text(&made.file, "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nPOINT_DATA 12\n");
+    if (first) add_text(&made.file, "VECTORS v char\n123123123123123123123123123123123123\n");
+    add_text(&made.file, "SCALARS density %s\nLOOKUP_TABLE default\n", first ? "unsigned_short" : "unsigned_char");
+    add_voxels(&made.file, made.type, true);
+    if (!first) add_text(&made.file, "\nNORMALS n char\n123123123123123123123123123123123123");
+    add_text(&made.file, "\nSCALARS other unsigned_char\nLOOKUP_TABLE default\n123456789012\nGLOBAL_IDS x\n");
+    function(&made, data);
+  }
+  volume_sample made = begin_sample(HL_VOXEL_U8, "arrays.vti");
+  add_text(&made.file, "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 2 0 1 0 1\"><CellData><DataArray type=\"UInt8\" "
+                       "Name=\"c\">1 2</DataArray></CellData><PointData><DataArray type=\"String\" Name=\"s\">1</DataArray>"
+                       "<DataArray type=\"UInt8\" Name=\"v\" NumberOfComponents=\"3\">1</DataArray>"
+                       "<DataArray type=\"UInt8\" Name=\"density\">");
+  add_voxels_as_text(&made.file, HL_VOXEL_U8, " ");
+  add_text(&made.file, "</DataArray><DataArray type=\"UInt8\" Name=\"d\">7</DataArray></PointData></ImageData></VTKFile>");
+  made.is_text = true;
+  function(&made, data);
+}
+
+static void numpy_components(sample_function *function, void *data) {
+  volume_sample last = begin_sample(HL_VOXEL_I16, "last.npy");
+  add_numpy_header(&last.file, 1, "i2", false, false, "(2, 2, 3, 4)");
+  add_components(&last.file, last.type, 4, true);
+  function(&last, data);
+}
+
+void for_each_component_sample(sample_function *function, void *data) {
+  nrrd_components(function, data);
+  meta_components(function, data);
+  vtk_components(function, data);
+  numpy_components(function, data);
+}
