@@ -1,5 +1,8 @@
 /* halflight/context.h - the context: memory, messages, progress and cancellation.
  *
+ * Where a function takes a pointer and does not say that it may be null, null is refused with HL_ERROR_ARGUMENT; functions
+ * without a status do nothing then, or answer null, 0 or NaN. No null crashes.
+ *
  * Every other object is made with a context and must not outlive it. The library keeps no
  * global state, prints nothing, never exits and reads no environment variables.
  */
@@ -77,6 +80,9 @@ typedef struct hl_context_options {
   uint64_t memory_limit;                /* bytes held through this context at once; 0: no limit */
   hl_instruction_set instruction_set;   /* an unsupported choice is refused */
   const char *data_folder;              /* where "data:" in a scene's file names leads; copied; null: nowhere */
+  /* Told the path of every file that is opened to be read: scenes, volumes and the data files that their headers name,
+   * transfer functions, pictures. Who then writes a file can see that it is none of them. */
+  void (*reads)(void *user_data, const char *path);
 } hl_context_options;
 
 typedef struct hl_context hl_context; /* usable from several threads at once */

@@ -204,7 +204,8 @@ HL_API void hl_text_release(hl_context *context, char *text);
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
                                                     hl_scene **scene, hl_error *error);
 
-/* The scene's own copy: valid as long as the scene; change a copy of it and create another scene. */
+/* The scene's own copy: valid as long as the scene; change a copy of it and create another scene.
+ * Null for null. */
 HL_API const hl_scene_description *hl_scene_describe(const hl_scene *scene);
 
 HL_API void hl_scene_retain(hl_scene *scene);
@@ -221,7 +222,8 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *descri
                                               hl_camera *camera);
 
 /* The direction (unit, the way light travels) of a light that stands, seen by the camera, at azimuth
- * (positive: right) and elevation (positive: up) from the line of sight: 0,0 is a headlight. */
+ * (positive: right) and elevation (positive: up) from the line of sight: 0,0 is a headlight. camera null: direction
+ * becomes 0, 0, 0, which hl_scene_create() refuses; direction null: nothing is done. */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                                double direction[3]);
 

@@ -15,6 +15,7 @@ enum diff_option {
   DIFF_MAX_MEAN,
   DIFF_OUTPUT,
   DIFF_AMPLIFY,
+  DIFF_MAX_MEMORY,
   DIFF_JSON,
   DIFF_OPTION_COUNT
 };
@@ -58,6 +59,10 @@ static const cli_option diff_options[DIFF_OPTION_COUNT] = {
                       .count = 1,
                       .above = true,
                       .high = INFINITY},
+    [DIFF_MAX_MEMORY] = {.name = "max-memory",
+                         .kind = OPTION_BYTES,
+                         .argument = "BYTES",
+                         .help = "fail rather than hold more; suffix K, M, G or T"},
     [DIFF_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "metrics as JSON"},
 };
 
@@ -186,7 +191,7 @@ static int run_diff(const cli_value *values, char **operands) {
       values[DIFF_OUTPUT].given ? output_check(values[DIFF_OUTPUT].text, picture_extensions, operands, 2) : EXIT_CODE_OK;
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host host;
-  cli_host_options options = {.subject = operands[0]};
+  cli_host_options options = {.subject = operands[0], .memory_limit = values[DIFF_MAX_MEMORY].bytes};
   exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   image_pair comparison = {.values = values, .paths = operands};

@@ -61,6 +61,8 @@ static void on_log(void *user_data, hl_log_level level, const char *message) {
   warn("%s", message);
 }
 
+static void on_reads(void *user_data, const char *path) { read_files_add(&((cli_host *)user_data)->read, path); }
+
 static bool terminal_can_redraw(void) {
   const char *terminal = getenv("TERM");
   return isatty(STDERR_FILENO) && terminal != NULL && strcmp(terminal, "dumb") != 0;
@@ -72,13 +74,15 @@ static bool color_wanted(void) {
 }
 
 static void listen_to_signals(void) {
-  struct sigaction action;
+  struct sigaction action, before;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART; /* reading goes on until the cancel callback is asked */
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* nohup has it ignored */
+    sigaction(SIGHUP, &action, NULL);
 }
 
 /* What a run may hold unless told otherwise: the machine's memory. Asked for more, it fails with a line
@@ -109,6 +113,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.log = on_log;
   context_options.progress = on_progress;
   context_options.cancelled = on_cancelled;
+  context_options.reads = on_reads;
   context_options.memory_limit = options->memory_limit > 0 ? options->memory_limit : physical_memory();
   context_options.instruction_set = options->instruction_set;
   context_options.data_folder = choose_data_folder(options->data_folder);
@@ -121,6 +126,7 @@ void host_close(cli_host *host) {
   host_clear_bar(host);
   hl_context_destroy(host->context);
   host->context = NULL;
+  read_files_release(&host->read);
 }
 
 int host_fail(cli_host *host, cli_phase phase, hl_status status, const hl_error *error) {

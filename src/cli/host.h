@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "message.h"
+#include "read_files.h"
 
 typedef struct cli_host {
   hl_context *context;
@@ -13,6 +14,7 @@ typedef struct cli_host {
   bool color;
   bool drawn;          /* a bar is on the line now */
   double drawn_at;     /* seconds; bars are redrawn ten times a second at most */
+  cli_read_files read; /* what the context has opened to read */
   char subject[32];    /* what the bar speaks of: as much of it as keeps the line short */
 } cli_host;
 
@@ -25,7 +27,7 @@ typedef struct cli_host_options {
   const char *data_folder; /* null: HALFLIGHT_DATA, or ../shared/data */
 } cli_host_options;
 
-/* Makes the context and starts listening to SIGINT and SIGTERM. Returns the exit code. `host` must
+/* Makes the context and starts listening to SIGINT, SIGTERM and SIGHUP. Returns the exit code. `host` must
  * not move until host_close(). */
 int host_open(const cli_host_options *options, cli_host *host);
 void host_close(cli_host *host);

@@ -241,6 +241,8 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
     } else if (!only_operands && argument[0] == '-' && argument[1] != '\0') {
       int exit_code = parse_option(command, argument_count, arguments, &i, values);
       if (exit_code != EXIT_CODE_OK) return exit_code;
+    } else if (argument[0] == '\0') {
+      return fail(EXIT_CODE_USAGE, "an empty name was given, '': %s needs %s", command->name, command->operands);
     } else if (operand_count == (command->operand_most > 0 ? command->operand_most : command->operand_count)) {
       return fail(EXIT_CODE_USAGE, "'%s' is too much: %s takes %s only; see 'halflight help %s'", argument,
                   command->name, command->operands, command->name);

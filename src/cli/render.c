@@ -66,12 +66,33 @@ static int job_open(render_job *job) {
   return host_open(&options, &job->host);
 }
 
+/* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read; a bare volume is
+ * itself the file of the scene's volume. */
+static void name_scene(const render_job *job, hl_error *error) {
+  char line[sizeof error->message];
+  if (error->message[0] != '/') return;
+  static const char file[] = "/volumes/0/file: ";
+  bool itself = job->bare && strncmp(error->message, file, sizeof file - 1) == 0;
+  snprintf(line, sizeof line, "%s", error->message + (itself ? sizeof file - 1 : 0));
+  snprintf(error->message, sizeof error->message, "%.300s: %.690s", job->input, line);
+}
+
+/* No file that the scene needs is written over. */
+static int protect_what_was_read(const render_job *job) {
+  if (job->to_stdout || job->values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
+  int exit_code = read_files_protect(&job->host.read, job->output, job->input);
+  if (exit_code != EXIT_CODE_OK || !job->values[RENDER_LAYERS].given) return exit_code;
+  return render_layers_protect(&job->host, job->output, hl_scene_describe(job->scene)->light_count, job->input);
+}
+
 static int job_load(render_job *job) {
   hl_error error = {0};
   job->bare = !input_is_scene(job->input);
   hl_status status = input_load(job->host.context, job->input, job->bare, &job->scene, &error);
+  if (job->bare) name_scene(job, &error);
   if (status != HL_OK) return host_fail(&job->host, PHASE_READ, status, &error);
   int exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = protect_what_was_read(job);
   job->result.seconds.load = clock_seconds() - job->started;
   return exit_code;
 }
@@ -119,14 +140,6 @@ static hl_status render_sheets(render_job *job, const hl_scene_description *desc
                                        &job->result.statistics, error);
   hl_renderer_destroy(renderer);
   return status;
-}
-
-/* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read. */
-static void name_scene(const render_job *job, hl_error *error) {
-  char place[sizeof error->message];
-  if (error->message[0] != '/') return;
-  memcpy(place, error->message, sizeof place);
-  snprintf(error->message, sizeof error->message, "%.300s: %.690s", job->input, place);
 }
 
 static int job_render(render_job *job) {

@@ -93,6 +93,10 @@ typedef struct render_layers {
 hl_status render_layers_create(hl_image *image, const hl_scene_description *description, render_layers *layers, hl_error *error);
 void render_layers_release(render_layers *layers);
 
+/* Refuses an OUT whose layers, in files of their own, would be written over a file that the run has read; input: what
+ * errors call the scene. */
+int render_layers_protect(const cli_host *host, const char *output, size_t light_count, const char *input);
+
 /* Refuses --layers for an OUT that cannot hold them. */
 int render_layers_check(const cli_value *values);
 

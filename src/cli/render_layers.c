@@ -48,6 +48,34 @@ hl_status render_layers_create(hl_image *image, const hl_scene_description *desc
 
 void render_layers_release(render_layers *layers) { free(layers->lights); }
 
+/* "picture-NAME.npy" for "picture.npy", as hl_image_write() calls a layer's file. */
+static int protect_from_layer(const cli_host *host, const char *output, const char *name, const char *input) {
+  const char *dot = strrchr(output, '.');
+  size_t size = strlen(output) + strlen(name) + 2;
+  char *path = malloc(size);
+  if (path == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  snprintf(path, size, "%.*s-%s%s", (int)(dot - output), output, name, dot);
+  int exit_code = read_files_protect(&host->read, path, input);
+  free(path);
+  return exit_code;
+}
+
+int render_layers_protect(const cli_host *host, const char *output, size_t light_count, const char *input) {
+  static const char *const names[] = {"ambient", "depth_first", "depth_mean", "normal"};
+  int exit_code = EXIT_CODE_OK;
+  if (!has_extension(output, ".npy")) return EXIT_CODE_OK; /* .exr holds them itself */
+  for (size_t i = 0; i < sizeof names / sizeof *names && exit_code == EXIT_CODE_OK; i++)
+    exit_code = protect_from_layer(host, output, names[i], input);
+  for (size_t i = 0; i < light_count && exit_code == EXIT_CODE_OK; i++) {
+    char name[40];
+    snprintf(name, sizeof name, "light%zu", i);
+    exit_code = protect_from_layer(host, output, name, input);
+    snprintf(name, sizeof name, "light%zu_shadow", i);
+    if (exit_code == EXIT_CODE_OK) exit_code = protect_from_layer(host, output, name, input);
+  }
+  return exit_code;
+}
+
 int render_layers_check(const cli_value *values) {
   const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
   if (!values[RENDER_LAYERS].given) return EXIT_CODE_OK;

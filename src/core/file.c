@@ -4,7 +4,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -17,9 +19,11 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
 }
 
-hl_status hl_file_open(const char *path, int *descriptor, hl_error *error) {
+hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error) {
   *descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  return *descriptor < 0 ? fail_system(error, path, "open") : HL_OK;
+  if (*descriptor < 0) return fail_system(error, path, "open");
+  if (context->options.reads != NULL) context->options.reads(context->options.user_data, path);
+  return HL_OK;
 }
 
 hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity, size_t *count,
@@ -37,64 +41,108 @@ hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, vo
   }
 }
 
-static hl_status read_all(hl_context *context, int descriptor, const char *path, size_t limit, unsigned char **bytes,
-                          size_t *length, hl_error *error) {
-  enum { GREATEST_PIECE = 1 << 23 }; /* between two questions whether to stop */
-  size_t capacity = 65536, got = 0;
-  hl_status status = HL_OK;
-  *bytes = hl_allocate(context, capacity, 1);
-  for (*length = 0; *bytes != NULL; *length += got) {
-    if (*length + 1 == capacity) {
-      unsigned char *larger = hl_reallocate(context, *bytes, capacity * 2, 1);
-      if (larger == NULL) hl_release(context, *bytes);
-      *bytes = larger;
-      capacity *= 2;
-      if (larger == NULL) break;
-    }
-    size_t room = capacity - 1 - *length;
-    status = hl_cancelled(context)
-                 ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", path)
-                 : hl_file_pull(context, descriptor, path, *bytes + *length, room < GREATEST_PIECE ? room : GREATEST_PIECE, &got, error);
-    if (status != HL_OK || got == 0) return status;
-    if (*length + got > limit)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: more than %zu bytes, too large for a file of this kind", path, limit);
+/* A file on its way into memory. */
+typedef struct file_reading {
+  hl_context *context;
+  const char *path;
+  int descriptor;
+  hl_file_judge judge; /* null: limit stands */
+  size_t limit;        /* bytes that the file may have */
+  unsigned char *bytes; /* owned; [capacity] */
+  size_t length, capacity;
+} file_reading;
+
+/* Makes room for more once the block is full but for one byte. */
+static hl_status make_room(file_reading *file, hl_error *error) {
+  if (file->length + 1 < file->capacity) return HL_OK;
+  if (file->judge != NULL) {
+    hl_status status = file->judge(file->path, file->bytes, file->length, &file->limit, error);
+    if (status != HL_OK) return status;
   }
-  return hl_fail_memory(error, capacity, path);
+  unsigned char *larger = hl_reallocate(file->context, file->bytes, file->capacity * 2, 1);
+  if (larger == NULL) return hl_fail_memory(error, file->capacity * 2, file->path);
+  file->bytes = larger;
+  file->capacity *= 2;
+  return HL_OK;
+}
+
+static hl_status read_all(file_reading *file, hl_error *error) {
+  enum { FIRST_PIECE = 1 << 16, GREATEST_PIECE = 1 << 23 }; /* between two questions whether to stop */
+  file->capacity = FIRST_PIECE;
+  file->bytes = hl_allocate(file->context, file->capacity, 1);
+  if (file->bytes == NULL) return hl_fail_memory(error, file->capacity, file->path);
+  for (size_t got = 1; got > 0; file->length += got) {
+    hl_status status = make_room(file, error);
+    if (status != HL_OK) return status;
+    if (hl_cancelled(file->context)) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", file->path);
+    size_t room = file->capacity - 1 - file->length;
+    status = hl_file_pull(file->context, file->descriptor, file->path, file->bytes + file->length,
+                          room < GREATEST_PIECE ? room : GREATEST_PIECE, &got, error);
+    if (status != HL_OK) return status;
+    if (file->length + got > file->limit)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: more than %zu bytes, too large for a file of this kind", file->path, file->limit);
+  }
+  return HL_OK;
+}
+
+static hl_status read_file(file_reading *file, unsigned char **bytes, size_t *length, hl_error *error) {
+  struct stat information;
+  *bytes = NULL;
+  hl_status status = hl_file_open(file->context, file->path, &file->descriptor, error);
+  if (status != HL_OK) return status;
+  if (fstat(file->descriptor, &information) == 0 && S_ISDIR(information.st_mode))
+    status = hl_fail(error, HL_ERROR_IO, "%s: is a folder, expected a file", file->path);
+  else
+    status = read_all(file, error);
+  close(file->descriptor);
+  if (status != HL_OK) {
+    hl_release(file->context, file->bytes);
+    return status;
+  }
+  file->bytes[file->length] = 0;
+  *bytes = file->bytes;
+  *length = file->length;
+  return HL_OK;
 }
 
 hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes, size_t *length,
                        hl_error *error) {
-  struct stat information;
-  int descriptor;
-  *bytes = NULL;
-  hl_status status = hl_file_open(path, &descriptor, error);
-  if (status != HL_OK) return status;
-  if (fstat(descriptor, &information) == 0 && S_ISDIR(information.st_mode))
-    status = hl_fail(error, HL_ERROR_IO, "%s: is a folder, expected a file", path);
-  else
-    status = read_all(context, descriptor, path, limit, bytes, length, error);
-  close(descriptor);
-  if (status == HL_OK) {
-    (*bytes)[*length] = 0;
-  } else {
-    hl_release(context, *bytes);
-    *bytes = NULL;
-  }
-  return status;
+  file_reading file = {.context = context, .path = path, .limit = limit};
+  return read_file(&file, bytes, length, error);
+}
+
+hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_judge judge, unsigned char **bytes, size_t *length,
+                              hl_error *error) {
+  file_reading file = {.context = context, .path = path, .judge = judge, .limit = SIZE_MAX};
+  return read_file(&file, bytes, length, error);
+}
+
+/* "folder/name.XXXXXX" for "folder/name", cut short, between two characters, where that would be longer than names may be. */
+static char *temporary_path(hl_context *context, const char *path) {
+  static const char suffix[] = ".XXXXXX";
+  const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
+  size_t kept = strlen(name), most = NAME_MAX - (sizeof suffix - 1);
+  if (kept > most)
+    for (kept = most; kept > 0 && ((unsigned char)name[kept] & 0xc0) == 0x80;) kept--; /* not within a UTF-8 character */
+  size_t length = (size_t)(name - path) + kept;
+  char *made = hl_allocate(context, length + sizeof suffix, 1);
+  if (made == NULL) return NULL;
+  memcpy(made, path, length);
+  memcpy(made + length, suffix, sizeof suffix);
+  return made;
 }
 
 hl_status hl_output_begin(hl_context *context, const char *path, hl_output *output, hl_error *error) {
   memset(output, 0, sizeof *output);
   output->context = context;
-  size_t length = strlen(path);
   output->path = hl_copy_text(context, path);
-  output->temporary_path = hl_allocate(context, length + 8, 1);
-  if (output->path == NULL || output->temporary_path == NULL) {
+  char *temporary = temporary_path(context, path);
+  if (output->path == NULL || temporary == NULL) {
+    hl_release(context, temporary);
     hl_output_abort(output);
-    return hl_fail_memory(error, length, path);
+    return hl_fail_memory(error, strlen(path), path);
   }
-  memcpy(output->temporary_path, path, length);
-  memcpy(output->temporary_path + length, ".XXXXXX", 8);
+  output->temporary_path = temporary;
   int descriptor = mkostemp(output->temporary_path, O_CLOEXEC);
   if (descriptor < 0) {
     hl_release(context, output->temporary_path);

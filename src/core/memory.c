@@ -58,7 +58,7 @@ void *hl_reallocate(hl_context *context, void *old, size_t count, size_t size) {
 }
 
 void hl_release(hl_context *context, void *memory) {
-  if (memory == NULL) return;
+  if (context == NULL || memory == NULL) return;
   block_header *header = header_of(memory);
   atomic_fetch_sub(&context->held, header->size);
   context->options.release(context->options.user_data, header);

@@ -16,7 +16,7 @@ void *hl_allocate_zeroed(hl_context *context, size_t count, size_t size);
 /* Moves a block to a new size, keeping what fits; null leaves the old block as it was. old may be null. */
 void *hl_reallocate(hl_context *context, void *old, size_t count, size_t size);
 
-void hl_release(hl_context *context, void *memory); /* null is allowed */
+void hl_release(hl_context *context, void *memory); /* null is allowed for either: nothing is done */
 
 /* A copy of a null-terminated text; null for null, or when there is no memory. */
 char *hl_copy_text(hl_context *context, const char *text);

@@ -195,16 +195,49 @@ static void fill_missing(const exr_reading *reading) {
   }
 }
 
-hl_status hl_exr_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
-                        hl_image **image, hl_error *error) {
-  exr_reading reading = {.context = context, .name = name, .bytes = bytes, .length = length, .error = error};
+static exr_result_t start_read(exr_reading *reading) {
   exr_context_initializer_t options = EXR_DEFAULT_CONTEXT_INITIALIZER;
   options.error_handler_fn = on_error;
-  options.user_data = &reading;
+  options.user_data = reading;
   options.read_fn = on_read;
   options.size_fn = on_size;
   options.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-  exr_result_t result = exr_start_read(&reading.file, name, &options);
+  return exr_start_read(&reading->file, reading->name, &options);
+}
+
+/* Width, height and bytes without compression of one part; 0 bytes where its header does not tell. */
+static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
+  const exr_attr_chlist_t *list = NULL;
+  exr_attr_box2i_t window;
+  hl_image_claim claim = {0};
+  if (exr_get_data_window(file, part, &window) != EXR_ERR_SUCCESS || exr_get_channels(file, part, &list) != EXR_ERR_SUCCESS ||
+      window.max.x < window.min.x || window.max.y < window.min.y)
+    return claim;
+  claim.width = (uint64_t)((int64_t)window.max.x - window.min.x + 1);
+  claim.height = (uint64_t)((int64_t)window.max.y - window.min.y + 1);
+  if (claim.width <= HL_IMAGE_SIDE_MAX && claim.height <= HL_IMAGE_SIDE_MAX)
+    claim.bytes = claim.width * claim.height * 4 * (uint64_t)(list->num_channels > 0 ? list->num_channels : 0);
+  return claim;
+}
+
+/* The size of the first part, and the bytes of all. */
+hl_image_claim hl_exr_claim(const unsigned char *bytes, size_t length) {
+  exr_reading reading = {.name = "a picture", .bytes = bytes, .length = length};
+  hl_image_claim claim = {0};
+  int parts = 0;
+  if (start_read(&reading) == EXR_ERR_SUCCESS && exr_get_count(reading.file, &parts) == EXR_ERR_SUCCESS && parts > 0) {
+    claim = claim_of_part(reading.file, 0);
+    claim.known = claim.width > 0;
+    for (int part = 1; part < parts; part++) claim.bytes += claim_of_part(reading.file, part).bytes;
+  }
+  if (reading.file != NULL) exr_finish(&reading.file);
+  return claim;
+}
+
+hl_status hl_exr_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
+                        hl_image **image, hl_error *error) {
+  exr_reading reading = {.context = context, .name = name, .bytes = bytes, .length = length, .error = error};
+  exr_result_t result = start_read(&reading);
   hl_status status = result == EXR_ERR_SUCCESS ? check_kind(&reading) : fail_exr(&reading, result);
   if (status == HL_OK) status = check_channels(&reading);
   if (status == HL_OK) status = make_image(&reading);

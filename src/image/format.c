@@ -6,6 +6,7 @@
 #include "image/format.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,20 +22,21 @@ typedef struct picture_format {
   size_t mark_length;
   hl_status (*encode)(const hl_image *, const hl_image_write_options *, hl_output *, hl_error *);
   hl_status (*decode)(hl_context *, const char *, const unsigned char *, size_t, hl_image **, hl_error *);
+  hl_image_claim (*claim)(const unsigned char *, size_t);
   bool holds_layers; /* encode writes them too */
   hl_status (*encode_layer)(const hl_image *, const hl_image_layer *, hl_output *, hl_error *); /* in files of their own */
 } picture_format;
 
 static const picture_format formats[] = {
-    {".png", "PNG", {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, 8, hl_png_encode, hl_png_decode, false, NULL},
-    {".exr", "OpenEXR", {0x76, 0x2f, 0x31, 0x01}, 4, hl_exr_encode, hl_exr_decode, true, NULL},
-    {".npy", "NPY", {0x93, 'N', 'U', 'M', 'P', 'Y'}, 6, hl_npy_encode, hl_npy_decode, false,
+    {".png", "PNG", {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, 8, hl_png_encode, hl_png_decode, hl_png_claim, false, NULL},
+    {".exr", "OpenEXR", {0x76, 0x2f, 0x31, 0x01}, 4, hl_exr_encode, hl_exr_decode, hl_exr_claim, true, NULL},
+    {".npy", "NPY", {0x93, 'N', 'U', 'M', 'P', 'Y'}, 6, hl_npy_encode, hl_npy_decode, hl_npy_claim, false,
      hl_npy_encode_layer}};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* 8 GiB: what the largest picture that is read takes in doubles. */
-static const size_t file_bytes_max = (size_t)1 << 33;
+/* What a file may have beyond its pixels: texts, profiles, thumbnails; and what its header may. */
+static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const picture_format *format_by_name(const char *path) {
   const char *dot = strrchr(path, '.');
@@ -180,24 +182,42 @@ hl_status hl_image_encode(hl_context *context, const hl_image *image, const char
 
 void hl_bytes_release(hl_context *context, unsigned char *bytes) { hl_release(context, bytes); }
 
+static hl_status fail_unknown(const char *path, hl_error *error) {
+  const picture_format *named = format_by_name(path);
+  if (named != NULL)
+    return hl_fail_offset(error, HL_ERROR_INPUT, 0, "%s: byte 0: not a %s file: its first bytes are not the mark of one", path,
+                          named->title);
+  return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 0,
+                        "%s: byte 0: unknown picture format: expected a PNG, OpenEXR or NPY file", path);
+}
+
+/* How long the file may be that begins like this. What is compressed may grow by less than half. */
+static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit, hl_error *error) {
+  const picture_format *format = format_by_content(bytes, length);
+  if (format == NULL) return fail_unknown(path, error);
+  hl_image_claim claim = format->claim(bytes, length);
+  if (!claim.known && length > header_bytes_max)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: no header of a picture within its first %zu bytes: damaged %s file", path,
+                   header_bytes_max, format->title);
+  if (!claim.known) return HL_OK;
+  hl_status status = hl_image_check_size(path, claim.width, claim.height, error);
+  if (status == HL_OK) *limit = (size_t)claim.bytes + (size_t)claim.bytes / 2 + extra_bytes_max;
+  if (status == HL_OK && length > *limit)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: more than %zu bytes, too many for a picture of %" PRIu64 " x %" PRIu64 " pixels",
+                   path, *limit, claim.width, claim.height);
+  return status;
+}
+
 hl_status hl_image_read(hl_context *context, const char *path, hl_image **image, hl_error *error) {
   if (image != NULL) *image = NULL;
   if (context == NULL || path == NULL || image == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_read: context, path and image must not be null");
   unsigned char *bytes = NULL;
   size_t length = 0;
-  hl_status status = hl_file_read(context, path, file_bytes_max, &bytes, &length, error);
+  hl_status status = hl_file_read_judged(context, path, judge, &bytes, &length, error);
   if (status != HL_OK) return status;
-  const picture_format *format = format_by_content(bytes, length), *named = format_by_name(path);
-  if (format != NULL)
-    status = format->decode(context, path, bytes, length, image, error);
-  else if (named != NULL)
-    status = hl_fail_offset(error, HL_ERROR_INPUT, 0,
-                            "%s: byte 0: not a %s file: its first bytes are not the mark of one", path,
-                            named->title);
-  else
-    status = hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 0,
-                            "%s: byte 0: unknown picture format: expected a PNG, OpenEXR or NPY file", path);
+  const picture_format *format = format_by_content(bytes, length);
+  status = format != NULL ? format->decode(context, path, bytes, length, image, error) : fail_unknown(path, error);
   hl_release(context, bytes);
   return status;
 }

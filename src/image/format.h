@@ -2,6 +2,8 @@
 #ifndef HL_IMAGE_FORMAT_H
 #define HL_IMAGE_FORMAT_H
 
+#include <stdbool.h>
+
 #include "core/file.h"
 #include "image/image.h"
 
@@ -23,6 +25,18 @@ hl_status hl_exr_decode(hl_context *context, const char *name, const unsigned ch
                         hl_image **image, hl_error *error);
 hl_status hl_npy_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                         hl_image **image, hl_error *error);
+
+/* What a file's first bytes say of the whole. */
+typedef struct hl_image_claim {
+  bool known;             /* false: it takes more of them to tell */
+  uint64_t width, height;
+  uint64_t bytes;         /* of pixels, without compression */
+} hl_image_claim;
+
+/* Reads no more than the header; one that is broken claims nothing: its decoder says what is wrong. */
+hl_image_claim hl_png_claim(const unsigned char *bytes, size_t length);
+hl_image_claim hl_exr_claim(const unsigned char *bytes, size_t length);
+hl_image_claim hl_npy_claim(const unsigned char *bytes, size_t length);
 
 /* Called by encoders before each row: tells of progress, and fails with HL_ERROR_CANCELLED. */
 hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error);

@@ -46,8 +46,7 @@ hl_status hl_image_create(hl_context *context, int width, int height, hl_image *
   return HL_OK;
 }
 
-hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64_t width, uint64_t height,
-                                   hl_image **image, hl_error *error) {
+hl_status hl_image_check_size(const char *name, uint64_t width, uint64_t height, hl_error *error) {
   if (width < 1 || height < 1 || width > HL_IMAGE_SIDE_MAX || height > HL_IMAGE_SIDE_MAX)
     return hl_fail(error, HL_ERROR_INPUT,
                    "%s: claims %" PRIu64 " x %" PRIu64 " pixels, expected 1 to %d a side", name, width,
@@ -57,7 +56,13 @@ hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64
                    "%s: %" PRIu64 " x %" PRIu64
                    " pixels, more than the %d that a picture read from a file may have",
                    name, width, height, (int)HL_IMAGE_READ_PIXELS_MAX);
-  return hl_image_create(context, (int)width, (int)height, image, error);
+  return HL_OK;
+}
+
+hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64_t width, uint64_t height,
+                                   hl_image **image, hl_error *error) {
+  hl_status status = hl_image_check_size(name, width, height, error);
+  return status != HL_OK ? status : hl_image_create(context, (int)width, (int)height, image, error);
 }
 
 /* OpenEXR names a channel "layer.C", and NPY a file "picture-layer.npy". */

@@ -27,6 +27,9 @@ struct hl_image {
   size_t layer_count;
 };
 
+/* Refuses a size that no picture read from a file may have; an error names the file. */
+hl_status hl_image_check_size(const char *name, uint64_t width, uint64_t height, hl_error *error);
+
 /* hl_image_create for a size that a file claims; an error names the file. */
 hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64_t width, uint64_t height,
                                    hl_image **image, hl_error *error);

@@ -247,6 +247,19 @@ static void convert_row(const unsigned char *from, size_t value_bytes, uint64_t 
   }
 }
 
+hl_image_claim hl_npy_claim(const unsigned char *bytes, size_t length) {
+  npy_cursor cursor = {.name = "", .bytes = bytes};
+  npy_header header = {0};
+  hl_image_claim claim = {0};
+  if (find_header(&cursor, length) != HL_OK || parse_header(&cursor, &header) != HL_OK ||
+      check_header(&cursor, &header) != HL_OK)
+    return claim;
+  claim = (hl_image_claim){true, header.shape[1], header.shape[0], 0};
+  if (claim.width <= HL_IMAGE_SIDE_MAX && claim.height <= HL_IMAGE_SIDE_MAX)
+    claim.bytes = claim.width * claim.height * header.shape[2] * (header.type[2] == '8' ? 8 : 4);
+  return claim;
+}
+
 hl_status hl_npy_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                         hl_image **image, hl_error *error) {
   npy_cursor cursor = {.name = name, .bytes = bytes, .error = error};

@@ -143,6 +143,22 @@ static void read_png(png_reading *reading) {
   png_read_end(reading->png, NULL);
 }
 
+static uint32_t take_32(const unsigned char *from) {
+  return (uint32_t)from[0] << 24 | (uint32_t)from[1] << 16 | (uint32_t)from[2] << 8 | from[3];
+}
+
+/* From IHDR (PNG specification, section 11.2.2), which follows the mark: width, height, bit depth, colour type. */
+hl_image_claim hl_png_claim(const unsigned char *bytes, size_t length) {
+  static const unsigned char channels[7] = {1, 0, 3, 1, 2, 0, 4}; /* of each colour type */
+  enum { IHDR = 12, WIDTH = 16, HEIGHT = 20, DEPTH = 24, TYPE = 25 };
+  hl_image_claim claim = {0};
+  if (length <= TYPE || memcmp(bytes + IHDR, "IHDR", 4) != 0 || bytes[TYPE] > 6 || bytes[DEPTH] > 16) return claim;
+  claim = (hl_image_claim){true, take_32(bytes + WIDTH), take_32(bytes + HEIGHT), 0};
+  if (claim.width <= HL_IMAGE_SIDE_MAX && claim.height <= HL_IMAGE_SIDE_MAX)
+    claim.bytes = (1 + (claim.width * channels[bytes[TYPE]] * bytes[DEPTH] + 7) / 8) * claim.height;
+  return claim;
+}
+
 hl_status hl_png_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                         hl_image **image, hl_error *error) {
   png_reading reading = {.context = context, .name = name, .bytes = bytes, .length = length, .error = error};

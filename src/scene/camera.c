@@ -23,6 +23,9 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
 
 void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                         double direction[3]) {
+  if (direction == NULL) return;
+  for (int a = 0; a < 3; a++) direction[a] = 0;
+  if (camera == NULL) return;
   vec3 right, up, forward;
   hl_camera_basis(camera, &right, &up, &forward);
   double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;

@@ -391,19 +391,40 @@ static hl_status check_clip(const hl_scene_volume *volume, const char *parent, h
   return HL_OK;
 }
 
+static double farthest_corner(const hl_scene_volume *volume, affine3 placement) {
+  double farthest = 0;
+  for (int corner = 0; corner < 8; corner++) {
+    vec3 index;
+    index.x = corner & 1 ? (double)volume->volume->dimension[0] : 0;
+    index.y = corner & 2 ? (double)volume->volume->dimension[1] : 0;
+    index.z = corner & 4 ? (double)volume->volume->dimension[2] : 0;
+    farthest = fmax(farthest, vec3_length(affine3_apply(placement, index)));
+  }
+  return farthest;
+}
+
 /* The whole placement, since factors that are fine alone may vanish or overflow together. */
 static hl_status check_placement(const checker *check, const hl_scene_volume *volume) {
   affine3 placement = hl_scene_volume_index_to_world(volume), inverse;
   for (int a = 0; a < 3; a++) {
     double edge = vec3_length(mat3_column(placement.linear, a));
-    if (!(edge <= HL_LIMIT_LENGTH && edge >= 1 / HL_LIMIT_LENGTH))
+    if (edge <= HL_LIMIT_LENGTH && edge >= 1 / HL_LIMIT_LENGTH) continue;
+    const double *by_axis = volume->axis_scale;
+    if (volume->scale != 1 || by_axis[0] != 1 || by_axis[1] != 1 || by_axis[2] != 1)
       return hl_fail(check->error, HL_ERROR_INPUT,
                      "%s/transform: makes the edges of voxels %.9g long: give a scale with which they are from 1e-15 to 1e15",
                      check->place, edge);
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s/file: its voxels are %.9g long, and can be from 1e-15 to 1e15: correct the "
+                   "file's spacing, or give a transform.scale", check->place, edge);
   }
   if (!(vec3_length(placement.offset) <= 1e3 * HL_LIMIT_LENGTH))
     return refuse(check, "transform",
                   "moves the volume too far away to compute with: use a shorter translate");
+  double reach = farthest_corner(volume, placement);
+  if (!(reach <= HL_LIMIT_CORNER))
+    return hl_fail(check->error, HL_ERROR_INPUT,
+                   "%s/file: reaches %.3g from the origin, and can reach as far as 1e14, so that a camera may stand off: correct its "
+                   "spacing and origin, or give a smaller transform.scale", check->place, reach);
   if (!affine3_invert(placement, &inverse))
     return refuse(check, "file", "the volume's axes lie in one plane: mend its spacing or direction");
   return HL_OK;
@@ -429,6 +450,7 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
     return refuse(&check, "shapes", "and file exclude each other: the voxels came from one of them");
   if ((status = check_values(&check, volume->volume)) != HL_OK) return status;
   if ((status = check_transform(volume, check.place, error)) != HL_OK) return status;
+  if ((status = check_placement(&check, volume)) != HL_OK) return status;
   char place[80];
   snprintf(place, sizeof place, "/volumes/%zu/transfer_function", index);
   if ((status = hl_transfer_function_check(&volume->transfer_function, place, error)) != HL_OK) return status;
@@ -439,8 +461,7 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
            &check, "attenuation_color", volume->attenuation_color, 0, 1000,
            "give relative extinctions from 0 to 1000, 1 for as much as the opacity says")) != HL_OK)
     return status;
-  if ((status = check_clip(volume, check.place, error)) != HL_OK) return status;
-  return check_placement(&check, volume);
+  return check_clip(volume, check.place, error);
 }
 
 /* ---- what must fit together ---- */

@@ -12,6 +12,7 @@
 #define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
 #define HL_LIMIT_POINTS 65536          /* of one transfer function */
 #define HL_LIMIT_LENGTH 1e15           /* any coordinate or length: squares and cubes stay finite */
+#define HL_LIMIT_CORNER 1e14           /* of a volume from the origin: a camera that frames it stands within HL_LIMIT_LENGTH */
 #define HL_LIMIT_INTENSITY 1e35        /* where light falls with the square of a distance that may be in nanometres */
 #define HL_LIMIT_BRIGHTNESS 1e20       /* of a light a smallest voxel's edge away: what floats hold with materials and sums */
 #define HL_LIMIT_REACH 1e12            /* distances and lengths, in smallest voxel edges */

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "scene/automatic.h"
+#include "scene/check.h"
 #include "scene/scene.h"
 #include "scene/upright.h"
 
@@ -76,7 +77,8 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   hl_scene_description_defaults(&description);
   description.volumes = &scene_volume;
   description.volume_count = 1;
-  status = frame(&description, &analysis, &description.camera, error);
+  status = hl_scene_volume_check(&scene_volume, 0, error);
+  if (status == HL_OK) status = frame(&description, &analysis, &description.camera, error);
   if (status == HL_OK) {
     hl_scene_key_light(&description.camera, &light);
     if (scene_volume.shading == HL_SHADING_NONE) light.intensity = 1.25; /* a medium loses nothing to its slope */

@@ -40,11 +40,23 @@ static const char *mend_of_fault(const char *fault) {
   return "";
 }
 
+/* Windows programs begin UTF-8 with a byte-order mark, which says nothing; in other encodings it says what they are. */
+static hl_status pass_byte_order_mark(const char **text, size_t *length, const char *name, hl_error *error) {
+  if (*length >= 2 && (memcmp(*text, "\xff\xfe", 2) == 0 || memcmp(*text, "\xfe\xff", 2) == 0))
+    return hl_fail_at(error, HL_ERROR_INPUT, 1, 1, "%s:1:1: UTF-16 text: save it as UTF-8", name);
+  if (*length < 3 || memcmp(*text, "\xef\xbb\xbf", 3) != 0) return HL_OK;
+  *text += 3;
+  *length -= 3;
+  return HL_OK;
+}
+
 hl_status hl_json_parse(const char *text, size_t length, const char *name, json_t **root, hl_error *error) {
   json_error_t fault;
   if (length > HL_JSON_LIMIT)
     return hl_fail(error, HL_ERROR_INPUT, "%s: %zu bytes are too many for a scene: at most %zu are read",
                    name, length, HL_JSON_LIMIT);
+  hl_status status = pass_byte_order_mark(&text, &length, name, error);
+  if (status != HL_OK) return status;
   *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
   /* without memory for its first buffer the parser gives no reason, and no line */

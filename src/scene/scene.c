@@ -11,6 +11,7 @@
 #include "scene/check.h"
 
 void hl_light_defaults(hl_light *light) {
+  if (light == NULL) return;
   *light = (hl_light){
       .type = HL_LIGHT_DIRECTIONAL,
       .direction = {0, 0, -1},
@@ -28,6 +29,7 @@ void hl_light_defaults(hl_light *light) {
 }
 
 void hl_scene_volume_defaults(hl_scene_volume *volume) {
+  if (volume == NULL) return;
   *volume = (hl_scene_volume){
       .scale = 1,
       .rotate_axis = {0, 0, 1},
@@ -43,6 +45,7 @@ void hl_scene_volume_defaults(hl_scene_volume *volume) {
 }
 
 void hl_scene_description_defaults(hl_scene_description *description) {
+  if (description == NULL) return;
   *description = (hl_scene_description){
       .struct_size = sizeof(hl_scene_description),
       .width = 512,
@@ -242,7 +245,9 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   return HL_OK;
 }
 
-const hl_scene_description *hl_scene_describe(const hl_scene *scene) { return &scene->description; }
+const hl_scene_description *hl_scene_describe(const hl_scene *scene) {
+  return scene != NULL ? &scene->description : NULL;
+}
 
 void hl_scene_retain(hl_scene *scene) {
   if (scene != NULL) atomic_fetch_add(&scene->references, 1);

@@ -5,6 +5,7 @@
 enum { LEAST_SIZE = 16, MOST_SIZE = 4096 };
 
 void hl_shapes_options_defaults(hl_shapes_options *options) {
+  if (options == NULL) return;
   *options = (hl_shapes_options){.struct_size = sizeof *options};
 }
 

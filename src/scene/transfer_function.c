@@ -84,7 +84,7 @@ bool hl_transfer_function_transparent(const hl_transfer_function *function, doub
 }
 
 void hl_transfer_function_release(hl_context *context, hl_transfer_function *function) {
-  if (function == NULL) return;
+  if (context == NULL || function == NULL) return;
   hl_release(context, (void *)function->opacity);
   hl_release(context, (void *)function->color);
   *function = (hl_transfer_function){0};

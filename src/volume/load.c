@@ -25,6 +25,13 @@ static load_function *by_content(const unsigned char *bytes, size_t length) {
   return NULL;
 }
 
+/* Takes the mark with which Windows programs begin UTF-8 text, where the rest is a header of text. */
+static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **bytes, size_t *length, hl_error *error) {
+  if (!begins(*bytes, *length, "\xef\xbb\xbf", 3) || by_content(*bytes + 3, *length - 3) == NULL) return HL_OK;
+  hl_stream_take(stream, 3);
+  return hl_stream_peek(stream, SNIFFED_BYTES, bytes, length, error);
+}
+
 /* Files that people will try, with what to do about them; null if this is none of them. */
 static const char *known_but_unsupported(const unsigned char *bytes, size_t length) {
   static const struct {
@@ -131,6 +138,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   const unsigned char *bytes;
   size_t length;
   status = hl_stream_peek(*stream, SNIFFED_BYTES, &bytes, &length, error);
+  if (status == HL_OK) status = take_byte_order_mark(*stream, &bytes, &length, error);
   if (status != HL_OK) return status;
   load_function *format = by_content(bytes, length);
   if (format != NULL) return format(stream, request, volume, error);

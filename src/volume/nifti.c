@@ -179,12 +179,16 @@ static void place_by_sform(const nifti_header *header, hl_volume_description *gr
   }
 }
 
+/* Below it a * a is what rounding the three numbers of a half turn to floats leaves, and counts as 0: as in
+ * nifti_quatern_to_mat44() of the format's reference implementation, nifti1_io.c. */
+static const double HALF_TURN = 1e-7;
+
 /* Method 2: a rotation as the unit quaternion (a, b, c, d), a >= 0 left out, voxel sizes and an offset. */
 static void place_by_qform(const nifti_header *header, const double spacing[3], hl_volume_description *grid) {
   double b = load_real(header, header->layout->quaternion, 0),
          c = load_real(header, header->layout->quaternion, 1);
   double d = load_real(header, header->layout->quaternion, 2), square = 1 - (b * b + c * c + d * d);
-  double a = square > 0 ? sqrt(square) : 0, length = sqrt(a * a + b * b + c * c + d * d);
+  double a = square >= HALF_TURN ? sqrt(square) : 0, length = sqrt(a * a + b * b + c * c + d * d);
   a /= length, b /= length, c /= length, d /= length;
   double rotation[3][3] = {{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
                            {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},

@@ -76,7 +76,7 @@ static hl_status file_begin(file_stream *file, const char *path, bool regular_on
   struct stat information;
   file->base.path = hl_copy_text(file->base.context, path);
   if (file->base.path == NULL) return hl_fail_memory(error, strlen(path), path);
-  hl_status status = hl_file_open(path, &file->descriptor, error);
+  hl_status status = hl_file_open(file->base.context, path, &file->descriptor, error);
   if (status != HL_OK) return status;
   if (fstat(file->descriptor, &information) != 0)
     return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", path, strerror(errno));

@@ -44,17 +44,36 @@ static hl_status check_size(const hl_volume_description *description, const char
   return HL_OK;
 }
 
+/* The greatest coordinate, which no square overflows. */
+static double greatest_part(const double v[3]) { return fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2])); }
+
+/* Beyond these, squares and cubes of lengths leave the range of doubles. */
+static const double SHORTEST_STEP = 1e-100, LONGEST_STEP = 1e100;
+
+static hl_status check_step(const double axis[3], int number, const char *subject, hl_error *error) {
+  double greatest = greatest_part(axis);
+  bool finite = isfinite(axis[0]) && isfinite(axis[1]) && isfinite(axis[2]);
+  if (finite && greatest >= SHORTEST_STEP && greatest <= LONGEST_STEP) return HL_OK;
+  if (!finite || !(greatest > 0))
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: the spacing along axis %d is %g: give a finite number above 0, or a direction that is not zero", subject,
+                   number, finite ? greatest : vec3_length(vec3_of(axis)));
+  return hl_fail(error, HL_ERROR_INPUT, "%s: the spacing along axis %d is %g, and can be from %g to %g: use another unit of length",
+                 subject, number, greatest, SHORTEST_STEP, LONGEST_STEP);
+}
+
 static hl_status check_place(const hl_volume_description *description, const char *subject, hl_error *error) {
   affine3 place = index_to_world(description), inverse;
   for (int axis = 0; axis < 3; axis++) {
-    double length = vec3_length(vec3_of(description->axis[axis]));
-    if (!isfinite(length * (double)description->dimensions[axis]) || !(length > 0))
-      return hl_fail(error, HL_ERROR_INPUT,
-                     "%s: the spacing along axis %d is %g: give a finite number above 0, or a direction that is not zero", subject,
-                     axis, length);
+    hl_status status = check_step(description->axis[axis], axis, subject, error);
+    if (status != HL_OK) return status;
   }
-  if (!isfinite(vec3_length(place.offset)))
+  const double *origin = description->origin;
+  if (!isfinite(origin[0]) || !isfinite(origin[1]) || !isfinite(origin[2]))
     return hl_fail(error, HL_ERROR_INPUT, "%s: the origin has coordinates that are not finite: correct it", subject);
+  if (greatest_part(origin) > LONGEST_STEP)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the origin is %g away, and can be as far as %g: use another unit of length", subject,
+                   greatest_part(origin), LONGEST_STEP);
   bool possible = affine3_invert(place, &inverse) && isfinite(vec3_length(inverse.offset));
   for (int axis = 0; axis < 3; axis++) possible = possible && isfinite(vec3_length(inverse.linear.row[axis]));
   if (!possible)

@@ -184,7 +184,7 @@ def test_interrupted():
     for number, arguments in enumerate(runs):
         put_old([arguments.split()[-1]])
         before = sorted(os.listdir())
-        for signal_number, after in ((signal.SIGINT, 0.15), (signal.SIGTERM, 0.6)):
+        for signal_number, after in ((signal.SIGINT, 0.15), (signal.SIGTERM, 0.6), (signal.SIGHUP, 0.3)):
             seconds = math.inf
             for _ in range(3):  # the least: where other work takes the processor's other half, processor seconds are long
                 if seconds < PATIENCE * SLOWER:

@@ -163,6 +163,46 @@ static void test_raw_voxels_that_look_compressed(void **unused) {
   remove_folder(folder);
 }
 
+static void put_bytes(byte_buffer *file, size_t place, const void *from, size_t length) {
+  memcpy(file->data + place, from, length);
+}
+
+/* A half turn about (1, 1, 0), whose halves of a quaternion are floats: 1 - b b - c c is 5e-8 in place of 0. Below 1e-7 it
+ * counts as 0, as in nifti_quatern_to_mat44() of nifti1_io.c; kept, it would turn the volume by .03 degrees. */
+static void test_half_turn_of_nifti(void **unused) {
+  (void)unused;
+  static const int16_t dimensions[] = {3, 2, 2, 2}, u8 = 2, bits = 8, has_qform = 1;
+  static const float steps[] = {1, 1, 1, 1}, offset = 352;
+  const float quaternion[] = {(float)sqrt(0.5), (float)sqrt(0.5), 0};
+  const int32_t header_bytes = 348;
+  char folder[FOLDER_BYTES], path[PATH_BYTES];
+  hl_context *context = NULL;
+  hl_volume *volume = NULL;
+  hl_volume_info info = {.struct_size = sizeof info};
+  byte_buffer file = {.length = 352 + 8};
+  put_bytes(&file, 0, &header_bytes, 4);
+  put_bytes(&file, 40, dimensions, sizeof dimensions);
+  put_bytes(&file, 70, &u8, 2);
+  put_bytes(&file, 72, &bits, 2);
+  put_bytes(&file, 76, steps, sizeof steps);
+  put_bytes(&file, 108, &offset, 4);
+  put_bytes(&file, 252, &has_qform, 2);
+  put_bytes(&file, 256, quaternion, sizeof quaternion);
+  put_bytes(&file, 344, "n+1", 4);
+  make_folder(folder);
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  write_file(folder, "half_turn.nii", &file, path);
+  assert_int_equal(hl_volume_load(context, path, &volume, NULL), HL_OK);
+  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
+  static const double expected[3][3] = {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
+  for (int row = 0; row < 3; row++)
+    for (int axis = 0; axis < 3; axis++)
+      assert_true(fabs(info.direction[row][axis] - expected[row][axis]) < (expected[row][axis] == 0 ? 1e-300 : 1e-15));
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+  remove_folder(folder);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_all_samples),
@@ -170,6 +210,7 @@ int main(void) {
       cmocka_unit_test(test_peak_memory_is_one_volume),
       cmocka_unit_test(test_progress_and_cancelling),
       cmocka_unit_test(test_raw_voxels_that_look_compressed),
+      cmocka_unit_test(test_half_turn_of_nifti),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

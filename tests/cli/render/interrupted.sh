@@ -1,7 +1,7 @@
-# SIGINT and SIGTERM end a long run with 130; nothing is left behind, and the old picture stands.
+# SIGINT, SIGTERM and SIGHUP end a long run with 130; nothing is left behind, and the old picture stands.
 tool ball 40 ball_40x40x40_uint8.raw
 echo old >keep.npy
-for signal in INT TERM; do
+for signal in INT TERM HUP; do
   "$HALFLIGHT" render ball_40x40x40_uint8.raw --size 1024x1024 --sheet-spacing 0.01 --quiet -o keep.npy 2>/dev/null &
   await_handler $!
   kill -$signal $!
