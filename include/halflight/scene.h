@@ -143,6 +143,13 @@ typedef enum hl_shadow_lookup {
                                   sheets closer than 5/6 of a voxel; elsewhere bilinear */
 } hl_shadow_lookup;
 
+/* What a pixel shows of the volumes along its ray. */
+typedef enum hl_compositing {
+  HL_COMPOSITING_LIGHT = 0,    /* lit matter, front to back */
+  HL_COMPOSITING_MAXIMUM = 1   /* maximum projection: the colour of the greatest value that the transfer function shows (opacity
+                                  above 0), without light; of several volumes, the greatest of each channel */
+} hl_compositing;
+
 typedef struct hl_render_settings {
   hl_shadows shadows;          /* off, hard or soft */
   hl_soft_method soft_method;
@@ -154,6 +161,7 @@ typedef struct hl_render_settings {
   hl_shadow_lookup shadow_lookup;
   int shadow_resolution;       /* pixels along the longer side; 0: auto */
   int threads;                 /* 0: one per processor */
+  hl_compositing compositing;
 } hl_render_settings;
 
 typedef struct hl_scene_description {

@@ -18,6 +18,7 @@ enum render_option {
   RENDER_ZOOM,
   RENDER_FOVY,
   RENDER_ORTHO,
+  RENDER_LOOK,
   RENDER_TF,
   RENDER_COLORMAP,
   RENDER_RANGE,
@@ -50,7 +51,7 @@ enum render_option {
 };
 
 /* Choices that other commands have too. */
-extern const cli_choice kernel_choices[], reconstruction_choices[], instruction_set_choices[];
+extern const cli_choice look_choices[], kernel_choices[], reconstruction_choices[], instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
 
@@ -63,6 +64,16 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
 
 /* Whether --tf, --colormap, --range or --threshold were given. */
 bool render_recolors(const cli_value *values);
+
+/* --look: whether it gives volumes other transfer functions, the one of a volume, and what else it changes. bare: see
+ * render_change_scene. */
+bool render_look_recolors(const cli_value *values, bool bare);
+hl_status render_look_function(cli_host *host, const cli_value *values, const hl_volume *volume,
+                               hl_transfer_function *function, hl_error *error);
+void render_change_look(const cli_value *values, bool bare, hl_scene_description *description);
+
+/* Says which options were given that light alone makes seen, where there is none; true where there is none. */
+bool render_warn_of_no_light(const cli_value *values, const hl_scene_description *description);
 
 /* The transfer function that they make of that of volume number `index`. Its points are owned by the caller, also after a
  * failure (render_release_function); the volume's own function is left alone. */

@@ -110,11 +110,15 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_SWITCH,
                       .help = "parallel projection, the same framing"},
 
+    [RENDER_LOOK] = {.name = "look",
+                     .kind = OPTION_CHOICE,
+                     .choices = look_choices,
+                     .group = "Look (of every volume)",
+                     .help = "chosen from the data (default), or a maximum\nprojection: the greatest value along each ray"},
     [RENDER_TF] =
         {.name = "tf",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]FILE|PRESET",
-         .group = "Look (of every volume)",
          .help = "transfer function: a JSON file (Halflight's,\nParaView's, Slicer's .vp.json) or a preset,\n"
                  "see 'halflight help presets'; of volume NAME\nalone (again for others)",
          .repeatable = true},

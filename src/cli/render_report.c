@@ -69,6 +69,10 @@ static void print_work(json_writer *json, const hl_render_statistics *statistics
   json_close(json);
 }
 
+static bool is_maximum(const hl_scene_description *description) {
+  return description->render.compositing == HL_COMPOSITING_MAXIMUM;
+}
+
 int render_print_json(const render_result *result) {
   const hl_scene_description *description = result->description;
   const hl_render_statistics *statistics = &result->statistics;
@@ -81,6 +85,7 @@ int render_print_json(const render_result *result) {
   json_integer(&json, "height", (uint64_t)description->height);
   json_text(&json, "method", result->reference ? "reference" : "sheets");
   json_text(&json, "shadows", shadows_name(description->render.shadows));
+  json_text(&json, "compositing", is_maximum(description) ? "maximum" : "light");
   json_text(&json, "soft_method", soft_method_name(description->render.soft_method));
   print_seconds(&json, result);
   print_work(&json, statistics);
@@ -94,12 +99,13 @@ int render_print_json(const render_result *result) {
 void render_print_summary(const render_result *result) {
   const hl_scene_description *description = result->description;
   const render_seconds *seconds = &result->seconds;
-  const char *method = soft_method_name(description->render.soft_method);
   bool soft = description->render.shadows == HL_SHADOWS_SOFT && !result->reference;
-  char sheets[40] = "ray-marched";
+  char light[80] = "maximum projection", sheets[40] = "ray-marched";
+  if (!is_maximum(description))
+    snprintf(light, sizeof light, "%s shadows%s%s%s", shadows_name(description->render.shadows), soft ? " (" : "",
+             soft ? soft_method_name(description->render.soft_method) : "", soft ? ")" : "");
   if (!result->reference) snprintf(sheets, sizeof sheets, "%d sheets", result->statistics.sheets);
-  say("%s: %dx%d, %s shadows%s%s%s, %s, %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)",
-      result->output, description->width, description->height, shadows_name(description->render.shadows),
-      soft ? " (" : "", soft ? method : "", soft ? ")" : "", sheets, seconds->total, seconds->load,
-      seconds->prepare, seconds->render, seconds->write);
+  say("%s: %dx%d, %s, %s, %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)",
+      result->output, description->width, description->height, light, sheets, seconds->total, seconds->load, seconds->prepare,
+      seconds->render, seconds->write);
 }

@@ -188,16 +188,23 @@ static int change_volume(scene_change *change, size_t index) {
   hl_scene_volume *volume = &change->volumes[index];
   if (values[RENDER_SHADING].given) volume->shading = (hl_shading)values[RENDER_SHADING].choice;
   int exit_code = values[RENDER_CLIP].given ? render_clip(&values[RENDER_CLIP], volume) : EXIT_CODE_OK;
-  if (exit_code != EXIT_CODE_OK || !render_recolors(values)) return exit_code;
+  bool looks = render_look_recolors(values, change->bare);
+  if (exit_code != EXIT_CODE_OK || (!looks && !render_recolors(values))) return exit_code;
+  hl_transfer_function look = {0};
+  hl_error error = {0};
+  hl_status status = looks ? render_look_function(change->host, values, volume->volume, &look, &error) : HL_OK;
+  if (status != HL_OK) return host_fail(change->host, PHASE_READ, status, &error);
+  if (looks) volume->transfer_function = look;
   exit_code = render_transfer_function(change->host, values, &change->description, index, &change->functions[index]);
   volume->transfer_function = change->functions[index];
+  hl_transfer_function_release(change->host->context, &look);
   return exit_code;
 }
 
 static int change_volumes(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
-  bool changed = render_recolors(values) || values[RENDER_SHADING].given || values[RENDER_CLIP].given;
+  bool changed = render_look_recolors(values, change->bare) || render_recolors(values) || values[RENDER_SHADING].given || values[RENDER_CLIP].given;
   if (!changed || description->volume_count == 0) return EXIT_CODE_OK;
   change->volumes = calloc(description->volume_count, sizeof *change->volumes);
   change->functions = calloc(description->volume_count, sizeof *change->functions);
@@ -239,7 +246,7 @@ static void change_settings(const cli_value *values, hl_scene_description *descr
 static void warn_of_idle_options(const scene_change *change) {
   const hl_render_settings *settings = &change->description.render;
   const cli_value *values = change->values;
-  if (change->host->quiet) return;
+  if (change->host->quiet || render_warn_of_no_light(values, &change->description)) return;
   bool soft = settings->shadows == HL_SHADOWS_SOFT;
   for (size_t i = 0; i < change->description.light_count; i++)
     soft |= change->description.lights[i].shadows == HL_SHADOWS_SOFT;
@@ -266,6 +273,7 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
   if (exit_code == EXIT_CODE_OK) exit_code = change_lights(&change, &before->camera);
   if (exit_code == EXIT_CODE_OK) exit_code = change_volumes(&change);
   if (exit_code == EXIT_CODE_OK) {
+    render_change_look(values, bare, &change.description);
     change_settings(values, &change.description);
     warn_of_idle_options(&change);
     hl_scene *changed = NULL;

@@ -154,8 +154,13 @@ static void render_run(void *data, size_t index, int worker) {
     vec3 origin, direction;
     const reference_parts *ray = &all->workers[worker].ray;
     eye_ray(all, x, y, &origin, &direction);
+    float *pixel = all->pixels + y * all->row_stride + 4 * x;
+    if (scene->render.compositing == HL_COMPOSITING_MAXIMUM) {
+      hl_reference_maximum(all->all, origin, direction, &all->workers[worker], pixel);
+      continue;
+    }
     double depth_first = trace(all->all, origin, direction, &all->workers[worker]);
-    write_pixel(ray, scene->light_count, all->pixels + y * all->row_stride + 4 * x);
+    write_pixel(ray, scene->light_count, pixel);
     if (all->layers != NULL) hl_reference_parts_write(ray, depth_first, all->layers, y * (size_t)scene->width + x);
   }
   size_t done = atomic_fetch_add(&all->runs_done, 1) + 1;
@@ -286,7 +291,7 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   hl_reference_options_defaults(&chosen);
   if (options != NULL) chosen = *options;
   hl_status status = check(&chosen, &scene->description, row_stride, error);
-  if (status == HL_OK) status = hl_layers_check(layers, scene->description.light_count, error);
+  if (status == HL_OK) status = hl_layers_check(layers, &scene->description, error);
   if (status != HL_OK) return status;
   hl_pool *pool = NULL;
   status = hl_pool_create(context, chosen.threads, &pool, error);

@@ -11,6 +11,7 @@
  *     lights.c      points on the lights, and the transmittance towards them
  *     shade.c       the light that one sample sends to the eye
  *     layers.c      that light by its sources, depth and normals
+ *     maximum.c     the greatest value along a ray, in place of light
  */
 #ifndef HL_REFERENCE_REFERENCE_H
 #define HL_REFERENCE_REFERENCE_H
@@ -166,6 +167,9 @@ void hl_reference_emission(const hl_light_emission *emission, const emission_pla
  * same point as `point`. */
 void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
                         double value, double weight, vec3 to_eye, reference_worker *worker);
+
+/* The pixel of a maximum projection: premultiplied RGBA, alpha 1 where a volume shows something. */
+void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker, float rgba[4]);
 
 /* layers.c: parts at nothing; another's added, each times `scale`; and the caller's layers of one pixel. */
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count);

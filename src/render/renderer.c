@@ -8,6 +8,7 @@
 #include "render/clock.h"
 #include "render/estimate.h"
 #include "render/framed_scene.h"
+#include "render/maximum.h"
 #include "render/prepare.h"
 #include "scene/layers.h"
 
@@ -114,6 +115,7 @@ typedef struct frame_work {
   float *tile_rows;       /* in_place: [threads][tiles_x][16][4][16] */
   size_t tiles_x, tiles;
   layer_pixels layers;
+  maximum_values maximum;
   int measuring_sweep;    /* the one that carries depth and normals */
 } frame_work;
 
@@ -127,6 +129,7 @@ static void release_work(hl_renderer *renderer, frame_work *work) {
   if (!work->in_place) hl_reserve_return(&renderer->reserve, work->pixels);
   hl_release(context, work->tile_rows);
   hl_layer_pixels_release(context, &work->layers);
+  hl_maximum_release(context, &work->maximum);
 }
 
 /* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to its
@@ -230,9 +233,11 @@ static double widest_ray(const frame *frame) {
   return acos(fmax(least, -1));
 }
 
-/* Flat colours alone ask no light how much of it arrives. */
+static bool is_maximum(const hl_scene_description *scene) { return scene->render.compositing == HL_COMPOSITING_MAXIMUM; }
+
+/* Neither flat colours nor a maximum projection ask a light how much of it arrives. */
 static bool is_lit(const hl_scene_description *scene) {
-  for (size_t i = 0; i < scene->volume_count; i++)
+  for (size_t i = 0; i < scene->volume_count && !is_maximum(scene); i++)
     if (scene->volumes[i].visible && scene->volumes[i].shading != HL_SHADING_FLAT) return true;
   return false;
 }
@@ -241,7 +246,7 @@ static bool is_lit(const hl_scene_description *scene) {
 static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
   frame->light_count = 0;
-  for (size_t i = 0; i < scene->light_count; i++) {
+  for (size_t i = 0; i < scene->light_count && !is_maximum(scene); i++) {
     const hl_light *light = &scene->lights[i];
     light_source source = hl_light_source(light, &scene->render, frame->middle);
     source.light_index = (int)i;
@@ -262,6 +267,7 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
   bool whole = scene->width % TILE == 0 && scene->height % TILE == 0 && row_stride == 4 * (size_t)scene->width;
   work->in_place = whole && work->sweep_count == 1 && work->frame.oversampling == 1 && (uintptr_t)pixels % 64 == 0;
   uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, layers);
+  bytes += hl_maximum_bytes(scene, work->tiles);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
   renderer->reserve.keeps = work->sweep_count == 1; /* several would leave one another blocks that do not fit */
   if (!renderer->reserve.keeps) hl_reserve_release(&renderer->reserve);
@@ -299,7 +305,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   hl_status status = set_up_eye(renderer, scene, frame, error);
   if (status != HL_OK) return status;
   frame->voxel = smallest_edge(renderer);
-  frame->spacing = fmin(scene->render.sheet_spacing, GRID_MARGIN) * frame->voxel; /* volumes go on as far beyond their faces */
+  frame->spacing = fmin(scene->render.sheet_spacing, is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) * frame->voxel; /* volumes go on as far beyond their faces */
   set_up_lights(scene, frame);
   for (size_t i = 0; i < scene->volume_count; i++)
     if (rays_start_inside(frame, &work->grids[i])) work->grids[i].cut = true;
@@ -309,7 +315,9 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   if (status != HL_OK) return status;
   work->tiles_x = (size_t)hl_tiles(frame->eye.width);
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
-  return place_pixels(renderer, scene, layers, pixels, row_stride, work, error);
+  status = place_pixels(renderer, scene, layers, pixels, row_stride, work, error);
+  if (status != HL_OK) return status;
+  return hl_maximum_create(context, renderer->pool, scene, renderer->prepared, work->tiles, &work->maximum, error);
 }
 
 /* Three where matter takes colours apart, or light comes in several from several places. */
@@ -329,7 +337,7 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
                  .geometry = &work->sweeps[index], .volumes = renderer->prepared, .grids = work->grids,
                  .volume_count = (int)scene->volume_count, .kernel = hl_kernel_get(scene->render.kernel),
                  .splat = scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT, .first = index == 0,
-                 .layer_pixels = &work->layers, .measures = index == work->measuring_sweep,
+                 .layer_pixels = &work->layers, .maximum = &work->maximum, .measures = index == work->measuring_sweep,
                  .channels = attenuation_channels(scene),
                  .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};
 }
@@ -453,6 +461,7 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   for (int s = 0; s < work->sweep_count && status == HL_OK && work->frame.point_count > 0; s++)
     status = run_sweep(renderer, scene, work, s, statistics, error);
   if (status != HL_OK) return status;
+  if (work->maximum.values != NULL) hl_maximum_color(&work->maximum, scene, renderer->prepared, renderer->pool, work->pixels);
   write_job job = {work, pixels, row_stride, scene->width};
   if (work->in_place) hl_pool_run(renderer->pool, (size_t)scene->height / TILE, write_in_place, &job);
   else hl_pool_run(renderer->pool, (size_t)scene->height, write_row, &job);
@@ -481,7 +490,7 @@ static hl_status check_request(const hl_renderer *renderer, const hl_scene *scen
   if (statistics != NULL && statistics->struct_size != sizeof *statistics)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: statistics->struct_size is %zu, expected %zu",
                    statistics->struct_size, sizeof *statistics);
-  return hl_layers_check(layers, description->light_count, error);
+  return hl_layers_check(layers, description, error);
 }
 
 hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene, float *pixels, size_t row_stride,

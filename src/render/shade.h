@@ -24,6 +24,8 @@ typedef struct shade_volume {
   float emission;                        /* ke; of a volume shaded flat 1 */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
+  const float (*shown)[4];               /* of a maximum projection, see SHOWN_FROM; null otherwise */
+  int rank;                              /* among the visible volumes */
 } shade_volume;
 
 /* One volume's part in a tile. On lines of the cache of its own: threads write theirs side by side. */
@@ -59,6 +61,7 @@ typedef struct shade_job {
   float eye[3];                   /* frame space; parallel: where depth is 0 */
   float normal[3];                /* h */
   float path;                     /* parallel: sheet spacing / |w.h|; perspective: sheet spacing */
+  int sheet;                      /* k: the slab lies between sheets k-1 and k */
   float height, spacing;          /* of sheet k above the first, and to sheet k-1; frame units */
   int back_to_front;
   const shade_light *lights;
@@ -80,5 +83,21 @@ typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *pa
  * 0.01, infinite before; and, weighted by what a sample adds to alpha, sums of depth and normal. pixels:
  * [16 blocks][MEASURES][16]. */
 enum { MEASURE_ALPHA, MEASURE_DEPTH_FIRST, MEASURE_DEPTH, MEASURE_NORMAL, MEASURES = MEASURE_NORMAL + 3 };
+
+/* A maximum projection keeps for each pixel and visible volume, as coordinates in the volume's table: the greatest value so far
+ * that is shown, -1 where none is; the value on the sheet before the last; and the last sheet's number, -1 where the slab before
+ * it is not all within the box. [volumes][MAXIMUM_ROWS][16 blocks][16] for a tile. */
+enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
+
+/* What a transfer function shows at coordinates from an entry to the next, one row of four an entry: values above SHOWN_FROM, up
+ * to SHOWN_TO; and the greatest that it shows below the entry, -1 if there is none. */
+enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
+
+typedef struct maximum_values {
+  float *values;            /* owned; [tiles][volumes][MAXIMUM_ROWS][256]; null: no maximum projection */
+  float (*shown)[4];        /* owned; [volumes][CLASSIFIER_ENTRIES + 2] */
+  size_t volume_count;      /* visible ones */
+  size_t tiles;
+} maximum_values;
 
 #endif

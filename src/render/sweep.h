@@ -103,6 +103,7 @@ typedef struct sweep {
   bool splat;                     /* else gather */
   bool first;                     /* the sweep that carries ambient light and opacity */
   const layer_pixels *layer_pixels; /* where the layers go; null: none */
+  const maximum_values *maximum;  /* what a maximum projection keeps; without values: matter is lit */
   bool measures;                  /* the sweep that carries depth and normals */
   int channels;                   /* of light attenuation */
   /* the image */

@@ -238,6 +238,7 @@ static hl_status allocate_stages(sweep *sweep, hl_error *error) {
 }
 
 static void set_up_shading(sweep *sweep) {
+  int rank = 0;
   for (int g = 0; g < sweep->volume_count; g++) {
     const hl_scene_volume *volume = sweep->volumes[g].scene;
     shade_volume *shade = &sweep->shade_volumes[g];
@@ -254,6 +255,10 @@ static void set_up_shading(sweep *sweep) {
                             .shininess = (float)volume->material.shininess};
     shade->emission = shade->lit ? (float)volume->material.emission : 1;
     if (!shade->lit) shade->ambient = shade->receives_shadow = 0;
+    if (sweep->maximum->values != NULL && volume->visible) {
+      shade->rank = rank++;
+      shade->shown = (const float(*)[4])(sweep->maximum->shown + (size_t)shade->rank * (CLASSIFIER_ENTRIES + 2));
+    }
     for (int c = 0; c < HL_CHANNELS; c++)
       shade->cast[c] = volume->casts_shadow ? (float)volume->attenuation_color[c] : 0;
     const grid *grid = &sweep->grids[g];

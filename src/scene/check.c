@@ -544,6 +544,8 @@ static hl_status check_render(const hl_render_settings *render, hl_error *error)
   if ((status = check_choice(&check, "shadow_lookup", (int)render->shadow_lookup, 0, HL_LOOKUP_AUTO)) !=
       HL_OK)
     return status;
+  if ((status = check_choice(&check, "compositing", (int)render->compositing, 0, HL_COMPOSITING_MAXIMUM)) != HL_OK)
+    return status;
   if ((status = check_range(&check, "shadow_resolution", render->shadow_resolution, 0,
                             HL_LIMIT_SHADOW_RESOLUTION, "give pixels from 1 to 16384, or auto")) != HL_OK)
     return status;

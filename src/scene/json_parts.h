@@ -28,6 +28,7 @@ typedef struct hl_volume_shelf {
   size_t count;
   const json_t *groups;     /* of shapes; may be null */
   json_t *stood_in;         /* owned; the volumes that were read with their stand-in's keys; null: none */
+  bool projected;           /* the scene shows their greatest values */
   int threads;              /* to sample shapes with; 0: one per processor */
 } hl_volume_shelf;
 
@@ -36,10 +37,12 @@ typedef struct hl_volume_shelf {
 hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
                               hl_scene_volume *volume);
 
-/* What a transfer function is for: adapts to the volume (null: nothing can adapt), is solid for shapes. */
+/* What a transfer function is for: adapts to the volume (null: nothing can adapt), is solid for shapes, greys for maximum
+ * projections. */
 typedef struct hl_function_subject {
   const hl_volume *volume;
   bool is_solid;
+  bool projected; /* by its greatest values */
 } hl_function_subject;
 
 /* value null: the subject's default, which is automatic where it is not solid. */

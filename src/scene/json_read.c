@@ -15,6 +15,7 @@ const char *const hl_shading_names[] = {"phong", "none", "flat", NULL};
 const char *const hl_soft_method_names[] = {"cascade", "paper", "sublights", NULL};
 const char *const hl_kernel_names[] = {"bspline", "gaussian", "linear", NULL};
 const char *const hl_reconstruction_names[] = {"auto", "splat", "gather", NULL};
+const char *const hl_compositing_names[] = {"light", "maximum", NULL};
 const char *const hl_slicing_names[] = {"half-vector", "image-aligned", NULL};
 const char *const hl_shadow_lookup_names[] = {"bilinear", "nearest", "cubic", "auto", NULL};
 

@@ -202,9 +202,11 @@ static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_fu
 hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                                          hl_transfer_function *function) {
   *function = (hl_transfer_function){.unit_distance = 1};
-  if (value == NULL && subject.is_solid) return read_solid(reader, subject.volume, function);
+  if (value == NULL && subject.is_solid && !subject.projected) return read_solid(reader, subject.volume, function);
   if (value == NULL) {
-    hl_status status = hl_transfer_function_automatic(reader->context, subject.volume, function, reader->error);
+    hl_status status = subject.projected
+                           ? hl_transfer_function_preset(reader->context, "mip", subject.volume, function, reader->error)
+                           : hl_transfer_function_automatic(reader->context, subject.volume, function, reader->error);
     if (status != HL_OK) hl_json_prefix(reader, reader->place);
     return status;
   }

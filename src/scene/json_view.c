@@ -157,12 +157,12 @@ static hl_status read_shadow_resolution(hl_json_reader *reader, const json_t *va
 hl_status hl_json_read_render(hl_json_reader *reader, const json_t *value, hl_render_settings *render) {
   static const char *const keys[] = {
       "shadows", "soft_method",   "light_samples",     "sheet_spacing", "kernel", "reconstruction",
-      "slicing", "shadow_lookup", "shadow_resolution", "threads",       NULL};
+      "slicing", "shadow_lookup", "shadow_resolution", "threads",       "compositing", NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "render");
   int shadows = (int)render->shadows, method = (int)render->soft_method, kernel = (int)render->kernel,
       reconstruction = (int)render->reconstruction, slicing = (int)render->slicing,
-      lookup = (int)render->shadow_lookup;
+      lookup = (int)render->shadow_lookup, compositing = (int)render->compositing;
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK)
     status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
@@ -176,6 +176,8 @@ hl_status hl_json_read_render(hl_json_reader *reader, const json_t *value, hl_re
   if (status == HL_OK) status = hl_json_choice(reader, value, "slicing", hl_slicing_names, 0, &slicing);
   if (status == HL_OK)
     status = hl_json_choice(reader, value, "shadow_lookup", hl_shadow_lookup_names, 0, &lookup);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "compositing", hl_compositing_names, 0, &compositing);
   if (status == HL_OK) status = read_shadow_resolution(reader, value, &render->shadow_resolution);
   if (status == HL_OK) status = hl_json_integer(reader, value, "threads", &render->threads);
   if (status != HL_OK) return status;
@@ -185,6 +187,7 @@ hl_status hl_json_read_render(hl_json_reader *reader, const json_t *value, hl_re
   render->reconstruction = (hl_reconstruction)reconstruction;
   render->slicing = (hl_slicing)slicing;
   render->shadow_lookup = (hl_shadow_lookup)lookup;
+  render->compositing = (hl_compositing)compositing;
   hl_json_leave(reader, mark);
   return HL_OK;
 }

@@ -244,7 +244,7 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);
   if (status == HL_OK) status = read_shading(reader, value, volume);
   if (status != HL_OK) return status;
-  hl_function_subject subject = {volume->volume, is_solid(volume)};
+  hl_function_subject subject = {volume->volume, is_solid(volume), shelf->projected};
   return hl_json_read_transfer_function(reader, json_object_get(value, "transfer_function"), subject,
                                         &volume->transfer_function);
 }

@@ -322,6 +322,7 @@ static void write_render(writer *w, const hl_render_settings *render) {
   if (render->shadow_resolution == 0) write_name(w, "shadow_resolution", "auto");
   else write_number(w, "shadow_resolution", render->shadow_resolution);
   write_number(w, "threads", render->threads);
+  if (render->compositing != HL_COMPOSITING_LIGHT) write_name(w, "compositing", hl_compositing_names[render->compositing]);
   close_bracket(w, "}");
 }
 

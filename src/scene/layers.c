@@ -1,8 +1,12 @@
 /* scene/layers.c - see layers.h. */
 #include "scene/layers.h"
 
-hl_status hl_layers_check(const hl_layers *layers, size_t light_count, hl_error *error) {
+hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *scene, hl_error *error) {
+  size_t light_count = scene->light_count;
   if (layers == NULL) return HL_OK;
+  if (scene->render.compositing == HL_COMPOSITING_MAXIMUM)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/render/compositing: a maximum projection has no layers: use \"light\", or ask for no layers");
   if (layers->struct_size != sizeof *layers)
     return hl_fail(error, HL_ERROR_ARGUMENT, "layers->struct_size is %zu, expected %zu", layers->struct_size,
                    sizeof *layers);

@@ -3,10 +3,11 @@
 #define HL_SCENE_LAYERS_H
 
 #include <halflight/layers.h>
+#include <halflight/scene.h>
 
 #include "core/error.h"
 
-/* layers may be null; light_count: the scene's. */
-hl_status hl_layers_check(const hl_layers *layers, size_t light_count, hl_error *error);
+/* layers may be null. */
+hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *scene, hl_error *error);
 
 #endif

@@ -111,12 +111,36 @@ static void write_electron_density(hl_function_writer *w, const hl_volume *volum
   hl_add_colormap(w, "plasma", 0.6 * a->faint, core, 0.25, 0.95);
 }
 
+/* The value that all but one voxel in a hundred thousand stay below: a single bright one does not darken the rest. */
+static double almost_greatest(const hl_volume *volume) {
+  uint64_t voxels = 0, above = 0;
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) voxels += volume->histogram[bin];
+  int bin = HL_HISTOGRAM_BINS;
+  while (bin > 1 && (above += volume->histogram[bin - 1]) <= voxels / 100000) bin--;
+  return bin == HL_HISTOGRAM_BINS ? volume->maximum
+                                  : volume->minimum + (volume->maximum - volume->minimum) * bin / HL_HISTOGRAM_BINS;
+}
+
+/* For maximum projections: greys from what surrounds the things, which is not shown, to the greatest value. Where things lie
+ * below what surrounds them, or to both sides of it, from the least value. */
+static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
+  const hl_data_analysis *a = w->analysis;
+  bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;
+  double low = above ? a->background : volume->minimum, high = almost_greatest(volume);
+  if (!(high > low)) high = volume->maximum;
+  w->direction = 1;
+  hl_add_opacity(w, low - a->background, 0);
+  hl_add_opacity(w, high - a->background, 1);
+  hl_add_colormap(w, "grays", low - a->background, high - a->background, 0, 1);
+}
+
 static const struct {
   const char *name;
   void (*write)(hl_function_writer *w, const hl_volume *volume);
 } presets[] = {
     {"ct-bone", write_bone},   {"ct-skin", write_skin},   {"ct-soft-tissue", write_soft_tissue},
     {"mr-brain", write_brain}, {"smoke", write_smoke},     {"electron-density", write_electron_density},
+    {"mip", write_maximum},
 };
 
 #define PRESET_COUNT (sizeof presets / sizeof *presets)

@@ -68,6 +68,7 @@ static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gather
                         "is missing: name at least one volume, [ { \"file\": ... } ]");
   g->shelf.groups = json_object_get(root, "groups");
   g->shelf.threads = g->description.render.threads;
+  g->shelf.projected = g->description.render.compositing == HL_COMPOSITING_MAXIMUM;
   size_t mark = hl_json_enter(reader, "volumes");
   hl_status status = hl_json_array(reader, value, 1, HL_LIMIT_VOLUMES);
   if (status != HL_OK) return status;

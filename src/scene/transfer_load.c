@@ -237,7 +237,7 @@ static hl_status read_slicer(hl_json_reader *reader, const json_t *root, hl_tran
 static hl_status read_any(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
   if (json_is_array(root)) return read_paraview(reader, root, function);
   if (json_object_get(root, "volumeProperties") != NULL) return read_slicer(reader, root, function);
-  return hl_json_read_transfer_function(reader, root, (hl_function_subject){NULL, false}, function);
+  return hl_json_read_transfer_function(reader, root, (hl_function_subject){.volume = NULL}, function);
 }
 
 static hl_status load(hl_json_reader *reader, const char *path, hl_transfer_function *function) {

@@ -6,6 +6,7 @@
 #include "light/sublight_lanes.h"
 #include "light/sublight_shift_lanes.h"
 #include "render/cover_lanes.h"
+#include "render/maximum_lanes.h"
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "splat/bounds_lanes.h"
@@ -33,6 +34,7 @@ const hot_functions HL_HOT_TABLE = {
     .shade_tile = shade_tile,
     .measure_tile = measure_tile,
     .cover_tile = cover_tile,
+    .maximum_tile = maximum_tile,
     .blur_rows_tile = blur_rows_tile,
     .blur_columns_tile = blur_columns_tile,
     .field_blur_tile = field_blur_tile,

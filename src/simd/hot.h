@@ -23,7 +23,7 @@ typedef struct hot_functions {
   coverage_tile_function *coverage_tile;
   attenuate_tile_function *attenuate_tile;
   lit_blocks_function *lit_blocks_tile;
-  shade_tile_function *shade_tile, *measure_tile, *cover_tile;
+  shade_tile_function *shade_tile, *measure_tile, *cover_tile, *maximum_tile;
   sublight_tile_function *sublight_tile;
   sublight_row_function *sublight_row;
   sublight_lit_function *sublight_lit;

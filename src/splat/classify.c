@@ -13,11 +13,9 @@ static double extinction_of(const hl_transfer_function *function, double value) 
   return -log1p(-alpha) / function->unit_distance;
 }
 
-/* True where nothing of the function is transparent and empty lies below all values: what is nearer to empty than to
- * the least value is then transparent. */
-static bool below_all(const hl_scene_volume *volume, double empty, double value) {
-  return empty < volume->volume->minimum && value < (empty + volume->volume->minimum) / 2 &&
-         hl_transfer_function_opacity(&volume->transfer_function, empty) > 0;
+double hl_transparent_below(const hl_scene_volume *volume, double empty) {
+  bool below_all = empty < volume->volume->minimum && hl_transfer_function_opacity(&volume->transfer_function, empty) > 0;
+  return below_all ? (empty + volume->volume->minimum) / 2 : -INFINITY;
 }
 
 /* Exact for the piecewise linear table: over one step the mean extinction e is (e0 + e1) / 2, its moment about the
@@ -37,9 +35,10 @@ static void integrate(classifier *classifier) {
 static void fill_tables(const hl_scene_volume *volume, double empty, double low, double high,
                         classifier *classifier) {
   const hl_transfer_function *function = &volume->transfer_function;
+  double nothing = hl_transparent_below(volume, empty);
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
     double value = low + (high - low) * entry / CLASSIFIER_ENTRIES, color[3];
-    double extinction = below_all(volume, empty, value) ? 0 : extinction_of(function, value);
+    double extinction = value < nothing ? 0 : extinction_of(function, value);
     classifier->sums[entry][0] = (float)extinction;
     hl_transfer_function_color(function, value, color);
     for (int c = 0; c < 3; c++) classifier->color[entry][c] = (float)color[c];

@@ -25,6 +25,10 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
                                classifier *classifier, hl_error *error);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
+/* Where nothing of the function is transparent and empty lies below all values, what is nearer to empty than to the least value
+ * is transparent: data values below this. Else -infinity. */
+double hl_transparent_below(const hl_scene_volume *volume, double empty);
+
 /* True if some stored value in [low, high] is visible. */
 bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high);
 /* True if some stored value in [low, high], or between them and empty, is visible. */

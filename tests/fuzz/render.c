@@ -182,6 +182,7 @@ static void draw_settings(fuzz_source *source, hl_render_settings *render) {
   render->shadows = (hl_shadows)(1 + fuzz_choice(source, 3));
   render->soft_method = (hl_soft_method)fuzz_choice(source, 3);
   render->light_samples = 1 + fuzz_choice(source, 3);
+  if (render->light_samples == 3 && render->shadows == HL_SHADOWS_OFF) render->compositing = HL_COMPOSITING_MAXIMUM;
   render->sheet_spacing = spacings[fuzz_choice(source, 6)];
   render->kernel = (hl_kernel)fuzz_choice(source, 3);
   render->reconstruction = (hl_reconstruction)fuzz_choice(source, 3);

@@ -73,6 +73,10 @@ def scenes():
     write("scene", "shine.json", text({
         "halflight": 1, "image": {"width": 8, "height": 6, "exposure": -1.5}, "volumes": [
             dict(volume, shading="flat", material={"emission": 2.5}, transform={"scale": [1, 2, 0.5]}, visible=True)]}))
+    write("scene", "maximum.json", text({
+        "halflight": 1, "image": {"width": 8, "height": 6}, "volumes": [
+            {"file": "v.nrrd"}, dict(volume, transfer_function={"preset": "mip", "colormap": "hot"}, visible=True)],
+        "render": {"compositing": "maximum"}}))
     write("scene", "render.json", text({
         "halflight": 1, "image": {"width": 8, "height": 6, "background": [0, 0.1, 0.2]},
         "camera": {"type": "orthographic", "position": [0, -9, 0], "target": [0, 0, 0], "up": [0, 0, 1], "height": 5},

@@ -158,6 +158,7 @@ SPOIL(volumes_none, p->description.volume_count = 0)
 SPOIL(volume_null, p->scene_volume.volume = NULL)
 SPOIL(scale_zero, p->scene_volume.scale = 0)
 SPOIL(axis_scale_zero, p->scene_volume.axis_scale[1] = 0)
+SPOIL(compositing_unknown, p->description.render.compositing = (hl_compositing)2)
 SPOIL(exposure_nan, p->description.exposure = NAN)
 SPOIL(emission_negative, p->scene_volume.material.emission = -1)
 SPOIL(axis_zero, p->scene_volume.rotate_angle_deg = 10; p->scene_volume.rotate_axis[2] = 0)
@@ -280,6 +281,7 @@ static const refusal refusals[] = {
     {"/volumes: is empty: name at least one volume", HL_ERROR_INPUT, volumes_none},
     {"/volumes/0/volume: is null: give a volume", HL_ERROR_ARGUMENT, volume_null},
     {"/volumes/0/transform/scale: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, scale_zero},
+    {"/render/compositing: 2 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, compositing_unknown},
     {"/volumes/0/transform/scale/1: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, axis_scale_zero},
     {"/image/exposure: nan is not a number: give stops from -32 to 32: each doubles the light", HL_ERROR_INPUT, exposure_nan},
     {"/volumes/0/material/emission: -1 is negative: give the part of the colour that shines by itself, from 0 to 1e6",

@@ -625,7 +625,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    (round + v) % 2, (round + v) % 7 != 6, v == 0, (round + v) % 6 != 5, 0.5f, 0.8f, 0.3f, 25,
                                    round % 3 ? 0.4f : 0, {1, 0.5f, 0},
                                    {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}}, {-0.5f, -0.5f, -0.5f},
-                                   {8.5f, 9.5f, 10.5f}};
+                                   {8.5f, 9.5f, 10.5f}, NULL, v};
     s->patches[v] = (shade_patch){&s->volumes[v], s->density[2 * v], s->density[2 * v + 1],
                                   round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL, round % 5 == 4};
   }
@@ -645,6 +645,41 @@ static void test_shade(void **unused) {
     try_it("shade_tile", &trial, round);
     state.covers = 1;
     try_it("cover_tile", &trial, round);
+  }
+}
+
+typedef struct maximum_state {
+  shade_state shade;
+  float shown[CLASSIFIER_ENTRIES + 2][4];
+  struct { float values[2 * MAXIMUM_ROWS * TILE_PIXELS]; uint64_t samples; uint32_t open; } out;
+} maximum_state;
+
+static void call_maximum(const hot_functions *hot, void *state) {
+  maximum_state *s = state;
+  s->out.samples = 0;
+  s->out.open = hot->maximum_tile(&s->shade.job, s->shade.patches, s->shade.patch_count, 0, 0, s->shade.blocks, NULL,
+                                  s->out.values, &s->out.samples);
+}
+
+static void test_maximum(void **unused) {
+  (void)unused;
+  static maximum_state state;
+  uint32_t seed = 47;
+  for (int round = 0; round < 4 * ROUNDS; round++) {
+    set_up_shade(&state.shade, &seed, round);
+    state.shade.job.sheet = 7;
+    for (int v = 0; v < 2; v++) state.shade.volumes[v].shown = (const float(*)[4])state.shown;
+    for (int entry = 0; entry < CLASSIFIER_ENTRIES + 2; entry++) {
+      double from = entry + random_between(&seed, -0.2, 1.2);
+      state.shown[entry][SHOWN_FROM] = (float)from;
+      state.shown[entry][SHOWN_TO] = (float)(from + 0.5);
+      state.shown[entry][SHOWN_BELOW] = entry % 7 == 0 ? -1 : (float)entry - 1;
+    }
+    for (int i = 0; i < 2 * MAXIMUM_ROWS * TILE_PIXELS; i++)
+      state.out.values[i] = i / TILE_PIXELS % MAXIMUM_ROWS == MAXIMUM_SHEET ? (i % 3 ? 6 : -1)
+                                                                            : random_between(&seed, -1, CLASSIFIER_ENTRIES);
+    trial trial = {call_maximum, &state, &state.out, sizeof state.out};
+    try_it("maximum_tile", &trial, round);
   }
 }
 
@@ -683,7 +718,7 @@ int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_bound_cells), cmocka_unit_test(test_brick_bits), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
       cmocka_unit_test(test_brick_ranges),
-      cmocka_unit_test(test_light),      cmocka_unit_test(test_fields), cmocka_unit_test(test_shade),
+      cmocka_unit_test(test_light),      cmocka_unit_test(test_fields), cmocka_unit_test(test_shade), cmocka_unit_test(test_maximum),
       cmocka_unit_test(test_shade_beside_nothing),
   };
   return cmocka_run_group_tests_name("simd_equal", tests, open_classifier, close_classifier);

@@ -1,0 +1,91 @@
+/* reference/maximum.c - the greatest value along a ray (maximum projection).
+ *
+ * Each volume's field is sampled at the march's steps and at the faces of its box. Where the transfer function begins or ceases
+ * to show it between two samples, that place is searched for; so is the peak around the greatest sample.
+ */
+#include "reference/reference.h"
+
+enum { HALVINGS = 40 };
+
+/* Where a ray is asked for a volume's value, and what has been found there. */
+typedef struct search {
+  const crossing *part;
+  double greatest, where; /* data value, distance; -infinity: nothing shown yet */
+} search;
+
+static double value_at(const crossing *part, double at) {
+  return hl_reference_value(part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)));
+}
+
+/* Voxels and their weighed sums are rounded: at the foot of a ramp that is no opacity. */
+static const double LEAST_OPACITY = 1e-7;
+
+static bool is_shown(const crossing *part, double value) {
+  return hl_reference_extinction(part->volume, value) > 0 &&
+         hl_transfer_function_opacity(&part->volume->described->transfer_function, value) > LEAST_OPACITY;
+}
+
+/* True where the value there is shown. */
+static bool ask(search *found, double at) {
+  double value = value_at(found->part, at);
+  if (!is_shown(found->part, value)) return false;
+  if (value > found->greatest) {
+    found->greatest = value;
+    found->where = at;
+  }
+  return true;
+}
+
+/* Between a shown place and another: as near to the end of what is shown as doubles tell. */
+static void ask_at_end(search *found, double shown, double other) {
+  for (int i = 0; i < HALVINGS; i++) {
+    double middle = (shown + other) / 2;
+    if (ask(found, middle)) shown = middle;
+    else other = middle;
+  }
+}
+
+/* Golden-section search (Kiefer 1953) of the peak within a step either way; what is not shown counts as it is, and is left out. */
+static void ask_at_peak(search *found, double low, double high) {
+  static const double golden = 0.6180339887498949;
+  for (int i = 0; i < HALVINGS; i++) {
+    double a = high - golden * (high - low), b = low + golden * (high - low);
+    if (value_at(found->part, a) > value_at(found->part, b)) high = b;
+    else low = a;
+  }
+  (void)ask(found, (low + high) / 2);
+}
+
+/* One volume's greatest shown value; -infinity if it shows none. */
+static double greatest_along(const crossing *part, double step) {
+  search found = {part, -INFINITY, 0};
+  double steps = fmax(ceil((part->leave - part->enter) / step), 1), length = (part->leave - part->enter) / steps;
+  bool before = ask(&found, part->enter);
+  for (double next = 1; next <= steps; next++) {
+    double at = part->enter + next * length;
+    double clear = hl_reference_clearance(part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)), part->direction);
+    next += floor(fmax(clear / length - 1e-6, 0)); /* samples within what is empty */
+    bool shown = clear <= 0 && ask(&found, at);
+    if (shown && !before) ask_at_end(&found, at, at - length);
+    if (before && !shown) ask_at_end(&found, at - length, at);
+    before = shown;
+  }
+  if (found.greatest > -INFINITY)
+    ask_at_peak(&found, fmax(found.where - length, part->enter), fmin(found.where + length, part->leave));
+  return found.greatest;
+}
+
+void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker, float rgba[4]) {
+  march walk;
+  double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0;
+  for (int c = 0; c < 4; c++) rgba[c] = 0;
+  hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, nearest, INFINITY, worker->eye, &walk);
+  for (size_t v = 0; v < walk.count && !hl_pool_stops(all->pool, worker->number); v++) {
+    const crossing *part = &walk.crossings[v];
+    double greatest = greatest_along(part, all->step), color[3];
+    if (!(greatest > -INFINITY)) continue;
+    hl_transfer_function_color(&part->volume->described->transfer_function, greatest, color);
+    for (int c = 0; c < 3; c++) rgba[c] = fmaxf(rgba[c], (float)color[c]);
+    rgba[3] = 1;
+  }
+}

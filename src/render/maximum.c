@@ -1,0 +1,163 @@
+/* render/maximum.c - see maximum.h: which values a transfer function shows, and the colours of the greatest. */
+#include "render/maximum.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "core/memory.h"
+#include "scene/scene.h"
+
+/* Coordinates come from sums of floats: ends of what is shown are moved by a few roundings of the greatest voxel, so that a value
+ * at an end is on the side of it that the transfer function says. Entries, at least. */
+static const double LEAST_END = 1e-3, ROUNDINGS = 8;
+
+enum { BISECTIONS = 30 };
+
+static size_t visible_count(const hl_scene_description *scene) {
+  size_t count = 0;
+  for (size_t i = 0; i < scene->volume_count; i++) count += scene->volumes[i].visible != 0;
+  return count;
+}
+
+static size_t floats_of_tile(const maximum_values *maximum) { return maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS; }
+
+uint64_t hl_maximum_bytes(const hl_scene_description *scene, uint64_t tiles) {
+  if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return 0;
+  uint64_t a_volume = tiles * MAXIMUM_ROWS * TILE_PIXELS * sizeof(float) + (CLASSIFIER_ENTRIES + 2) * 4 * sizeof(float);
+  return visible_count(scene) * a_volume;
+}
+
+/* A transfer function over the coordinates of its table. */
+typedef struct shown_values {
+  const hl_transfer_function *function;
+  double low, step;  /* data values: of coordinate 0, and from one to the next */
+  double nothing;    /* data values below this are no matter */
+  double end;        /* entries by which ends are moved */
+} shown_values;
+
+static bool shows(const shown_values *values, double from, double to) {
+  double low = fmax(values->low + from * values->step, values->nothing), high = values->low + to * values->step;
+  return low <= high && hl_transfer_function_visible(values->function, low, high);
+}
+
+/* The end of what is shown from entry to entry + 1: of the greatest values, or of the least. */
+static double end_of_step(const shown_values *values, int entry, bool greatest) {
+  double inside = entry, outside = entry + 1;
+  for (int i = 0; i < BISECTIONS; i++) { /* greatest: something is shown from `inside` to the step's end */
+    double middle = (inside + outside) / 2;
+    bool some = greatest ? shows(values, middle, entry + 1) : shows(values, entry, middle);
+    if (some == greatest) inside = middle;
+    else outside = middle;
+  }
+  return (inside + outside) / 2;
+}
+
+/* Whether opacity rises from 0 there, so that the end itself is not shown; after a step it is. */
+static bool rises_from(const shown_values *values, double from) {
+  double near = values->low + (from + values->end) * values->step, far = values->low + (from + 2 * values->end) * values->step;
+  return hl_transfer_function_opacity(values->function, near) < 0.75 * hl_transfer_function_opacity(values->function, far);
+}
+
+static void fill_step(const shown_values *values, int entry, double below, float row[4]) {
+  bool any = shows(values, entry, entry + 1);
+  double from = 2 * CLASSIFIER_ENTRIES, to = below;
+  if (any) {
+    from = shows(values, entry, entry) ? entry : end_of_step(values, entry, false);
+    to = shows(values, entry + 1, entry + 1) ? entry + 1 : end_of_step(values, entry, true);
+    from += rises_from(values, from) ? values->end : -values->end;
+  }
+  row[SHOWN_FROM] = (float)from;
+  row[SHOWN_TO] = (float)to;
+  row[SHOWN_BELOW] = (float)below;
+  row[3] = 0;
+}
+
+static double end_of(const prepared_volume *prepared, double step) {
+  const hl_volume *volume = prepared->scene->volume;
+  double greatest = fmax(fmax(fabs(volume->minimum), fabs(volume->maximum)), fabs(prepared->empty));
+  return fmax(LEAST_END, ROUNDINGS * FLT_EPSILON * greatest / step);
+}
+
+/* [CLASSIFIER_ENTRIES + 2]: see SHOWN_FROM. */
+static void fill_shown(const prepared_volume *prepared, float (*rows)[4]) {
+  const classifier *classifier = &prepared->classifier;
+  const grid *grid = &prepared->grid;
+  double empty = prepared->empty, step = grid->value_scale / (double)classifier->scale;
+  const shown_values values = {&prepared->scene->transfer_function, empty - (double)classifier->offset * step, step,
+                               hl_transparent_below(prepared->scene, empty), end_of(prepared, fabs(step))};
+  double below = -1;
+  for (int entry = 0; entry < CLASSIFIER_ENTRIES + 2; entry++) {
+    fill_step(&values, entry < CLASSIFIER_ENTRIES ? entry : CLASSIFIER_ENTRIES, below, rows[entry]);
+    if (rows[entry][SHOWN_FROM] <= entry + 1) below = (double)rows[entry][SHOWN_TO];
+  }
+}
+
+static void clear_tile(void *data, size_t tile, int worker) {
+  (void)worker;
+  const maximum_values *maximum = data;
+  float *values = maximum->values + tile * floats_of_tile(maximum);
+  for (size_t i = 0; i < floats_of_tile(maximum); i++) values[i] = -1;
+}
+
+hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
+                            const prepared_volume *prepared, size_t tiles, maximum_values *maximum, hl_error *error) {
+  *maximum = (maximum_values){.volume_count = visible_count(scene), .tiles = tiles};
+  if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return HL_OK;
+  size_t floats = floats_of_tile(maximum), rows = CLASSIFIER_ENTRIES + 2, rank = 0;
+  maximum->values = hl_allocate(context, tiles * floats, sizeof *maximum->values);
+  maximum->shown = hl_allocate(context, maximum->volume_count * rows, sizeof *maximum->shown);
+  if (maximum->values == NULL || maximum->shown == NULL)
+    return hl_fail_memory(error, tiles * floats * sizeof *maximum->values, "a maximum projection");
+  hl_pool_run(pool, tiles, clear_tile, maximum);
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (scene->volumes[i].visible) fill_shown(&prepared[i], maximum->shown + rows * rank++);
+  return HL_OK;
+}
+
+void hl_maximum_release(hl_context *context, maximum_values *maximum) {
+  hl_release(context, maximum->values);
+  hl_release(context, maximum->shown);
+}
+
+/* ---- colours ---- */
+
+typedef struct color_job {
+  const maximum_values *maximum;
+  const hl_scene_description *scene;
+  const prepared_volume *prepared;
+  float *pixels;
+} color_job;
+
+/* Sixteen pixels of one volume. */
+static void color_block(float (*table)[4], const float *greatest, float *pixels) {
+  for (int lane = 0; lane < BLOCK_PIXELS; lane++) {
+    if (!(greatest[lane] >= 0)) continue;
+    int entry = (int)greatest[lane];
+    float fraction = greatest[lane] - (float)entry;
+    for (int c = 0; c < 3; c++) {
+      float color = table[entry][c] + (table[entry + 1][c] - table[entry][c]) * fraction;
+      float *at = &pixels[c * BLOCK_PIXELS + lane];
+      if (color > *at) *at = color;
+    }
+    pixels[3 * BLOCK_PIXELS + lane] = 1;
+  }
+}
+
+static void color_tile(void *data, size_t tile, int worker) {
+  (void)worker;
+  const color_job *job = data;
+  const float *values = job->maximum->values + tile * floats_of_tile(job->maximum);
+  for (size_t i = 0; i < job->scene->volume_count; i++) {
+    if (!job->scene->volumes[i].visible) continue;
+    for (int block = 0; block < TILE_BLOCKS; block++)
+      color_block(job->prepared[i].classifier.color, values + block * BLOCK_PIXELS,
+                  job->pixels + (tile * TILE_BLOCKS + (size_t)block) * 4 * BLOCK_PIXELS);
+    values += MAXIMUM_ROWS * TILE_PIXELS;
+  }
+}
+
+void hl_maximum_color(const maximum_values *maximum, const hl_scene_description *scene, const prepared_volume *prepared,
+                      hl_pool *pool, float *pixels) {
+  color_job job = {maximum, scene, prepared, pixels};
+  hl_pool_run(pool, maximum->tiles, color_tile, &job);
+}

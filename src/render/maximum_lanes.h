@@ -1,0 +1,61 @@
+/* render/maximum_lanes.h - the greatest value of each volume along each ray (maximum projection), a 4x4 block at a time. */
+#ifndef HL_RENDER_MAXIMUM_LANES_H
+#define HL_RENDER_MAXIMUM_LANES_H
+
+#include "render/slab_lanes.h"
+
+/* The greatest value from low to high, as coordinates, that the transfer function shows; below 0: there is none. */
+LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high) {
+  lanes of_entry[3], of_next[3];
+  lanes_gather_row_pairs(&shown[0][0], place_of_coordinate(high).entry, of_entry, of_next);
+  lanes within = lanes_min(high, of_entry[SHOWN_TO]);
+  lanes value = lanes_select(high > of_entry[SHOWN_FROM], within, of_entry[SHOWN_BELOW]);
+  return lanes_select(value >= low, value, lanes_set(-1.0f));
+}
+
+/* Where the middle one of three sheets has the greatest value of the three, the peak of the parabola through them (derived): of
+ * a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2, t in sheets, it is a + (b - p)^2 / (8 (2 a - p - b)). */
+LANES_INLINE lanes peak_of_three(lanes p, lanes a, lanes b) {
+  lanes bend = lanes_fma(a, lanes_set(2.0f), -(p + b)), slope = b - p;
+  lanes rise = slope * slope / lanes_max(bend * 8.0f, lanes_set(1e-20f));
+  lanes_int peaks = (a >= p) & (a >= b) & (bend > 1e-6f);
+  return lanes_clamp(a + lanes_keep(peaks, rise), 0, CLASSIFIER_ENTRIES);
+}
+
+LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *patch, int block, lanes path, float *values) {
+  const shade_volume *volume = patch->volume;
+  block_way way = way_of_block(job, patch, block);
+  table_place a = classify_place(volume->classifier, way.first), b = classify_place(volume->classifier, way.last);
+  if (patch->enter != NULL) cut_way(way.part, &a, &b);
+  float *greatest = values + block * BLOCK_PIXELS, *before = greatest + MAXIMUM_BEFORE * TILE_PIXELS;
+  float *sheet = greatest + MAXIMUM_SHEET * TILE_PIXELS;
+  lanes_int there = (way.part.length > 0.0f) & (path > 0.0f), whole = there & (way.part.length > 0.999f);
+  lanes_int follows = whole & (lanes_load(sheet) == (float)(job->sheet - 1));
+  lanes high = lanes_max(a.x, b.x), low = lanes_min(a.x, b.x);
+  high = lanes_max(high, lanes_select(follows, peak_of_three(lanes_load(before), a.x, b.x), high));
+  lanes value = lanes_select(there, greatest_shown(volume->shown, low, high), lanes_set(-1.0f));
+  lanes_store(greatest, lanes_max(lanes_load(greatest), value));
+  lanes_store(before, a.x);
+  lanes_store(sheet, lanes_select(whole, lanes_set((float)job->sheet), lanes_set(-1.0f)));
+  return lanes_bits(value >= 0.0f);
+}
+
+/* Light does not matter: all blocks stay open. */
+static uint32_t maximum_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
+                             uint32_t blocks, void *scratch, float *values, uint64_t *samples) {
+  (void)scratch;
+  for (uint32_t left = blocks; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    lanes u = block_u(tile_x * TILE + block % 4 * BLOCK), v = block_v(tile_y * TILE + block / 4 * BLOCK);
+    lanes path = geometry_of_block(job, u, v).path;
+    for (int i = 0; i < patch_count; i++) {
+      const shade_patch *patch = &patches[i];
+      if ((patch->blocks >> block & 1) == 0 || !patch->volume->visible || lanes_bits(visible_in_patch(patch, block)) == 0) continue;
+      float *of_volume = values + (size_t)patch->volume->rank * MAXIMUM_ROWS * TILE_PIXELS;
+      *samples += (uint64_t)__builtin_popcount(maximum_block(job, patch, block, path, of_volume));
+    }
+  }
+  return blocks;
+}
+
+#endif
