@@ -51,6 +51,13 @@ HL_API HL_WARN_UNUSED hl_status hl_image_encode(hl_context *context, const hl_im
                                                 size_t *length, hl_error *error);
 HL_API void hl_bytes_release(hl_context *context, unsigned char *bytes); /* null is allowed */
 
+/* The picture as 8-bit sRGB, for windows and toolkits: bytes R, G, B, A of each pixel, top row first, the same codes as in a
+ * .png of png_depth 8. Over the background A is 255; with background_transparent colours are unassociated. bytes: the
+ * caller's, [height][row_stride], 4 x width of them used in each row; row_stride in bytes, at least 4 x width. options may
+ * be null: over black. */
+HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image, const hl_image_write_options *options, uint8_t *bytes,
+                                                  size_t row_stride, hl_error *error);
+
 /* Reads .png (sRGB decoded), .exr (R, G, B, A; missing A is 1) and .npy (float32, height x width x 1, 3 or 4). */
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);

@@ -54,6 +54,10 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer,
                                                           size_t row_stride, const hl_layers *layers,
                                                           hl_render_statistics *statistics, hl_error *error);
 
+/* How the scene wants its pictures written, by hl_image_write() or hl_image_to_srgb8(): the defaults with its background and
+ * exposure. scene may be null: the defaults alone. */
+HL_API void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *options);
+
 typedef struct hl_reference_options {
   size_t struct_size;   /* set by hl_reference_options_defaults() */
   int light_points;     /* points on each extended light; default 1024 */

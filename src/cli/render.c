@@ -184,7 +184,6 @@ static int job_print_scene(render_job *job) {
 }
 
 static int job_write(render_job *job) {
-  const hl_scene_description *description = job->result.description;
   double started = clock_seconds();
   hl_error error = {0};
   char *scene_json = NULL;
@@ -193,11 +192,8 @@ static int job_write(render_job *job) {
   if (status == HL_OK) status = hl_scene_to_json(job->host.context, job->scene, &scene_json, &error);
   if (status == HL_OK) {
     hl_image_write_options options;
-    hl_image_write_options_defaults(&options);
+    hl_scene_write_options(job->scene, &options);
     if (job->values[RENDER_DEPTH].given) options.png_depth = job->values[RENDER_DEPTH].choice;
-    memcpy(options.background, description->background, sizeof options.background);
-    options.background_transparent = description->background_transparent;
-    options.exposure = description->exposure;
     options.scene_json = scene_json;
     status = job->to_stdout ? write_to_stdout(job, &options, &exit_code, &error)
                             : hl_image_write(job->host.context, job->image, job->output, &options, &error);

@@ -59,21 +59,21 @@ void hl_image_write_options_defaults(hl_image_write_options *options) {
   options->png_depth = 8;
 }
 
-static hl_status check_options(const hl_image_write_options *options, hl_error *error) {
+hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error) {
   if (options->struct_size != sizeof *options)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
-        "hl_image_write: struct_size is %zu, expected %zu: call hl_image_write_options_defaults first",
-        options->struct_size, sizeof *options);
+        "%s: struct_size is %zu, expected %zu: call hl_image_write_options_defaults first",
+        caller, options->struct_size, sizeof *options);
   if (options->png_depth != 8 && options->png_depth != 16)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: png_depth is %d, expected 8 or 16",
-                   options->png_depth);
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: png_depth is %d, expected 8 or 16",
+                   caller, options->png_depth);
   if (!(fabs(options->exposure) <= HL_IMAGE_EXPOSURE_MAX))
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: exposure is %g, expected stops from -%d to %d",
-                   options->exposure, (int)HL_IMAGE_EXPOSURE_MAX, (int)HL_IMAGE_EXPOSURE_MAX);
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: exposure is %g, expected stops from -%d to %d",
+                   caller, options->exposure, (int)HL_IMAGE_EXPOSURE_MAX, (int)HL_IMAGE_EXPOSURE_MAX);
   for (int c = 0; c < 3; c++)
     if (!isfinite(options->background[c]))
-      return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: background[%d] is not a finite number", c);
+      return hl_fail(error, HL_ERROR_ARGUMENT, "%s: background[%d] is not a finite number", caller, c);
   return HL_OK;
 }
 
@@ -131,7 +131,7 @@ hl_status hl_image_write(hl_context *context, const hl_image *image, const char 
   hl_image_write_options chosen;
   hl_image_write_options_defaults(&chosen);
   if (options == NULL) options = &chosen;
-  hl_status status = check_options(options, error);
+  hl_status status = hl_image_check_options(options, "hl_image_write", error);
   if (status != HL_OK) return status;
   const picture_format *format = format_by_name(path);
   if (format == NULL)
@@ -158,7 +158,7 @@ hl_status hl_image_encode(hl_context *context, const hl_image *image, const char
   hl_image_write_options chosen;
   hl_image_write_options_defaults(&chosen);
   if (options == NULL) options = &chosen;
-  hl_status status = check_options(options, error);
+  hl_status status = hl_image_check_options(options, "hl_image_encode", error);
   if (status != HL_OK) return status;
   char extension[8];
   snprintf(extension, sizeof extension, ".%.6s", format_name);

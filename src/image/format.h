@@ -7,6 +7,9 @@
 #include "core/file.h"
 #include "image/image.h"
 
+/* Refuses options that cannot be; caller: the public function that errors name. */
+hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);
+
 /* Encoders write the whole picture to output->file; the caller commits or aborts. Failures of the
  * file are HL_ERROR_IO lines that name output->path. */
 hl_status hl_png_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,

@@ -116,15 +116,15 @@ def png_scene(path):
     sys.exit(f"{path} carries no scene")
 
 
-def png_pixel(path, x, y):
-    """The 8-bit channels of one pixel; knows the filters of the PNG specification, section 9."""
+def png_rows(path):
+    """(width, height, channels, rows of 8-bit samples); knows the filters of the PNG specification, section 9."""
     chunks = list(png_chunks(path))
     width, height, bits, color_type = struct.unpack(">IIBB", dict(chunks)["IHDR"][:10])
     assert bits == 8
     step = {2: 3, 6: 4}[color_type]
     rows = zlib.decompress(b"".join(body for kind, body in chunks if kind == "IDAT"))
-    above = bytearray(width * step)
-    for row in range(int(y) + 1):
+    above, lines = bytearray(width * step), []
+    for row in range(height):
         at = row * (width * step + 1)
         kind, line = rows[at], bytearray(rows[at + 1:at + 1 + width * step])
         for i in range(len(line)):
@@ -133,7 +133,22 @@ def png_pixel(path, x, y):
             nearest = min((left, up, corner), key=lambda value: abs(guess - value))
             line[i] = (line[i] + (0, left, up, (left + up) // 2, nearest)[kind]) % 256
         above = line
-    print(*above[int(x) * step:(int(x) + 1) * step])
+        lines.append(bytes(line))
+    return width, height, step, lines
+
+
+def png_pixel(path, x, y):
+    """The 8-bit channels of one pixel."""
+    _, _, step, lines = png_rows(path)
+    print(*lines[int(y)][int(x) * step:(int(x) + 1) * step])
+
+
+def ppm_of_png(path, ppm):
+    """The same picture without alpha as a PPM file."""
+    width, height, step, lines = png_rows(path)
+    assert step == 3
+    with open(ppm, "wb") as file:
+        file.write(b"P6\n%d %d\n255\n" % (width, height) + b"".join(lines))
 
 
 def json_get(path, expression):
@@ -143,5 +158,6 @@ def json_get(path, expression):
 
 COMMANDS = {"ball": ball, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
             "sum_layers": sum_layers,
-            "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel, "json": json_get}
+            "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel,
+            "ppm-of-png": ppm_of_png, "json": json_get}
 COMMANDS[sys.argv[1]](*sys.argv[2:])

@@ -384,6 +384,42 @@ static void every_kind_is_read(void **state) {
   end(&f);
 }
 
+/* Bytes for a toolkit are those of an 8-bit PNG, with alpha 255 over a background; what lies between rows stays. */
+static void bytes_are_those_of_a_png(void **unused) {
+  (void)unused;
+  enum { WIDTH = 37, HEIGHT = 19, STRIDE = 4 * WIDTH + 12 };
+  static uint8_t bytes[HEIGHT][STRIDE];
+  fixture f = begin();
+  hl_image *image = NULL;
+  assert_int_equal(hl_image_create(f.context, WIDTH, HEIGHT, &image, NULL), HL_OK);
+  float *pixel = hl_image_pixels(image);
+  for (int i = WIDTH; i < WIDTH * HEIGHT; i++) /* the first row stays empty */
+    for (int c = 0; c < 4; c++) pixel[4 * i + c] = (float)(i * (c + 1) % 997) / 997 * (c < 3 ? 0.4f : 1.0f);
+  for (int transparent = 0; transparent < 2; transparent++) {
+    hl_image_write_options options;
+    hl_image_write_options_defaults(&options);
+    options.background[1] = 0.3;
+    options.exposure = 0.5;
+    options.background_transparent = transparent;
+    memset(bytes, 77, sizeof bytes);
+    assert_int_equal(hl_image_to_srgb8(image, &options, bytes[0], STRIDE, NULL), HL_OK);
+    assert_int_equal(hl_image_write(f.context, image, f.path, &options, NULL), HL_OK);
+    png_samples s = load_samples(f.path);
+    for (int y = 0; y < HEIGHT; y++)
+      for (int x = 0; x < WIDTH; x++)
+        for (int c = 0; c < 4; c++)
+          assert_int_equal(bytes[y][4 * x + c], c < s.channels ? sample(&s, x, y, c) : 255);
+    for (int y = 0; y < HEIGHT; y++)
+      for (int i = 4 * WIDTH; i < STRIDE; i++) assert_int_equal(bytes[y][i], 77);
+    free(s.bytes);
+  }
+  hl_error error = {0};
+  assert_int_equal(hl_image_to_srgb8(image, NULL, bytes[0], 4 * WIDTH - 1, &error), HL_ERROR_ARGUMENT);
+  assert_string_equal(error.message, "hl_image_to_srgb8: row_stride is 147, expected 4 x width = 148 at least");
+  hl_image_destroy(image);
+  end(&f);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(composites_in_linear_light),
                                      cmocka_unit_test(exposure_multiplies_the_light),
@@ -393,6 +429,7 @@ int main(void) {
                                      cmocka_unit_test(dither_removes_bands),
                                      cmocka_unit_test(rewriting_keeps_codes),
                                      cmocka_unit_test(scene_is_stored),
-                                     cmocka_unit_test(every_kind_is_read)};
+                                     cmocka_unit_test(every_kind_is_read),
+                                     cmocka_unit_test(bytes_are_those_of_a_png)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,98 @@
+/* codes.c - pixels as sRGB codes of 8 or 16 bits, for files and for the caller's memory.
+ *
+ * In: linear premultiplied floats, a linear background. Out: RGB over the background or, with
+ * background_transparent, unassociated RGBA.
+ *
+ * Exposure, compositing and alpha division are done in linear light; the curve is applied last (srgb.h).
+ *
+ * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws contours, 10 pixels wide
+ * and more, that the eye finds. Measured on a penumbra-like gradient of 0.004 to 0.034 linear over 256 x 256
+ * pixels, after averaging 8 x 8 pixels as the eye does at a distance: rounding errs by 0.070 codes (root mean
+ * square; 0.34 at worst), with an 8 x 8 ordered dither 0.020 (0.08), and the contours are gone when the
+ * contrast is raised; white noise (0.050) and two low-discrepancy patterns (0.019 and 0.029) were no better
+ * to look at, and the ordered one keeps files smallest. So 8-bit codes are dithered by less than half a code,
+ * by position alone, the same in all channels (greys stay grey). Values that are whole codes stay as they
+ * are, so a PNG that is read and written again keeps its bytes, and pixels without any volume are rounded: a
+ * flat background stays flat. 16 bits are rounded.
+ */
+#include "image/codes.h"
+
+#include <string.h>
+
+#include "image/format.h"
+
+/* The 8 x 8 ordered (Bayer) pattern: the bits of x ^ y and y, interlaced and mirrored, count each of 0..63
+ * once. Offsets in codes, -63/128 .. 63/128. */
+static float dither_offset(int x, int y) {
+  int order = 0;
+  for (int bit = 0; bit < 3; bit++)
+    order |= (((x ^ y) >> bit & 1) << (5 - 2 * bit)) | ((y >> bit & 1) << (4 - 2 * bit));
+  return (float)(2 * order - 63) / 128.0f;
+}
+
+/* Alpha is linear: nearest code of [0, 1], NaN gives 0. */
+static int quantise(float value, int maximum, float offset) {
+  if (!(value > 0)) return 0;
+  if (value >= 1) return maximum;
+  return (int)((float)maximum * value + offset + 0.5f);
+}
+
+static unsigned char *put_code(unsigned char *to, int code, int depth) {
+  if (depth == 16) *to++ = (unsigned char)(code >> 8);
+  *to++ = (unsigned char)(code & 0xff);
+  return to;
+}
+
+static bool is_empty(const float pixel[4]) {
+  return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0 && pixel[3] == 0;
+}
+
+/* The linear value that colour c of a pixel is stored as. */
+static float stored_value(const hl_codes *codes, const float pixel[4], int c) {
+  if (!codes->transparent) return pixel[c] * codes->exposure + (1 - pixel[3]) * codes->background[c];
+  /* Light above alpha (emission) cannot be told in unassociated colour: it saturates. */
+  return pixel[3] > 0 ? pixel[c] / pixel[3] * codes->exposure : 0;
+}
+
+void hl_codes_of_row(const hl_codes *codes, const float *pixels, int width, int y, unsigned char *to) {
+  for (const float *pixel = pixels; pixel < pixels + 4 * (size_t)width; pixel += 4) {
+    int x = (int)((pixel - pixels) / 4);
+    float offset = codes->depth == 16 || is_empty(pixel) ? 0.0f : dither_offset(x, y);
+    for (int c = 0; c < 3; c++)
+      to = put_code(to, hl_srgb_encode_offset(&codes->encoder, stored_value(codes, pixel, c), offset), codes->depth);
+    if (codes->transparent)
+      to = put_code(to, quantise(pixel[3], codes->encoder.maximum, offset), codes->depth);
+    else if (codes->opaque_alpha)
+      to = put_code(to, codes->encoder.maximum, codes->depth);
+  }
+}
+
+hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth, hl_codes *codes, hl_error *error) {
+  *codes = (hl_codes){.depth = depth, .transparent = options->background_transparent != 0};
+  for (int c = 0; c < 3; c++) codes->background[c] = (float)options->background[c];
+  codes->exposure = (float)hl_exposure_factor(options->exposure);
+  return hl_srgb_encoder_create(context, depth == 16 ? 65535 : 255, &codes->encoder, error);
+}
+
+void hl_codes_end(hl_codes *codes) { hl_srgb_encoder_destroy(&codes->encoder); }
+
+hl_status hl_image_to_srgb8(const hl_image *image, const hl_image_write_options *options, uint8_t *bytes, size_t row_stride,
+                            hl_error *error) {
+  if (image == NULL || bytes == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_to_srgb8: image and bytes must not be null");
+  if (row_stride < 4 * (size_t)image->width)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_to_srgb8: row_stride is %zu, expected 4 x width = %zu at least", row_stride,
+                   4 * (size_t)image->width);
+  hl_image_write_options chosen;
+  hl_image_write_options_defaults(&chosen);
+  if (options == NULL) options = &chosen;
+  hl_status status = hl_image_check_options(options, "hl_image_to_srgb8", error);
+  hl_codes codes;
+  if (status == HL_OK) status = hl_codes_begin(image->context, options, 8, &codes, error);
+  if (status != HL_OK) return status;
+  codes.opaque_alpha = true;
+  for (int y = 0; y < image->height; y++)
+    hl_codes_of_row(&codes, image->pixels + (size_t)y * (size_t)image->width * 4, image->width, y, bytes + (size_t)y * row_stride);
+  hl_codes_end(&codes);
+  return HL_OK;
+}

@@ -1,0 +1,25 @@
+/* image/codes.h - pixels as sRGB codes of 8 or 16 bits. */
+#ifndef HL_IMAGE_CODES_H
+#define HL_IMAGE_CODES_H
+
+#include <stdbool.h>
+
+#include "image/image.h"
+#include "image/srgb.h"
+
+typedef struct hl_codes {
+  hl_srgb_encoder encoder;
+  int depth;           /* bits of a code: 8 or 16 */
+  bool transparent;    /* four codes a pixel, the last one alpha; else three */
+  bool opaque_alpha;   /* or four, the last one always the greatest */
+  float background[3]; /* linear */
+  float exposure;      /* what the picture's light is multiplied by */
+} hl_codes;
+
+hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth, hl_codes *codes, hl_error *error);
+void hl_codes_end(hl_codes *codes);
+
+/* Row y of a picture, pixels [width][4], as codes: [width][3 or 4], of 16 bits with the greater byte first. */
+void hl_codes_of_row(const hl_codes *codes, const float *pixels, int width, int y, unsigned char *to);
+
+#endif
