@@ -33,7 +33,7 @@ LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block
   if (lanes_bits(crossed) == 0) return;
   lanes missing = lanes_log2((1.0f - before) * (1.0f / (1.0f - FIRST_OPACITY))) * 0.69314718056f;
   lanes u = lanes_clamp(missing / lanes_max(slab->depth, lanes_set(1e-30f)), 0, 1);
-  lanes place = place_of_part(densities, count, slab->total, u);
+  lanes place = place_of_part(densities, count, slab, u);
   lanes3 position = add_scaled3(slab->geometry.start, slab->geometry.step_sheet, place);
   lanes_store(first, lanes_select(crossed, depth_of(job, slab, position), lanes_load(first)));
 }

@@ -75,7 +75,7 @@ typedef struct shade_job {
  * [16 blocks][R G B A][16]. Returns the blocks that are still open: some pixel not yet opaque. samples is raised by
  * the pixels composited. scratch: SHADE_SCRATCH_BYTES a patch, aligned to 64: its part in one block and in the sixteen
  * at most that the tile's samples are moved to (pack_lanes.h). */
-enum { SHADE_SCRATCH_BYTES = 17 * 1344 };
+enum { SHADE_SCRATCH_BYTES = 17 * 1472 };
 typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
                                      int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples);
 

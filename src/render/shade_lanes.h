@@ -73,21 +73,25 @@ typedef struct arriving_light {
   color_lanes full, shadowed; /* without and with attenuation */
 } arriving_light;
 
-/* How far light has come within the box of a volume when it reaches the ends of a way: back to the box's face. */
+/* How far light has come within the box of a volume when it reaches the ends of a way, of the given lengths of its way. */
 typedef struct ways_in_box { lanes first, last; } ways_in_box;
 
-LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start, lanes3 way, lanes3 towards) {
-  ways_in_box ways = {lanes_set(1e30f), lanes_set(1e30f)};
+LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start, lanes3 way, lanes3 towards, ways_in_box path) {
+  ways_in_box leave = {lanes_set(1e30f), lanes_set(1e30f)}, enter = {lanes_set(0), lanes_set(0)};
   for (int axis = 0; axis < 3; axis++) {
     const float *row = volume->to_index[axis];
     lanes at = row_of_point(row, start), step = row_of_vector(row, way), speed = row_of_vector(row, towards);
     speed = lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
-    lanes slowness = 1.0f / speed;
-    lanes first = (lanes_select(speed > 0.0f, lanes_set(volume->high[axis]), lanes_set(volume->low[axis])) - at) * slowness;
-    ways.first = lanes_min(ways.first, lanes_max(first, lanes_set(0)));
-    ways.last = lanes_min(ways.last, lanes_max(lanes_fma(-step, slowness, first), lanes_set(0)));
+    lanes slowness = 1.0f / speed, low = lanes_set(volume->low[axis]), high = lanes_set(volume->high[axis]);
+    lanes_int rising = speed > 0.0f;
+    lanes far = (lanes_select(rising, high, low) - at) * slowness, near = (lanes_select(rising, low, high) - at) * slowness;
+    leave.first = lanes_min(leave.first, lanes_max(far, lanes_set(0)));
+    leave.last = lanes_min(leave.last, lanes_max(lanes_fma(-step, slowness, far), lanes_set(0)));
+    enter.first = lanes_max(enter.first, near);
+    enter.last = lanes_max(enter.last, lanes_fma(-step, slowness, near));
   }
-  return ways;
+  return (ways_in_box){lanes_max(lanes_min(path.first, leave.first) - enter.first, lanes_set(0)),
+                       lanes_max(lanes_min(path.last, leave.last) - enter.last, lanes_set(0))};
 }
 
 /* Optical depths of the slab for one light: before the eye's rays enter the matter, and from there to where they leave
@@ -113,29 +117,41 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
-LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_geometry *g, const block_density *densities,
-                                          int count, lanes3 towards, lanes path) {
+/* The light's ways through all volumes to where the slab's covered part starts and ends: of several that share a slab, each takes
+ * light on what of its way lies in the slab and in its own box, on whichever side of them the eye's ray passes. */
+LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densities, int count, lanes3 towards, lanes path) {
+  const block_geometry *g = &slab->geometry;
+  ways_in_box all = {slab->part.begin * path, (slab->part.begin + slab->part.length) * path}, sum = {lanes_set(0), lanes_set(0)};
+  lanes3 start = add_scaled3(g->start, g->step_sheet, slab->part.begin), way = scale3(g->step_sheet, slab->part.length);
+  for (int i = 0; i < count; i++) {
+    block_density *d = &densities[i];
+    if (!d->there) continue;
+    int cut = d->patch->enter != NULL && !d->patch->whole;
+    ways_in_box own = cut ? ways_of_light(d->patch->volume, start, way, towards, all) : all;
+    d->light_first = own.first;
+    d->light_last = own.last;
+    if (count == 1) return own;
+    sum = (ways_in_box){sum.first + own.first, sum.last + own.last};
+  }
+  return (ways_in_box){lanes_min(sum.first, all.first), lanes_min(sum.last, all.last)};
+}
+
+LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab, block_density *densities, int count,
+                                          lanes3 towards, lanes path) {
   light_depths depths;
   for (int c = 0; c < HL_CHANNELS; c++) depths.before[c] = depths.within[c] = lanes_set(0);
+  ways_in_box ways = find_ways(slab, densities, count, towards, path);
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there) continue;
-    const shade_volume *volume = d->patch->volume;
-    const covered_part *part = &d->way.part;
-    lanes first = part->begin * path, last = (part->begin + part->length) * path;
-    if (d->patch->enter != NULL && !d->patch->whole) {
-      ways_in_box ways = ways_of_light(volume, add_scaled3(g->start, g->step_sheet, part->begin),
-                                       scale3(g->step_sheet, part->length), towards);
-      first = lanes_min(first, ways.first);
-      last = lanes_max(lanes_min(last, ways.last), first);
-    }
-    lanes extinction = extinction_towards(d, towards, lanes_fma(last - first, d->seen, first));
+    lanes extinction = extinction_towards(d, towards, lanes_fma(lanes_max(ways.last, ways.first) - ways.first, d->seen, ways.first));
     for (int c = 0; c < job->channels; c++) {
-      lanes cast = extinction * volume->cast[c];
-      depths.before[c] = lanes_fma(cast, first, depths.before[c]);
-      depths.within[c] = lanes_fma(cast, last - first, depths.within[c]);
+      lanes cast = extinction * d->patch->volume->cast[c];
+      depths.before[c] = lanes_fma(cast, d->light_first, depths.before[c]);
+      depths.within[c] = lanes_fma(cast, d->light_last - d->light_first, depths.within[c]);
     }
   }
+  for (int c = 0; c < job->channels; c++) depths.within[c] = lanes_max(depths.within[c], lanes_set(0));
   return depths;
 }
 
@@ -172,7 +188,7 @@ LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int s
 }
 
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_slab *slab,
-                                     const block_density *densities, int count) {
+                                     block_density *densities, int count) {
   const block_geometry *g = &slab->geometry;
   arriving_light arriving;
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
@@ -200,7 +216,7 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   }
   arriving.shadowed = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
-  light_depths depths = depths_of_light(job, g, densities, count, arriving.towards, path);
+  light_depths depths = depths_of_light(job, slab, densities, count, arriving.towards, path);
   color_lanes reached = reaching(light, g->position, lanes_bits(slab->seen));
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
@@ -289,7 +305,7 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
   for (int k = 0; k < count; k++) place_slab(job, of[seen[k]], patch_count, &tile->slabs[seen[k]]);
   for (int k = 0; k < count; k++) {
     block_slab *slab = &tile->slabs[seen[k]];
-    find_slopes(job, &slab->geometry, of[seen[k]], patch_count, slab->seen, slab->starts);
+    find_slopes(job, slab, of[seen[k]], patch_count);
     find_normals(of[seen[k]], patch_count);
   }
   for (int k = 0; k < count; k++)

@@ -59,15 +59,16 @@ typedef struct block_density {
   const shade_patch *patch;
   int there;           /* whether the volume may be visible in any of the pixels */
   block_way way;
-  lanes before, after; /* coordinates in the tables: where the covered part starts and ends */
+  lanes before, after; /* coordinates in the tables: where the slab's covered part starts and ends */
   way_sums sums;       /* between the two */
   lanes extinction;    /* averaged over the slab, the part outside the box counting as none */
-  lanes seen;          /* the part of the way at which its matter is seen */
+  lanes seen;          /* the part of the covered part at which its matter is seen */
   lanes evenly;        /* the part at which it would be seen if its extinction were even */
   lanes_int sloped;    /* where the gradient is known */
   lanes3 slope;        /* where the matter is seen; elsewhere 0 */
   lanes3 normal;       /* unit, away from the matter */
   lanes surface;       /* 1 for a surface, falling to 0 for a medium, which has no normal */
+  lanes light_first, light_last; /* how far a light has come within its box where the slab's covered part starts and ends */
 } block_density;
 
 /* In thinner slabs the gradient makes no difference to the light lost within. */
@@ -89,15 +90,20 @@ LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *pat
   return way;
 }
 
-/* Step 13 for one volume: its extinction. */
-LANES_INLINE void classify_way(block_density *d) {
+/* Step 13 for one volume: the sums over a part of its way through the slab, as if it had no box. */
+LANES_INLINE void classify_way(block_density *d, covered_part part) {
   const classifier *classifier = d->patch->volume->classifier;
   table_place a = classify_place(classifier, d->way.first), b = classify_place(classifier, d->way.last);
-  if (d->patch->enter != NULL) cut_way(d->way.part, &a, &b);
+  if (d->patch->enter != NULL) cut_way(part, &a, &b);
   d->before = a.x;
   d->after = b.x;
   d->sums = sums_of_way(classifier, a, b);
-  d->extinction = d->sums.extinction * d->way.part.length;
+}
+
+/* How far on the way from before to after its extinction lies on average. */
+LANES_INLINE lanes centre_of_way(const block_density *d) {
+  way_parts m = parts_of_way(d->before, d->after, &d->sums);
+  return m.from_a / (m.from_a + m.from_b);
 }
 
 /* base^exponent for base in [0, 1] and exponent >= 0. */
@@ -115,11 +121,45 @@ LANES_INLINE lanes seen_part(lanes e, lanes left) {
   return lanes_select(thin, lanes_line(e, -1.0f / 12, 0.5f), part);
 }
 
+/* Sixteen pixels' way through the slab: geometry, and how much is seen of it where. */
+typedef struct block_slab {
+  lanes u, v;              /* the pixels */
+  lanes_int open;          /* those that can still show something */
+  uint32_t starts;         /* lanes at which those of one block follow those of another; the first included */
+  block_geometry geometry; /* its position: where the slab is seen on average, and lit */
+  covered_part part;       /* from where the first volume that is seen begins to where the last one ends */
+  lanes_int joined;        /* where some of several volumes fill less than that */
+  lanes centre;            /* there: where in the slab extinction lies on average */
+  lanes total, depth;      /* extinction averaged over the slab; optical depth */
+  lanes left;              /* exp(-depth) */
+  lanes opacity;           /* 0 where nothing is seen */
+  lanes_int seen;
+} block_slab;
+
+/* u^(b / a), the part of the way at which a part u of the depth is reached; from_a, from_b: how far from the way's ends its extinction
+ * lies on average. */
+LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
+  lanes_int rising = from_a >= from_b;
+  lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), lanes_min(from_a, from_b) / lanes_max(from_a, from_b));
+  return lanes_select(rising, t, 1.0f - t);
+}
+
+/* Where boxes share a slab, it is seen where one volume that held all of it would be: centres of parts have the whole's as
+ * their mean, weighted by extinction. */
+LANES_INLINE lanes place_of_joined(block_density *densities, int count, const block_slab *slab, lanes u, lanes place) {
+  lanes length = lanes_max(slab->part.length, lanes_set(1e-6f));
+  lanes centre = lanes_clamp((slab->centre - slab->part.begin) / length, 0, 1);
+  lanes t = way_of_depth(centre, 1.0f - centre, u);
+  for (int i = 0; i < count; i++)
+    if (densities[i].there) densities[i].seen = lanes_select(slab->joined, t, densities[i].seen);
+  return lanes_select(slab->joined, lanes_fma(slab->part.length, t, slab->part.begin), place);
+}
+
 /* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
  * with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is reached at
  * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes' mean, in slabs. One volume's
  * extinction is the total. */
-LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes total, lanes u) {
+LANES_INLINE lanes place_of_part(block_density *densities, int count, const block_slab *slab, lanes u) {
   lanes sum = lanes_set(0);
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
@@ -128,15 +168,13 @@ LANES_INLINE lanes place_of_part(block_density *densities, int count, lanes tota
     d->evenly = u;
     if (!d->patch->volume->visible) continue;
     way_parts m = parts_of_way(d->before, d->after, &d->sums);
-    lanes_int rising = m.from_a >= m.from_b;
-    lanes t = power_of_part(lanes_select(rising, u, 1.0f - u),
-                            lanes_min(m.from_a, m.from_b) / lanes_max(m.from_a, m.from_b));
-    d->seen = lanes_select(rising, t, 1.0f - t);
-    lanes place = lanes_fma(d->way.part.length, d->seen, d->way.part.begin);
+    d->seen = way_of_depth(m.from_a, m.from_b, u);
+    lanes place = lanes_fma(slab->part.length, d->seen, slab->part.begin);
     if (count == 1) return place;
     sum = lanes_fma(d->extinction, place, sum);
   }
-  return sum / lanes_max(total, lanes_set(1e-30f));
+  lanes place = sum / lanes_max(slab->total, lanes_set(1e-30f));
+  return lanes_bits(slab->joined) == 0 ? place : place_of_joined(densities, count, slab, u, place);
 }
 
 /* A volume's gradient where its matter is seen; 0 for a medium. */
@@ -146,8 +184,8 @@ LANES_INLINE lanes3 slope_of_block(const block_density *d) {
 }
 
 /* Step 12 where shading asks for it: surfaces, and dense slabs whose light must be told from the eye's way. */
-LANES_INLINE void find_slopes(const shade_job *job, const block_geometry *g, block_density *densities, int count,
-                              lanes_int seen, uint32_t starts) {
+LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, block_density *densities, int count) {
+  const block_geometry *g = &slab->geometry;
   int shadowed = 0;
   for (int i = 0; i < job->light_count; i++) shadowed |= job->lights[i].shadowed;
   for (int i = 0; i < count; i++) {
@@ -155,13 +193,13 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_geometry *g, blo
     if (!d->there) continue;
     const shade_volume *volume = d->patch->volume;
     d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
-    d->sloped = seen & (d->extinction > 0.0f);
-    if (!volume->phong) d->sloped &= d->extinction * g->path > THIN_DEPTH;
+    d->sloped = slab->seen & (d->sums.extinction > 0.0f);
+    if (!volume->phong) d->sloped &= d->sums.extinction * slab->part.length * g->path > THIN_DEPTH;
     uint32_t active = volume->visible && (volume->phong || (volume->lit && shadowed)) ? lanes_bits(d->sloped) : 0;
     if (active == 0) d->sloped = lanes_set_int(0);
     else
-      d->slope = gradient(volume, add_scaled3(g->start, g->step_sheet, lanes_fma(d->way.part.length, d->seen, d->way.part.begin)),
-                          active, starts);
+      d->slope = gradient(volume, add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin)),
+                          active, slab->starts);
   }
 }
 
@@ -180,18 +218,6 @@ LANES_INLINE void find_normals(block_density *densities, int count) {
   for (int i = 0; i < count; i++)
     if (densities[i].there && densities[i].patch->volume->visible) find_normal(&densities[i]);
 }
-
-/* Sixteen pixels' way through the slab: geometry, and how much is seen of it where. */
-typedef struct block_slab {
-  lanes u, v;              /* the pixels */
-  lanes_int open;          /* those that can still show something */
-  uint32_t starts;         /* lanes at which those of one block follow those of another; the first included */
-  block_geometry geometry; /* its position: where the slab is seen on average, and lit */
-  lanes total, depth;      /* extinction averaged over the slab; optical depth */
-  lanes left;              /* exp(-depth) */
-  lanes opacity;           /* 0 where nothing is seen */
-  lanes_int seen;
-} block_slab;
 
 /* A block's pixels in which something may be seen, one bit each. alpha: of the pixels so far. */
 LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *patches, int patch_count, int block,
@@ -218,15 +244,57 @@ LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches
   slab->starts = 1;
 }
 
-/* Step 13: what of the slab can be seen. */
-LANES_INLINE void classify_slab(block_density *densities, int count, block_slab *slab) {
-  slab->total = lanes_set(0);
+/* From the first box that some of a slab's visible matter begins in to the last that it ends in. */
+LANES_INLINE void join_parts(const block_density *densities, int count, block_slab *slab) {
+  lanes begin = lanes_set(1.0f), end = lanes_set(0);
+  for (int i = 0; i < count; i++) {
+    const covered_part *part = &densities[i].way.part;
+    if (!densities[i].there || !densities[i].patch->volume->visible) continue;
+    lanes_int some = part->length > 0.0f;
+    begin = lanes_min(begin, lanes_select(some, part->begin, lanes_set(1.0f)));
+    end = lanes_max(end, lanes_keep(some, part->begin + part->length));
+  }
+  lanes_int some = end > begin;
+  slab->part.begin = lanes_keep(some, begin);
+  slab->part.length = lanes_select(some, end - begin, lanes_set(1.0f));
+  slab->joined = lanes_set_int(0);
+  for (int i = 0; i < count; i++)
+    if (densities[i].there && densities[i].patch->enter != NULL)
+      slab->joined |= densities[i].way.part.length < slab->part.length;
+}
+
+/* Of several volumes each takes what lies in its own box; how it looks and what it takes of the light is found over what all cover:
+ * one volume cut into boxes is then what it was before. */
+LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
+  join_parts(densities, count, slab);
+  int joined = lanes_bits(slab->joined) != 0;
+  slab->centre = lanes_set(0);
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
     if (!d->there) continue;
-    classify_way(d);
-    if (d->patch->volume->visible) slab->total = slab->total + d->extinction;
+    classify_way(d, d->way.part);
+    d->extinction = d->sums.extinction * d->way.part.length;
+    if (!joined) continue;
+    if (d->patch->volume->visible)
+      slab->centre = lanes_fma(d->extinction, lanes_fma(d->way.part.length, centre_of_way(d), d->way.part.begin), slab->centre);
+    classify_way(d, slab->part);
   }
+}
+
+/* Step 13: what of the slab can be seen. */
+LANES_INLINE void classify_slab(block_density *densities, int count, block_slab *slab) {
+  slab->total = lanes_set(0);
+  if (count == 1) {
+    slab->part = densities->way.part;
+    slab->joined = lanes_set_int(0);
+    classify_way(densities, slab->part);
+    densities->extinction = densities->sums.extinction * slab->part.length;
+  } else {
+    classify_joined(densities, count, slab);
+  }
+  for (int i = 0; i < count; i++)
+    if (densities[i].there && densities[i].patch->volume->visible) slab->total = slab->total + densities[i].extinction;
+  slab->centre = slab->centre / lanes_max(slab->total, lanes_set(1e-30f));
   slab->seen = slab->open & (slab->total > 0.0f);
   slab->opacity = lanes_set(0);
 }
@@ -240,7 +308,7 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
   lanes u = seen_part(slab->depth, slab->left);
   if (job->back_to_front) u = 1.0f - u;
-  lanes seen_at = place_of_part(densities, count, slab->total, u);
+  lanes seen_at = place_of_part(densities, count, slab, u);
   g->start = add_scaled3(g->position, g->step_sheet, lanes_set(-0.5f));
   g->position = add_scaled3(g->start, g->step_sheet, seen_at);
 }
@@ -252,7 +320,7 @@ LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, 
   uint32_t bits = lanes_bits(slab->seen);
   if (bits == 0) return 0;
   place_slab(job, densities, count, slab);
-  find_slopes(job, &slab->geometry, densities, count, slab->seen, slab->starts);
+  find_slopes(job, slab, densities, count);
   find_normals(densities, count);
   return bits;
 }

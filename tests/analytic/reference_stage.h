@@ -6,7 +6,7 @@
 
 #include "core/vector.h"
 
-enum { STAGE_VOLUMES = 5, STAGE_LIGHTS = 4 };
+enum { STAGE_VOLUMES = 8, STAGE_LIGHTS = 4 };
 
 typedef struct stage {
   hl_context *context;
