@@ -147,7 +147,7 @@ static void draw_volume(dice *d, random_scene *scene, double size) {
   free(voxels);
   draw_points(d, &volume->transfer_function, scene->opacity[index], scene->color[index]);
   volume->shading = chance(d, 0.5) ? HL_SHADING_PHONG : HL_SHADING_NONE;
-  volume->material = (hl_material){between(d, 0, 1), between(d, 0, 1), between(d, 0, 1), between(d, 0, 80)};
+  volume->material = (hl_material){between(d, 0, 1), between(d, 0, 1), between(d, 0, 1), between(d, 0, 80), 0};
   for (int c = 0; c < 3 && chance(d, 0.4); c++) volume->attenuation_color[c] = between(d, 0, 2);
   volume->visible = !chance(d, 0.1);
   volume->casts_shadow = !chance(d, 0.1);
@@ -217,6 +217,15 @@ static void draw_light(dice *d, random_scene *scene, double size) {
 
 /* ---- the rest ---- */
 
+/* Drawn last, so that scenes keep the rest of what their number draws. */
+static void draw_shine(dice *d, stage *set) {
+  for (size_t v = 0; v < set->scene.volume_count; v++) {
+    if (chance(d, 0.2)) set->volumes[v].material.emission = between(d, 0, 2);
+    if (chance(d, 0.15)) set->volumes[v].shading = HL_SHADING_FLAT;
+  }
+  if (chance(d, 0.1)) set->scene.render.compositing = HL_COMPOSITING_MAXIMUM;
+}
+
 static void draw_camera(dice *d, hl_camera *camera, double size) {
   bool inside = chance(d, 0.15);
   vec3 back = direction(d), target = vec3_scale(direction(d), between(d, 0, 0.5) * size);
@@ -252,4 +261,5 @@ void random_scene_open(random_scene *scene, uint64_t seed) {
   draw_camera(&d, &set->scene.camera, size);
   for (int count = 1 + below(&d, 3); count > 0; count--) draw_volume(&d, scene, size);
   for (int count = below(&d, STAGE_LIGHTS + 1); count > 0; count--) draw_light(&d, scene, size);
+  draw_shine(&d, set);
 }

@@ -35,16 +35,17 @@ typedef struct variant {
   hl_shadows shadows;
   hl_soft_method method;
   int lights;
-  bool colored, clipped, layers;
+  bool colored, clipped, layers, maximum;
 } variant;
 
-static const variant variants[] = {{"no shadows", HL_SHADOWS_OFF, 0, 1, false, false, false},
-                                   {"hard", HL_SHADOWS_HARD, 0, 2, false, true, false},
-                                   {"cascade", HL_SHADOWS_SOFT, HL_SOFT_CASCADE, 1, true, false, false},
-                                   {"paper", HL_SHADOWS_SOFT, HL_SOFT_PAPER, 1, false, false, false},
-                                   {"sublights", HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS, 1, false, false, false},
-                                   {"lamp inside", HL_SHADOWS_HARD, 0, 3, false, false, false},
-                                   {"layers", HL_SHADOWS_HARD, 0, 1, false, false, true}};
+static const variant variants[] = {{"no shadows", HL_SHADOWS_OFF, 0, 1, false, false, false, false},
+                                   {"hard", HL_SHADOWS_HARD, 0, 2, false, true, false, false},
+                                   {"cascade", HL_SHADOWS_SOFT, HL_SOFT_CASCADE, 1, true, false, false, false},
+                                   {"paper", HL_SHADOWS_SOFT, HL_SOFT_PAPER, 1, false, false, false, false},
+                                   {"sublights", HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS, 1, false, false, false, false},
+                                   {"lamp inside", HL_SHADOWS_HARD, 0, 3, false, false, false, false},
+                                   {"layers", HL_SHADOWS_HARD, 0, 1, false, false, true, false},
+                                   {"maximum", HL_SHADOWS_HARD, 0, 1, false, true, false, true}};
 
 static void set_up(stage *set, const variant *v) {
   static const vec3 ways[2] = {{0.5, 0.6, -1}, {-1, 0.4, -0.6}};
@@ -54,6 +55,7 @@ static void set_up(stage *set, const variant *v) {
   set->scene.render.shadows = v->shadows;
   set->scene.render.soft_method = v->method;
   set->scene.render.light_samples = 3;
+  if (v->maximum) set->scene.render.compositing = HL_COMPOSITING_MAXIMUM;
   if (v->colored) set->volumes[0].attenuation_color[0] = 0.5;
   set->volumes[0].clipped = v->clipped;
   for (int a = 0; a < 3; a++) {
@@ -64,7 +66,7 @@ static void set_up(stage *set, const variant *v) {
 
 /* Renders one frame; estimate and peak in bytes. */
 static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, uint64_t *peak, hl_error *error) {
-  static float pixels[SIDE * SIDE * 4], picture[SIDE * SIDE * 3], shadow[SIDE * SIDE * 3], depth[SIDE * SIDE];
+  static float pixels[SIDE * SIDE * 4], picture[SIDE * SIDE * 3], shadow[SIDE * SIDE * 3], depth[SIDE * SIDE], own[SIDE * SIDE * 3];
   stage set;
   open_stage(&set, limit);
   set_up(&set, v);
@@ -73,7 +75,7 @@ static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, ui
   assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, NULL), HL_OK);
   assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
   hl_light_layers light = {picture, shadow};
-  hl_layers layers = {.struct_size = sizeof layers, .depth_mean = depth, .lights = &light, .light_count = 1};
+  hl_layers layers = {.struct_size = sizeof layers, .depth_mean = depth, .lights = &light, .light_count = 1, .emission = own};
   hl_status status =
       hl_renderer_render_layers(renderer, scene, pixels, SIDE * 4, v->layers ? &layers : NULL, NULL, error);
   *estimate = hl_renderer_estimate(renderer);

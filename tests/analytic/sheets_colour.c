@@ -90,6 +90,38 @@ static void test_flat_casts_and_receives_no_shadow(void **state) {
   }
 }
 
+/* All of a flat volume is its emission layer; lights and ambient light add nothing, and no shadow falls on it. */
+static void test_layers_of_flat_colours(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], picture[2][PIXELS * 3], shadow[2][PIXELS * 3];
+  for (int reference = 0; reference < 2; reference++) {
+    hl_error error = {0};
+    hl_scene *scene = NULL;
+    hl_renderer *renderer = NULL;
+    stage set;
+    open_slab(&set, 0.4)->shading = HL_SHADING_FLAT;
+    const hl_light_layers lights[2] = {{picture[0], shadow[0]}, {picture[1], shadow[1]}};
+    const hl_layers layers = {.struct_size = sizeof layers, .ambient = ambient, .emission = emission, .lights = lights, .light_count = 2};
+    assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, &error), HL_OK);
+    assert_int_equal(hl_renderer_create(set.context, &renderer, &error), HL_OK);
+    hl_status status = reference ? hl_reference_render_layers(set.context, scene, NULL, pixels, 4 * SIDE, &layers, &error)
+                                 : hl_renderer_render_layers(renderer, scene, pixels, 4 * SIDE, &layers, NULL, &error);
+    assert_int_equal(status, HL_OK);
+    for (int i = 0; i < PIXELS; i++)
+      for (int c = 0; c < 3; c++) {
+        assert_near((double)emission[3 * i + c], (double)pixels[4 * i + c], 1e-6);
+        assert_true(ambient[3 * i + c] == 0);
+        for (int l = 0; l < 2; l++) {
+          assert_true(picture[l][3 * i + c] == 0);
+          assert_near((double)shadow[l][3 * i + c], 1, 1e-5);
+        }
+      }
+    hl_renderer_destroy(renderer);
+    hl_scene_release(scene);
+    stage_close(&set);
+  }
+}
+
 /* ---- emission ---- */
 
 /* Nothing shines on the medium: c (ke + ka Ia) (1 - T), in several sweeps counted once. */
@@ -197,6 +229,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_flat_colour_is_the_asked_one),
       cmocka_unit_test(test_flat_casts_and_receives_no_shadow),
+      cmocka_unit_test(test_layers_of_flat_colours),
       cmocka_unit_test(test_emission_of_a_medium),
       cmocka_unit_test(test_emission_adds_to_light),
       cmocka_unit_test(test_three_scales_are_another_spacing),
