@@ -62,6 +62,11 @@ HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image, const h
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);
 
+/* The scene that a PNG carries (hl_image_write_options.scene_json), null-terminated: for hl_scene_from_json(); free with
+ * hl_text_release(). bytes: [byte_count], the whole file; name: what errors call it. */
+HL_API HL_WARN_UNUSED hl_status hl_image_find_scene(hl_context *context, const char *name, const void *bytes,
+                                                    size_t byte_count, char **text, hl_error *error);
+
 /* Differences of b against a over R, G, B, A, linear premultiplied. */
 typedef struct hl_image_difference {
   size_t struct_size;        /* set by the caller */

@@ -111,6 +111,9 @@ typedef struct hl_scene_volume {
   const char *name;             /* may be null */
   const char *file;             /* where the voxels came from, for hl_scene_to_json; may be null */
   const char *shapes;           /* or the text they came from, as for hl_volume_from_shapes; may be null */
+  const char *array;            /* how they were loaded from the file (hl_volume_load_options), for hl_scene_to_json; */
+  int component;                /* null, HL_COMPONENT_DEFAULT and 0: by default */
+  double spacing[3];
   hl_volume *volume;            /* retained by the scene */
   double scale;                 /* transform: scale, then rotate, then translate */
   double rotate_axis[3];

@@ -101,11 +101,20 @@ static int change_scene(bench_job *job) {
 
 static int load(bench_job *job, const char *path) {
   hl_error error = {0};
-  job->bare = path == NULL || !input_is_scene(path);
-  hl_status status = path == NULL ? bench_scene_built_in(job->host->context, &job->scene, &error)
-                                  : input_load(job->host->context, path, job->bare, &job->scene, &error);
+  hl_status status = HL_OK;
+  int exit_code = EXIT_CODE_OK;
+  job->bare = path == NULL;
+  if (path == NULL) {
+    status = bench_scene_built_in(job->host->context, &job->scene, &error);
+  } else {
+    cli_input input = {0};
+    exit_code = input_open(path, job->values[BENCH_MAX_MEMORY].bytes, &input);
+    job->bare = input.kind == INPUT_VOLUME;
+    if (exit_code == EXIT_CODE_OK) status = input_load(job->host->context, &input, NULL, &job->scene, &error);
+    input_close(&input);
+  }
   if (status != HL_OK) return host_fail(job->host, PHASE_READ, status, &error);
-  return change_scene(job);
+  return exit_code == EXIT_CODE_OK ? change_scene(job) : exit_code;
 }
 
 static int open_renderers(bench_job *job) {

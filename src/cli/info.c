@@ -6,22 +6,74 @@
 
 #include "commands.h"
 #include "host.h"
+#include "input.h"
 #include "json_writer.h"
 
-enum info_option { INFO_JSON, INFO_MAX_MEMORY, INFO_OPTION_COUNT };
+enum info_option { INFO_JSON, INFO_ARRAY, INFO_COMPONENT, INFO_MAX_MEMORY, INFO_OPTION_COUNT };
+
+static const cli_choice magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
 
 static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_JSON] = {.name = "json",
                    .kind = OPTION_SWITCH,
                    .group = "Options",
                    .help = "as JSON, with 256 histogram bins"},
+    [INFO_ARRAY] = {.name = "array",
+                    .kind = OPTION_TEXT,
+                    .argument = "NAME",
+                    .help = "of the file's arrays this one"},
+    [INFO_COMPONENT] = {.name = "component",
+                        .kind = OPTION_NUMBERS,
+                        .argument = "N|magnitude",
+                        .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude",
+                        .choices = magnitudes,
+                        .count = 1,
+                        .whole = true,
+                        .low = 0,
+                        .high = 1e9},
     [INFO_MAX_MEMORY] = {.name = "max-memory",
                          .kind = OPTION_BYTES,
                          .argument = "BYTES",
                          .help = "fail rather than hold more; suffix K, M, G or T"},
 };
 
-static int print_json(const char *path, const hl_volume_info *info) {
+/* The file's arrays, and what the volume is made of. */
+static void print_json_arrays(json_writer *json, const hl_volume *volume) {
+  hl_volume_array array = {.struct_size = sizeof array}, chosen = {.components = 1};
+  json_open_array(json, "arrays");
+  for (size_t n = 0; hl_volume_get_array(volume, n, &array) == HL_OK; n++) {
+    json_open_object(json, NULL);
+    json_text(json, "name", array.name);
+    json_text(json, "type", hl_voxel_type_name(array.type));
+    json_integer(json, "components", array.components);
+    json_bool(json, "of_cells", array.of_cells != 0);
+    json_bool(json, "chosen", array.chosen != 0);
+    json_close(json);
+    if (array.chosen) chosen = array;
+  }
+  json_close(json);
+  json_integer(json, "components", chosen.components);
+  if (chosen.component == HL_COMPONENT_MAGNITUDE) json_text(json, "component", "magnitude");
+  else json_integer(json, "component", (uint64_t)chosen.component);
+}
+
+static void print_arrays(const hl_volume *volume) {
+  hl_volume_array array = {.struct_size = sizeof array};
+  size_t count = hl_volume_array_count(volume);
+  for (size_t n = 0; hl_volume_get_array(volume, n, &array) == HL_OK; n++) {
+    if (count == 1 && array.components == 1 && array.name[0] == '\0') return;
+    printf("  %s  %s%s%s", n == 0 ? "arrays    " : "          ", array.name, array.name[0] != '\0' ? ", " : "",
+           hl_voxel_type_name(array.type));
+    if (array.components > 1) printf(", %zu components", array.components);
+    printf("%s", array.of_cells ? ", of cells" : "");
+    if (array.chosen && array.component == HL_COMPONENT_MAGNITUDE) printf(": the magnitude is shown");
+    else if (array.chosen && array.components > 1) printf(": component %d is shown", array.component);
+    else if (array.chosen && count > 1) printf(": is shown");
+    printf("\n");
+  }
+}
+
+static int print_json(const char *path, const hl_volume *volume, const hl_volume_info *info) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
   json_writer json = {0};
   json_open_object(&json, NULL);
@@ -36,6 +88,7 @@ static int print_json(const char *path, const hl_volume_info *info) {
   json_numbers(&json, "range", info->range, 2);
   json_number(&json, "mean", info->mean);
   json_integer(&json, "nonfinite_count", info->nonfinite_count);
+  print_json_arrays(&json, volume);
   json_integers(&json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
   json_close(&json);
   return finish_stdout();
@@ -62,13 +115,14 @@ static void print_histogram(const hl_volume_info *info) {
   printf("  %11.5g\n", info->range[1]);
 }
 
-static int print_text(const char *path, const hl_volume_info *info) {
+static int print_text(const char *path, const hl_volume *volume, const hl_volume_info *info) {
   const double(*d)[3] = info->direction;
   uint64_t voxels = (uint64_t)info->dimensions[0] * info->dimensions[1] * info->dimensions[2];
   printf("%s\n", path);
   printf("  dimensions  %zu x %zu x %zu (%" PRIu64 " voxels)\n", info->dimensions[0], info->dimensions[1],
          info->dimensions[2], voxels);
   printf("  type        %s\n", hl_voxel_type_name(info->type));
+  print_arrays(volume);
   printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
   printf("  origin      %.9g, %.9g, %.9g\n", info->origin[0], info->origin[1], info->origin[2]);
   for (int axis = 0; axis < 3; axis++)
@@ -89,13 +143,18 @@ static int run_info(const cli_value *values, char **operands) {
   hl_volume *volume = NULL;
   hl_volume_info info = {.struct_size = sizeof info};
   hl_error error = {0};
-  hl_status status = hl_volume_load(host.context, operands[0], &volume, &error);
+  hl_volume_load_options load;
+  cli_input input = {0};
+  input_load_options(&values[INFO_ARRAY], &values[INFO_COMPONENT], NULL, &load);
+  exit_code = input_open(operands[0], values[INFO_MAX_MEMORY].bytes, &input);
+  hl_status status = exit_code == EXIT_CODE_OK ? input_load_volume(host.context, &input, &load, &volume, &error) : HL_OK;
   if (status != HL_OK)
     exit_code = host_fail(&host, PHASE_READ, status, &error);
-  else if (hl_volume_get_info(volume, &info) != HL_OK)
+  else if (exit_code == EXIT_CODE_OK && hl_volume_get_info(volume, &info) != HL_OK)
     exit_code = fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", operands[0]);
-  else
-    exit_code = values[INFO_JSON].given ? print_json(operands[0], &info) : print_text(operands[0], &info);
+  else if (exit_code == EXIT_CODE_OK)
+    exit_code = values[INFO_JSON].given ? print_json(input.title, volume, &info) : print_text(input.title, volume, &info);
+  input_close(&input);
   hl_volume_release(volume);
   host_close(&host);
   return exit_code;

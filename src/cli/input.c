@@ -1,40 +1,187 @@
 /* cli/input.c - what subcommands take as INPUT. */
+#define _GNU_SOURCE
 #include "input.h"
 
 #include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "output.h"
+
+#define STANDARD_INPUT "/dev/stdin" /* what a scene calls it: rendered again, it reads it again */
 
 const char *input_base_name(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash != NULL ? slash + 1 : path;
 }
 
-bool input_is_scene(const char *path) {
-  static const char *const volume_extensions[] = {".raw", ".gz",  ".nrrd", ".nhdr", ".mha",
-                                                  ".mhd", ".nii", ".vti",  ".vtk"};
-  if (has_extension(path, ".json")) return true;
-  for (size_t i = 0; i < sizeof volume_extensions / sizeof volume_extensions[0]; i++)
-    if (has_extension(path, volume_extensions[i])) return false;
-  FILE *file = fopen(path, "rb");
-  if (file == NULL) return false;
-  int c;
-  do c = getc(file);
-  while (c != EOF && isspace(c));
-  fclose(file);
-  return c == '{';
+/* ---- reading whole ---- */
+
+/* Waits until there is something to read; false: the user wants to stop. */
+static bool await_bytes(int descriptor) {
+  enum { MILLISECONDS_BETWEEN_QUESTIONS = 20 };
+  struct pollfd wanted = {.fd = descriptor, .events = POLLIN};
+  int ready;
+  while ((ready = poll(&wanted, 1, MILLISECONDS_BETWEEN_QUESTIONS)) == 0 || (ready < 0 && errno == EINTR))
+    if (host_interrupted()) return false;
+  return !host_interrupted();
 }
 
-static hl_status load_volume_scene(hl_context *context, const char *path, hl_scene **scene, hl_error *error) {
+static int read_piece(cli_input *input, int descriptor, size_t *capacity, uint64_t limit, bool *ended) {
+  enum { LEAST_ROOM = 65536 };
+  if (!await_bytes(descriptor)) return fail(EXIT_CODE_INTERRUPTED, "interrupted; nothing was written");
+  if (*capacity - input->length < LEAST_ROOM) {
+    unsigned char *larger = *capacity > SIZE_MAX / 4 ? NULL : realloc(input->bytes, 2 * *capacity + LEAST_ROOM);
+    if (larger == NULL) return fail(EXIT_CODE_FAILURE, "out of memory: %s has more than %zu bytes", input->title, input->length);
+    input->bytes = larger;
+    *capacity = 2 * *capacity + LEAST_ROOM;
+  }
+  ssize_t got = read(descriptor, input->bytes + input->length, *capacity - input->length);
+  if (got < 0 && errno != EINTR && errno != EAGAIN)
+    return fail(EXIT_CODE_INPUT, "%s: cannot read: %s", input->title, strerror(errno));
+  *ended = got == 0;
+  if (got > 0) input->length += (size_t)got;
+  if (limit > 0 && input->length > limit)
+    return fail(EXIT_CODE_FAILURE, "out of memory: %s has more than the %llu bytes that may be held of it: raise --max-memory", input->title,
+                (unsigned long long)limit);
+  return EXIT_CODE_OK;
+}
+
+static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
+  size_t capacity = 0;
+  long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
+  if (limit == 0 && pages > 0 && page_bytes > 0) limit = (uint64_t)pages * (uint64_t)page_bytes / 2;
+  bool ended = false;
+  int exit_code = EXIT_CODE_OK;
+  while (exit_code == EXIT_CODE_OK && !ended) exit_code = read_piece(input, descriptor, &capacity, limit, &ended);
+  return exit_code;
+}
+
+/* ---- what it is ---- */
+
+static input_kind kind_by_content(const unsigned char *bytes, size_t length) {
+  static const unsigned char png[4] = {0x89, 'P', 'N', 'G'}, byte_order_mark[3] = {0xef, 0xbb, 0xbf};
+  if (length >= sizeof png && memcmp(bytes, png, sizeof png) == 0) return INPUT_PICTURE;
+  size_t at = length >= 3 && memcmp(bytes, byte_order_mark, 3) == 0 ? 3 : 0;
+  while (at < length && isspace(bytes[at])) at++;
+  return at < length && bytes[at] == '{' ? INPUT_SCENE : INPUT_VOLUME;
+}
+
+/* False where the name says nothing. */
+static bool kind_by_name(const char *path, input_kind *kind) {
+  static const char *const volumes[] = {".raw", ".gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".vti", ".vtk", ".npy"};
+  *kind = has_extension(path, ".json") ? INPUT_SCENE : has_extension(path, ".png") ? INPUT_PICTURE : INPUT_VOLUME;
+  if (*kind != INPUT_VOLUME) return true;
+  for (size_t i = 0; i < sizeof volumes / sizeof volumes[0]; i++)
+    if (has_extension(path, volumes[i])) return true;
+  return false;
+}
+
+static int open_pipe(cli_input *input, int descriptor, uint64_t limit) {
+  int exit_code = read_whole(input, descriptor, limit);
+  input->kind = kind_by_content(input->bytes, input->length);
+  return exit_code;
+}
+
+static int open_standard_input(cli_input *input, uint64_t limit) {
+  input->title = "standard input";
+  if (isatty(STDIN_FILENO)) return fail(EXIT_CODE_USAGE, "'-': standard input is a terminal: give a file, or a pipe");
+  return open_pipe(input, STDIN_FILENO, limit);
+}
+
+/* An ordinary file; a missing one is left to its reader, which says it. */
+static int open_file(cli_input *input, int descriptor, uint64_t limit) {
+  unsigned char first[1024];
+  ssize_t got = descriptor >= 0 ? pread(descriptor, first, sizeof first, 0) : 0;
+  input_kind told = kind_by_content(first, got > 0 ? (size_t)got : 0);
+  if (!kind_by_name(input->path, &input->kind)) input->kind = told;
+  else if (input->kind == INPUT_PICTURE && told != INPUT_PICTURE && got > 0) input->kind = told;
+  return input->kind == INPUT_PICTURE && descriptor >= 0 ? read_whole(input, descriptor, limit) : EXIT_CODE_OK;
+}
+
+int input_open(const char *path, uint64_t limit, cli_input *input) {
+  *input = (cli_input){.path = path, .title = path};
+  if (strcmp(path, "-") == 0) return open_standard_input(input, limit);
+  int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct stat about;
+  bool known = descriptor >= 0 && fstat(descriptor, &about) == 0;
+  bool piped = known && (S_ISFIFO(about.st_mode) || S_ISSOCK(about.st_mode));
+  int exit_code = piped ? open_pipe(input, descriptor, limit) : open_file(input, known ? descriptor : -1, limit);
+  if (descriptor >= 0) close(descriptor);
+  return exit_code;
+}
+
+void input_close(cli_input *input) {
+  free(input->bytes);
+  input->bytes = NULL;
+}
+
+/* ---- what it holds ---- */
+
+void input_load_options(const cli_value *array, const cli_value *component, const cli_value *spacing,
+                        hl_volume_load_options *options) {
+  hl_volume_load_options_defaults(options);
+  if (array->given) options->array = array->text;
+  if (component->given) options->component = component->chosen ? HL_COMPONENT_MAGNITUDE : (int)component->number[0];
+  if (spacing != NULL && spacing->given) memcpy(options->spacing, spacing->number, sizeof options->spacing);
+}
+
+hl_status input_load_volume(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
+                            hl_volume **volume, hl_error *error) {
+  hl_volume_load_options chosen;
+  hl_volume_load_options_defaults(&chosen);
+  if (options != NULL) chosen = *options;
+  chosen.bytes = input->bytes;
+  chosen.byte_count = input->length;
+  return hl_volume_load_with(context, input->title, &chosen, volume, error);
+}
+
+/* The scene's volume says how it was read. */
+static hl_status name_source(hl_context *context, const hl_volume_load_options *options, hl_scene **scene, hl_error *error) {
+  hl_scene_description description = *hl_scene_describe(*scene);
+  hl_scene_volume volume = description.volumes[0];
+  hl_scene *named = NULL;
+  volume.array = options->array;
+  volume.component = options->component;
+  memcpy(volume.spacing, options->spacing, sizeof volume.spacing);
+  description.volumes = &volume;
+  hl_status status = hl_scene_create(context, &description, &named, error);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = named;
+  return HL_OK;
+}
+
+static hl_status load_volume_scene(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
+                                   hl_scene **scene, hl_error *error) {
   hl_volume *volume = NULL;
-  hl_status status = hl_volume_load(context, path, &volume, error);
-  if (status == HL_OK) status = hl_scene_for_volume(context, volume, path, scene, error);
+  const char *file = strcmp(input->path, "-") == 0 ? STANDARD_INPUT : input->path;
+  hl_status status = input_load_volume(context, input, options, &volume, error);
+  if (status == HL_OK) status = hl_scene_for_volume(context, volume, file, scene, error);
+  if (status == HL_OK && options != NULL) status = name_source(context, options, scene, error);
   hl_volume_release(volume);
   return status;
 }
 
-hl_status input_load(hl_context *context, const char *path, bool bare, hl_scene **scene, hl_error *error) {
-  return bare ? load_volume_scene(context, path, scene, error) : hl_scene_load(context, path, scene, error);
+/* A picture names files as the command line did that made it: from the current folder. */
+static hl_status load_picture_scene(hl_context *context, const cli_input *input, hl_scene **scene, hl_error *error) {
+  char *text = NULL;
+  hl_status status = hl_image_find_scene(context, input->title, input->bytes, input->length, &text, error);
+  if (status == HL_OK) status = hl_scene_from_json(context, text, strlen(text), NULL, input->title, scene, error);
+  hl_text_release(context, text);
+  return status;
+}
+
+hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options, hl_scene **scene,
+                     hl_error *error) {
+  if (input->kind == INPUT_VOLUME) return load_volume_scene(context, input, options, scene, error);
+  if (input->kind == INPUT_PICTURE && input->bytes != NULL) return load_picture_scene(context, input, scene, error);
+  if (input->bytes == NULL) return hl_scene_load(context, input->path, scene, error);
+  return hl_scene_from_json(context, (const char *)input->bytes, input->length, NULL, input->title, scene, error);
 }

@@ -1,18 +1,43 @@
-/* cli/input.h - what subcommands take as INPUT: a scene, or a bare volume for which one is made. */
+/* cli/input.h - what subcommands take as INPUT: a scene, a picture that carries one, or a bare volume for which one is made.
+ *
+ * A pipe, "-" among them, is read whole, once: then its first bytes tell what it is, and readers that go back can.
+ */
 #ifndef HL_CLI_INPUT_H
 #define HL_CLI_INPUT_H
 
 #include <stdbool.h>
 
-#include <halflight/halflight.h>
+#include "host.h"
+#include "options.h"
+
+typedef enum input_kind { INPUT_SCENE, INPUT_PICTURE, INPUT_VOLUME } input_kind;
+
+typedef struct cli_input {
+  const char *path;      /* as given; "-" is standard input */
+  const char *title;     /* what messages call it */
+  input_kind kind;
+  unsigned char *bytes;  /* owned; [length]: the content of what is no ordinary file, or of a picture; else null */
+  size_t length;
+} cli_input;
 
 /* The part of a path after its last slash. */
 const char *input_base_name(const char *path);
 
-/* Scenes are told by name; where the name says nothing, by a first character '{'. */
-bool input_is_scene(const char *path);
+/* Finds out what an input is: told by name; where the name says nothing, by its first bytes. limit: bytes that may be held
+ * of a pipe; 0: half of the machine's memory. Returns the exit code; close it in any case. */
+int input_open(const char *path, uint64_t limit, cli_input *input);
+void input_close(cli_input *input);
 
-/* bare: the file is a volume. */
-hl_status input_load(hl_context *context, const char *path, bool bare, hl_scene **scene, hl_error *error);
+/* What --array, --component and --spacing (null: a command without it) say of how a volume is read. */
+void input_load_options(const cli_value *array, const cli_value *component, const cli_value *spacing,
+                        hl_volume_load_options *options);
+
+/* How bare volumes are read (hl_volume_load_options without bytes); null: by default. */
+hl_status input_load_volume(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
+                            hl_volume **volume, hl_error *error);
+
+/* The scene that it is, carries, or that is made for it. */
+hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options, hl_scene **scene,
+                     hl_error *error);
 
 #endif

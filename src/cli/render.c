@@ -15,7 +15,9 @@
 typedef struct render_job {
   cli_host host;
   const cli_value *values;
-  char *input;
+  char **inputs;   /* [input_count], null after the last */
+  int input_count;
+  char *input;     /* the first */
   char *output;    /* owned */
   bool to_stdout;  /* OUT is "-" */
   bool bare;       /* INPUT is a volume file */
@@ -34,11 +36,24 @@ static const char *wanted_extension(const cli_value *values) {
   return extensions[values[RENDER_FORMAT].given ? values[RENDER_FORMAT].choice : 0];
 }
 
+/* What a picture of this input is called after: pipes have no name of their own. */
+static const char *nameable(const char *input) {
+  if (strcmp(input, "-") == 0) return "stdin";
+  return strncmp(input, "/dev/fd/", 8) == 0 ? "pipe" : input;
+}
+
+/* INPUT's name with the format's extension; of a picture's own scene "NAME-again.png", not the picture itself. */
+static char *default_output(const render_job *job) {
+  const char *extension = wanted_extension(job->values);
+  bool again = has_extension(job->input, ".png") && strcmp(extension, ".png") == 0;
+  return output_default_name(nameable(job->input), again ? "-again.png" : extension);
+}
+
 /* OUT, or what stands for it. */
 static int choose_output(render_job *job) {
   const cli_value *values = job->values, *output = &values[RENDER_OUTPUT];
   job->to_stdout = output->given && strcmp(output->text, "-") == 0;
-  job->output = output->given ? strdup(output->text) : output_default_name(job->input, wanted_extension(values));
+  job->output = output->given ? strdup(output->text) : default_output(job);
   if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   if (values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
   if (job->to_stdout && isatty(STDOUT_FILENO))
@@ -49,7 +64,7 @@ static int choose_output(render_job *job) {
   if (values[RENDER_FORMAT].given && !has_extension(job->output, wanted_extension(values)))
     return fail(EXIT_CODE_USAGE, "--format %s: '%s' does not end in %s: rename OUT, or leave --format out",
                 values[RENDER_FORMAT].text, job->output, wanted_extension(values));
-  return output_check(job->output, picture_extensions, &job->input, 1);
+  return output_check(job->output, picture_extensions, job->inputs, job->input_count);
 }
 
 static int job_open(render_job *job) {
@@ -66,17 +81,6 @@ static int job_open(render_job *job) {
   return host_open(&options, &job->host);
 }
 
-/* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read; a bare volume is
- * itself the file of the scene's volume. */
-static void name_scene(const render_job *job, hl_error *error) {
-  char line[sizeof error->message];
-  if (error->message[0] != '/') return;
-  static const char file[] = "/volumes/0/file: ";
-  bool itself = job->bare && strncmp(error->message, file, sizeof file - 1) == 0;
-  snprintf(line, sizeof line, "%s", error->message + (itself ? sizeof file - 1 : 0));
-  snprintf(error->message, sizeof error->message, "%.300s: %.690s", job->input, line);
-}
-
 /* No file that the scene needs is written over. */
 static int protect_what_was_read(const render_job *job) {
   if (job->to_stdout || job->values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
@@ -86,12 +90,8 @@ static int protect_what_was_read(const render_job *job) {
 }
 
 static int job_load(render_job *job) {
-  hl_error error = {0};
-  job->bare = !input_is_scene(job->input);
-  hl_status status = input_load(job->host.context, job->input, job->bare, &job->scene, &error);
-  if (job->bare) name_scene(job, &error);
-  if (status != HL_OK) return host_fail(&job->host, PHASE_READ, status, &error);
-  int exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
+  int exit_code = render_load_inputs(&job->host, job->values, job->inputs, &job->bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = protect_what_was_read(job);
   job->result.seconds.load = clock_seconds() - job->started;
   return exit_code;
@@ -156,7 +156,7 @@ static int job_render(render_job *job) {
   job->result.description = description;
   job->result.seconds.prepare = job->result.statistics.seconds_prepare;
   job->result.seconds.render = job->result.statistics.seconds_render;
-  name_scene(job, &error);
+  render_name_scene(job->input, job->bare, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
@@ -221,7 +221,8 @@ static void job_close(render_job *job) {
 }
 
 static int run_render(const cli_value *values, char **operands) {
-  render_job job = {.values = values, .input = operands[0], .started = clock_seconds()};
+  render_job job = {.values = values, .inputs = operands, .input = operands[0], .started = clock_seconds()};
+  while (operands[job.input_count] != NULL) job.input_count++;
   job.result.input = job.input;
   job.result.reference = values[RENDER_REFERENCE].given;
   int exit_code = job_open(&job);
@@ -237,11 +238,13 @@ static int run_render(const cli_value *values, char **operands) {
 
 const cli_command render_command = {
     .name = "render",
-    .operands = "INPUT",
+    .operands = "INPUT ...",
     .operand_count = 1,
-    .summary = "render a scene (.json) or a volume file to a picture",
+    .operand_most = MAXIMUM_OPERANDS,
+    .summary = "render a scene (.json) or volume files to a picture",
     .description =
-        "Renders INPUT, a scene (.json) or a volume file (NRRD, MetaImage, NIfTI, VTK, raw).\n"
+        "Renders INPUT, a scene (.json), a .png with a scene in it, or volume files (NRRD, MetaImage,\n"
+        "NIfTI, VTK, NumPy, raw), together where there are several; '-' is standard input.\n"
         "A volume needs no options: the camera frames it, the transfer function comes from its\n"
         "histogram, and a key light from the upper left casts soft shadows. Options override\n"
         "what the scene says.",

@@ -18,6 +18,9 @@ enum render_option {
   RENDER_ZOOM,
   RENDER_FOVY,
   RENDER_ORTHO,
+  RENDER_ARRAY,
+  RENDER_COMPONENT,
+  RENDER_SPACING,
   RENDER_LOOK,
   RENDER_TF,
   RENDER_COLORMAP,
@@ -58,6 +61,14 @@ extern const cli_option render_options[RENDER_OPTION_COUNT];
 /* Refuses options that contradict each other. */
 int render_check_options(const cli_value *values);
 
+/* The scene of the operands: a scene, a picture that carries one, or volumes; *bare: one that was made for volumes. Each of
+ * several volumes has its own look, in one world, and is called by its file's name without folder and extensions, with -2
+ * and so on behind it where that is taken. Returns the exit code. */
+int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare, hl_scene **scene);
+
+/* A place in a scene (a JSON pointer) that an error begins with follows the input's name. */
+void render_name_scene(const char *input, bool bare, hl_error *error);
+
 /* Replaces *scene by one that differs from it as the options say. bare: the scene was made for a
  * volume file, so that camera and key light follow the options. Returns the exit code. */
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
@@ -81,10 +92,10 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
                              size_t index, hl_transfer_function *function);
 void render_release_function(hl_transfer_function *function);
 
-/* What --tf NAME=... calls a volume: its name in the scene, else its file's without folder and extensions. */
+/* What --tf and --colormap NAME=... call a volume: its name in the scene, else its file's without folder and extensions. */
 void render_volume_name(const hl_scene_volume *volume, size_t index, char *name, size_t size);
 
-/* Refuses --tf NAME=... for names that no volume has. */
+/* Refuses --tf and --colormap NAME=... for names that no volume has. */
 int render_check_names(const cli_value *values, const hl_scene_description *description);
 
 /* Refuses what is no range. */

@@ -61,34 +61,42 @@ static const char *after_name(const char *text) {
   return equals == NULL || access(text, F_OK) == 0 ? NULL : equals + 1;
 }
 
-int render_check_names(const cli_value *values, const hl_scene_description *description) {
-  const cli_value *functions = &values[RENDER_TF];
-  for (int n = 0; n < functions->count; n++) {
-    const char *rest = after_name(functions->texts[n]);
-    if (rest != NULL && is_volume(description, functions->texts[n], (size_t)(rest - functions->texts[n]) - 1)) continue;
-    if (rest == NULL && functions->count == 1) continue;
-    char names[600] = "";
-    size_t used = 0;
-    for (size_t v = 0; v < description->volume_count && used < sizeof names; v++) {
-      char own[256];
-      render_volume_name(&description->volumes[v], v, own, sizeof own);
-      used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", v > 0 ? ", " : "", own);
-    }
-    if (rest == NULL)
-      return fail(EXIT_CODE_USAGE, "--tf: '%s' beside another --tf: say whose each is, NAME=FILE (volumes: %s)",
-                  functions->texts[n], names);
-    return fail(EXIT_CODE_USAGE, "--tf: '%s': no volume has the name before '=': there is %s", functions->texts[n], names);
+static void list_names(const hl_scene_description *description, char *names, size_t size) {
+  size_t used = 0;
+  names[0] = '\0';
+  for (size_t v = 0; v < description->volume_count && used < size; v++) {
+    char own[256];
+    render_volume_name(&description->volumes[v], v, own, sizeof own);
+    used += (size_t)snprintf(names + used, size - used, "%s%s", v > 0 ? ", " : "", own);
+  }
+}
+
+static int check_names(const char *option, const cli_value *given, const hl_scene_description *description) {
+  char names[600];
+  list_names(description, names, sizeof names);
+  for (int n = 0; n < given->count; n++) {
+    const char *text = given->texts[n], *rest = after_name(text);
+    if (rest == NULL && given->count > 1)
+      return fail(EXIT_CODE_USAGE, "--%s: '%s' beside another --%s: say whose each is, NAME=... (volumes: %s)", option, text,
+                  option, names);
+    if (rest != NULL && !is_volume(description, text, (size_t)(rest - text) - 1))
+      return fail(EXIT_CODE_USAGE, "--%s: '%s': no volume has the name before '=': there is %s", option, text, names);
   }
   return EXIT_CODE_OK;
 }
 
-/* What --tf says of a volume; null: nothing. The last word counts. */
-static const char *function_of(const cli_value *values, const hl_scene_volume *volume, size_t index) {
+int render_check_names(const cli_value *values, const hl_scene_description *description) {
+  int exit_code = check_names("tf", &values[RENDER_TF], description);
+  return exit_code == EXIT_CODE_OK ? check_names("colormap", &values[RENDER_COLORMAP], description) : exit_code;
+}
+
+/* What a repeatable option says of a volume; null: nothing. The last word counts. */
+static const char *said_of(const cli_value *given, const hl_scene_volume *volume, size_t index) {
   char own[256];
   const char *chosen = NULL;
   render_volume_name(volume, index, own, sizeof own);
-  for (int n = 0; n < values[RENDER_TF].count; n++) {
-    const char *text = values[RENDER_TF].texts[n], *rest = after_name(text);
+  for (int n = 0; n < given->count; n++) {
+    const char *text = given->texts[n], *rest = after_name(text);
     if (rest == NULL) chosen = text;
     else if (strlen(own) == (size_t)(rest - text) - 1 && memcmp(own, text, strlen(own)) == 0) chosen = rest;
   }
@@ -209,7 +217,8 @@ bool render_recolors(const cli_value *values) {
 int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_description *description,
                              size_t index, hl_transfer_function *function) {
   const hl_scene_volume *volume = &description->volumes[index];
-  const char *named = function_of(values, volume, index);
+  const char *named = said_of(&values[RENDER_TF], volume, index);
+  const char *colormap = said_of(&values[RENDER_COLORMAP], volume, index);
   int exit_code = copy_function(&volume->transfer_function, function);
   if (exit_code == EXIT_CODE_OK && named != NULL) {
     hl_transfer_function loaded = {0};
@@ -229,7 +238,6 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
     visible_range(volume->volume, function, visible);
     if (values[RENDER_RANGE].given) memcpy(visible, values[RENDER_RANGE].number, sizeof visible);
   }
-  if (exit_code == EXIT_CODE_OK && values[RENDER_COLORMAP].given)
-    exit_code = color_by_name(host, values[RENDER_COLORMAP].text, visible, function);
+  if (exit_code == EXIT_CODE_OK && colormap != NULL) exit_code = color_by_name(host, colormap, visible, function);
   return exit_code;
 }

@@ -7,6 +7,7 @@
 
 static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
 static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {NULL, 0}};
+static const cli_choice magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
 static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
 static const cli_choice shadings[] = {{"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {"flat", HL_SHADING_FLAT}, {NULL, 0}};
 static const cli_choice shadow_kinds[] = {
@@ -110,6 +111,30 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_SWITCH,
                       .help = "parallel projection, the same framing"},
 
+    [RENDER_ARRAY] = {.name = "array",
+                      .kind = OPTION_TEXT,
+                      .argument = "NAME",
+                      .group = "Volume files",
+                      .help = "of the file's arrays this one"},
+    [RENDER_COMPONENT] = {.name = "component",
+                          .kind = OPTION_NUMBERS,
+                          .argument = "N|magnitude",
+                          .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude",
+                          .choices = magnitudes,
+                          .count = 1,
+                          .whole = true,
+                          .low = 0,
+                          .high = 1e9},
+    [RENDER_SPACING] = {.name = "spacing",
+                        .kind = OPTION_NUMBERS,
+                        .argument = "SX,SY,SZ",
+                        .help = "distance of voxels in world units, in place of\nthe file's",
+                        .count = 3,
+                        .separator = ',',
+                        .low = 0,
+                        .above = true,
+                        .high = INFINITY},
+
     [RENDER_LOOK] = {.name = "look",
                      .kind = OPTION_CHOICE,
                      .choices = look_choices,
@@ -125,8 +150,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_COLORMAP] =
         {.name = "colormap",
          .kind = OPTION_TEXT,
-         .argument = "NAME",
-         .help = "colours over the range that is not transparent,\nsee 'halflight help colormaps'"},
+         .argument = "[NAME=]MAP",
+         .help = "colours over the range that is not transparent,\nsee 'halflight help colormaps'; NAME as for --tf",
+         .repeatable = true},
     [RENDER_RANGE] = {.name = "range",
                       .kind = OPTION_NUMBERS,
                       .argument = "LO,HI",

@@ -19,7 +19,8 @@ static const char *const volume_keys[] = {"name",       "stand_in",
                                           "material",   "attenuation_color",
                                           "visible",    "casts_shadow",
                                           "clip",       "receives_shadow",
-                                          NULL};
+                                          "array",      "component",
+                                          "spacing",    NULL};
 
 static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   static const char *const keys[] = {"axis", "angle_deg", NULL};
@@ -82,16 +83,60 @@ static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene
   return status;
 }
 
-static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source) {
-  for (size_t v = 0; v < shelf->count; v++)
-    if (strcmp(shelf->loaded[v].source, source) == 0) return &shelf->loaded[v];
+/* options: how a file is read; null: of shapes. */
+static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
+                                           const hl_volume_load_options *options) {
+  for (size_t v = 0; v < shelf->count; v++) {
+    const hl_loaded_volume *loaded = &shelf->loaded[v];
+    if (strcmp(loaded->source, source) != 0) continue;
+    if (options == NULL) return loaded;
+    bool same_array = (loaded->array == NULL) == (options->array == NULL) &&
+                      (loaded->array == NULL || strcmp(loaded->array, options->array) == 0);
+    if (same_array && loaded->component == options->component &&
+        memcmp(loaded->spacing, options->spacing, sizeof loaded->spacing) == 0)
+      return loaded;
+  }
   return NULL;
 }
 
 /* Takes over source and volume. */
-static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source, hl_volume *volume) {
-  shelf->loaded[shelf->count] = (hl_loaded_volume){source, volume};
-  return &shelf->loaded[shelf->count++];
+static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source, const hl_volume_load_options *options,
+                                            hl_volume *volume) {
+  hl_loaded_volume *place = &shelf->loaded[shelf->count++];
+  *place = (hl_loaded_volume){.source = source, .volume = volume};
+  if (options == NULL) return place;
+  place->array = options->array;
+  place->component = options->component;
+  memcpy(place->spacing, options->spacing, sizeof place->spacing);
+  return place;
+}
+
+/* An index, or "magnitude". */
+static hl_status read_component(hl_json_reader *reader, const json_t *value, int *component) {
+  const json_t *given = json_object_get(value, "component");
+  if (json_is_string(given) && strcmp(json_string_value(given), "magnitude") == 0) {
+    *component = HL_COMPONENT_MAGNITUDE;
+    return HL_OK;
+  }
+  if (given == NULL) return HL_OK;
+  if (json_is_integer(given) && json_integer_value(given) < 0)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "component", "is below 0: give a number from 0 on, or \"magnitude\"");
+  if (!json_is_integer(given))
+    return hl_json_fail(reader, HL_ERROR_INPUT, "component", "is %s: give a number from 0 on, or \"magnitude\"",
+                        json_is_string(given) ? "another word" : hl_json_type_name(given));
+  return hl_json_integer(reader, value, "component", component);
+}
+
+/* How the volume's file is read. */
+static hl_status read_load_options(hl_json_reader *reader, const json_t *value, hl_volume_load_options *options) {
+  hl_volume_load_options_defaults(options);
+  hl_status status = hl_json_text(reader, value, "array", &options->array);
+  if (status == HL_OK) status = read_component(reader, value, &options->component);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "spacing", 3, options->spacing);
+  for (int axis = 0; status == HL_OK && axis < 3; axis++)
+    if (json_object_get(value, "spacing") != NULL && !(options->spacing[axis] > 0))
+      status = hl_json_fail(reader, HL_ERROR_INPUT, "spacing", "has a number that is not above 0: give the distance of voxels");
+  return status;
 }
 
 static bool is_data(const char *file) { return strncmp(file, DATA_PREFIX, strlen(DATA_PREFIX)) == 0; }
@@ -104,27 +149,31 @@ static char *path_of(const hl_json_reader *reader, const char *file) {
 }
 
 /* The volume of a file, loaded now or earlier. */
-static hl_status load(hl_json_reader *reader, const char *file, hl_volume_shelf *shelf, hl_scene_volume *volume) {
+static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
+                      hl_volume_shelf *shelf, hl_scene_volume *volume) {
   if (is_data(file) && reader->context->options.data_folder == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "file", "\"%.200s\": no data folder is known: name one", file);
   char *path = path_of(reader, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
-  const hl_loaded_volume *loaded = find_loaded(shelf, path);
+  const hl_loaded_volume *loaded = find_loaded(shelf, path, options);
   if (loaded != NULL) {
     hl_release(reader->context, path);
   } else {
     hl_volume *made = NULL;
-    hl_status status = hl_volume_load(reader->context, path, &made, reader->error);
+    hl_status status = hl_volume_load_with(reader->context, path, options, &made, reader->error);
     if (status != HL_OK) {
       hl_release(reader->context, path);
       hl_json_enter(reader, "file");
       hl_json_prefix(reader, reader->place);
       return status;
     }
-    loaded = put_on_shelf(shelf, path, made);
+    loaded = put_on_shelf(shelf, path, options, made);
   }
   volume->volume = loaded->volume;
   volume->file = loaded->source;
+  volume->array = options->array;
+  volume->component = options->component;
+  memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
   return HL_OK;
 }
 
@@ -134,7 +183,7 @@ static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_vol
   const json_t *shapes = json_object_get(value, "shapes");
   double voxel_size = json_number_value(json_object_get(value, "voxel_size"));
   char *text = hl_json_shapes_text(reader->context, shapes, shelf->groups, voxel_size);
-  const hl_loaded_volume *loaded = text != NULL ? find_loaded(shelf, text) : NULL;
+  const hl_loaded_volume *loaded = text != NULL ? find_loaded(shelf, text, NULL) : NULL;
   hl_release(reader->context, text);
   if (loaded == NULL) {
     hl_shapes_options options;
@@ -148,7 +197,7 @@ static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_vol
       hl_volume_release(made);
       return hl_fail_memory(reader->error, 1000, "the text of shapes");
     }
-    loaded = put_on_shelf(shelf, text, made);
+    loaded = put_on_shelf(shelf, text, NULL, made);
   }
   volume->volume = loaded->volume;
   volume->shapes = loaded->source;
@@ -165,11 +214,17 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
     return hl_json_fail(reader, HL_ERROR_INPUT, "shapes", "and file exclude each other: remove one");
   if (!shapes && json_object_get(value, "voxel_size") != NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "voxel_size", "is for shapes: remove it");
+  static const char *const of_files[] = {"array", "component", "spacing"};
+  for (size_t n = 0; shapes && n < sizeof of_files / sizeof *of_files; n++)
+    if (json_object_get(value, of_files[n]) != NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, of_files[n], "is for files: remove it");
   if (shapes) return read_shapes(reader, value, shelf, volume);
   if (file == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is missing: name the volume's file, or give shapes");
   if (file[0] == 0) return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is empty: name the volume's file");
-  return load(reader, file, shelf, volume);
+  hl_volume_load_options options;
+  status = read_load_options(reader, value, &options);
+  return status == HL_OK ? load(reader, file, &options, shelf, volume) : status;
 }
 
 /* Orbitals are signed, everything else that shapes make is a density. */
@@ -215,7 +270,8 @@ static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, h
   if (is_there(reader, file)) return HL_OK;
   json_t *merged = hl_json_copy(*value);
   json_object_del(merged, "stand_in");
-  json_object_del(merged, "file");
+  static const char *const of_file[] = {"file", "array", "component", "spacing"};
+  for (size_t n = 0; n < sizeof of_file / sizeof *of_file; n++) json_object_del(merged, of_file[n]);
   if (shelf->stood_in == NULL) shelf->stood_in = json_array();
   bool failed = json_object_update(merged, (json_t *)stand_in) != 0;
   if (json_array_append_new(shelf->stood_in, merged) != 0 || failed)

@@ -281,11 +281,20 @@ static void write_shapes(writer *w, const char *text) {
   json_decref(root);
 }
 
+/* How the file is read, where it is not by default. */
+static void write_source(writer *w, const hl_scene_volume *volume) {
+  write_name(w, "file", volume->file);
+  if (volume->array != NULL) write_name(w, "array", volume->array);
+  if (volume->component == HL_COMPONENT_MAGNITUDE) write_name(w, "component", "magnitude");
+  else if (volume->component >= 0) write_number(w, "component", volume->component);
+  if (volume->spacing[0] > 0) write_row(w, "spacing", volume->spacing, 3);
+}
+
 static void write_volume(writer *w, const hl_scene_volume *volume) {
   open_bracket(w, NULL, "{");
   if (volume->name != NULL) write_name(w, "name", volume->name);
   if (volume->shapes != NULL) write_shapes(w, volume->shapes);
-  else write_name(w, "file", volume->file);
+  else write_source(w, volume);
   write_transform(w, volume);
   write_transfer_function(w, &volume->transfer_function);
   write_name(w, "shading", hl_shading_names[volume->shading]);
@@ -367,9 +376,9 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
   if (volume->shapes != NULL && !is_text_of_shapes(volume->shapes))
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "/volumes/%zu/shapes: is no text that hl_volume_from_shapes() reads: give that, or null", index);
-  if (is_utf8(volume->file) && is_utf8(volume->name)) return HL_OK;
+  if (is_utf8(volume->file) && is_utf8(volume->name) && is_utf8(volume->array)) return HL_OK;
   return hl_fail(error, HL_ERROR_ARGUMENT,
-                 "/volumes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", index);
+                 "/volumes/%zu: name, file or array is not UTF-8, as JSON texts must be: rename it", index);
 }
 
 static hl_status check_light_image(const float *pixels, const char *file, const char *key, size_t light, hl_error *error) {

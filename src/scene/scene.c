@@ -31,6 +31,7 @@ void hl_light_defaults(hl_light *light) {
 void hl_scene_volume_defaults(hl_scene_volume *volume) {
   if (volume == NULL) return;
   *volume = (hl_scene_volume){
+      .component = HL_COMPONENT_DEFAULT,
       .scale = 1,
       .rotate_axis = {0, 0, 1},
       .transfer_function = {.unit_distance = 1},
@@ -68,6 +69,7 @@ void hl_scene_description_defaults(hl_scene_description *description) {
 static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_release(context, (void *)volume->name);
   hl_release(context, (void *)volume->file);
+  hl_release(context, (void *)volume->array);
   hl_release(context, (void *)volume->shapes);
   hl_transfer_function_release(context, &volume->transfer_function);
   hl_volume_release(volume->volume);
@@ -124,12 +126,13 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
 static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to,
                              hl_error *error) {
   *to = *from;
-  to->name = to->file = to->shapes = NULL;
+  to->name = to->file = to->shapes = to->array = NULL;
   to->transfer_function = (hl_transfer_function){0};
   hl_volume_retain(to->volume);
   hl_status status = copy_text(context, from->name, &to->name, error);
   if (status == HL_OK) status = copy_text(context, from->file, &to->file, error);
   if (status == HL_OK) status = copy_text(context, from->shapes, &to->shapes, error);
+  if (status == HL_OK) status = copy_text(context, from->array, &to->array, error);
   if (status == HL_OK)
     status = hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);
   return status;

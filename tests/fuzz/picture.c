@@ -38,6 +38,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   hl_status status = hl_image_read(fuzz_context(), path, &image, &error);
   if (fuzz_check_answer(status, &error, image != NULL)) check_picture(image);
   hl_image_destroy(image);
+  char *text = NULL;
+  status = hl_image_find_scene(fuzz_context(), "p.png", mended, size, &text, &error);
+  if (fuzz_check_answer(status, &error, text != NULL)) REQUIRE(strlen(text) <= (size_t)16 << 20);
+  hl_text_release(fuzz_context(), text);
   fuzz_check_nothing_held();
   return 0;
 }

@@ -32,6 +32,7 @@ if UNU is None:
     sys.exit(77)
 
 TYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64", "uint64", "int64"]
+NAMES = TYPES + ["float16"]
 SHAPE = (5, 4, 3)  # k, j, i: unequal, so that no two axes can be confused
 UNSUPPORTED = 5
 
@@ -132,8 +133,9 @@ def nibabel_cases(folder):
         yield Case(path, np.asanyarray(image.dataobj).transpose(), image.affine[:3, 3],
                    image.affine[:3, :3], "int16")
     series = os.path.join(folder, "series.nii")
-    nibabel.save(nibabel.Nifti1Image(np.zeros((3, 4, 5, 2), "uint8"), np.eye(4)), series)
-    yield Case(series, status=UNSUPPORTED)
+    steps = np.stack([sample("uint8", seed).transpose() for seed in (1, 2)], axis=-1)
+    nibabel.save(nibabel.Nifti1Image(steps, np.eye(4)), series)
+    yield Case(series, sample("uint8"), kind="uint8")  # the first of a series
     single = os.path.join(folder, "single.nii")
     voxels = sample("uint8")
     nibabel.save(nibabel.Nifti1Image(voxels.transpose()[..., None], np.eye(4)), single)
@@ -242,7 +244,8 @@ def vti_cases(folder):
 def several_arrays(folder):
     """The active scalars are wanted, wherever they stand; without, the first array of one component."""
     image = vtk_image(sample("uint8"))
-    vectors = numpy_to_vtk(np.zeros((60, 3), "float32"), deep=True)
+    directions = np.random.default_rng(5).normal(0, 9, (*SHAPE, 3)).astype("float32")
+    vectors = numpy_to_vtk(directions.reshape(-1, 3), deep=True)
     vectors.SetName("vectors")
     other = numpy_to_vtk(sample("int32", 3).ravel(), deep=True)
     other.SetName("other")
@@ -261,7 +264,11 @@ def several_arrays(folder):
     image.GetPointData().SetActiveScalars("vectors")
     path = os.path.join(folder, "vectors.vti")
     write_vti(path, image)
-    yield Case(path, status=UNSUPPORTED)
+    # Added up one by one in floats, as the voxels are.
+    magnitude = np.abs(directions[..., 0])
+    for part in directions[..., 1], directions[..., 2]:
+        magnitude = np.sqrt(magnitude.astype(float) ** 2 + part.astype(float) ** 2).astype("float32")
+    yield Case(path, magnitude, *world, "float32")
 
 
 def legacy_cases(folder):
@@ -285,6 +292,33 @@ def legacy_cases(folder):
                 writer.SetFileName(path)
                 assert writer.Write() == 1
                 yield Case(path, read_legacy(path)[0], *vtk_world(image), kind)
+
+
+def numpy_cases(folder):
+    """What numpy writes, of every type, byte order, element order and version."""
+    for kind in TYPES + ["float16", "bool"]:
+        for order in "<", ">":
+            for fortran in False, True:
+                for version in (1, 0), (2, 0), (3, 0):
+                    voxels = sample("uint8", 4) > 99 if kind == "bool" else sample("float32").astype(kind) \
+                        if kind == "float16" else sample(kind)
+                    path = os.path.join(folder, "%s_%s_%d_%d.npy" % (kind, "lb"[order == ">"], fortran, version[0]))
+                    written = np.asarray(voxels, order="F" if fortran else "C").astype(np.dtype(kind).newbyteorder(order))
+                    with open(path, "wb") as file:
+                        np.lib.format.write_array(file, written, version)
+                    yield Case(path, voxels, kind="uint8" if kind == "bool" else kind)
+    for fortran in False, True:  # components at the end, and a series
+        for name, parts, axis in ("components", 4, -1), ("series", 5, 0):
+            steps = np.stack([sample("int16", seed) for seed in range(1, parts + 1)], axis=axis)
+            path = os.path.join(folder, "%s_%d.npy" % (name, fortran))
+            if name == "series":
+                steps = np.repeat(steps, 2, axis=-1)  # a last axis of 3 would be components
+            np.save(path, np.asarray(steps, order="F" if fortran else "C"))
+            expected = sample("int16")
+            yield Case(path, np.repeat(expected, 2, axis=-1) if name == "series" else expected, kind="int16")
+    complex_path = os.path.join(folder, "complex.npy")
+    np.save(complex_path, np.full(SHAPE, 3 + 4j, "complex64") * np.arange(60).reshape(SHAPE))
+    yield Case(complex_path, 5 * np.arange(60.0).reshape(SHAPE), kind="float32")
 
 
 def meta_cases(folder):
@@ -397,7 +431,7 @@ def differences(case, seen, voxels_path):
     spacing = np.linalg.norm(case.axes, axis=0)
     checks = [
         ("dimensions", seen["dimensions"], expected.shape[::-1], 0),
-        ("type", [TYPES.index(seen["type"])], [TYPES.index(case.kind or expected.dtype.name)], 0),
+        ("type", [NAMES.index(seen["type"])], [NAMES.index(case.kind or expected.dtype.name)], 0),
         ("spacing", seen["spacing"], spacing, 1e-6),
         ("origin", seen["origin"], case.origin, 1e-5),
         ("direction", seen["direction"], (case.axes / spacing).ravel(), 1e-6),
@@ -452,7 +486,7 @@ def main():
     vtk.vtkObject.GlobalWarningDisplayOff()
     failures = 0
     for name, cases in (("Teem", teem_cases), ("nibabel", nibabel_cases), ("VTK image data", vti_cases),
-                        ("VTK legacy", legacy_cases), ("MetaImage", meta_cases)):
+                        ("VTK legacy", legacy_cases), ("MetaImage", meta_cases), ("NumPy", numpy_cases)):
         with tempfile.TemporaryDirectory() as folder:
             failures += run(program, name, cases(folder))
     if os.path.isdir(data):

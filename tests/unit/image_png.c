@@ -2,7 +2,9 @@
  * and reading of every kind of PNG. */
 #include "image_parts.h"
 
+#include <halflight/scene.h>
 #include <png.h>
+#include <zlib.h>
 
 static int closed_form_code(double linear, int maximum) {
   double l = fmin(fmax(linear, 0), 1);
@@ -420,6 +422,82 @@ static void bytes_are_those_of_a_png(void **unused) {
   end(&f);
 }
 
+/* ---- the scene that a picture carries ---- */
+
+static void put_32(unsigned char *to, unsigned long value) {
+  for (int n = 0; n < 4; n++) to[n] = (unsigned char)(value >> (24 - 8 * n));
+}
+
+/* A PNG's mark and one chunk; its length. */
+static size_t make_chunk(unsigned char *file, const char *type, const void *body, size_t length) {
+  memcpy(file, "\x89PNG\r\n\x1a\n", 8);
+  put_32(file + 8, length);
+  memcpy(file + 12, type, 4);
+  memcpy(file + 16, body, length);
+  put_32(file + 16 + length, crc32(0, file + 12, (unsigned)length + 4));
+  return 20 + length;
+}
+
+static void scenes_are_found(void **state) {
+  (void)state;
+  static const char key[] = "halflight:scene", text[] = "{\"halflight\": 1}";
+  hl_context *context = make_context();
+  unsigned char packed[200], body[400], file[500];
+  uLongf packed_bytes = sizeof packed;
+  assert_int_equal(compress(packed, &packed_bytes, (const unsigned char *)text, strlen(text)), Z_OK);
+  for (int kind = 0; kind < 4; kind++) {
+    static const char *const types[] = {"tEXt", "zTXt", "iTXt", "iTXt"};
+    static const char between[4][6] = {"", {0}, {0, 0, 'd', 'e', 0, 0}, {1, 0, 0, 'x', 0}};
+    static const size_t between_bytes[] = {0, 1, 6, 5};
+    size_t length = sizeof key;
+    memcpy(body, key, sizeof key);
+    memcpy(body + length, between[kind], between_bytes[kind]);
+    length += between_bytes[kind];
+    bool is_packed = kind == 1 || kind == 3;
+    memcpy(body + length, is_packed ? packed : (const unsigned char *)text, is_packed ? packed_bytes : strlen(text));
+    length = make_chunk(file, types[kind], body, length + (is_packed ? packed_bytes : strlen(text)));
+    char *found = NULL;
+    hl_error error = {0};
+    assert_int_equal(hl_image_find_scene(context, "a.png", file, length, &found, &error), HL_OK);
+    assert_string_equal(found, text);
+    hl_text_release(context, found);
+    for (size_t cut = 0; cut < length; cut++) {
+      assert_int_equal(hl_image_find_scene(context, "a.png", file, cut, &found, &error), HL_ERROR_INPUT);
+      assert_null(found);
+      assert_true(strlen(error.message) > 20);
+    }
+    for (size_t place = 0; place < length; place++) { /* the sum tells; but of the mark and the length */
+      file[place] ^= 0x15;
+      assert_int_equal(hl_image_find_scene(context, "a.png", file, length, &found, &error), HL_ERROR_INPUT);
+      file[place] ^= 0x15;
+    }
+  }
+  end_context(context);
+}
+
+/* Text that inflates beyond the limit, and compressed data that are none. */
+static void scenes_have_limits(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  enum { LARGE = 40 << 20 };
+  unsigned char *zeros = calloc(LARGE, 1), *body = malloc(1 << 20), *file = malloc(1 << 20);
+  memcpy(body, "halflight:scene\0\0", 17);
+  uLongf packed_bytes = (1 << 20) - 100;
+  assert_int_equal(compress(body + 17, &packed_bytes, zeros, LARGE), Z_OK);
+  size_t length = make_chunk(file, "zTXt", body, 17 + packed_bytes);
+  char *found = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_image_find_scene(context, "a.png", file, length, &found, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "more than"));
+  length = make_chunk(file, "zTXt", "halflight:scene\0\0not zlib", 26);
+  assert_int_equal(hl_image_find_scene(context, "a.png", file, length, &found, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "damaged"));
+  free(zeros);
+  free(body);
+  free(file);
+  end_context(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(composites_in_linear_light),
                                      cmocka_unit_test(exposure_multiplies_the_light),
@@ -430,6 +508,7 @@ int main(void) {
                                      cmocka_unit_test(rewriting_keeps_codes),
                                      cmocka_unit_test(scene_is_stored),
                                      cmocka_unit_test(every_kind_is_read),
-                                     cmocka_unit_test(bytes_are_those_of_a_png)};
+                                     cmocka_unit_test(bytes_are_those_of_a_png),
+                                     cmocka_unit_test(scenes_are_found), cmocka_unit_test(scenes_have_limits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

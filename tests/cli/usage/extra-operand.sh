@@ -1,1 +1,1 @@
-halflight render a.nrrd b.nrrd
+halflight info a.nrrd b.nrrd

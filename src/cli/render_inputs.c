@@ -1,0 +1,103 @@
+/* cli/render_inputs.c - the scene of what `halflight render` is given: one scene, or volumes.
+ *
+ * Each of several volumes gets the look that it would have alone; light, background and direction of view are those of the
+ * first, whose camera is moved so that all are in the picture. Sheets are as fine as the finest of them asks for.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "input.h"
+#include "render.h"
+
+/* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read; a bare volume is
+ * itself the file of the scene's volume. */
+void render_name_scene(const char *input, bool bare, hl_error *error) {
+  char line[sizeof error->message];
+  if (error->message[0] != '/') return;
+  static const char file[] = "/volumes/0/file: ";
+  bool itself = bare && strncmp(error->message, file, sizeof file - 1) == 0;
+  snprintf(line, sizeof line, "%s", error->message + (itself ? sizeof file - 1 : 0));
+  snprintf(error->message, sizeof error->message, "%.300s: %.690s", strcmp(input, "-") == 0 ? "standard input" : input, line);
+}
+
+/* Options of how a volume is read are for volumes alone. */
+static int check_kinds(const cli_value *values, const cli_input *inputs, size_t count) {
+  for (size_t n = 0; n < count && count > 1; n++)
+    if (inputs[n].kind != INPUT_VOLUME)
+      return fail(EXIT_CODE_USAGE, "'%s' is no volume file: several INPUTs are volumes of one picture, a scene stands alone",
+                  inputs[n].path);
+  if (inputs[0].kind == INPUT_VOLUME) return EXIT_CODE_OK;
+  for (int which = RENDER_ARRAY; which <= RENDER_SPACING; which++)
+    if (values[which].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for volume files, and '%s' is a scene: write \"%s\" beside its \"file\"",
+                  render_options[which].name, inputs[0].path, render_options[which].name);
+  return EXIT_CODE_OK;
+}
+
+/* "head" for scans/head.nii.gz, "head-2" where there is one already. */
+static void name_volume(hl_scene_volume *volumes, size_t index, char *name, size_t size) {
+  char stem[200];
+  render_volume_name(&volumes[index], index, stem, sizeof stem);
+  snprintf(name, size, "%s", stem);
+  for (size_t copy = 2, other = 0; other < index; other++)
+    if (strcmp(volumes[other].name, name) == 0) {
+      snprintf(name, size, "%s-%zu", stem, copy++);
+      other = (size_t)-1;
+    }
+  volumes[index].name = name;
+}
+
+/* scenes: one for each volume. */
+static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene **scene) {
+  enum { NAME_BYTES = 256 };
+  hl_scene_volume volumes[MAXIMUM_OPERANDS];
+  char names[MAXIMUM_OPERANDS][NAME_BYTES];
+  hl_scene_description description = *hl_scene_describe(scenes[0]);
+  for (size_t n = 0; n < count; n++) {
+    const hl_scene_description *own = hl_scene_describe(scenes[n]);
+    volumes[n] = own->volumes[0];
+    name_volume(volumes, n, names[n], NAME_BYTES);
+    description.render.sheet_spacing = fmin(description.render.sheet_spacing, own->render.sheet_spacing);
+  }
+  description.volumes = volumes;
+  description.volume_count = count;
+  if (hl_camera_fit(&description, 1, &description.camera) != HL_OK)
+    return fail(EXIT_CODE_INPUT, "the volumes cannot be framed together: their places in the world are too far apart");
+  hl_error error = {0};
+  hl_status status = hl_scene_create(host->context, &description, scene, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
+}
+
+static int load_each(cli_host *host, const cli_value *values, const cli_input *inputs, size_t count, hl_scene **scenes) {
+  hl_volume_load_options options;
+  input_load_options(&values[RENDER_ARRAY], &values[RENDER_COMPONENT], &values[RENDER_SPACING], &options);
+  for (size_t n = 0; n < count; n++) {
+    hl_error error = {0};
+    bool bare = inputs[n].kind == INPUT_VOLUME;
+    hl_status status = input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n], &error);
+    if (bare) render_name_scene(inputs[n].path, true, &error);
+    if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+  }
+  return EXIT_CODE_OK;
+}
+
+int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare, hl_scene **scene) {
+  cli_input inputs[MAXIMUM_OPERANDS] = {{0}};
+  hl_scene *scenes[MAXIMUM_OPERANDS] = {NULL};
+  size_t count = 0;
+  int exit_code = EXIT_CODE_OK;
+  for (; operands[count] != NULL && exit_code == EXIT_CODE_OK; count++)
+    exit_code = input_open(operands[count], values[RENDER_MAX_MEMORY].bytes, &inputs[count]);
+  if (exit_code == EXIT_CODE_OK) exit_code = check_kinds(values, inputs, count);
+  *bare = inputs[0].kind == INPUT_VOLUME;
+  if (exit_code == EXIT_CODE_OK) exit_code = load_each(host, values, inputs, count, scenes);
+  if (exit_code == EXIT_CODE_OK && count > 1) exit_code = join(host, scenes, count, scene);
+  for (size_t n = 0; n < count; n++) {
+    input_close(&inputs[n]);
+    if (n == 0 && count == 1 && exit_code == EXIT_CODE_OK) *scene = scenes[0];
+    else hl_scene_release(scenes[n]);
+  }
+  return exit_code;
+}
