@@ -58,6 +58,8 @@ int output_check(const char *path, const char *const *extensions, char *const *i
           about.st_ino == about_input.st_ino)
         return fail(EXIT_CODE_USAGE, "--output: '%s' is the input '%s': choose another name", path,
                     inputs[i]);
+  } else if (errno == ENAMETOOLONG) {
+    return fail(EXIT_CODE_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
   }
   return check_folder(path);
 }

@@ -2,7 +2,9 @@
 #define _GNU_SOURCE
 #include "read_files.h"
 
+#include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 #include "message.h"
@@ -28,7 +30,8 @@ void read_files_release(cli_read_files *read) { free(read->files); }
 
 int read_files_protect(const cli_read_files *read, const char *path, const char *reader) {
   struct stat about;
-  if (stat(path, &about) != 0) return EXIT_CODE_OK;
+  if (stat(path, &about) != 0)
+    return errno != ENAMETOOLONG ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
   if (read->incomplete) return fail(EXIT_CODE_FAILURE, "out of memory for the names of the files that were read");
   for (size_t i = 0; i < read->count; i++)
     if (about.st_dev == read->files[i].device && about.st_ino == read->files[i].inode)

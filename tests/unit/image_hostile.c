@@ -18,6 +18,19 @@ static hl_context *make_limited_context(void) {
   return context;
 }
 
+/* What a header announces is told of any bytes, and is right for a picture that can be read. */
+static void check_claim(decoder function, const unsigned char *exact, size_t length, const hl_image *image) {
+  hl_image_claim claim = function == hl_png_decode   ? hl_png_claim(exact, length)
+                         : function == hl_exr_decode ? hl_exr_claim(exact, length)
+                                                     : hl_npy_claim(exact, length);
+  if (image == NULL) return;
+  assert_true(claim.known);
+  assert_int_equal(claim.width, image->width);
+  assert_int_equal(claim.height, image->height);
+  assert_true(claim.bytes >= claim.width * claim.height / 8);
+  assert_true(claim.bytes <= claim.width * claim.height * 64 + claim.height);
+}
+
 static hl_status decode(hl_context *context, decoder function, const unsigned char *bytes, size_t length) {
   unsigned char *exact = malloc(length > 0 ? length : 1);
   memcpy(exact, bytes, length);
@@ -35,6 +48,7 @@ static hl_status decode(hl_context *context, decoder function, const unsigned ch
     assert_non_null(strstr(error.message, "damaged"));
     assert_null(strchr(error.message, '\n'));
   }
+  check_claim(function, exact, length, image);
   hl_image_destroy(image);
   assert_int_equal(hl_context_memory_held(context), held);
   free(exact);
