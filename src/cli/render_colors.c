@@ -148,11 +148,11 @@ static void spread(hl_transfer_function *function, const double visible[2], cons
 
 /* Clear below, then nearly opaque within a voxel's edge. The ramp before it gives surfaces a slope that is shaded without
  * stairs; it is a twentieth of the volume's values wide. */
-static int make_opaque_from(const hl_volume *volume, double threshold, hl_transfer_function *function) {
+static int make_opaque_from(const cli_host *host, const hl_volume *volume, double threshold, hl_transfer_function *function) {
   enum { POINTS = 2 };
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume, &info) != HL_OK) return fail(EXIT_CODE_FAILURE, "--threshold: the volume is not known");
-  if (threshold > info.range[1] || threshold <= info.range[0])
+  if (!host->quiet && (threshold > info.range[1] || threshold <= info.range[0]))
     warn("--threshold %.9g: the volume's values go from %.9g to %.9g: %s", threshold, info.range[0], info.range[1],
          threshold > info.range[1] ? "nothing is opaque" : "everything is");
   hl_opacity_point *points = realloc((void *)function->opacity, POINTS * sizeof *points);
@@ -234,7 +234,7 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
     memcpy(visible, values[RENDER_RANGE].number, sizeof visible);
   }
   if (values[RENDER_THRESHOLD].given) {
-    exit_code = make_opaque_from(volume->volume, values[RENDER_THRESHOLD].number[0], function);
+    exit_code = make_opaque_from(host, volume->volume, values[RENDER_THRESHOLD].number[0], function);
     visible_range(volume->volume, function, visible);
     if (values[RENDER_RANGE].given) memcpy(visible, values[RENDER_RANGE].number, sizeof visible);
   }

@@ -8,36 +8,9 @@
 #include <string.h>
 
 #include "core/context.h"
-#include "core/memory.h"
 #include "volume/format.h"
+#include "volume/nrrd.h"
 #include "volume/text.h"
-
-enum { MOST_AXES = 16, KIND_BYTES = 32, NAME_BYTES = 1024 };
-
-typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_TEXT, NRRD_HEX } nrrd_encoding;
-
-typedef struct nrrd_axis {
-  size_t size;
-  double spacing, minimum, maximum; /* NaN: not stated */
-  bool is_node;                     /* samples at cell corners; else at cell centres, as Teem assumes */
-  bool has_direction;
-  double direction[3];
-  char kind[KIND_BYTES];
-} nrrd_axis;
-
-typedef struct nrrd_header {
-  const hl_stream *stream; /* for error lines */
-  int line;                /* the current one, from 1 */
-  int dimension;           /* 0: not yet stated */
-  nrrd_axis axis[MOST_AXES];
-  hl_voxel_type type; /* 0: not yet stated */
-  nrrd_encoding encoding;
-  bool has_encoding, has_endian, big_endian, has_sizes, has_directions, has_space_origin;
-  double space_origin[3];
-  char data_file[NAME_BYTES]; /* "" if attached */
-  size_t line_skip, byte_skip;
-  bool skip_to_last; /* byte skip -1: the voxels are the last bytes of the file */
-} nrrd_header;
 
 typedef hl_status field_function(nrrd_header *header, const char *value, hl_error *error);
 
@@ -49,7 +22,7 @@ static hl_status refuse(const nrrd_header *header, const char *field, const char
 
 static hl_status read_dimension(nrrd_header *header, const char *value, hl_error *error) {
   size_t dimension;
-  if (hl_text_sizes(value, &dimension, 1) != 1 || dimension < 1 || dimension > MOST_AXES)
+  if (hl_text_sizes(value, &dimension, 1) != 1 || dimension < 1 || dimension > NRRD_MOST_AXES)
     return refuse(header, "dimension", value, error);
   header->dimension = (int)dimension;
   return HL_OK;
@@ -62,10 +35,10 @@ static hl_status need_dimension(const nrrd_header *header, const char *field, hl
 }
 
 static hl_status read_sizes(nrrd_header *header, const char *value, hl_error *error) {
-  size_t sizes[MOST_AXES];
+  size_t sizes[NRRD_MOST_AXES];
   hl_status status = need_dimension(header, "sizes", error);
   if (status != HL_OK) return status;
-  if (hl_text_sizes(value, sizes, MOST_AXES) != header->dimension) {
+  if (hl_text_sizes(value, sizes, NRRD_MOST_AXES) != header->dimension) {
     char shown[HL_PRINTABLE_BYTES];
     return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line,
                         "sizes must be %d whole numbers, as the dimension says, not \"%s\"",
@@ -121,10 +94,10 @@ static hl_status read_endian(nrrd_header *header, const char *value, hl_error *e
 /* One number per axis, NaN allowed; place is the offset of the number in nrrd_axis. */
 static hl_status read_per_axis(nrrd_header *header, const char *field, const char *value, size_t place,
                                hl_error *error) {
-  double numbers[MOST_AXES];
+  double numbers[NRRD_MOST_AXES];
   hl_status status = need_dimension(header, field, error);
   if (status != HL_OK) return status;
-  if (hl_text_numbers(value, numbers, MOST_AXES) != header->dimension)
+  if (hl_text_numbers(value, numbers, NRRD_MOST_AXES) != header->dimension)
     return refuse(header, field, value, error);
   for (int axis = 0; axis < header->dimension; axis++)
     memcpy((char *)&header->axis[axis] + place, &numbers[axis], sizeof *numbers);
@@ -143,7 +116,7 @@ static hl_status read_maxima(nrrd_header *header, const char *value, hl_error *e
 
 static hl_status read_centers(nrrd_header *header, const char *value, hl_error *error) {
   hl_status status = need_dimension(header, "centers", error);
-  char word[KIND_BYTES];
+  char word[NRRD_KIND_BYTES];
   const char *cursor = value;
   for (int axis = 0; status == HL_OK && axis < header->dimension; axis++) {
     if (!hl_text_word(&cursor, word, sizeof word)) return refuse(header, "centers", value, error);
@@ -156,7 +129,7 @@ static hl_status read_kinds(nrrd_header *header, const char *value, hl_error *er
   hl_status status = need_dimension(header, "kinds", error);
   const char *cursor = value;
   for (int axis = 0; status == HL_OK && axis < header->dimension; axis++)
-    if (!hl_text_word(&cursor, header->axis[axis].kind, KIND_BYTES))
+    if (!hl_text_word(&cursor, header->axis[axis].kind, NRRD_KIND_BYTES))
       return refuse(header, "kinds", value, error);
   return status;
 }
@@ -277,7 +250,7 @@ static hl_status read_header(hl_stream *stream, nrrd_header *header, hl_error *e
   char line[HL_LINE_BYTES];
   bool ended;
   header->stream = stream;
-  for (int axis = 0; axis < MOST_AXES; axis++)
+  for (int axis = 0; axis < NRRD_MOST_AXES; axis++)
     header->axis[axis].spacing = header->axis[axis].minimum = header->axis[axis].maximum = NAN;
   for (header->line = 1;; header->line++) {
     hl_status status = hl_stream_line(stream, line, &ended, error);
@@ -303,109 +276,6 @@ static hl_status read_header(hl_stream *stream, nrrd_header *header, hl_error *e
         error, HL_ERROR_INPUT, stream, header->line, "%s",
         "the file ends with its header: neither an empty line and voxels, nor a \"data file\"");
   return HL_OK;
-}
-
-/* Whether the samples along an axis are several values of one voxel. */
-static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
-  if (header->has_directions) return !axis->has_direction;
-  int space = 0;
-  for (int n = 0; n < header->dimension; n++) space += hl_text_is_one_of(header->axis[n].kind, "domain|space");
-  if (hl_text_equal(axis->kind, "time")) return space >= 3;
-  return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
-}
-
-/* Of four axes and more that nothing is said of, a first one of at most four samples holds the components of voxels. */
-static bool is_first_of_components(const nrrd_header *header) {
-  bool unsaid = header->axis[0].size <= 4 && !header->has_directions;
-  int thick = 0;
-  for (int n = 0; n < header->dimension; n++) {
-    unsaid = unsaid && header->axis[n].kind[0] == 0;
-    thick += header->axis[n].size > 1;
-  }
-  return unsaid && thick > 3;
-}
-
-/* Of the axes that are not components, at most three: while there are more, the last of one sample goes, and then the
- * last of all, a series. */
-static int drop_thin_axes(int axes[MOST_AXES], const nrrd_header *header, int count) {
-  for (int n = count - 1; n >= 0 && count > 3; n--)
-    if (header->axis[axes[n]].size == 1) {
-      memmove(&axes[n], &axes[n + 1], (size_t)(count - 1 - n) * sizeof *axes);
-      count--;
-    }
-  return count > 3 ? 3 : count;
-}
-
-/* The axes of the grid, fastest first. */
-static int choose_axes(const nrrd_header *header, int chosen[MOST_AXES]) {
-  int count = 0;
-  for (int n = 0; n < header->dimension; n++)
-    if (!is_component_axis(header, &header->axis[n]) && !(n == 0 && is_first_of_components(header))) chosen[count++] = n;
-  return drop_thin_axes(chosen, header, count);
-}
-
-/* The other axes hold components, which must follow each other: the grid's axes come before and after them. */
-static hl_status find_components(const nrrd_header *header, const int chosen[MOST_AXES], int count, bool *is_series,
-                                 hl_payload *payload, hl_error *error) {
-  size_t before = 1, since = 1; /* voxels of the axes before the components, and since the last of them */
-  int grid_axis = 0;
-  *is_series = false;
-  for (int n = 0; n < header->dimension; n++) {
-    const nrrd_axis *axis = &header->axis[n];
-    if (grid_axis < count && chosen[grid_axis] == n) {
-      size_t *product = payload->components == 1 ? &before : &since;
-      if (!hl_multiply(*product, axis->size, product)) *product = SIZE_MAX;
-      grid_axis++;
-      continue;
-    }
-    if (axis->size == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: axis %d has 0 samples", header->stream->path, n + 1);
-    if (axis->size == 1) continue;
-    if (payload->components > 1 && since > 1)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "%s: components along axes that do not follow each other: take one out with unu slice",
-                     header->stream->path);
-    if (!hl_multiply(payload->components, axis->size, &payload->components)) payload->components = SIZE_MAX;
-    *is_series = *is_series || hl_text_is_one_of(axis->kind, "list|time|domain|space") || grid_axis >= 3;
-  }
-  payload->block = before;
-  return HL_OK;
-}
-
-/* The step of an axis without direction, and the place of its first sample; Teem's rules for spacing, axis
- * mins and maxs, and centering. */
-static void place_axis(const nrrd_axis *axis, double *spacing, double *first) {
-  double width = axis->maximum - axis->minimum;
-  double intervals = axis->is_node ? (double)axis->size - 1 : (double)axis->size;
-  *spacing = isfinite(axis->spacing)            ? axis->spacing
-             : isfinite(width) && intervals > 0 ? width / intervals
-                                                : 1;
-  *first = isfinite(axis->minimum) ? axis->minimum + (axis->is_node ? 0 : *spacing / 2) : 0;
-}
-
-/* Axes that the file does not have get a unit step across the others. */
-static void complete_axes(hl_volume_description *grid, int count) {
-  if (count == 1) {
-    vec3 across = vec3_perpendicular(vec3_normalise(vec3_of(grid->axis[0])));
-    memcpy(grid->axis[1], &across, sizeof across);
-  }
-  if (count < 3) {
-    vec3 across = vec3_normalise(vec3_cross(vec3_of(grid->axis[0]), vec3_of(grid->axis[1])));
-    memcpy(grid->axis[2], &across, sizeof across);
-  }
-}
-
-static void make_grid(const nrrd_header *header, const int chosen[MOST_AXES], int count, hl_volume_description *grid) {
-  for (int n = 0; n < count; n++) {
-    const nrrd_axis *axis = &header->axis[chosen[n]];
-    grid->dimensions[n] = axis->size;
-    if (header->has_directions)
-      memcpy(grid->axis[n], axis->direction, sizeof grid->axis[n]);
-    else
-      place_axis(axis, &grid->axis[n][n], &grid->origin[n]);
-  }
-  if (header->has_directions) complete_axes(grid, count);
-  if (header->has_space_origin) memcpy(grid->origin, header->space_origin, sizeof grid->origin);
-  grid->type = header->type;
 }
 
 static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, const hl_payload *payload,
@@ -434,11 +304,8 @@ hl_status hl_load_nrrd(hl_stream **stream, hl_load_request *request, hl_volume *
   hl_payload_defaults(&payload);
   hl_status status = read_header(*stream, &header, error);
   if (status != HL_OK) return status;
-  int chosen[MOST_AXES], count = choose_axes(&header, chosen);
   bool is_series = false;
-  make_grid(&header, chosen, count, &payload.grid);
-  status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
-  if (status == HL_OK) status = find_components(&header, chosen, count, &is_series, &payload, error);
+  status = hl_nrrd_place(&header, &payload, &is_series, error);
   if (status == HL_OK) status = hl_component_only(request, (*stream)->path, is_series, &payload, error);
   if (status != HL_OK) return status;
   payload.big_endian = header.big_endian;

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/context.h"
 
@@ -233,10 +234,42 @@ static void test_values_of_half_floats(void **state) {
   hl_context_destroy(context);
 }
 
+/* A pipe is read once: up to the first array of one component, or of the wanted name. */
+static void test_a_pipe_is_read_once(void **state) {
+  (void)state;
+  static const char vtk[] = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 1 1\nPOINT_DATA 2\n"
+                            "VECTORS v float\n3 4 0 1 2 2\nSCALARS p short\nLOOKUP_TABLE default\n7 8\n"
+                            "SCALARS q short\nLOOKUP_TABLE default\n9 10\n";
+  static const struct {
+    const char *array;
+    double first;
+  } wanted[] = {{NULL, 7}, {"q", 9}, {"v", 5}};
+  told t = {0};
+  hl_context *context = make_context(&t);
+  for (size_t n = 0; n < 3; n++) {
+    int ends[2];
+    char path[40];
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(write(ends[1], vtk, sizeof vtk - 1), sizeof vtk - 1);
+    close(ends[1]);
+    snprintf(path, sizeof path, "/dev/fd/%d", ends[0]);
+    hl_volume_load_options options = load_options(wanted[n].array, HL_COMPONENT_DEFAULT);
+    hl_volume *volume = NULL;
+    hl_error error = {0};
+    if (hl_volume_load_with(context, path, &options, &volume, &error) != HL_OK) fail_msg("%s", error.message);
+    assert_true(hl_volume_value(volume, 0, 0, 0) == wanted[n].first);
+    hl_volume_release(volume);
+    close(ends[0]);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_arrays_are_chosen_by_name), cmocka_unit_test(test_components),
       cmocka_unit_test(test_series), cmocka_unit_test(test_large_components),
-      cmocka_unit_test(test_spacing_takes_the_place_of_the_files), cmocka_unit_test(test_values_of_half_floats)};
+      cmocka_unit_test(test_spacing_takes_the_place_of_the_files), cmocka_unit_test(test_values_of_half_floats),
+      cmocka_unit_test(test_a_pipe_is_read_once)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
