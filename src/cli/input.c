@@ -23,6 +23,14 @@ const char *input_base_name(const char *path) {
 
 /* ---- reading whole ---- */
 
+static input_kind kind_by_content(const unsigned char *bytes, size_t length) {
+  static const unsigned char png[4] = {0x89, 'P', 'N', 'G'}, byte_order_mark[3] = {0xef, 0xbb, 0xbf};
+  if (length >= sizeof png && memcmp(bytes, png, sizeof png) == 0) return INPUT_PICTURE;
+  size_t at = length >= 3 && memcmp(bytes, byte_order_mark, 3) == 0 ? 3 : 0;
+  while (at < length && isspace(bytes[at])) at++;
+  return at < length && bytes[at] == '{' ? INPUT_SCENE : INPUT_VOLUME;
+}
+
 /* Waits until there is something to read; false: the user wants to stop. */
 static bool await_bytes(int descriptor) {
   enum { MILLISECONDS_BETWEEN_QUESTIONS = 20 };
@@ -57,21 +65,19 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
   size_t capacity = 0;
   long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   if (limit == 0 && pages > 0 && page_bytes > 0) limit = (uint64_t)pages * (uint64_t)page_bytes / 2;
-  bool ended = false;
+  enum { LONGEST_SCENE = 16 << 20, TELLING = 65536 }; /* bytes: what the library reads of a scene; that tell what it is */
+  bool ended = false, scene = false;
   int exit_code = EXIT_CODE_OK;
-  while (exit_code == EXIT_CODE_OK && !ended) exit_code = read_piece(input, descriptor, &capacity, limit, &ended);
+  while (exit_code == EXIT_CODE_OK && !ended) {
+    exit_code = read_piece(input, descriptor, &capacity, limit, &ended);
+    if (input->length <= TELLING) scene = kind_by_content(input->bytes, input->length) == INPUT_SCENE;
+    if (exit_code == EXIT_CODE_OK && scene && input->length > LONGEST_SCENE)
+      exit_code = fail(EXIT_CODE_INPUT, "%s: more than %d bytes, too large for a scene", input->title, (int)LONGEST_SCENE);
+  }
   return exit_code;
 }
 
 /* ---- what it is ---- */
-
-static input_kind kind_by_content(const unsigned char *bytes, size_t length) {
-  static const unsigned char png[4] = {0x89, 'P', 'N', 'G'}, byte_order_mark[3] = {0xef, 0xbb, 0xbf};
-  if (length >= sizeof png && memcmp(bytes, png, sizeof png) == 0) return INPUT_PICTURE;
-  size_t at = length >= 3 && memcmp(bytes, byte_order_mark, 3) == 0 ? 3 : 0;
-  while (at < length && isspace(bytes[at])) at++;
-  return at < length && bytes[at] == '{' ? INPUT_SCENE : INPUT_VOLUME;
-}
 
 /* False where the name says nothing. */
 static bool kind_by_name(const char *path, input_kind *kind) {

@@ -12,10 +12,10 @@
 #include "render.h"
 
 /* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read; a bare volume is
- * itself the file of the scene's volume. */
+ * itself the file of the scene's volume. A line that begins with the name, which may begin with a slash too, stays. */
 void render_name_scene(const char *input, bool bare, hl_error *error) {
   char line[sizeof error->message];
-  if (error->message[0] != '/') return;
+  if (error->message[0] != '/' || strncmp(error->message, input, strlen(input)) == 0) return;
   static const char file[] = "/volumes/0/file: ";
   bool itself = bare && strncmp(error->message, file, sizeof file - 1) == 0;
   snprintf(line, sizeof line, "%s", error->message + (itself ? sizeof file - 1 : 0));
