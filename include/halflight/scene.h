@@ -215,6 +215,12 @@ HL_API void hl_text_release(hl_context *context, char *text);
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
                                                     hl_scene **scene, hl_error *error);
 
+/* What hl_scene_for_volume() takes a volume for, and makes its transfer function and lights for: "scanned body", "scanned
+ * brain", "scanned matter", "labels", "field", "flow", "signed field", "smoke or cloud" or "one value". file as there (may be null). *kind
+ * is a constant. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind,
+                                                hl_error *error);
+
 /* The scene's own copy: valid as long as the scene; change a copy of it and create another scene.
  * Null for null. */
 HL_API const hl_scene_description *hl_scene_describe(const hl_scene *scene);
@@ -250,6 +256,10 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context,
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *context, const char *name,
                                                               double low, double high,
                                                               hl_transfer_function *function, hl_error *error);
+/* Between which two values of the volume nearly all lies that the function lets be seen, from whatever side: a good range for
+ * a colormap. Where nothing is seen, the volume's range. range[0] < range[1]. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume, const hl_transfer_function *function,
+                                                                double range[2], hl_error *error);
 /* Reads Halflight's own JSON object, ParaView's .json colour maps or Slicer's .vp.json. A file with colours
  * alone gives no opacity points (opacity null): take them from elsewhere. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load(hl_context *context, const char *path,

@@ -73,7 +73,7 @@ static void print_arrays(const hl_volume *volume) {
   }
 }
 
-static int print_json(const char *path, const hl_volume *volume, const hl_volume_info *info) {
+static int print_json(const char *path, const hl_volume *volume, const hl_volume_info *info, const char *kind) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
   json_writer json = {0};
   json_open_object(&json, NULL);
@@ -89,6 +89,7 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   json_number(&json, "mean", info->mean);
   json_integer(&json, "nonfinite_count", info->nonfinite_count);
   print_json_arrays(&json, volume);
+  json_text(&json, "taken_for", kind);
   json_integers(&json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
   json_close(&json);
   return finish_stdout();
@@ -115,7 +116,7 @@ static void print_histogram(const hl_volume_info *info) {
   printf("  %11.5g\n", info->range[1]);
 }
 
-static int print_text(const char *path, const hl_volume *volume, const hl_volume_info *info) {
+static int print_text(const char *path, const hl_volume *volume, const hl_volume_info *info, const char *kind) {
   const double(*d)[3] = info->direction;
   uint64_t voxels = (uint64_t)info->dimensions[0] * info->dimensions[1] * info->dimensions[2];
   printf("%s\n", path);
@@ -131,6 +132,7 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
   printf("  range       %.9g to %.9g, mean %.9g\n", info->range[0], info->range[1], info->mean);
   if (info->nonfinite_count > 0)
     printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);
+  printf("  taken for   %s: render chooses its look from this file; --print-scene keeps it\n", kind);
   print_histogram(info);
   return finish_stdout();
 }
@@ -141,6 +143,7 @@ static int run_info(const cli_value *values, char **operands) {
   int exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_volume *volume = NULL;
+  const char *kind = NULL;
   hl_volume_info info = {.struct_size = sizeof info};
   hl_error error = {0};
   hl_volume_load_options load;
@@ -152,8 +155,10 @@ static int run_info(const cli_value *values, char **operands) {
     exit_code = host_fail(&host, PHASE_READ, status, &error);
   else if (exit_code == EXIT_CODE_OK && hl_volume_get_info(volume, &info) != HL_OK)
     exit_code = fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", operands[0]);
+  else if (exit_code == EXIT_CODE_OK && (status = hl_volume_guess(volume, input.title, &kind, &error)) != HL_OK)
+    exit_code = host_fail(&host, PHASE_RUN, status, &error);
   else if (exit_code == EXIT_CODE_OK)
-    exit_code = values[INFO_JSON].given ? print_json(input.title, volume, &info) : print_text(input.title, volume, &info);
+    exit_code = values[INFO_JSON].given ? print_json(input.title, volume, &info, kind) : print_text(input.title, volume, &info, kind);
   input_close(&input);
   hl_volume_release(volume);
   host_close(&host);

@@ -203,10 +203,20 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
+/* Whose transfer function was chosen for it is told, and what it was taken for. */
+static void find_choice(render_job *job) {
+  const hl_scene_description *description = job->result.description;
+  bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));
+  if (!job->bare || job->values[RENDER_TF].given || render_look_recolors(job->values, true) || !wanted) return;
+  if (hl_volume_guess(description->volumes[0].volume, job->input, &job->result.taken_for, NULL) != HL_OK)
+    job->result.taken_for = NULL;
+}
+
 static int job_report(render_job *job) {
   host_clear_bar(&job->host);
   job->result.output = job->to_stdout ? "standard output" : job->output;
   job->result.seconds.total = clock_seconds() - job->started;
+  find_choice(job);
   if (job->values[RENDER_JSON].given) return render_print_json(&job->result);
   if (!job->host.quiet) render_print_summary(&job->result);
   return EXIT_CODE_OK;

@@ -129,6 +129,7 @@ typedef struct render_seconds {
 /* What is known when the picture is written. */
 typedef struct render_result {
   const char *input, *output;
+  const char *taken_for; /* the kind of data that the transfer function was chosen for; null: it was not */
   bool reference;
   const hl_scene_description *description;
   hl_render_statistics statistics;

@@ -197,12 +197,17 @@ static int replace(const hl_transfer_function *loaded, hl_transfer_function *fun
   return exit_code;
 }
 
-static int color_by_name(cli_host *host, const char *name, const double range[2], hl_transfer_function *function) {
+/* range: null: the values that are seen. */
+static int color_by_name(cli_host *host, const char *name, const hl_volume *volume, const double *range,
+                         hl_transfer_function *function) {
   hl_transfer_function colors = {0};
   hl_error error = {0};
+  double seen[2];
   if (!is_known(name, colormap_name))
     return refuse_name("colormap", name, "colormap", "colormaps", colormap_name);
-  hl_status status = hl_transfer_function_colormap(host->context, name, range[0], range[1], &colors, &error);
+  hl_status status = hl_transfer_function_seen_range(volume, function, seen, &error);
+  if (range == NULL) range = seen;
+  if (status == HL_OK) status = hl_transfer_function_colormap(host->context, name, range[0], range[1], &colors, &error);
   if (status != HL_OK) return host_fail(host, PHASE_CHANGE, status, &error);
   int exit_code = replace(&colors, function);
   hl_transfer_function_release(host->context, &colors);
@@ -229,15 +234,10 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
   if (exit_code != EXIT_CODE_OK) return exit_code;
   double visible[2];
   visible_range(volume->volume, function, visible);
-  if (values[RENDER_RANGE].given && !values[RENDER_THRESHOLD].given) {
-    spread(function, visible, values[RENDER_RANGE].number);
-    memcpy(visible, values[RENDER_RANGE].number, sizeof visible);
-  }
-  if (values[RENDER_THRESHOLD].given) {
+  if (values[RENDER_RANGE].given && !values[RENDER_THRESHOLD].given) spread(function, visible, values[RENDER_RANGE].number);
+  if (values[RENDER_THRESHOLD].given)
     exit_code = make_opaque_from(host, volume->volume, values[RENDER_THRESHOLD].number[0], function);
-    visible_range(volume->volume, function, visible);
-    if (values[RENDER_RANGE].given) memcpy(visible, values[RENDER_RANGE].number, sizeof visible);
-  }
-  if (exit_code == EXIT_CODE_OK && colormap != NULL) exit_code = color_by_name(host, colormap, visible, function);
+  if (exit_code == EXIT_CODE_OK && colormap != NULL)
+    exit_code = color_by_name(host, colormap, volume->volume, values[RENDER_RANGE].given ? values[RENDER_RANGE].number : NULL, function);
   return exit_code;
 }

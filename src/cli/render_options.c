@@ -151,7 +151,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
         {.name = "colormap",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]MAP",
-         .help = "colours over the range that is not transparent,\nsee 'halflight help colormaps'; NAME as for --tf",
+         .help = "colours over the values that are seen,\nsee 'halflight help colormaps'; NAME as for --tf",
          .repeatable = true},
     [RENDER_RANGE] = {.name = "range",
                       .kind = OPTION_NUMBERS,

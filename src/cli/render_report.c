@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "json_writer.h"
 #include "render.h"
@@ -81,6 +82,7 @@ int render_print_json(const render_result *result) {
   json_text(&json, "version", hl_version());
   json_text(&json, "input", result->input);
   json_text(&json, "output", result->output);
+  if (result->taken_for != NULL) json_text(&json, "taken_for", result->taken_for);
   json_integer(&json, "width", (uint64_t)description->width);
   json_integer(&json, "height", (uint64_t)description->height);
   json_text(&json, "method", result->reference ? "reference" : "sheets");
@@ -108,4 +110,7 @@ void render_print_summary(const render_result *result) {
   say("%s: %dx%d, %s, %s, %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)",
       result->output, description->width, description->height, light, sheets, seconds->total, seconds->load, seconds->prepare,
       seconds->render, seconds->write);
+  if (result->taken_for != NULL && isatty(STDERR_FILENO))
+    say("%s: taken for %s; the transfer function was chosen from this file alone: --print-scene writes it down, for --tf",
+        result->input, result->taken_for);
 }

@@ -4,7 +4,7 @@
  * background is what the grid's faces mostly have. From there, along the distance to the background, the
  * threshold of least cross entropy finds where things begin and that of greatest variance between classes
  * where they surely are; smoothness and the shape of the histogram tell simulations, media and scanned things
- * apart.
+ * apart; labels are found by scene/labels.c.
  */
 #include "scene/automatic.h"
 
@@ -13,11 +13,14 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "scene/labels.h"
 #include "scene/sample.h"
 
 #define BINS 32             /* of the histogram whose shape is looked at */
 #define ROUGH 0.65          /* between simulations and turbulence or noise */
 #define SMOOTH 0.18         /* smoother than any scanner's pictures */
+#define NOISY 1.2           /* rougher than a simulation's turbulence; white noise has 1.7 */
+#define TAIL 0.005          /* part of the voxels beyond a flow's ends */
 #define FLOOR 0.002         /* least mean of the background, as a part of top */
 
 typedef struct distances {
@@ -101,59 +104,151 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
   size_t beyond = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->faint; n--, beyond++)
     sum += (double)d->values[n - 1];
+  a->filled = (double)sure / (double)d->count;
   a->mean = beyond > 0 ? sum / (double)beyond : a->top;
   a->depth = (double)beyond;
 }
 
+/* Much of the border is not the background: the grid lies within its matter. */
+static bool fills_grid(const hl_sample *sample, double background, double range) {
+  size_t near = 0;
+  for (size_t n = 0; n < sample->border_count; n++) near += fabs((double)sample->border[n] - background) < 0.05 * range;
+  return sample->border_count > 0 && (double)near < 0.7 * (double)sample->border_count;
+}
+
+static bool is_floating(const hl_volume *volume) {
+  return volume->type == HL_VOXEL_F32 || volume->type == HL_VOXEL_F64;
+}
+
+/* What a volume's values are, relative as the sample's. */
+typedef struct spread {
+  double low, high;   /* hardly any voxel is beyond */
+  double zero;        /* the data value 0 */
+  bool fills, signs;  /* no air around; clearly on both sides of the data value 0 */
+} spread;
+
+static spread spread_of(const hl_sample *sample, double background) {
+  spread s = {.low = hl_quantile(sample->values, sample->count, 0.001),
+              .high = hl_quantile(sample->values, sample->count, 0.999),
+              .zero = -sample->low / sample->range};
+  if (s.low == s.high) s.low = (double)sample->values[0], s.high = (double)sample->values[sample->count - 1];
+  double above = s.high - s.zero, below = s.zero - s.low;
+  s.fills = fills_grid(sample, background, s.high - s.low);
+  s.signs = fmin(above, below) > 0.25 * fmax(above, below) && below > 0 && above > 0;
+  return s;
+}
+
+/* A scanner's values have noise and peaks; a flow's are smooth, or rough with one peak. distance has room for the sample. */
+static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode, float *distance) {
+  if (!s->fills || !is_floating(volume) || !is_continuous(sample)) return false;
+  double roughness = hl_roughness(volume, sample, mode, 0);
+  if (roughness < ROUGH) return true;
+  distances d = {distance, sample->count};
+  measure(sample->values, sample->count, mode, -1, distance);
+  bool one_peak = falls(&d, 0.02, fmax(mode - s->low, 0.03));
+  measure(sample->values, sample->count, mode, 1, distance);
+  return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03));
+}
+
+/* A good part of the things has the greatest value of all: the inside of a solid shape. */
+static bool is_filled_up(const distances *d, const hl_data_analysis *a) {
+  size_t things = 0, greatest = 0;
+  for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, things++)
+    greatest += (double)d->values[n - 1] > 0.999 * (double)d->values[d->count - 1];
+  return (double)greatest > 0.3 * (double)things;
+}
+
 static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, const distances *d,
                             const hl_data_analysis *a) {
-  double background = a->background;
-  double roughness = hl_roughness(volume, sample, background, a->faint);
+  double roughness = hl_roughness(volume, sample, a->background, a->faint);
   bool falling = falls(d, a->faint, a->top);
+  if (roughness < ROUGH && is_filled_up(d, a)) return HL_DATA_SURFACES;
   if (roughness < ROUGH) return falling || roughness < SMOOTH ? HL_DATA_FIELD : HL_DATA_SURFACES;
-  bool fog = exact_share(sample, background) > 0.4 && is_continuous(sample);
+  bool fog = a->zeroed > 0.4 && is_continuous(sample);
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *a,
+/* Lobes that thin out to both sides of the background; else the mode is a material, and air is low. Lobes about the data
+ * value 0 need not thin out. */
+static bool has_lobes(const hl_sample *sample, const spread *s, double background, float *distance) {
+  double above = s->high - background, below = background - s->low;
+  if (!(fmin(above, below) > 0.25 * fmax(above, below))) return false;
+  if (s->signs && fabs(background - s->zero) < 0.01 * (s->high - s->low)) return true;
+  distances d = {distance, sample->count};
+  measure(sample->values, sample->count, background, -1, distance);
+  bool thins = falls(&d, 0.02, below);
+  measure(sample->values, sample->count, background, 1, distance);
+  return thins && falls(&d, 0.02, above);
+}
+
+/* The background of data without a clear sign lies below or above all things. */
+static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
+  double above = s->high - a->background, below = a->background - s->low;
+  a->direction = above >= below ? 1 : -1;
+  if (lobes || !(fmin(above, below) > 0.25 * fmax(above, below))) return;
+  a->background = s->low;
+  a->direction = 1;
+}
+
+/* Distances to both sides. */
+static hl_status find_two_sided(const hl_sample *sample, distances *d, hl_data_analysis *a, hl_error *error) {
+  for (size_t n = 0; n < sample->count; n++) d->values[n] = (float)fabs((double)sample->values[n] - a->background);
+  if (!hl_sort(sample->context, d->values, d->count))
+    return hl_fail_memory(error, d->count * sizeof(float), "a volume's sample");
+  find_thresholds(d, NULL, 0, a);
+  return HL_OK;
+}
+
+static void find_middle(const hl_sample *sample, double mode, hl_data_analysis *a) {
+  a->middle = mode;
+  a->lower = fmax(mode - hl_quantile(sample->values, sample->count, TAIL), 0);
+  a->upper = fmax(hl_quantile(sample->values, sample->count, 1 - TAIL) - mode, 0);
+  size_t common = 0;
+  for (size_t n = 0; n < sample->count; n++) {
+    double value = (double)sample->values[n];
+    common += value > mode - 0.4 * a->lower && value < mode + 0.4 * a->upper;
+  }
+  a->common = (double)common / (double)sample->count;
+}
+
+/* memory: room for the sample and its border. */
+static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample, float *memory, hl_data_analysis *a,
                                 hl_error *error) {
-  double low = hl_quantile(sample->values, sample->count, 0.001),
-         high = hl_quantile(sample->values, sample->count, 0.999);
+  distances d = {memory, sample->count};
   bool bordered = sample->border_count > 0; /* else NaNs are the air, and the commonest value has to do */
   a->background =
       bordered ? hl_mode(sample->border, sample->border_count) : hl_mode(sample->values, sample->count);
-  if (low == high) low = (double)sample->values[0], high = (double)sample->values[sample->count - 1];
-  double below = a->background - low, above = high - a->background;
-  a->direction = above >= below ? 1 : -1;
-  bool two_sided = fmin(above, below) > 0.25 * fmax(above, below) && fmax(above, below) > 0;
-  size_t count = sample->count + sample->border_count;
-  float *memory = hl_allocate(volume->context, count, sizeof *memory);
-  if (memory == NULL) return hl_fail_memory(error, count * sizeof *memory, "a volume's sample");
-  distances d = {memory, sample->count};
-  if (two_sided) { /* lobes thin out to both sides; else the mode is a material, and air is low */
-    measure(sample->values, sample->count, a->background, -1, d.values);
-    bool lobe = falls(&d, 0.02, below);
-    measure(sample->values, sample->count, a->background, 1, d.values);
-    if (lobe && falls(&d, 0.02, above)) a->kind = HL_DATA_SIGNED;
-    else a->background = low, a->direction = 1, two_sided = false;
-  }
-  if (two_sided) {
-    for (size_t n = 0; n < sample->count; n++)
-      d.values[n] = (float)fabs((double)sample->values[n] - a->background);
-    if (!hl_sort(volume->context, d.values, d.count)) {
-      hl_release(volume->context, memory);
-      return hl_fail_memory(error, d.count * sizeof(float), "a volume's sample");
-    }
-    find_thresholds(&d, NULL, 0, a);
+  spread s = spread_of(sample, a->background);
+  double mode = hl_mode(sample->values, sample->count);
+  bool flow = is_flow(volume, sample, &s, mode, memory);
+  if (flow && s.signs) a->background = s.zero;
+  bool lobes = (flow && s.signs) || has_lobes(sample, &s, a->background, memory);
+  hl_status status = HL_OK;
+  choose_side(&s, lobes, a);
+  if (lobes) {
+    a->kind = HL_DATA_SIGNED;
+    status = find_two_sided(sample, &d, a, error);
   } else {
+    a->zeroed = exact_share(sample, a->background);
     measure(sample->values, sample->count, a->background, a->direction, d.values);
     measure(sample->border, sample->border_count, a->background, a->direction, memory + d.count);
     find_thresholds(&d, memory + d.count, sample->border_count, a);
     a->kind = kind_of(volume, sample, &d, a);
   }
+  if (flow && !s.signs) a->kind = HL_DATA_FLOW;
+  find_middle(sample, mode, a);
+  return status;
+}
+
+static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *a,
+                                hl_error *error) {
+  size_t count = sample->count + sample->border_count;
+  float *memory = hl_allocate(volume->context, count, sizeof *memory);
+  if (memory == NULL) return hl_fail_memory(error, count * sizeof *memory, "a volume's sample");
+  hl_status status = analyse_values(volume, sample, memory, a, error);
   hl_release(volume->context, memory);
   a->depth = cbrt(a->depth / (double)sample->count * (double)hl_volume_voxel_count(volume));
-  return HL_OK;
+  return status;
 }
 
 hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error) {
@@ -173,9 +268,10 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
   }
   status = analyse_sample(volume, &sample, analysis, error);
   analysis->background = sample.low + sample.range * analysis->background;
+  analysis->middle = sample.low + sample.range * analysis->middle;
   double *distance[] = {&analysis->faint, &analysis->solid, &analysis->dense, &analysis->top,
-                        &analysis->mean};
+                        &analysis->mean,  &analysis->lower, &analysis->upper};
   for (size_t n = 0; n < sizeof distance / sizeof *distance; n++) *distance[n] *= sample.range;
   hl_sample_release(&sample);
-  return status;
+  return status == HL_OK ? hl_data_find_labels(volume, analysis, error) : status;
 }

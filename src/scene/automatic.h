@@ -12,8 +12,12 @@ typedef enum hl_data_kind {
   HL_DATA_FIELD = 1,    /* a smooth quantity that falls off: densities of simulations */
   HL_DATA_SIGNED = 2,   /* the same to both sides of a background in the middle: wave functions */
   HL_DATA_MEDIUM = 3,   /* smoke and clouds */
-  HL_DATA_CONSTANT = 4  /* one value everywhere */
+  HL_DATA_CONSTANT = 4, /* one value everywhere */
+  HL_DATA_LABELS = 5,   /* few whole numbers, in blocks: names of regions, not amounts */
+  HL_DATA_FLOW = 6      /* a smooth quantity that fills its grid: turbulence, speed, temperature */
 } hl_data_kind;
+
+#define HL_MOST_LABELS 255 /* that are told apart */
 
 /* Data values, except distances, which are from the background in the direction of the things. */
 typedef struct hl_data_analysis {
@@ -27,13 +31,15 @@ typedef struct hl_data_analysis {
   double top;            /* distance that almost nothing exceeds */
   double mean;           /* mean distance of things beyond faint */
   double depth;          /* voxel edges across the things: cube root of their number */
+  double common;         /* part of the voxels within two fifths of the way from the middle to those, 0 to 1 */
+  double zeroed;         /* part of the voxels that have exactly the background's value, 0 to 1 */
+  double filled;         /* part of the voxels that surely are things, 0 to 1 */
+  double middle;         /* the commonest data value of all */
+  double lower, upper;   /* distances from the middle down and up that hardly any voxel exceeds */
+  double labels[HL_MOST_LABELS]; /* ascending data values, without the background */
+  size_t label_count;
 } hl_data_analysis;
 
 hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
-
-/* hl_transfer_function_automatic() from an analysis. */
-hl_status hl_transfer_function_from_analysis(hl_context *context, const hl_volume *volume,
-                                             const hl_data_analysis *analysis, hl_transfer_function *function,
-                                             hl_error *error);
 
 #endif

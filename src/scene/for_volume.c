@@ -4,6 +4,8 @@
 #include "core/error.h"
 #include "scene/automatic.h"
 #include "scene/check.h"
+#include "scene/exposure.h"
+#include "scene/looks.h"
 #include "scene/scene.h"
 #include "scene/upright.h"
 
@@ -11,6 +13,8 @@
 #define ELEVATION 20
 #define LIGHT_AZIMUTH -40 /* key light from the upper left, degrees from the line of sight */
 #define LIGHT_ELEVATION 45
+#define FILL_AZIMUTH 0     /* fill light from where the eye is: it sides with no key light that is asked for */
+#define FILL_ELEVATION 0
 #define SHEETS 540        /* across the grid's diagonal */
 
 void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
@@ -39,9 +43,26 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
   return status == HL_OK ? frame(description, asked ? &analysis : NULL, camera, error) : status;
 }
 
-static void choose_material(hl_data_kind kind, hl_scene_volume *volume) {
-  volume->shading = kind == HL_DATA_MEDIUM ? HL_SHADING_NONE : HL_SHADING_PHONG;
-  volume->material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
+/* The key light as strong as the look says, and a light without shadows from the eye. *count: 1 or 2. */
+static void choose_lights(const hl_look *look, const hl_camera *camera, hl_light lights[2], size_t *count) {
+  hl_scene_key_light(camera, &lights[0]);
+  lights[0].intensity = look->key;
+  *count = look->fill > 0 ? 2 : 1;
+  hl_light_defaults(&lights[1]);
+  hl_light_direction(camera, FILL_AZIMUTH, FILL_ELEVATION, lights[1].direction);
+  lights[1].intensity = look->fill;
+  lights[1].shadows = HL_SHADOWS_OFF;
+}
+
+/* All lights by one factor, so that the picture is as bright as it can be without being clipped. */
+static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, hl_light lights[2],
+                        hl_scene_description *description, hl_error *error) {
+  double factor = 1, empty = analysis->kind == HL_DATA_FLOW ? analysis->middle : analysis->background;
+  if (!(look->left > 0)) return HL_OK;
+  hl_status status = hl_scene_exposure(description, empty, look->left, &factor, error);
+  for (size_t l = 0; l < description->light_count; l++) lights[l].intensity *= factor;
+  for (int channel = 0; channel < 3; channel++) description->ambient[channel] *= factor;
+  return status;
 }
 
 /* About as many sheets across any grid: coarse ones show rings on smooth skins where sheets are a voxel
@@ -68,11 +89,12 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   hl_scene_volume_defaults(&scene_volume);
   scene_volume.volume = volume;
   scene_volume.file = file;
-  choose_material(analysis.kind, &scene_volume);
-  status =
-      hl_transfer_function_from_analysis(context, volume, &analysis, &scene_volume.transfer_function, error);
+  const hl_look *look = hl_look_for(volume, file, &analysis);
+  scene_volume.shading = look->shading;
+  scene_volume.material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
+  status = hl_look_write(look, context, volume, &analysis, &scene_volume.transfer_function, error);
   if (status != HL_OK) return status;
-  hl_light light;
+  hl_light lights[2];
   hl_scene_description description;
   hl_scene_description_defaults(&description);
   description.volumes = &scene_volume;
@@ -80,15 +102,15 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   status = hl_scene_volume_check(&scene_volume, 0, error);
   if (status == HL_OK) status = frame(&description, &analysis, &description.camera, error);
   if (status == HL_OK) {
-    hl_scene_key_light(&description.camera, &light);
-    if (scene_volume.shading == HL_SHADING_NONE) light.intensity = 1.25; /* a medium loses nothing to its slope */
-    description.lights = &light;
-    description.light_count = 1;
+    choose_lights(look, &description.camera, lights, &description.light_count);
+    description.lights = lights;
     memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
-    for (int channel = 0; channel < 3; channel++) description.ambient[channel] = 0.2;
+    for (int channel = 0; channel < 3; channel++) description.ambient[channel] = look->ambient;
+    description.render.kernel = look->kernel;
     description.render.sheet_spacing = enough_sheets(volume);
-    status = hl_scene_create(context, &description, scene, error);
+    status = expose(look, &analysis, lights, &description, error);
   }
+  if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_transfer_function_release(context, &scene_volume.transfer_function);
   return status;
 }

@@ -7,8 +7,8 @@
 typedef struct hl_function_writer {
   const hl_data_analysis *analysis;
   double direction;               /* of rising distance: +1 or -1 in data values */
-  hl_opacity_point opacity[80];
-  hl_color_point color[80];
+  hl_opacity_point opacity[4 * HL_MOST_LABELS];
+  hl_color_point color[4 * HL_MOST_LABELS];
   size_t opacity_count, color_count;
 } hl_function_writer;
 
@@ -29,8 +29,15 @@ double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth);
 hl_status hl_finish_function(hl_function_writer *w, hl_context *context, const hl_volume *volume,
                              hl_transfer_function *function, hl_error *error);
 
-/* What suits the kind of data, and what suits smoke whatever the data are (automatic.c). */
-void hl_write_for_kind(hl_function_writer *w);
+/* One for each look (automatic.c); smoke suits any data. */
+void hl_write_matter(hl_function_writer *w);
+void hl_write_body(hl_function_writer *w);
+void hl_write_brain(hl_function_writer *w);
+void hl_write_field(hl_function_writer *w);
+void hl_write_flow(hl_function_writer *w);
+void hl_write_signed(hl_function_writer *w);
 void hl_write_medium(hl_function_writer *w);
+void hl_write_labels(hl_function_writer *w);
+void hl_write_constant(hl_function_writer *w);
 
 #endif

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "scene/colormap.h"
 #include "scene/function_writer.h"
+#include "scene/looks.h"
 #include "scene/nearest.h"
 #include "scene/scene.h"
 
@@ -29,10 +30,6 @@ static const hounsfield_row soft_tissue[] = {
     {60, 0.07, {0.78, 0.30, 0.24}},  {150, 0.12, {0.82, 0.36, 0.26}},  {250, 0.35, {0.92, 0.76, 0.60}},
     {500, 0.90, {0.97, 0.92, 0.84}}, {2000, 0.97, {1.00, 0.98, 0.95}}};
 
-static bool is_hounsfield(const hl_volume *volume) {
-  return volume->minimum <= -500 && volume->minimum >= -10000 && volume->maximum >= 300;
-}
-
 /* The distance from the background of a value given in Hounsfield units. */
 static double distance_of(const hl_function_writer *w, bool hounsfield, double value) {
   const hl_data_analysis *a = w->analysis;
@@ -49,7 +46,7 @@ static double distance_of(const hl_function_writer *w, bool hounsfield, double v
 
 static void write_rows(hl_function_writer *w, const hl_volume *volume, const hounsfield_row *rows,
                        size_t count) {
-  bool hounsfield = is_hounsfield(volume);
+  bool hounsfield = hl_is_hounsfield(volume);
   if (hounsfield) w->direction = 1;
   for (size_t r = 0; r < count; r++) {
     double distance = distance_of(w, hounsfield, rows[r].hounsfield), color[3];
@@ -98,7 +95,7 @@ static void write_electron_density(hl_function_writer *w, const hl_volume *volum
   (void)volume;
   const hl_data_analysis *a = w->analysis;
   if (a->kind == HL_DATA_SIGNED) {
-    hl_write_for_kind(w);
+    hl_write_signed(w);
     return;
   }
   double top = fmax(a->top, 1.001 * a->solid), core = a->solid + 0.4 * (top - a->solid);
@@ -161,7 +158,7 @@ hl_status hl_transfer_function_preset(hl_context *context, const char *name, con
     hl_status status = hl_data_analyse(volume, &analysis, error);
     if (status != HL_OK) return status;
     hl_begin_function(&w, &analysis);
-    if (analysis.kind == HL_DATA_CONSTANT) hl_write_for_kind(&w);
+    if (analysis.kind == HL_DATA_CONSTANT) hl_write_constant(&w);
     else presets[p].write(&w, volume);
     return hl_finish_function(&w, context, volume, function, error);
   }

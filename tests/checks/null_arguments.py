@@ -29,6 +29,7 @@ hl_reference_render_layers layers
 hl_scene_from_json base_folder
 hl_scene_from_json name
 hl_scene_for_volume file
+hl_volume_guess file
 hl_volume_from_shapes name
 hl_volume_load_with options
 hl_volume_from_shapes options
@@ -44,7 +45,8 @@ VALUES = {
     "hl_error *": "&error", "float *": "floats", "float **": "&any", "double *": "doubles", "char **": "&any",
     "unsigned char **": "&any", "size_t *": "&count", "unsigned char *": "bytes", "uint8_t *": "bytes",
     "const char * text": "\"{}\"", "const char * channels": "\"RGB\"", "const char * path": "\"nothing.nrrd\"",
-    "const char * format_name": "\"png\"", "const char *": "\"name\"", "char *": "NULL",
+    "const char * format_name": "\"png\"", "const char *": "\"name\"", "const char **": "&any", "char *": "NULL",
+    "const hl_transfer_function *": "&function",
     "const hl_volume_description *": "&description", "const hl_scene_description *": "hl_scene_describe(scene)",
     "const hl_image_write_options *": "&write_options", "const hl_reference_options *": "&reference_options",
     "const hl_shapes_options *": "&shapes_options",
@@ -66,6 +68,7 @@ static hl_volume_description description;
 static hl_image_write_options write_options;
 static hl_reference_options reference_options;
 static hl_shapes_options shapes_options;
+static hl_transfer_function function;
 static void *any;
 static size_t count;
 static hl_error error;

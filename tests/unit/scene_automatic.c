@@ -74,7 +74,7 @@ static void does_not_depend_on_units(void **state) {
   static float values[N * N * N];
   make_ball(values, 0.15);
   hl_context *context = make_context();
-  const double units[][2] = {{1, 0}, {1000, -1024}, {1e-6, 3e-6}, {37, 1e4}, {-1, 0}, {-200, 700}};
+  const double units[][2] = {{1, 0}, {1000, -400}, {1e-6, 3e-6}, {37, 1e4}, {-1, 0}, {-200, 700}};
   hl_transfer_function first = {0};
   for (size_t u = 0; u < sizeof units / sizeof *units; u++) {
     hl_volume *volume = scaled_volume(context, values, units[u][0], units[u][1]);
