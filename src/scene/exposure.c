@@ -159,7 +159,8 @@ hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, dou
   hl_status status = e != NULL && brightness != NULL ? HL_OK : hl_fail_memory(error, sizeof *e, "an exposure");
   *factor = 1;
   size_t count = status == HL_OK && begin(scene, empty, left, e) ? look(e, brightness) : 0;
-  if (count > 0 && hl_sort(context, brightness, count))
+  if (count > 0 && !hl_sort(context, brightness, count)) status = hl_fail_memory(error, count * sizeof *brightness, "an exposure");
+  else if (count > 0)
     *factor = round(100 * fmin(fmax(TARGET / fmax(hl_quantile(brightness, count, BRIGHTEST), 1e-9), 0.5), 2)) / 100;
   hl_release(context, brightness);
   hl_release(context, e);
