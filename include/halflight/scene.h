@@ -64,8 +64,15 @@ typedef struct hl_light_emission {
   double up[3];                 /* not for rects; where it points along the light's normal, [0, 1, 0] in its place */
 } hl_light_emission;
 
+/* The axes that a light's places and directions are in. */
+typedef enum hl_light_frame {
+  HL_LIGHT_FRAME_WORLD = 0,
+  HL_LIGHT_FRAME_CAMERA = 1 /* right, up and towards the viewer, from the camera's target: the light goes with the camera */
+} hl_light_frame;
+
 typedef struct hl_light {
   hl_light_type type;
+  hl_light_frame frame;         /* of all that follows, texture and emission included */
   double direction[3];          /* directional, spot: the way the light travels */
   double angular_diameter_deg;  /* directional: > 0 is soft */
   double position[3];           /* point, spot, rect, disk (its centre) */
@@ -228,9 +235,53 @@ HL_API const hl_scene_description *hl_scene_describe(const hl_scene *scene);
 HL_API void hl_scene_retain(hl_scene *scene);
 HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
 
-/* Places the camera so that all visible volumes fill the picture. Angles as for --azimuth and
- * --elevation: azimuth 0 looks along the world's +y, positive turns the eye to the right;
- * elevation 90 looks straight down z. zoom 1 frames everything. camera->type and fovy_deg are kept. */
+/* ---- where the camera stands ---- */
+
+/* How a scene is looked at. */
+typedef struct hl_view {
+  double up[3];          /* unit: up in the picture, at elevation 0 and roll 0 */
+  double front[3];       /* unit, at a right angle to up: from the things to the eye at azimuth 0 and elevation 0 */
+  double azimuth_deg;    /* positive: the eye moves to its right, about up */
+  double elevation_deg;  /* -90 to 90; positive: the eye rises */
+  double roll_deg;       /* positive: the picture turns clockwise */
+} hl_view;
+
+/* Sides to look from. With a body's anatomy (hl_volume_info's space) they are the body's own: from the left one sees its
+ * left. Else left and right are the viewer's, who stands in front. */
+typedef enum hl_side {
+  HL_SIDE_AUTOMATIC = 0, /* the three-quarter view that shows most */
+  HL_SIDE_FRONT = 1,
+  HL_SIDE_BACK = 2,
+  HL_SIDE_LEFT = 3,
+  HL_SIDE_RIGHT = 4,
+  HL_SIDE_TOP = 5,
+  HL_SIDE_BOTTOM = 6,
+  HL_SIDE_ISO = 7        /* azimuth 45 and the elevation at which three edges of a cube look alike, 35.26 */
+} hl_side;
+
+/* The view from a side. up: of no set length; null: as the file's anatomy says, or else as the things seem to stand. Without
+ * anatomy the picture's right at the front is +x (where up is along x: +y), so that the front is at -y where z is up.
+ * The camera of a scene that has none is hl_camera_frame_view() of the automatic side. */
+HL_API HL_WARN_UNUSED hl_status hl_view_choose(const hl_scene_description *description, hl_side side, const double up[3],
+                                               hl_view *view, hl_error *error);
+
+/* The view that the description's camera has, with roll 0: up is its up vector, or an axis of the world that this was made
+ * level with. Fails where position and target are the same. */
+HL_API HL_WARN_UNUSED hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *view);
+
+/* Places the camera so that what is seen of all volumes fills the picture and is in its middle, with room for turning: at
+ * zoom 1 nothing leaves the picture however the camera turns about view->up (hl_camera_turn), and, as far as this view stays
+ * filled to four fifths, however it turns at all. camera->type and fovy_deg are kept. Fails where zoom is not from 1e-6 to 1e6, the
+ * view or the field of view is impossible, or there is no volume (HL_ERROR_ARGUMENT), and for lack of memory. */
+HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description *description, const hl_view *view,
+                                                     double zoom, hl_camera *camera, hl_error *error);
+
+/* Turns the camera about its target, at its distance. */
+HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *camera);
+
+/* Places the camera so that what is seen of all volumes fills the picture, tight for this direction alone: azimuth 0 looks
+ * along the world's +y, positive turns the eye to the right; elevation 90 looks straight down z. zoom 1 frames everything.
+ * camera->type and fovy_deg are kept. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg,
                                                 double elevation_deg, double zoom, hl_camera *camera);
 
@@ -243,6 +294,8 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *descri
  * becomes 0, 0, 0, which hl_scene_create() refuses; direction null: nothing is done. */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                                double direction[3]);
+/* The same for a light in HL_LIGHT_FRAME_CAMERA. */
+HL_API void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double direction[3]);
 
 /* Transfer functions made by the library own their points: free with hl_transfer_function_release(). */
 /* From the volume's histogram: separates air from things in CT, MR and simulations alike. */

@@ -29,6 +29,14 @@ typedef enum hl_voxel_type {
 typedef struct hl_volume hl_volume;
 
 /* How voxels lie in the caller's memory. */
+/* Which way the world's axes x, y, z point in a body, where the file says. */
+typedef enum hl_space {
+  HL_SPACE_UNKNOWN = 0,
+  HL_SPACE_RAS = 1, /* to its right, its front (anterior) and its head (superior): NIfTI */
+  HL_SPACE_LPS = 2, /* left, back (posterior), head: DICOM */
+  HL_SPACE_LAS = 3  /* left, front, head: left-handed */
+} hl_space;
+
 typedef struct hl_volume_description {
   size_t struct_size;        /* set by hl_volume_description_defaults() */
   size_t dimensions[3];      /* voxels along i, j, k; each at least 1 */
@@ -40,6 +48,7 @@ typedef struct hl_volume_description {
   const void *voxels;        /* voxel (0,0,0) */
   ptrdiff_t stride_bytes[3]; /* bytes from one voxel to the next along i, j, k; all 0: packed */
   int borrow;                /* non-zero: packed u8, u16 and f32 voxels are not copied and must outlive the volume */
+  hl_space space;            /* default unknown */
 } hl_volume_description;
 
 #define HL_HISTOGRAM_BINS 256
@@ -56,8 +65,10 @@ typedef struct hl_volume_info {
   double mean;                 /* over finite voxels */
   uint64_t nonfinite_count;    /* NaN and infinite voxels: transparent when rendered */
   uint64_t histogram[HL_HISTOGRAM_BINS]; /* equal bins over range, finite voxels */
+  hl_space space;
 } hl_volume_info;
 
+HL_API const char *hl_space_name(hl_space space); /* "RAS"; null where it is unknown */
 HL_API void hl_volume_description_defaults(hl_volume_description *description);
 
 /* Voxels are copied unless description->borrow. *volume is owned by the caller (release it). */

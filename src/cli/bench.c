@@ -163,7 +163,7 @@ static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   bench_result *result = job->result;
   bench_run *run = &result->run[setting];
   int exit_code = EXIT_CODE_OK;
-  hl_scene *scene = bench_scene_at(job->host, job->scene, job->bare, setting, (enum bench_move)result->move,
+  hl_scene *scene = bench_scene_at(job->host, job->scene, setting, (enum bench_move)result->move,
                                    (double)(frame + 1) / (result->frames + 1), &exit_code);
   if (scene == NULL) return exit_code;
   hl_error error = {0};

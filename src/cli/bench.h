@@ -59,7 +59,7 @@ typedef struct bench_result {
 } bench_result;
 
 /* The scene as a frame of one setting sees it; null after a printed error. at: 0 to 1, the place in the motion. */
-hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, bool bare, enum bench_setting setting, enum bench_move move,
+hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setting setting, enum bench_move move,
                          double at, int *exit_code);
 
 /* A scene without files: balls in a box. */

@@ -26,8 +26,11 @@ static void turn_camera(hl_camera *camera, const double axis[3], double angle_ra
   for (int i = 0; i < 3; i++) camera->position[i] += camera->target[i];
 }
 
-/* Lights turn about the camera's target. */
-static void turn_light(hl_light *light, const double target[3], const double axis[3], double angle_rad) {
+/* A light turns about the camera's target, and about its up: the second of its own axes where it goes with the camera. */
+static void turn_light(hl_light *light, const double target_in_world[3], const double axis_in_world[3], double angle_rad) {
+  static const double origin[3] = {0, 0, 0}, up[3] = {0, 1, 0};
+  const bool beside = light->frame == HL_LIGHT_FRAME_CAMERA;
+  const double *target = beside ? origin : target_in_world, *axis = beside ? up : axis_in_world;
   rotate(light->direction, axis, angle_rad);
   for (int i = 0; i < 3; i++) light->position[i] -= target[i];
   rotate(light->position, axis, angle_rad);
@@ -50,16 +53,13 @@ static void set_shadows(hl_scene_description *description, hl_light *lights, enu
     if (lights[i].shadows != HL_SHADOWS_OFF) lights[i].shadows = HL_SHADOWS_DEFAULT;
 }
 
-static void move_scene(hl_scene_description *description, hl_light *lights, bool bare, enum bench_move move, double at) {
+static void move_scene(hl_scene_description *description, hl_light *lights, enum bench_move move, double at) {
   hl_camera *camera = &description->camera;
   double axis[3], length = sqrt(camera->up[0] * camera->up[0] + camera->up[1] * camera->up[1] + camera->up[2] * camera->up[2]);
   for (int i = 0; i < 3; i++) axis[i] = camera->up[i] / length;
   if (move == MOVE_CAMERA) turn_camera(camera, axis, turn * at);
-  for (size_t i = 0; i < description->light_count; i++) {
-    /* the lights of a bare volume keep their place beside the camera */
-    if (move == MOVE_CAMERA && bare) turn_light(&lights[i], camera->target, axis, turn * at);
-    if (move == MOVE_LIGHT) turn_light(&lights[i], camera->target, axis, light_angle(at));
-  }
+  for (size_t i = 0; move == MOVE_LIGHT && i < description->light_count; i++)
+    turn_light(&lights[i], camera->target, axis, light_angle(at));
 }
 
 /* Opacities between three quarters and all of what they are. */
@@ -71,7 +71,7 @@ static hl_opacity_point *fade(const hl_transfer_function *function, double at) {
   return points;
 }
 
-hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, bool bare, enum bench_setting setting, enum bench_move move,
+hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setting setting, enum bench_move move,
                          double at, int *exit_code) {
   hl_scene_description description = *hl_scene_describe(scene);
   hl_light *lights = calloc(description.light_count + 1, sizeof *lights);
@@ -86,7 +86,7 @@ hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, bool bare, enum 
     description.lights = lights;
     description.volumes = volumes;
     set_shadows(&description, lights, setting);
-    move_scene(&description, lights, bare, move, at);
+    move_scene(&description, lights, move, at);
     if (move == MOVE_TF && description.volume_count > 0) {
       faded = fade(&volumes[0].transfer_function, at);
       if (faded != NULL) volumes[0].transfer_function.opacity = faded;

@@ -85,6 +85,7 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   json_open_array(&json, "direction");
   for (int row = 0; row < 3; row++) json_numbers(&json, NULL, info->direction[row], 3);
   json_close(&json);
+  json_text(&json, "space", hl_space_name(info->space));
   json_numbers(&json, "range", info->range, 2);
   json_number(&json, "mean", info->mean);
   json_integer(&json, "nonfinite_count", info->nonfinite_count);
@@ -129,6 +130,7 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
   for (int axis = 0; axis < 3; axis++)
     printf("  %s      %c: %.9g, %.9g, %.9g\n", axis == 0 ? "axes  " : "      ", "ijk"[axis], d[0][axis],
            d[1][axis], d[2][axis]);
+  if (info->space != HL_SPACE_UNKNOWN) printf("  space       %s\n", hl_space_name(info->space));
   printf("  range       %.9g to %.9g, mean %.9g\n", info->range[0], info->range[1], info->mean);
   if (info->nonfinite_count > 0)
     printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);

@@ -214,7 +214,9 @@ static int parse_option(const cli_command *command, int argument_count, char **a
     return parse_value(option, "", value);
   }
   if (attached == NULL) {
-    bool missing = *index + 1 >= argument_count || looks_like_option(arguments[*index + 1]);
+    cli_value chosen = {0}; /* "-y" may be one of the choices */
+    bool missing = *index + 1 >= argument_count || (looks_like_option(arguments[*index + 1]) &&
+                                                    !parse_choice(option, arguments[*index + 1], &chosen));
     if (missing) {
       char choices[200] = "";
       if (option->argument == NULL) list_choices(option, ", ", choices, sizeof choices);

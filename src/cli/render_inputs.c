@@ -63,10 +63,11 @@ static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene 
   }
   description.volumes = volumes;
   description.volume_count = count;
-  if (hl_camera_fit(&description, 1, &description.camera) != HL_OK)
-    return fail(EXIT_CODE_INPUT, "the volumes cannot be framed together: their places in the world are too far apart");
+  hl_view view;
   hl_error error = {0};
-  hl_status status = hl_scene_create(host->context, &description, scene, &error);
+  hl_status status = hl_view_choose(&description, HL_SIDE_AUTOMATIC, NULL, &view, &error);
+  if (status == HL_OK) status = hl_camera_frame_view(&description, &view, 1, &description.camera, &error);
+  if (status == HL_OK) status = hl_scene_create(host->context, &description, scene, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 

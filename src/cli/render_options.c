@@ -9,6 +9,11 @@ static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
 static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {NULL, 0}};
 static const cli_choice magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
 static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
+static const cli_choice sides[] = {{"front", HL_SIDE_FRONT}, {"back", HL_SIDE_BACK},     {"left", HL_SIDE_LEFT}, {"right", HL_SIDE_RIGHT},
+                                   {"top", HL_SIDE_TOP},     {"bottom", HL_SIDE_BOTTOM}, {"iso", HL_SIDE_ISO},   {NULL, 0}};
+/* The value is 2 axis + sign. */
+static const cli_choice axes[] = {{"+x", 0}, {"-x", 1}, {"+y", 2}, {"-y", 3}, {"+z", 4}, {"-z", 5},
+                                  {"x", 0},  {"y", 2},  {"z", 4},  {NULL, 0}};
 static const cli_choice shadings[] = {{"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {"flat", HL_SHADING_FLAT}, {NULL, 0}};
 static const cli_choice shadow_kinds[] = {
     {"off", HL_SHADOWS_OFF}, {"hard", HL_SHADOWS_HARD}, {"soft", HL_SHADOWS_SOFT}, {NULL, 0}};
@@ -78,25 +83,46 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                        .kind = OPTION_SWITCH,
                        .help = "each light, its shadow, ambient, depth, normals:\nchannels of an .exr, files beside an .npy"},
 
+    [RENDER_VIEW] = {.name = "view",
+                     .kind = OPTION_CHOICE,
+                     .choices = sides,
+                     .argument = "SIDE",
+                     .group = "Camera",
+                     .help = "front, back, left, right, top, bottom or iso: of\nthe body where the file knows it; frames anew"},
+    [RENDER_UP] = {.name = "up",
+                   .kind = OPTION_NUMBERS,
+                   .argument = "AXIS|X,Y,Z",
+                   .help = "which way is up: an axis, as +z or -y, or a vector;\nframes anew",
+                   .choices = axes,
+                   .count = 3,
+                   .separator = ',',
+                   .low = -INFINITY,
+                   .high = INFINITY},
     [RENDER_AZIMUTH] = {.name = "azimuth",
                         .kind = OPTION_NUMBERS,
                         .argument = "DEG",
-                        .group = "Camera (frames all volumes anew)",
-                        .help = "0 looks along +y; positive: the eye moves right",
+                        .help = "turned about up; 0 is from the front (along +y\nwhere z is up), positive: the eye moves right",
                         .count = 1,
                         .low = -360,
                         .high = 360},
     [RENDER_ELEVATION] = {.name = "elevation",
                           .kind = OPTION_NUMBERS,
                           .argument = "DEG",
-                          .help = "90 looks straight down z",
+                          .help = "90 looks straight down",
                           .count = 1,
                           .low = -90,
                           .high = 90},
+    [RENDER_ROLL] = {.name = "roll",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "DEG",
+                     .help = "positive: the picture turns clockwise",
+                     .count = 1,
+                     .low = -360,
+                     .high = 360},
     [RENDER_ZOOM] = {.name = "zoom",
                      .kind = OPTION_NUMBERS,
                      .argument = "FACTOR",
-                     .help = "1 shows everything",
+                     .help = "1 shows everything; frames anew",
                      .count = 1,
                      .low = 0.001,
                      .high = 1000},

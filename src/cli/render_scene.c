@@ -35,26 +35,6 @@ static double distance(const double a[3], const double b[3]) {
   return sqrt(dot(difference, difference));
 }
 
-/* Inverse of hl_camera_frame: the eye stands at target + d (sin az cos el, -cos az cos el, sin el), and
- * its up vector is the derivative of that by the elevation. Where the view is vertical, up tells. */
-static void camera_angles(const hl_camera *camera, double *azimuth_deg, double *elevation_deg) {
-  double eye[3];
-  subtract(camera->position, camera->target, eye);
-  double flat = hypot(eye[0], eye[1]);
-  *elevation_deg = atan2(eye[2], flat) / degree;
-  double tilt = eye[0] * camera->up[1] - eye[1] * camera->up[0];        /* of right against the horizon */
-  if (fabs(tilt) > 1e-6 * distance(camera->position, camera->target)) { /* up is another axis: begin anew */
-    *azimuth_deg = 30;
-    *elevation_deg = 20;
-    return;
-  }
-  if (flat > 1e-9 * fabs(eye[2]))
-    *azimuth_deg = atan2(eye[0], -eye[1]) / degree;
-  else
-    *azimuth_deg =
-        (eye[2] > 0 ? atan2(-camera->up[0], camera->up[1]) : atan2(camera->up[0], -camera->up[1])) / degree;
-}
-
 /* The same height of the world is seen at the target before and after the change of projection. */
 static void change_projection(const cli_value *values, hl_camera *camera) {
   double away = distance(camera->position, camera->target);
@@ -72,6 +52,34 @@ static void change_projection(const cli_value *values, hl_camera *camera) {
   camera->fovy_deg = values[RENDER_FOVY].number[0];
 }
 
+/* The scene is looked at as its own camera does, a bare volume as is best, unless --view or --up say how. */
+static int choose_view(const scene_change *change, hl_view *view) {
+  const cli_value *values = change->values, *up = &values[RENDER_UP];
+  hl_error error = {0};
+  if (!change->bare && !up->given && !values[RENDER_VIEW].given) {
+    if (hl_view_of_camera(&change->description, view) == HL_OK) return EXIT_CODE_OK;
+    return fail(EXIT_CODE_USAGE, "the scene's camera looks nowhere: mend its position, target or up");
+  }
+  double vector[3];
+  for (int axis = 0; axis < 3; axis++)
+    vector[axis] = !up->chosen ? up->number[axis] : up->choice / 2 != axis ? 0 : up->choice % 2 ? -1 : 1;
+  hl_side side = values[RENDER_VIEW].given ? (hl_side)values[RENDER_VIEW].choice : HL_SIDE_AUTOMATIC;
+  if (up->given && vector[0] == 0 && vector[1] == 0 && vector[2] == 0)
+    return fail(EXIT_CODE_USAGE, "--up: '%s' has no direction: give an axis, as +z, or a vector that is not 0", up->text);
+  hl_status status = hl_view_choose(&change->description, side, up->given ? vector : NULL, view, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(change->host, PHASE_CHANGE, status, &error);
+}
+
+/* Angles that are given; false if all are what they were. */
+static bool turn_view(const cli_value *values, hl_view *view) {
+  const hl_view before = *view;
+  if (values[RENDER_AZIMUTH].given) view->azimuth_deg = values[RENDER_AZIMUTH].number[0];
+  if (values[RENDER_ELEVATION].given) view->elevation_deg = values[RENDER_ELEVATION].number[0];
+  if (values[RENDER_ROLL].given) view->roll_deg = values[RENDER_ROLL].number[0];
+  return view->azimuth_deg != before.azimuth_deg || view->elevation_deg != before.elevation_deg || view->roll_deg != before.roll_deg;
+}
+
+/* A camera that is framed anew is framed before it is turned: frames of a turn have one target and one distance. */
 static int change_camera(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
@@ -79,50 +87,23 @@ static int change_camera(scene_change *change) {
     description->width = (int)values[RENDER_SIZE].number[0];
     description->height = (int)values[RENDER_SIZE].number[1];
   }
-  double azimuth_deg, elevation_deg;
-  camera_angles(&description->camera, &azimuth_deg, &elevation_deg);
   change_projection(values, &description->camera);
-  bool turned = values[RENDER_AZIMUTH].given || values[RENDER_ELEVATION].given;
+  bool turned = values[RENDER_AZIMUTH].given || values[RENDER_ELEVATION].given || values[RENDER_ROLL].given;
   bool reshaped = values[RENDER_SIZE].given || values[RENDER_FOVY].given || values[RENDER_ORTHO].given;
-  if (!turned && !values[RENDER_ZOOM].given && !(change->bare && reshaped)) return EXIT_CODE_OK;
-  if (values[RENDER_AZIMUTH].given) azimuth_deg = values[RENDER_AZIMUTH].number[0];
-  if (values[RENDER_ELEVATION].given) elevation_deg = values[RENDER_ELEVATION].number[0];
+  bool framed = values[RENDER_ZOOM].given || values[RENDER_VIEW].given || values[RENDER_UP].given ||
+                (change->bare && (reshaped || change->volumes != NULL));
+  if (!turned && !framed) return EXIT_CODE_OK;
+  hl_view view;
+  int exit_code = choose_view(change, &view);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
   double zoom = values[RENDER_ZOOM].given ? values[RENDER_ZOOM].number[0] : 1;
-  hl_status status =
-      turned ? hl_camera_frame(description, azimuth_deg, elevation_deg, zoom, &description->camera)
-             : hl_camera_fit(description, zoom, &description->camera);
+  hl_error error = {0};
+  hl_status status = framed ? hl_camera_frame_view(description, &view, zoom, &description->camera, &error) : HL_OK;
+  if (status == HL_ERROR_MEMORY) return host_fail(change->host, PHASE_CHANGE, status, &error);
+  if (status == HL_OK && turn_view(values, &view)) status = hl_camera_turn(&view, &description->camera);
   if (status == HL_OK) return EXIT_CODE_OK;
   return fail(EXIT_CODE_USAGE,
-              "--azimuth, --elevation, --zoom: no visible volume to frame: place the camera in the scene");
-}
-
-/* Right, up and forward of the camera: an orthonormal basis, rows of `basis`. */
-static void camera_basis(const hl_camera *camera, double basis[3][3]) {
-  double *right = basis[0], *up = basis[1], *forward = basis[2];
-  subtract(camera->target, camera->position, forward);
-  double length = sqrt(dot(forward, forward));
-  for (int i = 0; i < 3; i++) forward[i] /= length;
-  for (int i = 0; i < 3; i++)
-    right[i] =
-        forward[(i + 1) % 3] * camera->up[(i + 2) % 3] - forward[(i + 2) % 3] * camera->up[(i + 1) % 3];
-  length = sqrt(dot(right, right));
-  for (int i = 0; i < 3; i++) right[i] /= length;
-  for (int i = 0; i < 3; i++)
-    up[i] = right[(i + 1) % 3] * forward[(i + 2) % 3] - right[(i + 2) % 3] * forward[(i + 1) % 3];
-}
-
-/* The lights of a bare volume keep their place beside the camera. */
-static void turn_lights(hl_light *lights, size_t count, const hl_camera *before, const hl_camera *after) {
-  double from[3][3], to[3][3];
-  camera_basis(before, from);
-  camera_basis(after, to);
-  for (size_t n = 0; n < count; n++) {
-    if (lights[n].type != HL_LIGHT_DIRECTIONAL) continue;
-    double direction[3] = {0, 0, 0};
-    for (int axis = 0; axis < 3; axis++)
-      for (int i = 0; i < 3; i++) direction[i] += dot(lights[n].direction, from[axis]) * to[axis][i];
-    memcpy(lights[n].direction, direction, sizeof direction);
-  }
+              "--view, --up, --azimuth, --elevation, --roll, --zoom: no visible volume to frame: place the camera in the scene");
 }
 
 static const char *light_type_name(hl_light_type type) {
@@ -143,11 +124,13 @@ static int change_first_light(scene_change *change) {
   if (values[RENDER_LIGHT].given) {
     if (change->description.light_count == 0) {
       hl_light_defaults(light);
+      light->frame = HL_LIGHT_FRAME_CAMERA;
       change->description.light_count = 1;
     }
     light->type = HL_LIGHT_DIRECTIONAL;
-    hl_light_direction(&change->description.camera, values[RENDER_LIGHT].number[0],
-                       values[RENDER_LIGHT].number[1], light->direction);
+    const double *angles = values[RENDER_LIGHT].number;
+    if (light->frame == HL_LIGHT_FRAME_CAMERA) hl_light_direction_beside(angles[0], angles[1], light->direction);
+    else hl_light_direction(&change->description.camera, angles[0], angles[1], light->direction);
   }
   if (!values[RENDER_LIGHT_SIZE].given) return EXIT_CODE_OK;
   if (change->description.light_count == 0)
@@ -170,15 +153,13 @@ static void change_shadows(scene_change *change) {
     if (change->lights[i].shadows != HL_SHADOWS_OFF) change->lights[i].shadows = HL_SHADOWS_DEFAULT;
 }
 
-static int change_lights(scene_change *change, const hl_camera *camera_before) {
+static int change_lights(scene_change *change) {
   hl_scene_description *description = &change->description;
   change->lights = calloc(description->light_count + 1, sizeof *change->lights);
   if (change->lights == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for the scene's lights");
   if (description->light_count > 0)
     memcpy(change->lights, description->lights, description->light_count * sizeof *change->lights);
   description->lights = change->lights;
-  if (change->bare && memcmp(camera_before, &description->camera, sizeof *camera_before) != 0)
-    turn_lights(change->lights, description->light_count, camera_before, &description->camera);
   change_shadows(change);
   return change_first_light(change);
 }
@@ -269,9 +250,9 @@ static void change_release(scene_change *change) {
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
   const hl_scene_description *before = hl_scene_describe(*scene);
   scene_change change = {.host = host, .values = values, .bare = bare, .description = *before};
-  int exit_code = change_camera(&change);
-  if (exit_code == EXIT_CODE_OK) exit_code = change_lights(&change, &before->camera);
-  if (exit_code == EXIT_CODE_OK) exit_code = change_volumes(&change);
+  int exit_code = change_volumes(&change); /* first: what is seen of them is framed */
+  if (exit_code == EXIT_CODE_OK) exit_code = change_camera(&change);
+  if (exit_code == EXIT_CODE_OK) exit_code = change_lights(&change);
   if (exit_code == EXIT_CODE_OK) {
     render_change_look(values, bare, &change.description);
     change_settings(values, &change.description);

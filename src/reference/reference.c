@@ -296,7 +296,7 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   hl_pool *pool = NULL;
   status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  reference all = {.context = context, .pool = pool, .scene = &scene->description, .all_shadows = shadows_wanted(layers)};
+  reference all = {.context = context, .pool = pool, .scene = &scene->placed, .all_shadows = shadows_wanted(layers)};
   status = prepare(&all, &chosen, pool, error);
   if (status == HL_OK) status = render(&all, pool, pixels, row_stride, layers, error);
   release(&all);

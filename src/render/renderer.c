@@ -506,7 +506,7 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   if (status != HL_OK) return status;
   hl_render_statistics counted = {.struct_size = sizeof counted};
   frame_work work = {0};
-  status = render_frame(renderer, hl_scene_describe(scene), layers, &work, pixels, row_stride, &counted, error);
+  status = render_frame(renderer, &scene->placed, layers, &work, pixels, row_stride, &counted, error);
   release_work(renderer, &work);
   hl_reserve_end_frame(&renderer->reserve);
   if (status == HL_OK && statistics != NULL) *statistics = counted;

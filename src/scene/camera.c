@@ -1,10 +1,11 @@
-/* scene/camera.c - the camera's axes, a camera that frames what can be seen, and lights placed as seen by it. */
+/* scene/camera.c - the camera's axes, views and the camera turned to them, and lights placed as seen by it. */
 #include <string.h>
 
-#include "scene/extent.h"
-#include "scene/upright.h"
+#include "scene/view.h"
 
-#define FILLED 0.92 /* of the picture's half width or height */
+#define STEEP 89.5       /* degrees: from here on the view's up is too near the line of sight to be the camera's */
+#define LEVEL 1e-6       /* sine of what a horizon may be out by */
+#define ANGLE_STEPS 1e9  /* to a degree: what a camera's places, rounded, say of its angles */
 
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward) {
   vec3 sight = vec3_subtract(vec3_of(camera->target), vec3_of(camera->position));
@@ -21,95 +22,96 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
   return useful;
 }
 
+void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double direction[3]) {
+  if (direction == NULL) return;
+  double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
+  direction[0] = -cos(elevation) * sin(azimuth);
+  direction[1] = -sin(elevation);
+  direction[2] = -cos(elevation) * cos(azimuth);
+}
+
 void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                         double direction[3]) {
   if (direction == NULL) return;
   for (int a = 0; a < 3; a++) direction[a] = 0;
   if (camera == NULL) return;
   vec3 right, up, forward;
+  double beside[3];
   hl_camera_basis(camera, &right, &up, &forward);
-  double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
-  vec3 to_light = vec3_scale(forward, -cos(elevation) * cos(azimuth));
-  to_light = vec3_add(to_light, vec3_scale(right, cos(elevation) * sin(azimuth)));
-  to_light = vec3_add(to_light, vec3_scale(up, sin(elevation)));
-  direction[0] = -to_light.x;
-  direction[1] = -to_light.y;
-  direction[2] = -to_light.z;
+  hl_light_direction_beside(azimuth_deg, elevation_deg, beside);
+  vec3 way = vec3_scale(forward, -beside[2]);
+  way = vec3_add(way, vec3_scale(right, beside[0]));
+  way = vec3_add(way, vec3_scale(up, beside[1]));
+  memcpy(direction, &way, sizeof way);
 }
 
-/* Derived: the plane x = ex + tx (z - ez) and its three mirrors hold every point, so ex - tx ez >= l and -ex - tx ez >= r,
- * the bounds on the left and right; together ez <= -(l + r) / (2 tx), with ex = (l - r) / 2. */
-static void place_camera(const extent *e, double aspect, double zoom, hl_camera *camera) {
-  const double *bound = e->bound;
-  double x = (bound[EXTENT_LEFT] - bound[EXTENT_RIGHT]) / 2, y = (bound[EXTENT_BOTTOM] - bound[EXTENT_TOP]) / 2;
-  double near = -bound[EXTENT_NEAR], far = bound[EXTENT_FAR], middle = (near + far) / 2, distance;
-  double half_width = (bound[EXTENT_LEFT] + bound[EXTENT_RIGHT]) / 2, half_height = (bound[EXTENT_BOTTOM] + bound[EXTENT_TOP]) / 2;
-  if (camera->type == HL_CAMERA_ORTHOGRAPHIC) {
-    double half = fmax(half_height, half_width / aspect);
-    camera->height = 2 * half / FILLED / zoom;
-    distance = (far - near) / 2 + 2 * fmax(half, half * aspect);
-  } else {
-    double eye = fmin(-half_width / e->tangent_x, -half_height / e->tangent_y);
-    distance = fmax(middle - eye, 1e-6 * (far - near)) / zoom;
-  }
-  vec3 target =
-      vec3_add(vec3_add(vec3_scale(e->right, x), vec3_scale(e->up, y)), vec3_scale(e->forward, middle));
-  vec3 position = vec3_subtract(target, vec3_scale(e->forward, distance));
+/* Right of the view's front, for who looks at it. */
+static vec3 right_of_front(const hl_view *view) { return vec3_cross(vec3_of(view->up), vec3_of(view->front)); }
+
+/* At elevation 90 the picture's up is where forward pointed on the horizon, so that up never jumps. */
+void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward) {
+  double azimuth = view->azimuth_deg * HL_PI / 180, elevation = view->elevation_deg * HL_PI / 180,
+         roll = view->roll_deg * HL_PI / 180;
+  vec3 top = vec3_of(view->up), aside = right_of_front(view), ahead = vec3_scale(vec3_of(view->front), -1);
+  vec3 horizon = vec3_add(vec3_scale(ahead, cos(azimuth)), vec3_scale(aside, -sin(azimuth)));
+  vec3 level = vec3_add(vec3_scale(aside, cos(azimuth)), vec3_scale(ahead, sin(azimuth)));
+  vec3 upward = vec3_add(vec3_scale(horizon, sin(elevation)), vec3_scale(top, cos(elevation)));
+  *forward = vec3_add(vec3_scale(horizon, cos(elevation)), vec3_scale(top, -sin(elevation)));
+  *right = vec3_add(vec3_scale(level, cos(roll)), vec3_scale(upward, sin(roll)));
+  *up = vec3_add(vec3_scale(upward, cos(roll)), vec3_scale(level, -sin(roll)));
+}
+
+void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera) {
+  vec3 right, up, forward;
+  hl_view_axes(view, &right, &up, &forward);
+  vec3 position = vec3_subtract(target, vec3_scale(forward, distance));
+  if (view->roll_deg == 0 && fabs(view->elevation_deg) < STEEP) up = vec3_of(view->up);
   memcpy(camera->target, &target, sizeof camera->target);
   memcpy(camera->position, &position, sizeof camera->position);
-  memcpy(camera->up, &e->up, sizeof camera->up);
+  memcpy(camera->up, &up, sizeof camera->up);
 }
 
-/* At azimuth 0 and elevation 0 the picture's axes are upright's; positive azimuth turns the eye to the right.
- * At elevation 90 the picture's up is where forward pointed on the horizon, so that up never jumps. */
-static void set_axes(extent *e, hl_upright upright, double azimuth_deg, double elevation_deg) {
-  double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
-  vec3 ahead = vec3_cross(upright.up, upright.right);
-  vec3 horizon = vec3_add(vec3_scale(ahead, cos(azimuth)), vec3_scale(upright.right, -sin(azimuth)));
-  e->right = vec3_add(vec3_scale(upright.right, cos(azimuth)), vec3_scale(ahead, sin(azimuth)));
-  e->forward = vec3_add(vec3_scale(horizon, cos(elevation)), vec3_scale(upright.up, -sin(elevation)));
-  e->up = vec3_add(vec3_scale(horizon, sin(elevation)), vec3_scale(upright.up, cos(elevation)));
+static double distance_of(const hl_camera *camera) {
+  return vec3_length(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
 }
 
-/* Fits the camera to what is visible along axes that are already in *e. */
-static hl_status fit(const hl_scene_description *description, double zoom, extent *e, hl_camera *camera) {
-  if (description->volume_count == 0 || description->width < 1 || description->height < 1 ||
-      !(zoom >= 1e-6 && zoom <= 1e6))
-    return HL_ERROR_ARGUMENT;
-  bool perspective = camera->type == HL_CAMERA_PERSPECTIVE;
-  if (perspective && !(camera->fovy_deg > 0 && camera->fovy_deg < 180)) return HL_ERROR_ARGUMENT;
-  for (size_t n = 0; n < description->volume_count; n++)
-    if (description->volumes[n].volume == NULL) return HL_ERROR_ARGUMENT;
-  double aspect = (double)description->width / description->height;
-  for (int b = 0; b < EXTENT_BOUNDS; b++) e->bound[b] = -INFINITY;
-  e->tangent_y = perspective ? FILLED * tan(camera->fovy_deg * HL_PI / 360) : 0;
-  e->tangent_x = e->tangent_y * aspect;
-  hl_extent_add_scene(e, description);
-  place_camera(e, aspect, zoom, camera);
+bool hl_view_is_possible(const hl_view *view) {
+  vec3 up = vec3_of(view->up), front = vec3_of(view->front);
+  return fabs(vec3_length(up) - 1) < LEVEL && fabs(vec3_length(front) - 1) < LEVEL && fabs(vec3_dot(up, front)) < LEVEL &&
+         isfinite(view->azimuth_deg) && isfinite(view->elevation_deg) && isfinite(view->roll_deg);
+}
+
+hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
+  if (view == NULL || camera == NULL || !hl_view_is_possible(view)) return HL_ERROR_ARGUMENT;
+  double distance = distance_of(camera);
+  if (!(distance > 0 && isfinite(distance))) return HL_ERROR_ARGUMENT;
+  hl_camera_place(view, vec3_of(camera->target), distance, camera);
   return HL_OK;
 }
 
-hl_status hl_camera_frame_upright(const hl_scene_description *description, hl_upright upright,
-                                  double azimuth_deg, double elevation_deg, double zoom, hl_camera *camera) {
-  extent e;
-  set_axes(&e, upright, azimuth_deg, elevation_deg);
-  return fit(description, zoom, &e, camera);
+/* Which way is up for a camera: along its up vector, unless that was made perpendicular to the sight from an axis of the world:
+ * of those with which the picture is level the first of z, y, x and their opposites. */
+static vec3 upright_of(const hl_camera *camera) {
+  static const vec3 axes[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
+  vec3 right, up, forward, given = vec3_normalise(vec3_of(camera->up));
+  if (!hl_camera_basis(camera, &right, &up, &forward)) given = up;
+  if (fabs(given.x) + fabs(given.y) + fabs(given.z) == 1 || fabs(vec3_dot(given, forward)) > LEVEL) return given;
+  for (int a = 0; a < 6; a++)
+    if (fabs(vec3_dot(axes[a], right)) < LEVEL && vec3_dot(axes[a], up) > 0.01) return axes[a];
+  return given;
 }
 
-hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg, double elevation_deg,
-                          double zoom, hl_camera *camera) {
-  if (description == NULL || camera == NULL || !isfinite(azimuth_deg) || !isfinite(elevation_deg))
-    return HL_ERROR_ARGUMENT;
-  hl_upright upright = {{0, 0, 1}, {1, 0, 0}, 0};
-  return hl_camera_frame_upright(description, upright, azimuth_deg, elevation_deg, zoom, camera);
-}
+static double rounded(double degrees) { return round(degrees * ANGLE_STEPS) / ANGLE_STEPS; }
 
-hl_status hl_camera_fit(const hl_scene_description *description, double zoom, hl_camera *camera) {
-  if (description == NULL || camera == NULL) return HL_ERROR_ARGUMENT;
-  double distance = vec3_length(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
-  if (!(distance > 0 && isfinite(distance) && isfinite(vec3_length(vec3_of(camera->up)))))
-    return HL_ERROR_ARGUMENT;
-  extent e;
-  hl_camera_basis(camera, &e.right, &e.up, &e.forward);
-  return fit(description, zoom, &e, camera);
+hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *view) {
+  if (description == NULL || view == NULL) return HL_ERROR_ARGUMENT;
+  const hl_camera *camera = &description->camera;
+  double distance = distance_of(camera);
+  if (!(distance > 0 && isfinite(distance) && isfinite(vec3_length(vec3_of(camera->up))))) return HL_ERROR_ARGUMENT;
+  hl_view_about(description, upright_of(camera), view);
+  vec3 eye = vec3_subtract(vec3_of(camera->position), vec3_of(camera->target));
+  double across = vec3_dot(eye, right_of_front(view)), near = vec3_dot(eye, vec3_of(view->front));
+  view->elevation_deg = rounded(atan2(vec3_dot(eye, vec3_of(view->up)), hypot(across, near)) * 180 / HL_PI);
+  view->azimuth_deg = rounded(atan2(across, near) * 180 / HL_PI);
+  return HL_OK;
 }

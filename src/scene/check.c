@@ -262,6 +262,7 @@ static hl_status check_light(const hl_light *light, size_t index, hl_error *erro
   snprintf(check.place, sizeof check.place, "/lights/%zu", index);
   hl_status status;
   if ((status = check_choice(&check, "type", (int)light->type, 0, HL_LIGHT_POLYGON)) != HL_OK) return status;
+  if ((status = check_choice(&check, "frame", (int)light->frame, 0, HL_LIGHT_FRAME_CAMERA)) != HL_OK) return status;
   if ((status = check_choice(&check, "falloff", (int)light->falloff, 0, HL_FALLOFF_INVERSE_SQUARE)) != HL_OK)
     return status;
   if ((status = check_choice(&check, "shadows", (int)light->shadows, 0, HL_SHADOWS_SOFT)) != HL_OK)
@@ -488,7 +489,9 @@ static hl_status check_brightness(const checker *check, const hl_light *light, c
                  light->falloff == HL_FALLOFF_INVERSE_SQUARE ? " at the distance of a voxel's edge" : "");
 }
 
-static hl_status check_light_reach(const hl_light *light, size_t index, const hl_frame_space *space, hl_error *error) {
+/* In camera axes places are measured from the camera's target, which is within reach itself. */
+static hl_status check_light_reach(const hl_light *light, size_t index, const hl_frame_space *world, hl_error *error) {
+  const hl_frame_space beside = {{0, 0, 0}, world->unit}, *space = light->frame == HL_LIGHT_FRAME_CAMERA ? &beside : world;
   checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "/lights/%zu", index);
   hl_status status = check_brightness(&check, light, space);
@@ -513,6 +516,8 @@ static hl_status check_scales(const hl_scene_description *d, hl_error *error) {
   const hl_frame_space space = hl_scene_frame_space(d);
   checker camera = {error, "/camera"};
   hl_status status = check_distance(&camera, "position", d->camera.position, &space);
+  for (size_t l = 0; status == HL_OK && l < d->light_count; l++)
+    if (d->lights[l].frame == HL_LIGHT_FRAME_CAMERA) status = check_distance(&camera, "target", d->camera.target, &space);
   if (status == HL_OK && d->camera.type == HL_CAMERA_ORTHOGRAPHIC)
     status = check_reach(&camera, "height", d->camera.height, &space);
   for (size_t l = 0; status == HL_OK && l < d->light_count; l++)

@@ -8,6 +8,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "scene/light_frame.h"
 #include "scene/sample.h"
 #include "scene/scene.h"
 
@@ -128,7 +129,7 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
   e->right = vec3_scale(e->right, half * scene->width / scene->height);
   e->up = vec3_scale(e->up, half);
   for (size_t l = 0; l < scene->light_count; l++) {
-    e->towards[l] = vec3_scale(vec3_normalise(vec3_of(scene->lights[l].direction)), -1);
+    e->towards[l] = vec3_scale(vec3_normalise(hl_light_way(camera, &scene->lights[l])), -1);
     e->intensity[l] = scene->lights[l].intensity * (scene->lights[l].shadows == HL_SHADOWS_OFF ? 1 : left);
   }
   e->step = mat3_shortest_column(index_to_world.linear);

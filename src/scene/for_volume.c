@@ -7,49 +7,43 @@
 #include "scene/exposure.h"
 #include "scene/looks.h"
 #include "scene/scene.h"
-#include "scene/upright.h"
+#include "scene/view.h"
 
-#define AZIMUTH 30        /* three-quarter view, degrees */
-#define ELEVATION 20
 #define LIGHT_AZIMUTH -40 /* key light from the upper left, degrees from the line of sight */
 #define LIGHT_ELEVATION 45
 #define FILL_AZIMUTH 0     /* fill light from where the eye is: it sides with no key light that is asked for */
 #define FILL_ELEVATION 0
 #define SHEETS 540        /* across the grid's diagonal */
 
-void hl_scene_key_light(const hl_camera *camera, hl_light *light) {
+void hl_scene_key_light(hl_light *light) {
   hl_light_defaults(light);
-  hl_light_direction(camera, LIGHT_AZIMUTH, LIGHT_ELEVATION, light->direction);
+  light->frame = HL_LIGHT_FRAME_CAMERA;
+  hl_light_direction_beside(LIGHT_AZIMUTH, LIGHT_ELEVATION, light->direction);
   light->angular_diameter_deg = 7;
   light->intensity = 1.7;
 }
 
-/* The camera of a scene whose only volume was analysed, or (analysis null) of any scene. */
+/* analysis: of the first volume, or null. */
 static hl_status frame(const hl_scene_description *description, const hl_data_analysis *analysis,
                        hl_camera *camera, hl_error *error) {
-  hl_upright upright = {{0, 0, 1}, {1, 0, 0}, AZIMUTH};
-  hl_status status = HL_OK;
-  if (analysis != NULL) status = hl_scene_upright(&description->volumes[0], analysis, &upright, error);
+  hl_view view;
+  hl_status status = hl_view_automatic(description, analysis, &view, error);
   if (status != HL_OK) return status;
-  status = hl_camera_frame_upright(description, upright, upright.azimuth_deg, ELEVATION, 1, camera);
-  return status == HL_OK ? HL_OK : hl_fail(error, status, "the volume cannot be framed: mend its spacing");
+  return hl_camera_frame_view(description, &view, 1, camera, error);
 }
 
 hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera, hl_error *error) {
-  const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
-  hl_data_analysis analysis;
-  bool asked = only != NULL && only->rotate_angle_deg == 0; /* who turns a volume knows its way up */
-  hl_status status = asked ? hl_data_analyse(only->volume, &analysis, error) : HL_OK;
-  return status == HL_OK ? frame(description, asked ? &analysis : NULL, camera, error) : status;
+  return frame(description, NULL, camera, error);
 }
 
 /* The key light as strong as the look says, and a light without shadows from the eye. *count: 1 or 2. */
-static void choose_lights(const hl_look *look, const hl_camera *camera, hl_light lights[2], size_t *count) {
-  hl_scene_key_light(camera, &lights[0]);
+static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count) {
+  hl_scene_key_light(&lights[0]);
   lights[0].intensity = look->key;
   *count = look->fill > 0 ? 2 : 1;
   hl_light_defaults(&lights[1]);
-  hl_light_direction(camera, FILL_AZIMUTH, FILL_ELEVATION, lights[1].direction);
+  lights[1].frame = HL_LIGHT_FRAME_CAMERA;
+  hl_light_direction_beside(FILL_AZIMUTH, FILL_ELEVATION, lights[1].direction);
   lights[1].intensity = look->fill;
   lights[1].shadows = HL_SHADOWS_OFF;
 }
@@ -102,7 +96,7 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   status = hl_scene_volume_check(&scene_volume, 0, error);
   if (status == HL_OK) status = frame(&description, &analysis, &description.camera, error);
   if (status == HL_OK) {
-    choose_lights(look, &description.camera, lights, &description.light_count);
+    choose_lights(look, lights, &description.light_count);
     description.lights = lights;
     memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
     for (int channel = 0; channel < 3; channel++) description.ambient[channel] = look->ambient;

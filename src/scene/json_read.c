@@ -10,6 +10,7 @@
 const char *const hl_camera_type_names[] = {"perspective", "orthographic", NULL};
 const char *const hl_light_type_names[] = {"directional", "point", "spot", "rect", "disk", "polygon", NULL};
 const char *const hl_shadows_names[] = {"off", "hard", "soft", NULL}; /* from HL_SHADOWS_OFF on */
+const char *const hl_light_frame_names[] = {"world", "camera", NULL};
 const char *const hl_falloff_names[] = {"none", "inverse_square", NULL};
 const char *const hl_shading_names[] = {"phong", "none", "flat", NULL};
 const char *const hl_soft_method_names[] = {"cascade", "paper", "sublights", NULL};

@@ -59,7 +59,7 @@ hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_sc
 }
 
 /* What each type of light may say, in the order of hl_light_type. */
-#define COMMON_KEYS "color", "intensity", "falloff", "shadows", "texture", "emission", NULL
+#define COMMON_KEYS "frame", "color", "intensity", "falloff", "shadows", "texture", "emission", NULL
 static const char *const directional_keys[] = {"type", "direction", "angular_diameter_deg", COMMON_KEYS};
 static const char *const point_keys[] = {"type", "position", "radius", COMMON_KEYS};
 static const char *const spot_keys[] = {"type",   "position", "direction", "opening_angle_deg", "falloff_angle_deg",
@@ -115,16 +115,18 @@ static hl_status read_light_place(hl_json_reader *reader, const json_t *value, h
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light) {
   static const char *const all[] = {
       "type", "direction", "angular_diameter_deg", "position", "radius", "normal", "edge1", "edge2",
-      "opening_angle_deg", "falloff_angle_deg", "vertices", "color", "intensity", "falloff", "shadows", "texture",
+      "opening_angle_deg", "falloff_angle_deg", "vertices", "frame", "color", "intensity", "falloff", "shadows", "texture",
       "emission", NULL};
   hl_light_defaults(light);
-  int type = (int)light->type, falloff = (int)light->falloff, shadows = (int)light->shadows;
+  int type = (int)light->type, frame = (int)light->frame, falloff = (int)light->falloff, shadows = (int)light->shadows;
   hl_status status = hl_json_object(reader, value, all);
   if (status == HL_OK) status = hl_json_choice(reader, value, "type", hl_light_type_names, 0, &type);
   if (status != HL_OK) return status;
   if ((status = hl_json_object(reader, value, light_keys[type])) != HL_OK) return status;
   light->type = (hl_light_type)type;
-  status = read_light_place(reader, value, light);
+  status = hl_json_choice(reader, value, "frame", hl_light_frame_names, 0, &frame);
+  light->frame = (hl_light_frame)frame;
+  if (status == HL_OK) status = read_light_place(reader, value, light);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "color", 3, light->color);
   if (status == HL_OK) status = hl_json_number(reader, value, "intensity", &light->intensity);
   if (status == HL_OK) status = hl_json_choice(reader, value, "falloff", hl_falloff_names, 0, &falloff);

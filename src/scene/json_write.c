@@ -195,6 +195,7 @@ static void write_light_place(writer *w, const hl_light *light) {
 static void write_light(writer *w, const hl_light *light) {
   open_bracket(w, NULL, "{");
   write_name(w, "type", hl_light_type_names[light->type]);
+  if (light->frame != HL_LIGHT_FRAME_WORLD) write_name(w, "frame", hl_light_frame_names[light->frame]);
   write_light_place(w, light);
   if (light->type != HL_LIGHT_DIRECTIONAL) write_name(w, "falloff", hl_falloff_names[light->falloff]);
   write_row(w, "color", light->color, 3);

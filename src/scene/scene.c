@@ -9,6 +9,7 @@
 
 #include "core/memory.h"
 #include "scene/check.h"
+#include "scene/light_frame.h"
 
 void hl_light_defaults(hl_light *light) {
   if (light == NULL) return;
@@ -80,6 +81,7 @@ static void destroy(hl_scene *scene) {
   hl_scene_description *d = &scene->description;
   for (size_t v = 0; v < d->volume_count; v++) release_volume(context, (hl_scene_volume *)&d->volumes[v]);
   hl_release(context, (void *)d->volumes);
+  hl_placed_lights_release(context, &scene->placed);
   for (size_t l = 0; l < d->light_count; l++) {
     hl_release(context, (void *)d->lights[l].vertices);
     hl_light_images_release(context, (hl_light *)&d->lights[l]);
@@ -240,6 +242,7 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   status = copy_text(context, description->description, &made->description.description, error);
   if (status == HL_OK) status = copy_lights(made, description, error);
   if (status == HL_OK) status = copy_volumes(made, description, error);
+  if (status == HL_OK) status = hl_lights_place(context, &made->description, &made->placed, error);
   if (status != HL_OK) {
     destroy(made);
     return status;

@@ -12,6 +12,7 @@ struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
+  hl_scene_description placed;      /* the same with all lights in the world: what is rendered; owns its lights' array */
 };
 
 /* Along x, y or z (0 to 2) of the world of the volume's own file. */
@@ -60,8 +61,8 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
  * fovy_deg stay. */
 hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera, hl_error *error);
 
-/* The light that a scene without lights gets: soft, from the upper left as the camera sees it. */
-void hl_scene_key_light(const hl_camera *camera, hl_light *light);
+/* The light that a scene without lights gets: soft, from the upper left of the camera, with which it goes. */
+void hl_scene_key_light(hl_light *light);
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */
 void hl_light_images_release(hl_context *context, hl_light *light);

@@ -92,7 +92,7 @@ static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gather
 static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathered *g) {
   const json_t *value = json_object_get(root, "lights");
   if (value == NULL) {
-    hl_scene_key_light(&g->description.camera, &g->key_light);
+    hl_scene_key_light(&g->key_light);
     g->description.lights = &g->key_light;
     g->description.light_count = 1;
     return HL_OK;

@@ -3,21 +3,21 @@
  * In: a volume and the thresholds of its things. Out: up and right for the default camera. Only the picture's
  * orientation follows from it, never a coordinate.
  */
-#define _GNU_SOURCE /* strcasecmp */
 #include "scene/upright.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "scene/bodies.h"
 #include "scene/sample.h"
 #include "scene/scene.h"
+#include "scene/view.h"
 
 #define LATTICE 5e5     /* places looked at, about */
 #define BEND 3          /* places over which relief is felt */
-#define AZIMUTH 30      /* of the three-quarter view, degrees */
+#define BODY_AT_LEAST 0.4 /* of all that is solid: a body that decides alone */
 #define CLEARLY 1.1     /* so much more relief has a side that is worth turning for */
 
 /* What a thing looks like from its six sides. */
@@ -35,11 +35,6 @@ static bool is_oriented(const hl_volume *volume) {
     if (component[a] < 0.999999) return true;
   }
   return false;
-}
-
-static bool ends_with(const char *text, const char *end) {
-  size_t length = text != NULL ? strlen(text) : 0, tail = strlen(end);
-  return length >= tail && strcasecmp(text + length - tail, end) == 0;
 }
 
 static void release(hl_context *context, shape *s) {
@@ -63,23 +58,86 @@ static size_t place_of(const hl_volume *volume, const shape *s, size_t step, int
   return n + 1 == s->size[axis] ? volume->dimension[axis] - 1 : (size_t)n * step;
 }
 
-/* *any: whether there is a thing. */
-static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s, bool *any,
-                            hl_error *error) {
-  size_t step = hl_lattice_step(volume->dimension, LATTICE);
-  memset(s, 0, sizeof *s);
-  if (!allocate(volume->context, volume, step, s)) return hl_fail_memory(error, (size_t)LATTICE, "a volume's outline");
-  double total = 0;
+static size_t place_in(const shape *s, int i, int j, int k) {
+  return ((size_t)k * (size_t)s->size[1] + (size_t)j) * (size_t)s->size[0] + (size_t)i;
+}
+
+static size_t places_of(const shape *s) { return (size_t)s->size[0] * (size_t)s->size[1] * (size_t)s->size[2]; }
+
+static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size_t step, shape *s) {
   unsigned char *solid = s->solid;
   for (int k = 0; k < s->size[2]; k++)
     for (int j = 0; j < s->size[1]; j++)
-      for (int i = 0; i < s->size[0]; i++, solid++) {
+      for (int i = 0; i < s->size[0]; i++) {
         double value = hl_volume_value(volume, place_of(volume, s, step, 0, i),
                                        place_of(volume, s, step, 1, j), place_of(volume, s, step, 2, k));
-        if (!(analysis->direction * (value - analysis->background) > analysis->solid)) continue;
-        *solid = 1;
-        s->area[0][i]++, s->area[1][j]++, s->area[2][k]++, total++;
+        *solid++ = analysis->direction * (value - analysis->background) > analysis->solid;
       }
+}
+
+/* How many of the six neighbours of a place are marked; those outside the grid count where `outside` is 1. */
+static int neighbours(const shape *s, const unsigned char *marked, int i, int j, int k, int outside) {
+  const int at[3] = {i, j, k};
+  const size_t stride[3] = {1, (size_t)s->size[0], (size_t)s->size[0] * (size_t)s->size[1]}, place = place_in(s, i, j, k);
+  int count = 0;
+  for (int a = 0; a < 3; a++) {
+    count += at[a] > 0 ? marked[place - stride[a]] != 0 : outside;
+    count += at[a] + 1 < s->size[a] ? marked[place + stride[a]] != 0 : outside;
+  }
+  return count;
+}
+
+/* to: the places of `from` whose neighbours are all in `from` (shrunk), or the places of s->solid in or beside `from` (grown). */
+static void change_by_one(const shape *s, const unsigned char *from, bool grown, unsigned char *to) {
+  size_t place = 0;
+  for (int k = 0; k < s->size[2]; k++)
+    for (int j = 0; j < s->size[1]; j++)
+      for (int i = 0; i < s->size[0]; i++, place++)
+        to[place] = grown ? s->solid[place] && (from[place] || neighbours(s, from, i, j, k, 0) > 0)
+                          : from[place] && neighbours(s, from, i, j, k, 1) == 6;
+}
+
+static size_t count_marked(const shape *s, const unsigned char *marked) {
+  size_t count = 0;
+  for (size_t p = 0; p < places_of(s); p++) count += marked[p] != 0;
+  return count;
+}
+
+/* Leaves the largest body of `marked` alone. */
+static hl_status keep_largest(hl_context *context, const shape *s, unsigned char *marked, hl_error *error) {
+  hl_bodies bodies;
+  hl_status status = hl_bodies_find(context, marked, s->size, &bodies, error);
+  for (size_t p = 0; status == HL_OK && p < places_of(s); p++) marked[p] = marked[p] && bodies.body[p] == bodies.largest;
+  hl_bodies_release(context, &bodies);
+  return status;
+}
+
+/* The largest body alone is looked at: not the board that it lies on, nor a rest that touches it, which is gone where everything
+ * is thinner by a place on all sides. What is thin itself is taken as it is, and many small bodies together. work: two more
+ * lattices. */
+static hl_status forget_others(hl_context *context, shape *s, unsigned char *work, hl_error *error) {
+  const size_t places = places_of(s), all = count_marked(s, s->solid);
+  unsigned char *core = work, *grown = work + places;
+  change_by_one(s, s->solid, false, core);
+  hl_status status = keep_largest(context, s, core, error);
+  if (status != HL_OK) return status;
+  change_by_one(s, core, true, grown);
+  change_by_one(s, grown, true, core);
+  if (count_marked(s, core) < BODY_AT_LEAST * (double)all) {
+    memcpy(core, s->solid, places);
+    status = keep_largest(context, s, core, error);
+  }
+  if (status == HL_OK && count_marked(s, core) >= BODY_AT_LEAST * (double)all) memcpy(s->solid, core, places);
+  return status;
+}
+
+static bool measure(shape *s) {
+  double total = 0;
+  const unsigned char *solid = s->solid;
+  for (int k = 0; k < s->size[2]; k++)
+    for (int j = 0; j < s->size[1]; j++)
+      for (int i = 0; i < s->size[0]; i++)
+        if (*solid++) s->area[0][i]++, s->area[1][j]++, s->area[2][k]++, total++;
   for (int a = 0; a < 3; a++) {
     double sum = 0;
     int n = 0;
@@ -88,8 +146,24 @@ static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *ana
     for (sum = 0, n = s->size[a] - 1; n > 0 && (sum += s->area[a][n]) <= 0.002 * total;) n--;
     s->last[a] = n > s->first[a] ? n : s->first[a];
   }
-  *any = total > 0;
-  return hl_cancelled(volume->context) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume") : HL_OK;
+  return total > 0;
+}
+
+/* *any: whether there is a thing. */
+static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s, bool *any,
+                            hl_error *error) {
+  hl_context *context = volume->context;
+  size_t step = hl_lattice_step(volume->dimension, LATTICE);
+  memset(s, 0, sizeof *s);
+  bool allocated = allocate(context, volume, step, s);
+  unsigned char *work = allocated ? hl_allocate(context, places_of(s), 2) : NULL;
+  if (work == NULL) return hl_fail_memory(error, (size_t)LATTICE, "a volume's outline");
+  fill(volume, analysis, step, s);
+  hl_status status = forget_others(context, s, work, error);
+  hl_release(context, work);
+  *any = status == HL_OK && measure(s);
+  if (status == HL_OK && hl_cancelled(context)) status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume");
+  return status;
 }
 
 /* Part of the grid's face at one end of an axis that the things touch. */
@@ -116,10 +190,7 @@ static double symmetry(const shape *s, int axis) {
       for (n[0] = s->first[0]; n[0] <= s->last[0]; n[0]++) {
         int m[3] = {n[0], n[1], n[2]};
         m[axis] = s->first[axis] + s->last[axis] - n[axis];
-        int here =
-            s->solid[((size_t)n[2] * (size_t)s->size[1] + (size_t)n[1]) * (size_t)s->size[0] + (size_t)n[0]];
-        int there =
-            s->solid[((size_t)m[2] * (size_t)s->size[1] + (size_t)m[1]) * (size_t)s->size[0] + (size_t)m[0]];
+        int here = s->solid[place_in(s, n[0], n[1], n[2])], there = s->solid[place_in(s, m[0], m[1], m[2])];
         both += here && there;
         either += here || there;
       }
@@ -161,8 +232,7 @@ static int depth_at(const shape *s, int axis, int end, int u, int v) {
   n[(axis + 2) % 3] = v;
   for (int depth = 0; s->first[axis] + depth <= s->last[axis]; depth++) {
     n[axis] = end ? s->last[axis] - depth : s->first[axis] + depth;
-    if (s->solid[((size_t)n[2] * (size_t)s->size[1] + (size_t)n[1]) * (size_t)s->size[0] + (size_t)n[0]])
-      return depth;
+    if (s->solid[place_in(s, n[0], n[1], n[2])]) return depth;
   }
   return -1;
 }
@@ -196,33 +266,31 @@ static bool opposite_shows_more(const shape *s, vec3 v) {
   return relief(s, axis, !end) > CLEARLY * relief(s, axis, end);
 }
 
-static double best_azimuth(const shape *s, hl_upright upright) {
-  vec3 near_side = vec3_scale(vec3_cross(upright.up, upright.right), -1);
-  double azimuth = opposite_shows_more(s, near_side) ? 180 - AZIMUTH : AZIMUTH;
-  return opposite_shows_more(s, upright.right) ? -azimuth : azimuth;
+/* Around an up that is an axis; the eye is at the front at azimuth 0 (hl_view_about). */
+static double best_azimuth(const shape *s, const hl_view *view) {
+  vec3 front = vec3_of(view->front), right = vec3_cross(vec3_of(view->up), front);
+  double azimuth = opposite_shows_more(s, front) ? 180 - HL_VIEW_AZIMUTH : HL_VIEW_AZIMUTH;
+  return opposite_shows_more(s, right) ? -azimuth : azimuth;
 }
 
-static hl_upright upright_about(int up) {
+static vec3 axis_along(int up) {
   vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  int axis = (up < 0 ? -up : up) - 1;
-  return (hl_upright){vec3_scale(axes[axis], up < 0 ? -1 : 1), axes[axis == 0 ? 1 : 0], AZIMUTH};
+  return vec3_scale(axes[abs(up) - 1], up < 0 ? -1 : 1);
 }
 
 hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis, hl_upright *upright,
                            hl_error *error) {
   bool oriented = is_oriented(volume->volume), any = false;
-  *upright = upright_about(analysis->kind == HL_DATA_MEDIUM && !oriented ? 2 : 3);
-  if (ends_with(volume->file, ".nii") || ends_with(volume->file, ".nii.gz")) {
-    *upright = (hl_upright){
-        {0, 0, 1}, {-1, 0, 0}, AZIMUTH}; /* RAS+: y points to the front, x to the patient's right */
-    return HL_OK;
-  }
+  *upright = (hl_upright){axis_along(analysis->kind == HL_DATA_MEDIUM && !oriented ? 2 : 3), HL_VIEW_AZIMUTH};
   if (oriented || analysis->kind != HL_DATA_SURFACES) return HL_OK;
   shape s;
   hl_status status = make_shape(volume->volume, analysis, &s, &any, error);
   if (status == HL_OK && any) {
-    *upright = upright_about(up_of(&s, volume->volume));
-    upright->azimuth_deg = best_azimuth(&s, *upright);
+    const hl_scene_description alone = {.volumes = volume, .volume_count = 1};
+    hl_view view;
+    upright->up = axis_along(up_of(&s, volume->volume));
+    hl_view_about(&alone, upright->up, &view);
+    upright->azimuth_deg = best_azimuth(&s, &view);
   }
   release(volume->volume->context, &s);
   return status;

@@ -295,6 +295,7 @@ hl_status hl_load_nifti(hl_stream **stream, hl_load_request *request, hl_volume 
   if (status == HL_OK) status = read_scale(&header, &payload.grid, error);
   if (status != HL_OK) return status;
   place(&header, &payload.grid);
+  payload.grid.space = HL_SPACE_RAS;
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
   payload.big_endian = header.big_endian;
   if (status == HL_OK) status = find_components(&header, side_by_side, series, others, &payload, error);

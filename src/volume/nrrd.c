@@ -174,6 +174,20 @@ static hl_status read_origin(nrrd_header *header, const char *value, hl_error *e
   return HL_OK;
 }
 
+/* What else a space is called says nothing of a body. */
+static hl_status read_space(nrrd_header *header, const char *value, hl_error *error) {
+  (void)error;
+  static const struct {
+    const char *names;
+    hl_space space;
+  } spaces[] = {{"right-anterior-superior|RAS|right-anterior-superior-time|RAST", HL_SPACE_RAS},
+                {"left-posterior-superior|LPS|left-posterior-superior-time|LPST", HL_SPACE_LPS},
+                {"left-anterior-superior|LAS|left-anterior-superior-time|LAST", HL_SPACE_LAS}};
+  for (size_t n = 0; n < sizeof spaces / sizeof *spaces; n++)
+    if (hl_text_is_one_of(value, spaces[n].names)) header->space = spaces[n].space;
+  return HL_OK;
+}
+
 static hl_status read_data_file(nrrd_header *header, const char *value, hl_error *error) {
   if (hl_text_starts(value, "LIST") || strchr(value, '%') != NULL)
     return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
@@ -219,7 +233,8 @@ static field_function *find_field(const char *name) {
       {"data file|datafile", read_data_file},
       {"line skip|lineskip", read_line_skip},
       {"byte skip|byteskip", read_byte_skip},
-      {"space|space dimension|space units|measurement frame|content|number|block size|blocksize|min|max|"
+      {"space", read_space},
+      {"space dimension|space units|measurement frame|content|number|block size|blocksize|min|max|"
        "old min|oldmin|old max|oldmax|thicknesses|labels|units|sample units|sampleunits",
        pass_over}};
   for (size_t n = 0; n < sizeof fields / sizeof *fields; n++)

@@ -26,6 +26,7 @@ typedef struct nrrd_header {
   nrrd_encoding encoding;
   bool has_encoding, has_endian, big_endian, has_sizes, has_directions, has_space_origin;
   double space_origin[3];
+  hl_space space;
   char data_file[NRRD_NAME_BYTES]; /* "" if attached */
   size_t line_skip, byte_skip;
   bool skip_to_last; /* byte skip -1: the voxels are the last bytes of the file */

@@ -107,6 +107,7 @@ static void make_grid(const nrrd_header *header, const int chosen[NRRD_MOST_AXES
   if (header->has_directions) complete_axes(grid, count);
   if (header->has_space_origin) memcpy(grid->origin, header->space_origin, sizeof grid->origin);
   grid->type = header->type;
+  grid->space = header->space;
 }
 
 hl_status hl_nrrd_place(const nrrd_header *header, hl_payload *payload, bool *is_series, hl_error *error) {

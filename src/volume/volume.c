@@ -12,6 +12,10 @@
 #include "volume/arrays.h"
 #include "volume/convert.h"
 
+const char *hl_space_name(hl_space space) {
+  return space == HL_SPACE_RAS ? "RAS" : space == HL_SPACE_LPS ? "LPS" : space == HL_SPACE_LAS ? "LAS" : NULL;
+}
+
 void hl_volume_description_defaults(hl_volume_description *description) {
   if (description == NULL) return;
   memset(description, 0, sizeof *description);
@@ -85,6 +89,8 @@ hl_status hl_volume_check_grid(const hl_volume_description *description, const c
                                hl_error *error) {
   if (hl_voxel_type_bytes(description->type) == 0)
     return hl_fail(error, HL_ERROR_INPUT, "%s: there is no voxel type %d", subject, (int)description->type);
+  if (description->space != HL_SPACE_UNKNOWN && hl_space_name(description->space) == NULL)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no space %d", subject, (int)description->space);
   hl_status status = check_size(description, subject, error);
   if (status != HL_OK) return status;
   if (!isfinite(description->value_scale) || !isfinite(description->value_offset) ||
@@ -103,6 +109,7 @@ static hl_volume *make_volume(hl_context *context, const hl_volume_description *
   atomic_init(&volume->references, 1);
   memcpy(volume->dimension, description->dimensions, sizeof volume->dimension);
   volume->type = description->type;
+  volume->space = description->space;
   volume->storage = hl_voxel_type_storage(description->type);
   volume->value_scale = description->value_scale;
   volume->value_offset =
@@ -241,6 +248,7 @@ hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info) {
   if (volume == NULL || info == NULL || info->struct_size != sizeof *info) return HL_ERROR_ARGUMENT;
   memcpy(info->dimensions, volume->dimension, sizeof info->dimensions);
   info->type = volume->type;
+  info->space = volume->space;
   const double offset[3] = {volume->index_to_world.offset.x, volume->index_to_world.offset.y,
                             volume->index_to_world.offset.z};
   memcpy(info->origin, offset, sizeof offset);

@@ -34,6 +34,7 @@ struct hl_volume {
   double value_offset;
   affine3 index_to_world;    /* voxel centres at integer indices */
   hl_voxel_type type;        /* as in the file */
+  hl_space space;
   double minimum, maximum;   /* data values over finite voxels */
   double mean;
   uint64_t nonfinite_count;

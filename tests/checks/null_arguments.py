@@ -30,6 +30,7 @@ hl_scene_from_json base_folder
 hl_scene_from_json name
 hl_scene_for_volume file
 hl_volume_guess file
+hl_view_choose up
 hl_volume_from_shapes name
 hl_volume_load_with options
 hl_volume_from_shapes options
@@ -50,6 +51,7 @@ VALUES = {
     "const hl_volume_description *": "&description", "const hl_scene_description *": "hl_scene_describe(scene)",
     "const hl_image_write_options *": "&write_options", "const hl_reference_options *": "&reference_options",
     "const hl_shapes_options *": "&shapes_options",
+    "hl_view *": "&view", "const hl_view *": "&view",
     "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "double": "0.5",
 }
 
@@ -69,6 +71,7 @@ static hl_image_write_options write_options;
 static hl_reference_options reference_options;
 static hl_shapes_options shapes_options;
 static hl_transfer_function function;
+static hl_view view = {{0, 0, 1}, {0, -1, 0}, 30, 20, 0};
 static void *any;
 static size_t count;
 static hl_error error;

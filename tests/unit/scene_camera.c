@@ -114,8 +114,8 @@ static hl_volume *scattered(hl_context *context, hl_voxel_type type, unsigned se
   return volume;
 }
 
-/* How far visible voxels reach along a direction, less so many times their depth: of all of them. */
-static double greatest_reach(const hl_scene_volume *scene, vec3 along, vec3 forward, double tangent) {
+/* How far to one side visible voxels reach, of all of them: along a direction, or (perspective) as an angle seen from the eye. */
+static double greatest_reach(const hl_scene_volume *scene, vec3 along, vec3 forward, const vec3 *eye) {
   const hl_volume *volume = scene->volume;
   affine3 placement = hl_scene_volume_index_to_world(scene);
   double low[3], high[3], greatest = -INFINITY, radius = scene->scale * sqrt(3) / 2;
@@ -127,8 +127,9 @@ static double greatest_reach(const hl_scene_volume *scene, vec3 along, vec3 forw
     for (int a = 0; a < 3; a++) inside = inside && at[a] >= low[a] && at[a] <= high[a];
     double value = hl_volume_value(volume, i, j, k);
     if (!inside || !isfinite(value) || hl_transfer_function_opacity(&scene->transfer_function, value) < 0.02) continue;
-    vec3 p = affine3_apply(placement, (vec3){at[0], at[1], at[2]});
-    greatest = fmax(greatest, vec3_dot(p, along) - tangent * vec3_dot(p, forward) + radius * sqrt(1 + tangent * tangent));
+    vec3 p = affine3_apply(placement, (vec3){at[0], at[1], at[2]}), from = eye != NULL ? vec3_subtract(p, *eye) : p;
+    double x = vec3_dot(from, along), z = vec3_dot(from, forward);
+    greatest = fmax(greatest, eye != NULL ? atan2(x, z) + asin(radius / hypot(x, z)) : x + radius);
   }
   return greatest;
 }
@@ -138,7 +139,7 @@ static void frames_by_the_farthest_voxels(void **state) {
   (void)state;
   parts p;
   parts_make(&p);
-  hl_opacity_point points[] = {{20, 0}, {20, 1}, {120, 1}, {121, 0}, {215, 0}, {216, 0.5}, {218, 0.001}};
+  hl_opacity_point points[] = {{20, 0}, {20, 1}, {120, 1}, {121, 0}, {215, 0}, {216, 0.5}, {219, 0.5}};
   for (int n = 0; n < 36; n++) {
     hl_scene_volume *scene = &p.scene_volume;
     hl_volume_release(p.volume);
@@ -155,17 +156,21 @@ static void frames_by_the_farthest_voxels(void **state) {
     assert_int_equal(hl_camera_frame(&p.description, n * 31, n * 5 - 90, 1, &c), HL_OK);
     vec3 right, up, forward;
     assert_true(hl_camera_basis(&c, &right, &up, &forward));
-    double tangent = n % 2 ? 0 : 0.92 * tan(c.fovy_deg * HL_PI / 360);
+    const vec3 eye = vec3_of(c.position), *from = n % 2 ? NULL : &eye;
     double reach[4];
     const vec3 along[4] = {right, vec3_scale(right, -1), up, vec3_scale(up, -1)};
-    for (int side = 0; side < 4; side++) reach[side] = greatest_reach(scene, along[side], forward, tangent);
-    double half = fmax(reach[0] + reach[1], reach[2] + reach[3]) / 2;
-    double near = -greatest_reach(scene, vec3_scale(forward, -1), forward, 0), far = greatest_reach(scene, forward, forward, 0);
-    assert_near(vec3_dot(vec3_of(c.target), right), (reach[0] - reach[1]) / 2, 1e-8);
-    assert_near(vec3_dot(vec3_of(c.target), up), (reach[2] - reach[3]) / 2, 1e-8);
+    for (int side = 0; side < 4; side++) reach[side] = greatest_reach(scene, along[side], forward, from);
+    double near = -greatest_reach(scene, vec3_scale(forward, -1), forward, NULL), far = greatest_reach(scene, forward, forward, NULL);
     assert_near(vec3_dot(vec3_of(c.target), forward), (near + far) / 2, 1e-8);
-    if (n % 2) assert_near(c.height, 2 * half / 0.92, 1e-8);
-    else assert_near(vec3_dot(vec3_of(c.position), forward), -half / tangent, 1e-8);
+    if (n % 2) {
+      assert_near(vec3_dot(vec3_of(c.target), right), (reach[0] - reach[1]) / 2, 1e-8);
+      assert_near(vec3_dot(vec3_of(c.target), up), (reach[2] - reach[3]) / 2, 1e-8);
+      assert_near(c.height, fmax(reach[0] + reach[1], reach[2] + reach[3]) / 0.92, 1e-8);
+    } else {
+      assert_near(reach[0], reach[1], 1e-8); /* in the middle, both ways, and as near as can be */
+      assert_near(reach[2], reach[3], 1e-8);
+      assert_near(tan(fmax(reach[0], reach[2])), 0.92 * tan(c.fovy_deg * HL_PI / 360), 1e-8);
+    }
   }
   parts_release(&p);
 }
@@ -256,6 +261,223 @@ static void lights_stand_where_the_camera_sees_them(void **state) {
   assert_near(vec3_length(vec3_of(d)), 1, 1e-12);
 }
 
+/* A bent bar in a large grid, with one opaque voxel far away and faint noise all over. */
+static hl_volume *bent_bar(hl_context *context, bool specks) {
+  enum { N = 64 };
+  static float values[N * N * N];
+  unsigned seed = 1;
+  for (int k = 0, v = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++, v++) {
+        seed = seed * 1664525u + 1013904223u;
+        bool bar = (i > 8 && i < 50 && abs(j - 20) < 4 && abs(k - 25) < 5) || (abs(i - 12) < 4 && j >= 20 && j < 34 && abs(k - 25) < 5);
+        values[v] = bar ? 1.0f : specks && (seed >> 8) % 8192 == 0 ? 0.6f : 0.0f;
+      }
+  if (specks) values[(60 * N + 60) * N + 60] = 1.0f;
+  return make_volume(context, N, values);
+}
+
+static void parts_of_bar(parts *p, bool specks, hl_opacity_point points[2]) {
+  parts_make(p);
+  hl_volume_release(p->volume);
+  p->volume = p->scene_volume.volume = bent_bar(p->context, specks);
+  points[0] = (hl_opacity_point){0.5, 0};
+  points[1] = (hl_opacity_point){1, 1};
+  p->scene_volume.transfer_function = (hl_transfer_function){1, points, 2, NULL, 0};
+  p->description.width = p->description.height = 100;
+}
+
+/* Where the bar's voxels are in the picture: left, right, bottom, top, from -1 to 1. */
+static void box_of_bar(const hl_camera *camera, double box[4]) {
+  box[0] = box[2] = INFINITY, box[1] = box[3] = -INFINITY;
+  for (int corner = 0; corner < 8; corner++) {
+    const double low[2][3] = {{8.5, 16.5, 20.5}, {8.5, 20, 20.5}}, high[2][3] = {{49.5, 23.5, 29.5}, {15.5, 33.5, 29.5}};
+    for (int part = 0; part < 2; part++) {
+      double x, y;
+      vec3 p = {corner & 1 ? high[part][0] : low[part][0], corner & 2 ? high[part][1] : low[part][1], corner & 4 ? high[part][2] : low[part][2]};
+      project(camera, 1, p, &x, &y);
+      box[0] = fmin(box[0], x), box[1] = fmax(box[1], x), box[2] = fmin(box[2], y), box[3] = fmax(box[3], y);
+    }
+  }
+}
+
+/* What is seen is in the middle and fills the picture, specks or not. */
+static void specks_do_not_count(void **state) {
+  (void)state;
+  for (int n = 0; n < 12; n++) {
+    parts p;
+    hl_opacity_point points[2];
+    double box[4];
+    parts_of_bar(&p, true, points);
+    hl_camera camera = {.type = n % 2 ? HL_CAMERA_ORTHOGRAPHIC : HL_CAMERA_PERSPECTIVE, .fovy_deg = 30};
+    assert_int_equal(hl_camera_frame(&p.description, n * 33, n * 13 - 70, 1, &camera), HL_OK);
+    box_of_bar(&camera, box);
+    assert_near(box[0] + box[1], 0, 0.02);
+    assert_near(box[2] + box[3], 0, 0.02);
+    assert_near(fmax(box[1] - box[0], box[3] - box[2]) / 2, 0.91, 0.03);
+    parts_release(&p);
+  }
+}
+
+/* All frames of a turn have one target and one distance and hold everything; the first one is filled and in the middle. */
+static void a_turn_keeps_target_and_distance(void **state) {
+  (void)state;
+  for (int n = 0; n < 8; n++) {
+    parts p;
+    hl_opacity_point points[2];
+    double box[4];
+    parts_of_bar(&p, n & 1, points);
+    hl_camera first = {.type = n % 3 ? HL_CAMERA_PERSPECTIVE : HL_CAMERA_ORTHOGRAPHIC, .fovy_deg = 30};
+    const double ups[4][3] = {{0, 0, 1}, {0, -1, 0}, {0.3, 1, 2}, {1, 0, 0}};
+    hl_view view;
+    assert_int_equal(hl_view_choose(&p.description, n % 2 ? HL_SIDE_AUTOMATIC : HL_SIDE_ISO, ups[n / 2], &view, NULL), HL_OK);
+    assert_int_equal(hl_camera_frame_view(&p.description, &view, 1, &first, NULL), HL_OK);
+    box_of_bar(&first, box);
+    assert_near(box[0] + box[1], 0, 0.1); /* within 2.5 % of the picture */
+    assert_near(box[2] + box[3], 0, 0.1);
+    double distance = vec3_length(vec3_subtract(vec3_of(first.position), vec3_of(first.target)));
+    for (int turn = 0; turn < 24; turn++) {
+      hl_camera camera = first;
+      hl_view turned = view;
+      turned.azimuth_deg += 15 * turn;
+      assert_int_equal(hl_camera_turn(&turned, &camera), HL_OK);
+      assert_memory_equal(camera.target, first.target, sizeof first.target);
+      assert_near(vec3_length(vec3_subtract(vec3_of(camera.position), vec3_of(camera.target))), distance, 1e-9);
+      box_of_bar(&camera, box);
+      assert_true(box[0] > -1.04 && box[1] < 1.04 && box[2] > -1.04 && box[3] < 1.04);
+    }
+    parts_release(&p);
+  }
+}
+
+/* A camera tells the view that it was turned to, to the last bit of its angles; up and front are unit and at a right angle. */
+static void views_are_found_again(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  const double ups[][3] = {{0, 0, 1}, {0, 1, 0}, {0, 0, -1}, {-1, 0, 0}, {1, 2, -0.5}};
+  for (int n = 0; n < 40; n++) {
+    hl_view view, found;
+    assert_int_equal(hl_view_choose(&p.description, HL_SIDE_FRONT, ups[n % 5], &view, NULL), HL_OK);
+    assert_near(vec3_length(vec3_of(view.up)), 1, 1e-12);
+    assert_near(vec3_dot(vec3_of(view.up), vec3_of(view.front)), 0, 1e-12);
+    view.azimuth_deg = n * 8 - 170;
+    view.elevation_deg = n * 4 - 80;
+    p.description.camera = (hl_camera){.position = {3, 50, 2}, .target = {1, 2, 3}, .up = {0, 0, 1}, .fovy_deg = 30};
+    assert_int_equal(hl_camera_turn(&view, &p.description.camera), HL_OK);
+    assert_int_equal(hl_view_of_camera(&p.description, &found), HL_OK);
+    assert_near(found.azimuth_deg, view.azimuth_deg, 1e-12);
+    assert_near(found.elevation_deg, view.elevation_deg, 1e-12);
+    assert_true(found.roll_deg == 0);
+    for (int a = 0; a < 3; a++) assert_near(found.up[a], view.up[a], 1e-12);
+  }
+  hl_view upside = {.up = {0, 0, 2}, .front = {0, -1, 0}}, any;
+  assert_int_equal(hl_camera_turn(&upside, &p.description.camera), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_view_choose(&p.description, HL_SIDE_FRONT, (double[3]){0, 0, 0}, &any, NULL), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_view_choose(&p.description, (hl_side)9, NULL, &any, NULL), HL_ERROR_ARGUMENT);
+  /* An up that is level with an axis, as older scenes have it, is that axis. */
+  p.description.camera = (hl_camera){.position = {0, -3, 3}, .up = {0, 0.5, 0.5}, .fovy_deg = 30};
+  assert_int_equal(hl_view_of_camera(&p.description, &any), HL_OK);
+  assert_true(any.up[2] == 1 && any.elevation_deg == 45 && any.azimuth_deg == 0);
+  parts_release(&p);
+}
+
+/* Sides are the body's own where the file knows them, else the viewer's. */
+static void sides_are_the_bodys_own(void **state) {
+  (void)state;
+  static float values[8] = {0, 1, 1, 1, 1, 1, 1, 1};
+  parts p;
+  parts_make(&p);
+  /* direction from the things to the eye */
+  static const struct { hl_space space; hl_side side; double eye[3]; } cases[] = {
+      {HL_SPACE_UNKNOWN, HL_SIDE_FRONT, {0, -1, 0}}, {HL_SPACE_UNKNOWN, HL_SIDE_LEFT, {-1, 0, 0}}, {HL_SPACE_UNKNOWN, HL_SIDE_RIGHT, {1, 0, 0}},
+      {HL_SPACE_UNKNOWN, HL_SIDE_TOP, {0, 0, 1}},    {HL_SPACE_RAS, HL_SIDE_FRONT, {0, 1, 0}},     {HL_SPACE_RAS, HL_SIDE_LEFT, {-1, 0, 0}},
+      {HL_SPACE_RAS, HL_SIDE_BACK, {0, -1, 0}},      {HL_SPACE_LPS, HL_SIDE_FRONT, {0, -1, 0}},    {HL_SPACE_LPS, HL_SIDE_LEFT, {1, 0, 0}},
+      {HL_SPACE_LPS, HL_SIDE_BOTTOM, {0, 0, -1}},    {HL_SPACE_LAS, HL_SIDE_FRONT, {0, 1, 0}},     {HL_SPACE_LAS, HL_SIDE_RIGHT, {-1, 0, 0}}};
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    hl_volume_description d;
+    hl_volume_description_defaults(&d);
+    d.dimensions[0] = d.dimensions[1] = d.dimensions[2] = 2;
+    d.type = HL_VOXEL_F32;
+    d.voxels = values;
+    d.space = cases[n].space;
+    hl_volume_release(p.volume);
+    assert_int_equal(hl_volume_create(p.context, &d, &p.volume, NULL), HL_OK);
+    p.scene_volume.volume = p.volume;
+    hl_view view;
+    hl_camera camera = {.position = {0, -9, 0}, .up = {0, 0, 1}, .fovy_deg = 30};
+    assert_int_equal(hl_view_choose(&p.description, cases[n].side, (double[3]){0, 0, 1}, &view, NULL), HL_OK);
+    assert_int_equal(hl_camera_turn(&view, &camera), HL_OK);
+    for (int a = 0; a < 3; a++) assert_near(camera.position[a], 9 * cases[n].eye[a], 1e-9);
+  }
+  parts_release(&p);
+}
+
+/* A positive roll turns the picture clockwise: what was above the middle is to its right. */
+static void roll_turns_the_picture(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  hl_view view;
+  hl_camera camera = {.position = {0, -9, 0}, .up = {0, 0, 1}, .fovy_deg = 30};
+  assert_int_equal(hl_view_choose(&p.description, HL_SIDE_FRONT, (double[3]){0, 0, 1}, &view, NULL), HL_OK);
+  view.roll_deg = 90;
+  assert_int_equal(hl_camera_turn(&view, &camera), HL_OK);
+  double x, y;
+  project(&camera, 1, (vec3){0, 0, 1}, &x, &y);
+  assert_true(x > 0.1);
+  assert_near(y, 0, 1e-12);
+  parts_release(&p);
+}
+
+/* A light in camera axes is the same as one whose places in the world were found by hand, for every type of light. */
+static void lights_go_with_the_camera(void **state) {
+  (void)state;
+  parts p;
+  parts_make(&p);
+  p.description.camera = (hl_camera){.position = {10, -20, 7}, .target = {1, 2, 3}, .up = {0, 0.2, 1}, .fovy_deg = 30};
+  vec3 right, up, forward;
+  hl_camera_basis(&p.description.camera, &right, &up, &forward);
+  const double vertices[3][3] = {{0, 0, 5}, {1, 0, 5}, {0, 1, 6}};
+  hl_light lights[6];
+  for (int type = 0; type < 6; type++) {
+    hl_light_defaults(&lights[type]);
+    lights[type].type = (hl_light_type)type;
+    lights[type].frame = HL_LIGHT_FRAME_CAMERA;
+    memcpy(lights[type].position, (double[3]){1, 2, 3}, sizeof lights[type].position);
+    memcpy(lights[type].direction, (double[3]){0, 0, -1}, sizeof lights[type].direction);
+    memcpy(lights[type].edge1, (double[3]){2, 0, 0}, sizeof lights[type].edge1);
+    if (type == HL_LIGHT_POLYGON) lights[type].vertices = vertices, lights[type].vertex_count = 3;
+  }
+  p.description.lights = lights;
+  p.description.light_count = 6;
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
+  const hl_light *placed = scene->placed.lights, *kept = hl_scene_describe(scene)->lights;
+  const vec3 target = vec3_of(p.description.camera.target);
+  vec3 at = vec3_add(target, vec3_add(vec3_add(right, vec3_scale(up, 2)), vec3_scale(forward, -3)));
+  for (int type = 0; type < 6; type++) {
+    assert_true(placed[type].frame == HL_LIGHT_FRAME_WORLD && kept[type].frame == HL_LIGHT_FRAME_CAMERA);
+    assert_near(vec3_length(vec3_subtract(vec3_of(placed[type].position), at)), 0, 1e-12);
+    assert_near(vec3_length(vec3_subtract(vec3_of(placed[type].direction), forward)), 0, 1e-12);
+    assert_near(vec3_length(vec3_subtract(vec3_of(placed[type].edge1), vec3_scale(right, 2))), 0, 1e-12);
+    assert_near(kept[type].position[0], 1, 0);
+  }
+  vec3 vertex = vec3_add(vec3_add(target, up), vec3_scale(forward, -6));
+  assert_near(vec3_length(vec3_subtract(vec3_of(placed[5].vertices[2]), vertex)), 0, 1e-12);
+  double beside[3], world[3];
+  hl_light_direction_beside(-40, 45, beside);
+  hl_light_direction(&p.description.camera, -40, 45, world);
+  vec3 by_hand = vec3_add(vec3_add(vec3_scale(right, beside[0]), vec3_scale(up, beside[1])), vec3_scale(forward, -beside[2]));
+  assert_near(vec3_length(vec3_subtract(by_hand, vec3_of(world))), 0, 1e-12);
+  hl_scene_release(scene);
+  lights[1].position[0] = 1e14; /* beyond reach of voxels a unit wide */
+  hl_error error = {0};
+  assert_int_equal(hl_scene_create(p.context, &p.description, &scene, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "/lights/1/position"));
+  parts_release(&p);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(basis_is_right_handed_and_falls_back),
@@ -266,6 +488,12 @@ int main(void) {
       cmocka_unit_test(fits_along_its_own_direction),
       cmocka_unit_test(frames_boxes_and_several_volumes),
       cmocka_unit_test(lights_stand_where_the_camera_sees_them),
+      cmocka_unit_test(specks_do_not_count),
+      cmocka_unit_test(a_turn_keeps_target_and_distance),
+      cmocka_unit_test(views_are_found_again),
+      cmocka_unit_test(sides_are_the_bodys_own),
+      cmocka_unit_test(roll_turns_the_picture),
+      cmocka_unit_test(lights_go_with_the_camera),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -247,9 +247,10 @@ static void defaults_are_the_documented_ones(void **state) {
   assert_int_equal(hl_scene_frame(d, &framed, NULL), HL_OK);
   assert_memory_equal(framed.position, d->camera.position, sizeof framed.position);
   hl_light key;
-  hl_scene_key_light(&d->camera, &key);
+  hl_scene_key_light(&key);
   assert_int_equal(d->light_count, 1);
   assert_memory_equal(key.direction, d->lights[0].direction, sizeof key.direction);
+  assert_true(d->lights[0].frame == HL_LIGHT_FRAME_CAMERA);
   assert_true(d->lights[0].angular_diameter_deg == key.angular_diameter_deg &&
               d->lights[0].shadows == HL_SHADOWS_DEFAULT);
   assert_true(d->render.shadows == HL_SHADOWS_SOFT && d->render.soft_method == HL_SOFT_CASCADE);

@@ -21,7 +21,12 @@ halflight render light.json --look mip --quiet -o d.npy
 cmp a.npy d.npy
 halflight render light.json --look mip --colormap hot --quiet -o e.png
 tool png-pixel e.png 32 32
-# And back.
+# And back, with the camera that framed what a maximum projection shows.
 halflight render inside.json --look auto --quiet -o f.npy
-halflight render ball_16x16x16_uint8.raw --size 64x64 --quiet -o g.npy
+halflight render ball_16x16x16_uint8.raw --size 64x64 --print-scene >plain.json
+"$PYTHON" -c 'import json, sys
+scene = json.load(open("plain.json"))
+scene["camera"] = json.load(open("inside.json"))["camera"]
+json.dump(scene, open("same.json", "w"))'
+halflight render same.json --quiet -o g.npy
 halflight diff f.npy g.npy --max-error 0 >text
