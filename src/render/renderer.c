@@ -146,17 +146,10 @@ static double pixel_at_content(const frame *frame, double middle_depth) {
   return edge * fmax(nearest, middle_depth / 3);
 }
 
-/* Of one volume's corners the mean; of several volumes the middle of the box around them, which is the same however one is cut. */
 static vec3 content_middle(const frame *frame) {
-  vec3 sum = {0, 0, 0}, low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-  for (int i = 0; i < frame->point_count; i++) {
-    vec3 p = frame->points[i];
-    sum = vec3_add(sum, p);
-    low = (vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
-    high = (vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
-  }
-  if (frame->point_count <= 8) return frame->point_count == 0 ? sum : vec3_scale(sum, 1.0 / frame->point_count);
-  return vec3_scale(vec3_add(low, high), 0.5);
+  vec3 sum = {0, 0, 0};
+  for (int i = 0; i < frame->point_count; i++) sum = vec3_add(sum, frame->points[i]);
+  return frame->point_count == 0 ? sum : vec3_scale(sum, 1.0 / frame->point_count);
 }
 
 /* e: towards the middle of the content where the eye is outside of it, else straight ahead. */

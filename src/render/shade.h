@@ -45,6 +45,7 @@ typedef struct shade_light {
   int inverse_square;
   int shadowed;
   float path;                     /* parallel: sheet spacing / |l.h|; else sheet spacing */
+  float reach;                    /* parallel: how far look-ups read around their place; else at distance 1; frame units */
   const shadow_lookup *lookup;    /* where shadowed: the light that reaches a sample */
   const part_lookup *parts;       /* [part_count]; where there are any, it is their mean instead */
   int part_count, channels;

@@ -20,15 +20,15 @@ LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
 }
 
 /* Light left within the slab, averaged as the eye sees it: with e and l the slab's optical depths for the eye and for
- * the light (derived; exact for any extinction that varies along the normal only). Entering on the same side:
+ * the light (derived; exact for any extinction that varies along the normal only). Both rising along the eye's ray:
  *     int e exp(-e s) exp(-l s) ds / (1 - exp(-e)) = phi(e + l) / phi(e);
- * entering on opposite sides, exp(-l (1 - s)) in place of exp(-l s):
+ * opposite, the light's falling, exp(-l (1 - s)) in place of exp(-l s):
  *     (exp(-l) - exp(-e)) / (e - l) / phi(e) = exp(-min) phi(|e - l|) / phi(e). left: exp(-e). */
-LANES_INLINE lanes own_transmittance(int back_to_front, lanes e, lanes left, lanes l) {
-  lanes both = back_to_front ? lanes_abs(e - l) : e + l;
+LANES_INLINE lanes own_transmittance(lanes_int opposite, lanes e, lanes left, lanes l) {
+  lanes both = lanes_select(opposite, lanes_abs(e - l), e + l);
   mean_transmittance of_both = transmittance_within(both, lanes_exp_negative(both)), of_eye = transmittance_within(e, left);
   lanes seen = of_both.over * of_eye.under / (of_both.under * of_eye.over);
-  if (back_to_front) seen = lanes_exp_negative(lanes_min(e, l)) * seen;
+  if (lanes_bits(opposite) != 0) seen = lanes_select(opposite, lanes_exp_negative(lanes_min(e, l)) * seen, seen);
   return lanes_min(seen, lanes_set(1.0f));
 }
 
@@ -94,10 +94,9 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
                        lanes_max(lanes_min(path.last, leave.last) - enter.last, lanes_set(0))};
 }
 
-/* Optical depths of the slab for one light: before the eye's rays enter the matter, and from there to where they leave
- * it. At a face of a volume's box the two rays may enter through different faces: each volume's part of the light's
- * way is what lies both in the slab and in the box. */
-typedef struct light_depths { lanes before[HL_CHANNELS], within[HL_CHANNELS]; } light_depths;
+/* Optical depths of the slab for one light: to where the slab's covered part starts and to where it ends. Light through a face of a
+ * box may meet its end first. */
+typedef struct light_depths { lanes first[HL_CHANNELS], last[HL_CHANNELS]; } light_depths;
 
 /* Where in the table a volume is seen. */
 LANES_INLINE lanes coordinate_seen(const block_density *d) { return lanes_fma(d->after - d->before, d->seen, d->before); }
@@ -117,9 +116,76 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
+/* Where light enters what is cut by faces: its way from there, and where it is looked up instead. Pixels of a shadow buffer beside a
+ * face mix light that passes outside with what the box took: so near to a face, the box's part is known without them. */
+typedef struct lit_face {
+  lanes_int near;  /* the buffer's pixels there reach across the face */
+  lanes way;       /* of the light, from the face to what is seen */
+  lanes longest;   /* the same to anything in the slab, at most; 0 where not near */
+  lanes3 position; /* what is seen, moved out of the box until they do not; elsewhere where it is */
+} lit_face;
+
+/* Light that leaves one box, seen towards it, where another begins, goes on in that: so far apart they touch, in units of a voxel. */
+static const float TOUCHING = 1e-3f;
+
+/* The light's way from what is seen to the face of a box, and the outward normal there; way, normal: of the boxes before. */
+LANES_INLINE void extend_to_face(const shade_volume *volume, lanes3 position, lanes3 towards, lanes *way, lanes3 *normal) {
+  lanes enter = lanes_set(-1e30f), leave = lanes_set(1e30f);
+  lanes3 out = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis];
+    float length = 1.0f / sqrtf(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+    lanes at = row_of_point(row, position), speed = row_of_vector(row, towards);
+    speed = lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
+    lanes_int rising = speed > 0.0f;
+    lanes slowness = 1.0f / speed, low = lanes_set(volume->low[axis]), high = lanes_set(volume->high[axis]);
+    lanes far = (lanes_select(rising, high, low) - at) * slowness, sign = lanes_select(rising, lanes_set(length), lanes_set(-length));
+    enter = lanes_max(enter, (lanes_select(rising, low, high) - at) * slowness);
+    lanes_int first = far < leave;
+    leave = lanes_min(leave, far);
+    out.x = lanes_select(first, sign * row[0], out.x);
+    out.y = lanes_select(first, sign * row[1], out.y);
+    out.z = lanes_select(first, sign * row[2], out.z);
+  }
+  lanes_int on = (enter <= *way + TOUCHING) & (leave > *way);
+  *way = lanes_select(on, leave, *way);
+  normal->x = lanes_select(on, out.x, normal->x);
+  normal->y = lanes_select(on, out.y, normal->y);
+  normal->z = lanes_select(on, out.z, normal->z);
+}
+
+/* Light that climbs less over a face grazes it; a pixel beside the face then mixes much more than this of optical depth in dense matter.
+ * Elsewhere light is looked up where it is: moved, others' shadows on the face would move too. */
+static const float GRAZING = 0.5f, LEAST_MIXED = 0.5f;
+
+/* Light crosses three shared faces at most where eight boxes meet. reach: of a look-up around its place, in frame units. */
+LANES_INLINE lit_face find_face(const block_slab *slab, const block_density *densities, int count, lanes3 towards, lanes reach) {
+  const block_geometry *g = &slab->geometry;
+  lit_face face = {lanes_set_int(0), lanes_set(0), lanes_set(0), g->position};
+  lanes3 normal = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  int cut = 0;
+  for (int pass = 0; pass < (count == 1 ? 1 : 4); pass++)
+    for (int i = 0; i < count; i++) {
+      const block_density *d = &densities[i];
+      if (!d->there || d->patch->enter == NULL || d->patch->whole) continue;
+      extend_to_face(d->patch->volume, g->position, towards, &face.way, &normal);
+      cut = 1;
+    }
+  if (!cut) return face;
+  lanes climb = lanes_max(dot3(normal, towards), lanes_set(1e-3f)), depth = face.way * climb;
+  lanes dense = slab->total / lanes_max(slab->part.length, lanes_set(1e-6f));
+  face.near = (face.way > 0.0f) & (depth < reach) & (climb < GRAZING) & (dense * reach > LEAST_MIXED * climb);
+  if (lanes_bits(face.near) == 0) return face;
+  face.longest = lanes_keep(face.near, face.way + lanes_abs(dot3(normal, g->step_sheet)) / climb);
+  face.position = add_scaled3(g->position, normal, lanes_keep(face.near, depth + reach));
+  return face;
+}
+
 /* The light's ways through all volumes to where the slab's covered part starts and ends: of several that share a slab, each takes
- * light on what of its way lies in the slab and in its own box, on whichever side of them the eye's ray passes. */
-LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densities, int count, lanes3 towards, lanes path) {
+ * light on what of its way lies in the slab and in its own box, on whichever side of them the eye's ray passes; near a face that it
+ * enters through, also on what lies in the box before the slab. */
+LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densities, int count, lanes3 towards, lanes path,
+                                   const lit_face *face) {
   const block_geometry *g = &slab->geometry;
   ways_in_box all = {slab->part.begin * path, (slab->part.begin + slab->part.length) * path}, sum = {lanes_set(0), lanes_set(0)};
   lanes3 start = add_scaled3(g->start, g->step_sheet, slab->part.begin), way = scale3(g->step_sheet, slab->part.length);
@@ -127,32 +193,42 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
     block_density *d = &densities[i];
     if (!d->there) continue;
     int cut = d->patch->enter != NULL && !d->patch->whole;
-    ways_in_box own = cut ? ways_of_light(d->patch->volume, start, way, towards, all) : all;
+    ways_in_box longest = {lanes_max(all.first, face->longest), lanes_max(all.last, face->longest)};
+    ways_in_box own = cut ? ways_of_light(d->patch->volume, start, way, towards, longest) : all;
     d->light_first = own.first;
     d->light_last = own.last;
-    if (count == 1) return own;
+    if (count == 1) return (ways_in_box){lanes_min(own.first, all.first), lanes_min(own.last, all.last)};
     sum = (ways_in_box){sum.first + own.first, sum.last + own.last};
   }
   return (ways_in_box){lanes_min(sum.first, all.first), lanes_min(sum.last, all.last)};
 }
 
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab, block_density *densities, int count,
-                                          lanes3 towards, lanes path) {
+                                          lanes3 towards, lanes path, const lit_face *face) {
   light_depths depths;
-  for (int c = 0; c < HL_CHANNELS; c++) depths.before[c] = depths.within[c] = lanes_set(0);
-  ways_in_box ways = find_ways(slab, densities, count, towards, path);
+  for (int c = 0; c < HL_CHANNELS; c++) depths.first[c] = depths.last[c] = lanes_set(0);
+  ways_in_box ways = find_ways(slab, densities, count, towards, path, face);
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there) continue;
     lanes extinction = extinction_towards(d, towards, lanes_fma(lanes_max(ways.last, ways.first) - ways.first, d->seen, ways.first));
     for (int c = 0; c < job->channels; c++) {
       lanes cast = extinction * d->patch->volume->cast[c];
-      depths.before[c] = lanes_fma(cast, d->light_first, depths.before[c]);
-      depths.within[c] = lanes_fma(cast, d->light_last - d->light_first, depths.within[c]);
+      depths.first[c] = lanes_fma(cast, d->light_first, depths.first[c]);
+      depths.last[c] = lanes_fma(cast, d->light_last, depths.last[c]);
     }
   }
-  for (int c = 0; c < job->channels; c++) depths.within[c] = lanes_max(depths.within[c], lanes_set(0));
+  /* away from faces, what light loses before the slab is in the buffer, and in the slab its way grows */
+  for (int c = 0; c < job->channels; c++)
+    depths.last[c] = lanes_select(face->near, depths.last[c], lanes_max(depths.last[c], depths.first[c]));
   return depths;
+}
+
+/* Light left within the slab, as the eye sees it: of what has come least far, and on the way from there. */
+LANES_INLINE lanes left_within(const shade_job *job, const block_slab *slab, const light_depths *depths, int channel) {
+  lanes first = depths->first[channel], last = depths->last[channel];
+  lanes_int opposite = job->back_to_front ? first < last : first > last;
+  return lanes_exp_negative(lanes_min(first, last)) * own_transmittance(opposite, slab->depth, slab->left, lanes_abs(last - first));
 }
 
 /* Brightness of a spot light: a smooth step over its cone's edge. */
@@ -191,14 +267,15 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
                                      block_density *densities, int count) {
   const block_geometry *g = &slab->geometry;
   arriving_light arriving;
-  lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
+  lanes path = lanes_set(light->path), strength = lanes_set(1.0f), distance = strength;
   if (light->parallel) {
     arriving.towards = set3(light->towards);
   } else {
     lanes3 way = {light->position[0] - g->position.x, light->position[1] - g->position.y,
                   light->position[2] - g->position.z};
     lanes least = lanes_set(LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE);
-    lanes squared = lanes_max(dot3(way, way), least), distance = lanes_sqrt(squared);
+    lanes squared = lanes_max(dot3(way, way), least);
+    distance = lanes_sqrt(squared);
     arriving.towards = scale3(way, 1.0f / distance);
     lanes climb = lanes_abs(dot3(arriving.towards, set3(job->normal)));
     path = lanes_min(light->path / lanes_max(climb, lanes_set(1e-3f)), distance);
@@ -216,13 +293,15 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   }
   arriving.shadowed = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
-  light_depths depths = depths_of_light(job, slab, densities, count, arriving.towards, path);
-  color_lanes reached = reaching(light, g->position, lanes_bits(slab->seen));
+  lanes pixel = lanes_set(light->reach);
+  if (!light->parallel) pixel = pixel * distance;
+  lit_face face = find_face(slab, densities, count, arriving.towards, pixel);
+  light_depths depths = depths_of_light(job, slab, densities, count, arriving.towards, path, &face);
+  color_lanes reached = reaching(light, face.position, lanes_bits(slab->seen));
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     if (c < light->channels)
-      transmittance = reached.c[c] * lanes_exp_negative(depths.before[c]) *
-                      own_transmittance(job->back_to_front, slab->depth, slab->left, depths.within[c]);
+      transmittance = reached.c[c] * left_within(job, slab, &depths, c);
     arriving.shadowed.c[c] = arriving.shadowed.c[c] * transmittance;
   }
   return arriving;

@@ -290,6 +290,8 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   if (from->buffer == NULL) return;
   light->channels = from->buffer->channels;
   light->lookup = &from->lookup;
+  const view *view = &from->buffer->view;
+  light->reach = (float)((from->source->shadows == HL_SHADOWS_SOFT ? 0 : from->cubic ? 2 : 1) * fmax(vec3_length(view->du), vec3_length(view->dv)));
   light->parts = from->sublights.lookups;
   light->part_count = from->sublights.count;
 }
@@ -334,11 +336,23 @@ static double least_climb(const sweep *sweep, const light_source *source) {
   return least;
 }
 
+/* How far look-ups read around a place at most: nearer to a face, it decides what light they find (shade_lanes.h). */
+static double farthest_reach(const sweep *sweep, int index) {
+  const shade_light *light = &sweep->shade_lights[index];
+  double farthest = light->parallel ? 1 : 0;
+  for (int i = 0; i < sweep->frame->point_count && !light->parallel; i++)
+    farthest = fmax(farthest, vec3_length(vec3_subtract(sweep->frame->points[i], sweep->lights[index].source->position)));
+  return light->reach * farthest;
+}
+
 static double longest_way(const sweep *sweep) {
-  double least = 1;
-  for (int i = 0; i < sweep->geometry->light_count; i++)
-    if (sweep->lights[i].buffer != NULL) least = fmin(least, least_climb(sweep, sweep->lights[i].source));
-  return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
+  double least = 1, reach = 0;
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    if (sweep->lights[i].buffer == NULL) continue;
+    least = fmin(least, least_climb(sweep, sweep->lights[i].source));
+    reach = fmax(reach, farthest_reach(sweep, i));
+  }
+  return least < LEAST_CLIMB ? INFINITY : fmax(sweep->geometry->sheets.spacing / least, reach);
 }
 
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error) {
@@ -355,9 +369,9 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *m
   hl_release(sweep->context, points);
   if (status == HL_OK) status = allocate_stages(sweep, error);
   if (status != HL_OK) return status;
-  sweep->longest_way = longest_way(sweep);
   set_up_shading(sweep);
   set_up_jobs(sweep);
+  sweep->longest_way = longest_way(sweep);
   status = hl_sweep_layers_begin(sweep, error);
   sweep->seconds_sort = hl_clock_seconds() - start;
   return status;

@@ -29,7 +29,7 @@ static const setting SETTINGS[] = {
     {"from behind, hard", HL_LIGHT_DIRECTIONAL, 0, HL_SOFT_CASCADE, true},
     {"directional, cascade", HL_LIGHT_DIRECTIONAL, 10, HL_SOFT_CASCADE, false},
     {"directional, paper", HL_LIGHT_DIRECTIONAL, 10, HL_SOFT_PAPER, false},
-    {"point, sub-lights", HL_LIGHT_POINT, 4, HL_SOFT_SUBLIGHTS, false},
+    {"directional, sub-lights", HL_LIGHT_DIRECTIONAL, 10, HL_SOFT_SUBLIGHTS, false},
     {"rect, cascade", HL_LIGHT_RECT, 8, HL_SOFT_CASCADE, false},
 };
 enum { SETTINGS_COUNT = sizeof SETTINGS / sizeof *SETTINGS };
