@@ -75,59 +75,15 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
       }
 }
 
-/* How many of the six neighbours of a place are marked; those outside the grid count where `outside` is 1. */
-static int neighbours(const shape *s, const unsigned char *marked, int i, int j, int k, int outside) {
-  const int at[3] = {i, j, k};
-  const size_t stride[3] = {1, (size_t)s->size[0], (size_t)s->size[0] * (size_t)s->size[1]}, place = place_in(s, i, j, k);
-  int count = 0;
-  for (int a = 0; a < 3; a++) {
-    count += at[a] > 0 ? marked[place - stride[a]] != 0 : outside;
-    count += at[a] + 1 < s->size[a] ? marked[place + stride[a]] != 0 : outside;
-  }
-  return count;
-}
-
-/* to: the places of `from` whose neighbours are all in `from` (shrunk), or the places of s->solid in or beside `from` (grown). */
-static void change_by_one(const shape *s, const unsigned char *from, bool grown, unsigned char *to) {
-  size_t place = 0;
-  for (int k = 0; k < s->size[2]; k++)
-    for (int j = 0; j < s->size[1]; j++)
-      for (int i = 0; i < s->size[0]; i++, place++)
-        to[place] = grown ? s->solid[place] && (from[place] || neighbours(s, from, i, j, k, 0) > 0)
-                          : from[place] && neighbours(s, from, i, j, k, 1) == 6;
-}
-
-static size_t count_marked(const shape *s, const unsigned char *marked) {
-  size_t count = 0;
-  for (size_t p = 0; p < places_of(s); p++) count += marked[p] != 0;
-  return count;
-}
-
-/* Leaves the largest body of `marked` alone. */
-static hl_status keep_largest(hl_context *context, const shape *s, unsigned char *marked, hl_error *error) {
+/* The largest connected body alone is looked at, not a board beside it; many small bodies are taken together. */
+static hl_status forget_others(hl_context *context, shape *s, hl_error *error) {
   hl_bodies bodies;
-  hl_status status = hl_bodies_find(context, marked, s->size, &bodies, error);
-  for (size_t p = 0; status == HL_OK && p < places_of(s); p++) marked[p] = marked[p] && bodies.body[p] == bodies.largest;
+  hl_status status = hl_bodies_find(context, s->solid, s->size, &bodies, error);
+  double all = 0;
+  for (uint32_t b = 1; status == HL_OK && b <= bodies.count; b++) all += bodies.places[b];
+  if (status == HL_OK && bodies.places[bodies.largest] >= BODY_AT_LEAST * all)
+    for (size_t p = 0; p < places_of(s); p++) s->solid[p] = s->solid[p] && bodies.body[p] == bodies.largest;
   hl_bodies_release(context, &bodies);
-  return status;
-}
-
-/* The largest body alone is looked at: not the board that it lies on, nor a rest that touches it, which is gone where everything
- * is thinner by a place on all sides. What is thin itself is taken as it is, and many small bodies together. work: two more
- * lattices. */
-static hl_status forget_others(hl_context *context, shape *s, unsigned char *work, hl_error *error) {
-  const size_t places = places_of(s), all = count_marked(s, s->solid);
-  unsigned char *core = work, *grown = work + places;
-  change_by_one(s, s->solid, false, core);
-  hl_status status = keep_largest(context, s, core, error);
-  if (status != HL_OK) return status;
-  change_by_one(s, core, true, grown);
-  change_by_one(s, grown, true, core);
-  if (count_marked(s, core) < BODY_AT_LEAST * (double)all) {
-    memcpy(core, s->solid, places);
-    status = keep_largest(context, s, core, error);
-  }
-  if (status == HL_OK && count_marked(s, core) >= BODY_AT_LEAST * (double)all) memcpy(s->solid, core, places);
   return status;
 }
 
@@ -155,12 +111,9 @@ static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *ana
   hl_context *context = volume->context;
   size_t step = hl_lattice_step(volume->dimension, LATTICE);
   memset(s, 0, sizeof *s);
-  bool allocated = allocate(context, volume, step, s);
-  unsigned char *work = allocated ? hl_allocate(context, places_of(s), 2) : NULL;
-  if (work == NULL) return hl_fail_memory(error, (size_t)LATTICE, "a volume's outline");
+  if (!allocate(context, volume, step, s)) return hl_fail_memory(error, (size_t)LATTICE, "a volume's outline");
   fill(volume, analysis, step, s);
-  hl_status status = forget_others(context, s, work, error);
-  hl_release(context, work);
+  hl_status status = forget_others(context, s, error);
   *any = status == HL_OK && measure(s);
   if (status == HL_OK && hl_cancelled(context)) status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume");
   return status;

@@ -47,7 +47,8 @@ hl_status hl_view_automatic(const hl_scene_description *description, const hl_da
                             hl_error *error) {
   const hl_scene_volume *first = &description->volumes[0];
   hl_view_about(description, (vec3){0, 0, 1}, view);
-  if (space_of(description) != HL_SPACE_UNKNOWN || !first_decides(description)) return HL_OK;
+  /* Left-posterior-superior is written for anything, grids along its axes are looked at; right-anterior-superior is meant. */
+  if (space_of(description) == HL_SPACE_RAS || !first_decides(description)) return HL_OK;
   hl_data_analysis made;
   hl_status status = analysis == NULL ? hl_data_analyse(first->volume, &made, error) : HL_OK;
   hl_upright upright;
