@@ -63,6 +63,8 @@ typedef struct hl_reference_options {
   int light_points;     /* points on each extended light; default 1024 */
   double step;          /* marching step in smallest voxel edges; default 0.25 */
   int threads;          /* 0: one per processor */
+  int rays;             /* along each side of a pixel, from 1 to 8; their mean is the pixel; default 1. 0: as many as the
+                           renderer averages where voxels are smaller than pixels */
 } hl_reference_options;
 
 HL_API void hl_reference_options_defaults(hl_reference_options *options);

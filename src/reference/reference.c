@@ -54,11 +54,11 @@ static eye_rays eye_rays_of(const hl_scene_description *scene) {
   return eye;
 }
 
-/* The ray through the centre of pixel (x, y); direction is a unit vector. */
+/* Ray (x, y) of the picture, of which a pixel has rays x rays; direction is a unit vector. */
 static void eye_ray(const picture *all, size_t x, size_t y, vec3 *origin, vec3 *direction) {
   const eye_rays *eye = &all->eye;
-  double across = 2 * ((double)x + 0.5) / all->all->scene->width - 1;
-  double upwards = 1 - 2 * ((double)y + 0.5) / all->all->scene->height;
+  double across = 2 * ((double)x + 0.5) / ((double)all->all->scene->width * all->all->rays) - 1;
+  double upwards = 1 - 2 * ((double)y + 0.5) / ((double)all->all->scene->height * all->all->rays);
   vec3 offset = vec3_add(vec3_scale(eye->right, across), vec3_scale(eye->up, upwards));
   *origin = eye->orthographic ? vec3_add(eye->position, offset) : eye->position;
   *direction = eye->orthographic ? eye->forward : vec3_normalise(vec3_add(eye->forward, offset));
@@ -145,23 +145,49 @@ static void write_pixel(const reference_parts *ray, size_t light_count, float rg
   rgba[3] = (float)ray->weight;
 }
 
+/* The mean of a pixel's rays, and where they first meet something, over those that do. */
+static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
+  reference_worker *own = &all->workers[worker];
+  size_t lights = all->all->scene->light_count, rays = (size_t)all->all->rays, hits = 0;
+  double first = 0;
+  hl_reference_parts_clear(&own->pixel, lights);
+  for (size_t r = 0; r < rays * rays; r++) {
+    vec3 origin, direction;
+    eye_ray(all, x * rays + r % rays, y * rays + r / rays, &origin, &direction);
+    double depth = trace(all->all, origin, direction, own);
+    hl_reference_parts_add(&own->pixel, &own->ray, 1 / (double)(rays * rays), lights);
+    if (!(depth < INFINITY)) continue;
+    first += depth;
+    hits++;
+  }
+  write_pixel(&own->pixel, lights, all->pixels + y * all->row_stride + 4 * x);
+  double depth_first = hits > 0 ? first / (double)hits : INFINITY;
+  if (all->layers != NULL)
+    hl_reference_parts_write(&own->pixel, depth_first, all->layers, y * (size_t)all->all->scene->width + x);
+}
+
+static void project_pixel(const picture *all, size_t x, size_t y, int worker) {
+  size_t rays = (size_t)all->all->rays;
+  float *pixel = all->pixels + y * all->row_stride + 4 * x;
+  double sum[4] = {0, 0, 0, 0};
+  for (size_t r = 0; r < rays * rays; r++) {
+    vec3 origin, direction;
+    float one[4];
+    eye_ray(all, x * rays + r % rays, y * rays + r / rays, &origin, &direction);
+    hl_reference_maximum(all->all, origin, direction, &all->workers[worker], one);
+    for (int c = 0; c < 4; c++) sum[c] += (double)one[c];
+  }
+  for (int c = 0; c < 4; c++) pixel[c] = (float)(sum[c] / (double)(rays * rays));
+}
+
 static void render_run(void *data, size_t index, int worker) {
   picture *all = data;
   const hl_scene_description *scene = all->all->scene;
   size_t y = index / all->runs_per_row, first = index % all->runs_per_row * RUN_PIXELS;
   for (size_t x = first; x < first + RUN_PIXELS && x < (size_t)scene->width; x++) {
     if (hl_pool_stops(all->all->pool, worker)) return;
-    vec3 origin, direction;
-    const reference_parts *ray = &all->workers[worker].ray;
-    eye_ray(all, x, y, &origin, &direction);
-    float *pixel = all->pixels + y * all->row_stride + 4 * x;
-    if (scene->render.compositing == HL_COMPOSITING_MAXIMUM) {
-      hl_reference_maximum(all->all, origin, direction, &all->workers[worker], pixel);
-      continue;
-    }
-    double depth_first = trace(all->all, origin, direction, &all->workers[worker]);
-    write_pixel(ray, scene->light_count, pixel);
-    if (all->layers != NULL) hl_reference_parts_write(ray, depth_first, all->layers, y * (size_t)scene->width + x);
+    if (scene->render.compositing == HL_COMPOSITING_MAXIMUM) project_pixel(all, x, y, worker);
+    else trace_pixel(all, x, y, worker);
   }
   size_t done = atomic_fetch_add(&all->runs_done, 1) + 1;
   if (worker == 0)
@@ -184,6 +210,7 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
     edge = fmin(edge, all->volumes[v].smallest_edge);
   }
   all->step = options->step * edge;
+  all->rays = options->rays > 0 ? options->rays : hl_reference_rays(all, edge);
   double coarser = fmax(options->step / USUAL_STEP, 1);
   all->most_opacity = fmin(MOST_OPACITY * coarser * coarser, COARSEST_OPACITY);
   for (size_t l = 0; l < scene->light_count; l++) {
@@ -209,7 +236,7 @@ static reference_worker *workers_create(const reference *all, size_t threads) {
   reference_worker *workers = hl_allocate_zeroed(all->context, threads, sizeof *workers);
   crossing *crossings = hl_allocate_zeroed(all->context, 2 * threads * volumes, sizeof *crossings);
   arrival *arrivals = hl_allocate_zeroed(all->context, threads * lights, sizeof *arrivals);
-  light_part *parts = hl_allocate_zeroed(all->context, 2 * threads * lights, sizeof *parts);
+  light_part *parts = hl_allocate_zeroed(all->context, 3 * threads * lights, sizeof *parts);
   if (workers == NULL || crossings == NULL || arrivals == NULL || parts == NULL) {
     hl_release(all->context, workers);
     hl_release(all->context, crossings);
@@ -219,8 +246,8 @@ static reference_worker *workers_create(const reference *all, size_t threads) {
   }
   for (size_t t = 0; t < threads; t++)
     workers[t] = (reference_worker){(int)t, crossings + 2 * t * volumes, crossings + (2 * t + 1) * volumes,
-                                    arrivals + t * lights, {.lights = parts + 2 * t * lights},
-                                    {.lights = parts + (2 * t + 1) * lights}};
+                                    arrivals + t * lights, {.lights = parts + 3 * t * lights},
+                                    {.lights = parts + (3 * t + 1) * lights}, {.lights = parts + (3 * t + 2) * lights}};
   return workers;
 }
 
@@ -250,7 +277,7 @@ static hl_status render(const reference *all, hl_pool *pool, float *pixels, size
 
 void hl_reference_options_defaults(hl_reference_options *options) {
   if (options == NULL) return;
-  *options = (hl_reference_options){.struct_size = sizeof *options, .light_points = 1024, .step = USUAL_STEP};
+  *options = (hl_reference_options){.struct_size = sizeof *options, .light_points = 1024, .step = USUAL_STEP, .rays = 1};
 }
 
 static hl_status check(const hl_reference_options *options, const hl_scene_description *scene,
@@ -269,6 +296,9 @@ static hl_status check(const hl_reference_options *options, const hl_scene_descr
   if (options->threads < 0)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: threads is %d, must be 0 or more",
                    options->threads);
+  if (options->rays < 0 || options->rays > HL_REFERENCE_RAYS)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: rays is %d, must be from 0 to %d", options->rays,
+                   HL_REFERENCE_RAYS);
   if (row_stride / 4 < (size_t)scene->width)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_reference_render: row_stride is %zu, a row needs %d x 4 floats", row_stride,

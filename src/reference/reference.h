@@ -7,6 +7,7 @@
  *     march.c       a ray through the boxes of the volumes, step by step, jumping over empty bricks
  *     field.c       reconstruction of one volume at a point: value, gradient, extinction
  *     bricks.c      where a volume has nothing
+ *     rays.c        how many rays a pixel of a small picture has
  *     texture.c     the image that a light projects, the one on a light
  *     lights.c      points on the lights, and the transmittance towards them
  *     shade.c       the light that one sample sends to the eye
@@ -67,6 +68,7 @@ typedef struct reference {
   reference_volume *volumes;  /* owned; [scene->volume_count] */
   reference_light *lights;    /* owned; [scene->light_count] */
   double step;                /* world units */
+  int rays;                   /* along each side of a pixel, whose mean it is */
   double most_opacity;        /* that one sample may add to a pixel */
   bool all_shadows;           /* the transmittance of every light is wanted at every sample */
 } reference;
@@ -118,13 +120,16 @@ typedef struct reference_worker {
   int number;                 /* of the pool */
   crossing *eye, *shadow;     /* [volume_count] */
   arrival *arrivals;          /* [light_count] */
-  reference_parts sample, ray;
+  reference_parts sample, ray, pixel;
 } reference_worker;
 
 hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
                                      reference_volume *made, hl_error *error);
 hl_status hl_reference_bricks_create(hl_context *context, reference_volume *volume, hl_pool *pool,
                                      hl_error *error);
+/* The most rays along a side of a pixel; and how many there are where voxels, `edge` long in world units, are smaller than pixels. */
+enum { HL_REFERENCE_RAYS = 8 };
+int hl_reference_rays(const reference *all, double edge);
 /* How far a ray may go from `point` (index space) before it can meet something: 0 where it may be here.
  * In units of `direction`. */
 double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction);
