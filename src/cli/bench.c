@@ -58,7 +58,7 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
     [BENCH_RECONSTRUCTION] = {.name = "reconstruction",
                               .kind = OPTION_CHOICE,
                               .choices = reconstruction_choices,
-                              .help = "push footprints, or pull samples"},
+                              .help = "push footprints, or pull samples (default: the\nscene's)"},
     [BENCH_THREADS] = {.name = "threads",
                        .kind = OPTION_NUMBERS,
                        .argument = "N",
@@ -74,7 +74,7 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
     [BENCH_MAX_MEMORY] = {.name = "max-memory",
                           .kind = OPTION_BYTES,
                           .argument = "BYTES",
-                          .help = "fail rather than hold more; suffix K, M, G or T"},
+                          .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
     [BENCH_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "medians as JSON"},
 };
 

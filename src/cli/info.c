@@ -21,11 +21,11 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_ARRAY] = {.name = "array",
                     .kind = OPTION_TEXT,
                     .argument = "NAME",
-                    .help = "of the file's arrays this one"},
+                    .help = "of the file's arrays this one (default: the active\none, else the first of one component)"},
     [INFO_COMPONENT] = {.name = "component",
                         .kind = OPTION_NUMBERS,
                         .argument = "N|magnitude",
-                        .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude",
+                        .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude\n(default: the only one; of 2 or 3 the magnitude,\nelse 0)",
                         .choices = magnitudes,
                         .count = 1,
                         .whole = true,
@@ -34,7 +34,7 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_MAX_MEMORY] = {.name = "max-memory",
                          .kind = OPTION_BYTES,
                          .argument = "BYTES",
-                         .help = "fail rather than hold more; suffix K, M, G or T"},
+                         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
 };
 
 /* The file's arrays, and what the volume is made of. */
@@ -85,6 +85,12 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   json_open_array(&json, "direction");
   for (int row = 0; row < 3; row++) json_numbers(&json, NULL, info->direction[row], 3);
   json_close(&json);
+  double low[3], high[3];
+  input_world_box(info, low, high);
+  json_open_object(&json, "world_box");
+  json_numbers(&json, "min", low, 3);
+  json_numbers(&json, "max", high, 3);
+  json_close(&json);
   json_text(&json, "space", hl_space_name(info->space));
   json_numbers(&json, "range", info->range, 2);
   json_number(&json, "mean", info->mean);
@@ -130,6 +136,9 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
   for (int axis = 0; axis < 3; axis++)
     printf("  %s      %c: %.9g, %.9g, %.9g\n", axis == 0 ? "axes  " : "      ", "ijk"[axis], d[0][axis],
            d[1][axis], d[2][axis]);
+  double low[3], high[3];
+  input_world_box(info, low, high);
+  printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1], low[2], high[2]);
   if (info->space != HL_SPACE_UNKNOWN) printf("  space       %s\n", hl_space_name(info->space));
   printf("  range       %.9g to %.9g, mean %.9g\n", info->range[0], info->range[1], info->mean);
   if (info->nonfinite_count > 0)
@@ -172,7 +181,7 @@ const cli_command info_command = {
     .operands = "VOLUME",
     .operand_count = 1,
     .summary = "show size, type, placement, range and histogram of a volume file",
-    .description = "Shows what a volume file holds: size, type, spacing, orientation, range and histogram.",
+    .description = "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.",
     .options = info_options,
     .option_count = INFO_OPTION_COUNT,
     .run = run_info,

@@ -36,6 +36,10 @@ void input_load_options(const cli_value *array, const cli_value *component, cons
 hl_status input_load_volume(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
                             hl_volume **volume, hl_error *error);
 
+/* The box around the cells of a volume's voxels, half a voxel beyond their centres, in its file's world: least and greatest
+ * x, y, z. */
+void input_world_box(const hl_volume_info *info, double low[3], double high[3]);
+
 /* The scene that it is, carries, or that is made for it. */
 hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options, hl_scene **scene,
                      hl_error *error);

@@ -61,7 +61,7 @@ static const cli_option make_options[MAKE_OPTION_COUNT] = {
     [MAKE_MAX_MEMORY] = {.name = "max-memory",
                          .kind = OPTION_BYTES,
                          .argument = "BYTES",
-                         .help = "fail rather than hold more; suffix K, M, G or T"},
+                         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
     [MAKE_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "no progress bar, no warnings, no summary"},
 };
 

@@ -258,7 +258,7 @@ const cli_command render_command = {
         "NIfTI, VTK, NumPy, raw), together where there are several; '-' is standard input.\n"
         "A volume needs no options: the camera frames it, the transfer function comes from its\n"
         "histogram, and a key light from the upper left casts soft shadows. Options override\n"
-        "what the scene says.",
+        "what the scene says; a default holds where neither says anything.",
     .options = render_options,
     .option_count = RENDER_OPTION_COUNT,
     .run = run_render,

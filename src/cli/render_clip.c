@@ -7,23 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "input.h"
 #include "render.h"
-
-/* The box around the cells of a volume's voxels, in its file's world. */
-static bool volume_box(const hl_volume *volume, double low[3], double high[3]) {
-  hl_volume_info info = {.struct_size = sizeof info};
-  if (hl_volume_get_info(volume, &info) != HL_OK) return false;
-  for (int row = 0; row < 3; row++) {
-    low[row] = high[row] = info.origin[row];
-    for (int axis = 0; axis < 3; axis++) {
-      double step = info.direction[row][axis] * info.spacing[axis];
-      double first = -0.5 * step, last = ((double)info.dimensions[axis] - 0.5) * step;
-      low[row] += fmin(first, last);
-      high[row] += fmax(first, last);
-    }
-  }
-  return true;
-}
 
 /* One end of a range. */
 typedef struct clip_end {
@@ -77,7 +62,9 @@ static double place_of(const clip_end *end, double otherwise, double low, double
 
 int render_clip(const cli_value *clip, hl_scene_volume *volume) {
   double low[3], high[3];
-  if (!volume_box(volume->volume, low, high)) return fail(EXIT_CODE_FAILURE, "--clip: the volume's place is not known");
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume->volume, &info) != HL_OK) return fail(EXIT_CODE_FAILURE, "--clip: the volume's place is not known");
+  input_world_box(&info, low, high);
   if (!volume->clipped) {
     memcpy(volume->clip_min, low, sizeof low);
     memcpy(volume->clip_max, high, sizeof high);

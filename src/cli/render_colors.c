@@ -147,7 +147,7 @@ static void spread(hl_transfer_function *function, const double visible[2], cons
 }
 
 /* Clear below, then nearly opaque within a voxel's edge. The ramp before it gives surfaces a slope that is shaded without
- * stairs; it is a twentieth of the volume's values wide. */
+ * stairs; it is a twentieth of the volume's values wide, and ends halfway to the least of them. */
 static int make_opaque_from(const cli_host *host, const hl_volume *volume, double threshold, hl_transfer_function *function) {
   enum { POINTS = 2 };
   hl_volume_info info = {.struct_size = sizeof info};
@@ -157,7 +157,9 @@ static int make_opaque_from(const cli_host *host, const hl_volume *volume, doubl
          threshold > info.range[1] ? "nothing is opaque" : "everything is");
   hl_opacity_point *points = realloc((void *)function->opacity, POINTS * sizeof *points);
   if (points == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
-  double ramp = fmax((info.range[1] - info.range[0]) / 20, fabs(threshold) * 1e-9);
+  double ramp = (info.range[1] - info.range[0]) / 20;
+  if (threshold > info.range[0]) ramp = fmin(ramp, (threshold - info.range[0]) / 2);
+  ramp = fmax(ramp, fabs(threshold) * 1e-9);
   points[0] = (hl_opacity_point){threshold - ramp, 0};
   points[1] = (hl_opacity_point){threshold, 0.95};
   function->opacity = points;

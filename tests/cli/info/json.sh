@@ -14,6 +14,7 @@ END
 halflight info grid.nhdr --json >info.json
 tool json info.json 'd["dimensions"], d["type"], d["spacing"], d["origin"]'
 tool json info.json 'd["direction"]'
+tool json info.json 'd["world_box"]'
 tool json info.json 'd["taken_for"] in ("field", "scanned matter")'
 tool json info.json 'd["range"], d["mean"], d["nonfinite_count"]'
 tool json info.json 'len(d["histogram"]), sum(d["histogram"]), d["histogram"][0], d["histogram"][255]'
