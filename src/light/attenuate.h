@@ -27,6 +27,7 @@ typedef struct attenuate_job {
   int volume_count;
   int channels;                  /* 1: attenuation is grey; 3 */
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
+  float *older[HL_CHANNELS];     /* as transmittance, multiplied alike; null: none */
   size_t stride;
   float *moment[HL_CHANNELS];    /* the tile's first pixel; rows moment_stride apart; null: none. Raised by what the slab
                                     takes of the light, times place */

@@ -80,6 +80,12 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     lanes before = lanes_load_block(at, job->stride), after = before * passing;
     lanes_store_block(at, job->stride, after);
     greatest = lanes_max(greatest, after);
+    if (job->older[c] != NULL) {
+      float *older = job->older[c] + (size_t)y * job->stride + x;
+      lanes left = lanes_load_block(older, job->stride) * passing;
+      lanes_store_block(older, job->stride, left);
+      greatest = lanes_max(greatest, left);
+    }
     if (job->moment[c] == NULL) continue;
     float *moment = job->moment[c] + (size_t)y * job->moment_stride + x;
     lanes_store_block(moment, job->moment_stride, lanes_add_scaled(lanes_load_block(moment, job->moment_stride), before - after, job->place));

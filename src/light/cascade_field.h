@@ -40,11 +40,15 @@ typedef struct field_blur_job {
 /* Returns as field_tile_function does. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
-/* The light that is left, 1 - lacking, from 0 to 1. */
+/* A chunk's end: the light that is left, 1 - lacking, from 0 to 1, times what the slabs of the chunk left of what it began with. */
 typedef struct left_job {
   const field_pixel *lacking; /* rows stride apart */
-  float *to;             /* rows stride_to apart */
+  float *lacked;         /* rows stride apart; 1 - the light at the chunk's start; becomes that at its end */
+  float *to;             /* rows stride_to apart; the light that was left; becomes what is left now */
+  float *older;          /* rows stride_to apart; becomes what `to` was, or is now if it was not found at the chunk's start */
   size_t stride, stride_to;
+  int kept;              /* the chunk's slabs took some of `to` */
+  int again;             /* `to` was found at the chunk's start as well */
 } left_job;
 typedef void left_tile_function(const left_job *job, int tile_x, int tile_y);
 
@@ -60,10 +64,10 @@ typedef struct field_image_job {
 /* Returns as field_tile_function does. */
 typedef int field_image_tile_function(const field_image_job *job, int tile_x, int tile_y);
 
-/* What a chunk's slabs took of the light before it: (1 - lacking) - now, and the part of it that thin matter took. Of
+/* What a chunk's slabs took of the light before it: (1 - lacked) - now, and the part of it that thin matter took. Of
  * either the part moment / (length taken) goes to the group at the chunk's end, the rest to the one at its start. */
 typedef struct absorbed_job {
-  const field_pixel *lacking; /* rows stride apart */
+  const float *lacked;   /* rows stride apart */
   const float *now;      /* rows stride_now apart */
   float *moment;         /* sum over the slabs of what each took, times its place in the chunk; is cleared */
   float length;          /* of the chunk */

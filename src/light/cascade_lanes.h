@@ -6,7 +6,7 @@
 #include "light/cascade_field.h"
 
 /* Blurred sums leave a little light in umbrae: where less than this is left, none is. */
-static const float UMBRA = 1.0f / 128;
+static const float UMBRA = 1.0f / 160;
 
 /* Asks for a tile's rows, which lie on as many lines of the cache, before they are needed. Null: none. */
 LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x, int tile_y, tile_rows rows, const int to_write) {
@@ -189,10 +189,21 @@ static void image_tile(const image_job *job, int tile_x, int tile_y) {
   }
 }
 
+/* The part of a chunk's light that its slabs left. Where it began with next to none, they were not asked: all of it. */
+LANES_INLINE lanes kept_light(lanes end, lanes start) {
+  lanes least = lanes_set(1.0f / 256);
+  return lanes_select(start < least, lanes_set(1.0f), lanes_min(end / lanes_max(start, least), lanes_set(1.0f)));
+}
+
 static void left_tile(const left_job *job, int tile_x, int tile_y) {
-  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++)
-    lanes_store(job->to + (size_t)row * job->stride_to + (size_t)tile_x * TILE,
-                light_left(job->lacking + (size_t)row * job->stride + (size_t)tile_x * TILE));
+  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
+    size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE, at_to = (size_t)row * job->stride_to + (size_t)tile_x * TILE;
+    lanes before = lanes_load(job->to + at_to), left = light_left(job->lacking + at);
+    if (job->kept) left = left * kept_light(before, 1.0f - lanes_load(job->lacked + at));
+    lanes_store(job->older + at_to, job->again ? before : left);
+    lanes_store(job->to + at_to, left);
+    lanes_store(job->lacked + at, 1.0f - left);
+  }
 }
 
 /* Matter at one place as matter at two, the part `late` of it at the second (derived): of a ray thin matter leaves 1 - F,
@@ -237,13 +248,13 @@ static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 
 static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   lanes start[2] = {lanes_set(0), lanes_set(0)}, end[2] = {lanes_set(0), lanes_set(0)};
-  const field_pixel *first[] = {job->lacking, job->start_absorbed, job->start_thin, job->end_absorbed, job->end_thin};
+  const field_pixel *first[] = {job->start_absorbed, job->start_thin, job->end_absorbed, job->end_thin};
   fetch_float_tile(job->now, job->stride_now, tile_x, tile_y);
-  for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) fetch_rows(first[i], job->stride, tile_x, tile_y, ALL_ROWS, i > 0);
+  for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) fetch_rows(first[i], job->stride, tile_x, tile_y, ALL_ROWS, 1);
   fetch_float_tile(job->moment, job->stride, tile_x, tile_y);
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
-    lanes before = light_left(job->lacking + at);
+    lanes before = 1.0f - lanes_load(job->lacked + at);
     lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
     lanes taken = lanes_max(before - now, lanes_set(0));
     if (lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */

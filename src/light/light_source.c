@@ -3,6 +3,9 @@
 
 #include "scene/light_shape.h"
 
+/* Lights smaller than a millionth of their distance are points: no pixel shows their penumbrae. Squared. */
+static const double POINT_LIKE = 1e-12;
+
 static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }
 
 light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 content) {
@@ -21,7 +24,8 @@ light_source hl_light_source(const hl_light *light, const hl_render_settings *se
     source.direction = vec3_length(way) > 0 ? vec3_normalise(way) : (vec3){0, 0, 1};
   }
   source.spread = hl_light_spread(light, source.direction);
-  if (source.shadows == HL_SHADOWS_SOFT && !(trace(source.spread) > 0)) source.shadows = HL_SHADOWS_HARD;
+  double distance = source.parallel ? 1 : vec3_length(vec3_subtract(content, source.position));
+  if (source.shadows == HL_SHADOWS_SOFT && !(trace(source.spread) > POINT_LIKE * distance * distance)) source.shadows = HL_SHADOWS_HARD;
   return source;
 }
 

@@ -145,19 +145,19 @@ static size_t lay_out(const view *view, int reach, shadow_buffer *buffer) {
   return margin;
 }
 
-uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool scratch, int reach) {
+uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach) {
   shadow_buffer buffer = {0};
   (void)lay_out(view, reach, &buffer);
   uint64_t tiles = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y;
-  return buffer.plane * (uint64_t)channels * (scratch ? 2 : 1) * sizeof(float) + tiles * 4;
+  return buffer.plane * (uint64_t)channels * (second ? 2 : 1) * sizeof(float) + tiles * 4;
 }
 
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view, int channels,
-                                 bool scratch, int reach, hl_error *error) {
+                                 bool second, int reach, hl_error *error) {
   size_t margin = lay_out(view, reach, buffer);
   buffer->channels = channels;
   buffer->origin = margin * buffer->stride + margin;
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, planes = (size_t)channels * (scratch ? 2 : 1);
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, planes = (size_t)channels * (second ? 2 : 1);
   hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);
   if (status != HL_OK) return status;
   hl_pool_fill(pool, buffer->memory, planes * buffer->plane, 1);
@@ -166,16 +166,21 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
   for (int c = 0; c < HL_CHANNELS; c++) {
     bool used = c < channels;
     buffer->transmittance[c] = used ? buffer->memory + (size_t)c * buffer->plane + buffer->origin : NULL;
-    buffer->scratch[c] = used && scratch ? buffer->transmittance[c] + (size_t)channels * buffer->plane : NULL;
+    buffer->second[c] = used && second ? buffer->transmittance[c] + (size_t)channels * buffer->plane : NULL;
   }
   return HL_OK;
 }
 
-void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, lit_blocks_function *lit_blocks) {
+static uint16_t lit_blocks_of(const shadow_buffer *buffer, float *const planes[HL_CHANNELS], int x, int y, lit_blocks_function *lit_blocks) {
   const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
-  for (int c = 0; c < buffer->channels; c++)
-    transmittance[c] = buffer->transmittance[c] + (size_t)y * TILE * buffer->stride + (size_t)x * TILE;
-  buffer->tile_lit[y * buffer->tiles_x + x] = (uint16_t)lit_blocks(transmittance, buffer->channels, buffer->stride);
+  for (int c = 0; c < buffer->channels; c++) transmittance[c] = planes[c] + (size_t)y * TILE * buffer->stride + (size_t)x * TILE;
+  return (uint16_t)lit_blocks(transmittance, buffer->channels, buffer->stride);
+}
+
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both, lit_blocks_function *lit_blocks) {
+  uint16_t lit = lit_blocks_of(buffer, buffer->transmittance, x, y, lit_blocks);
+  if (both) lit |= lit_blocks_of(buffer, buffer->second, x, y, lit_blocks);
+  buffer->tile_lit[y * buffer->tiles_x + x] = lit;
 }
 
 shadow_map hl_map_of_view(const view *view) {

@@ -19,7 +19,8 @@ typedef struct shadow_buffer {
   size_t plane;                 /* floats of one channel, margins included */
   size_t origin;                /* offset of pixel (0,0) in a plane */
   float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory */
-  float *scratch[HL_CHANNELS];  /* pixel (0,0); the paper's soft shadows only; in memory */
+  float *second[HL_CHANNELS];   /* pixel (0,0); in memory; null: none. The paper's soft shadows: between two blurs. The
+                                   cascade's: what light receivers fade from, see soft_cascade.h */
   float *memory;                /* owned; all planes */
   size_t capacity;              /* floats in memory */
   uint16_t *tile_lit;           /* owned; [tiles]; blocks that light still reaches */
@@ -43,14 +44,14 @@ typedef struct shadow_extent {
 /* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
 void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view);
 
-/* (Re)allocates for the view and sets all transmittances to 1. scratch: whether a second set of planes is
+/* (Re)allocates for the view and sets all transmittances to 1. second: whether a second set of planes is
  * needed. reach: pixels that blurs read beyond a tile. */
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view, int channels,
-                                 bool scratch, int reach, hl_error *error);
+                                 bool second, int reach, hl_error *error);
 /* The bytes that it then holds. */
-uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool scratch, int reach);
-/* Finds a tile's tile_lit anew after a blur. */
-void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, lit_blocks_function *lit_blocks);
+uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach);
+/* Finds a tile's tile_lit anew after a blur. both: what the second planes hold is light, too. */
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both, lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
 
 #endif

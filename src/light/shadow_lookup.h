@@ -15,6 +15,8 @@ typedef struct shadow_map {
 typedef struct shadow_lookup {
   shadow_map map;
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) */
+  const float *older[HL_CHANNELS]; /* pixel (0,0); null: none. The light that samples fade from, to transmittance */
+  float young;                     /* how far they have faded, 0 to 1 */
 } shadow_lookup;
 
 /* The buffer of one part of a light. */

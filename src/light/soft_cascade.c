@@ -7,7 +7,7 @@
 #include "light/cascade_passes.h"
 
 /* Chunks that a sweep is cut into at most; where they need not be thin, pixels of omega; the least of one, pixels. */
-static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.5;
+static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.15;
 
 static double omega_at(const soft_cascade *cascade, double height) {
   if (cascade->parallel) return cascade->rate * height;
@@ -61,7 +61,7 @@ static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer 
   level->plane = ((size_t)level->tiles_y * TILE + CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
   level->capacity = index < 2 ? CASCADE_FEW_GROUPS : CASCADE_GROUPS;
-  level->planes = channels * (2 * (size_t)level->capacity + 2) + (index == 0 ? channels * MOMENT_PLANES : 1);
+  level->planes = channels * (2 * (size_t)level->capacity + 2) + (index == 0 ? 2 * channels * MOMENT_PLANES : 1);
   if (cascade->image != NULL) level->planes += 2 * channels;
   level->pixels = level->planes * level->plane + (CASCADE_MARGIN + 1) * level->stride;
 }
@@ -122,6 +122,8 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
     cascade->shade[c] = level->sum[0][c];
     cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
     used += MOMENT_PLANES;
+    cascade->lacked[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
+    used += MOMENT_PLANES;
   }
   return HL_OK;
 }
@@ -142,8 +144,8 @@ static void plan(soft_cascade *cascade, const sheet_light *light, const light_im
   /* a light close to the sheets: penumbrae twice as wide as the buffer are as good as wider ones */
   start = fmax(start, end - 2 * TILE * fmax(buffer->tiles_x, buffer->tiles_y));
   double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
-  cascade->chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
   cascade->chunk_start = start;
+  cascade->chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
   /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels 0 and 1) */
   int levels = 2 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
@@ -156,7 +158,7 @@ void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, v
   shadow_buffer buffer = {.view = *view, .channels = channels, .tiles_x = hl_tiles(view->width), .tiles_y = hl_tiles(view->height)};
   plan(&cascade, light, image, normal, first, last, pixel, &buffer);
   *kept = 0;
-  *passing = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y + ((uint64_t)buffer.tiles_x + 1) * ((uint64_t)buffer.tiles_y + 1) * 4;
+  *passing = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y * 2 + ((uint64_t)buffer.tiles_x + 1) * ((uint64_t)buffer.tiles_y + 1) * 4;
   for (int i = 0; i < cascade.level_count; i++) {
     const cascade_level *level = &cascade.level[i];
     uint64_t tiles_x = (uint64_t)level->tiles_x, tiles_y = (uint64_t)level->tiles_y;
@@ -172,9 +174,10 @@ hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memo
   cascade->lookup_variance = lookup_variance;
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   cascade->touched = hl_allocate_zeroed(context, tiles, 1);
+  cascade->refilled = hl_allocate_zeroed(context, tiles, 1);
   cascade->reads = (cascade_reads){buffer->tiles_x, buffer->tiles_y, NULL};
   cascade->reads.before = hl_allocate(context, (size_t)(buffer->tiles_x + 1) * (size_t)(buffer->tiles_y + 1), sizeof(uint32_t));
-  if (cascade->touched == NULL || cascade->reads.before == NULL) return hl_fail_memory(error, 5 * tiles, "a cascade of shadows");
+  if (cascade->touched == NULL || cascade->refilled == NULL || cascade->reads.before == NULL) return hl_fail_memory(error, 5 * tiles, "a cascade of shadows");
   hl_status status = open_memory(context, pool, memory, cascade, error);
   for (int i = 0; i < cascade->level_count && status == HL_OK; i++)
     status = open_level(context, cascade, i, light, error);
@@ -193,7 +196,7 @@ static void clear_plane(void *data, size_t index, int worker) {
     for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
 }
 
-/* What the last, unfinished chunk's slabs took. */
+/* What the last, unfinished chunk's slabs took, and what light they found. */
 static void clear_moments(const soft_cascade *cascade) {
   const cascade_level *level = &cascade->level[0];
   for (size_t tile = 0; tile < (size_t)level->tiles_x * (size_t)level->tiles_y; tile++) {
@@ -201,6 +204,8 @@ static void clear_moments(const soft_cascade *cascade) {
     for (int c = 0; c < cascade->channels && cascade->touched[tile]; c++)
       for (size_t row = 0; row < TILE; row++) memset(cascade->moment[c] + at + row * level->stride, 0, TILE * sizeof(float));
   }
+  for (int c = 0; c < cascade->channels; c++)
+    memset(cascade->lacked[c], 0, (size_t)level->tiles_y * TILE * level->stride * sizeof(float));
 }
 
 static void give_back_memory(hl_pool *pool, soft_cascade *cascade) {
@@ -216,6 +221,7 @@ void hl_soft_cascade_release(hl_context *context, hl_pool *pool, soft_cascade *c
     hl_release(context, cascade->level[i].boxes);
   }
   hl_release(context, cascade->touched);
+  hl_release(context, cascade->refilled);
   hl_release(context, cascade->reads.before);
   *cascade = (soft_cascade){0};
 }
@@ -301,7 +307,7 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
   const cascade_field *end[2] = {&task->end->absorbed[channel], &task->end->thin[channel]};
   size_t tile = tile_y * (size_t)level->tiles_x + tile_x;
   bool touched = task->cascade->touched[tile];
-  absorbed_job job = {task->cascade->shade[channel].pixels, task->buffer->transmittance[channel], task->cascade->moment[channel],
+  absorbed_job job = {task->cascade->lacked[channel], task->buffer->transmittance[channel], task->cascade->moment[channel],
                       (float)task->length, start[0]->pixels, start[1]->pixels, end[0]->pixels, end[1]->pixels, level->stride,
                       task->buffer->stride};
   if (!touched) {
@@ -315,7 +321,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
   }
 }
 
-/* What the chunk's slabs took of the light that reached the chunk goes to the groups at its two ends. */
+/* What the chunk's slabs took of the light that reached the chunk goes to the groups at its two ends. Tiles stay marked until the
+ * buffer is refilled. */
 static void absorb_part(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
@@ -323,7 +330,6 @@ static void absorb_part(void *data, size_t index, int worker) {
   const row_part part = hl_cascade_row_part(level, index);
   for (int x = part.first; x < part.end; x++) {
     for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, (size_t)x, (size_t)part.y, c);
-    task->cascade->touched[part.y * level->tiles_x + x] = 0;
   }
 }
 
@@ -333,19 +339,28 @@ static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, doubl
   end->filled = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
   start->filled = start->filled || end->filled;
   end->omega = omega;
-  absorb_task task = {cascade, buffer, start, end, omega - cascade->chunk_start, crew->functions->absorbed};
+  absorb_task task = {cascade, buffer, start, end, omega - start->omega, crew->functions->absorbed};
   hl_pool_run(crew->pool, hl_cascade_row_parts(level), absorb_part, &task);
   level->renewed = true;
-  cascade->chunk_start = omega;
   cascade->chunks++;
   if (level->count == level->capacity) hand_over(cascade, crew);
   for (int i = 1; i + 1 < cascade->level_count && cascade->level[i].count == cascade->level[i].capacity; i++)
     merge_up(cascade, i, crew);
 }
 
+/* In the middle of the slab before the sheet. */
+static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
+  return omega_at(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
+}
+
 void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
-  double middle = omega_at(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
+  double middle = slab_omega(cascade, sheets, sheet);
   cascade->slab = isfinite(middle) ? middle - cascade->chunk_start : 0;
+}
+
+float hl_soft_cascade_age(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
+  double middle = slab_omega(cascade, sheets, sheet);
+  return isfinite(middle) ? (float)fmin(fmax((middle - cascade->chunk_start) / cascade->chunk, 0), 1) : 0;
 }
 
 void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_job *job) {
@@ -464,10 +479,14 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
   return sum;
 }
 
+/* Of a tile: whether it was refilled at the last chunk's end, and at this one's. */
+enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
+
 typedef struct light_task {
   soft_cascade *cascade;
   shadow_buffer *buffer;
   const cascade_functions *functions;
+  bool any; /* shade is not all zeros */
 } light_task;
 
 static void light_part(void *data, size_t index, int worker) {
@@ -482,13 +501,17 @@ static void light_part(void *data, size_t index, int worker) {
     size_t tile = (size_t)part.y * (size_t)level->tiles_x + (size_t)tile_x;
     if (!hl_cascade_is_read(&read, &read.all, tile_x)) continue;
     bool shaded = false;
-    for (int c = 0; c < buffer->channels; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
+    for (int c = 0; c < buffer->channels && task->any; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
+    bool kept = task->cascade->touched[tile], again = task->cascade->refilled[tile] & REFILLED_BEFORE;
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
-      left_job job = {task->cascade->shade[c].pixels, buffer->transmittance[c], level->stride, buffer->stride};
+      left_job job = {.lacking = task->cascade->shade[c].pixels, .stride = level->stride, .lacked = task->cascade->lacked[c],
+                      .to = buffer->transmittance[c], .older = buffer->second[c], .stride_to = buffer->stride,
+                      .kept = kept, .again = again};
       task->functions->left(&job, tile_x, part.y);
     }
-    buffer->tile_touched[tile] = shaded;
-    hl_shadow_buffer_find_lit(buffer, tile_x, part.y, task->functions->lit_blocks);
+    buffer->tile_touched[tile] = shaded || kept;
+    task->cascade->refilled[tile] |= REFILLED_NOW;
+    hl_shadow_buffer_find_lit(buffer, tile_x, part.y, true, task->functions->lit_blocks);
   }
 }
 
@@ -509,11 +532,16 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   return true;
 }
 
-/* The buffer that sheets look up, for receivers around omega = receiver. */
-static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, double receiver, const cascade_crew *crew) {
-  if (!find_shade(cascade, receiver, crew)) return; /* the buffer is all ones */
-  light_task task = {cascade, buffer, crew->functions};
+/* The buffer that sheets look up. any: whether find_shade found any. */
+static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, bool any, const cascade_crew *crew) {
+  light_task task = {cascade, buffer, crew->functions, any};
   hl_pool_run(crew->pool, hl_cascade_row_parts(&cascade->level[0]), light_part, &task);
+}
+
+static void begin_chunk(soft_cascade *cascade) {
+  size_t tiles = (size_t)cascade->level[0].tiles_x * (size_t)cascade->level[0].tiles_y;
+  memset(cascade->touched, 0, tiles);
+  for (size_t tile = 0; tile < tiles; tile++) cascade->refilled[tile] = cascade->refilled[tile] & REFILLED_NOW ? REFILLED_BEFORE : 0;
 }
 
 void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
@@ -521,7 +549,10 @@ void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const
   double omega = omega_at(cascade, hl_sheet_height(sheets, sheet));
   if (!isfinite(omega) || omega - cascade->chunk_start < cascade->chunk) return;
   const cascade_crew crew = {pool, functions, &cascade->reads};
-  push_chunk(cascade, buffer, omega, &crew);
+  cascade->chunk_start = omega;
   find_reads(cascade, occupancy, sheets, sheet);
-  refill_buffer(cascade, buffer, omega + cascade->chunk / 2, &crew);
+  bool any = find_shade(cascade, omega + cascade->chunk, &crew); /* of the chunks before the one that ends */
+  push_chunk(cascade, buffer, omega, &crew);
+  refill_buffer(cascade, buffer, any, &crew);
+  begin_chunk(cascade);
 }

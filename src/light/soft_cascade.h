@@ -10,6 +10,13 @@
  * with the variance of its own penumbra. Far groups are kept coarser (what is left of them is blurred wide) and renewed
  * more rarely (their widths change slowly).
  *
+ * Matter joins the groups a chunk late. What the slabs of a chunk and of the one before took is multiplied as it is, sharp: within
+ * two chunks penumbrae are some pixels wide at most, and a surface's own matter is there, which blurs would spread over the surface
+ * (derived: a plane's matter lies farther beside a receiver than the light's rim reaches, by all of it that is more than a chunk
+ * away, where the plane sees the whole light). At each chunk's end the buffer is refilled; its second planes hold what it was
+ * before, and receivers fade from these to the new ones in the course of a chunk: no line shows where one ends. Each filling
+ * serves two chunks, the more the closer to the end of the first, where its penumbrae are right.
+ *
  * So solid matter is counted, which light meets at its edges. Haze takes a part F of every ray that comes through it, and rays
  * towards r keep their directions: of the light on its way to r, the sum s so far blurred for o and r, it takes F (1 - s),
  * not F times what reaches o from all the light. With G = T(o) (1 - t(o)) of the solid part and F of the thin one, a group
@@ -95,7 +102,9 @@ typedef struct soft_cascade {
   int level_count;      /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
   cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0: one of its sums */
+  float *lacked[HL_CHANNELS]; /* pixel (0,0) on level 0: 1 - the light at the chunk's start */
   float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: what the chunk's slabs took, times their places */
+  unsigned char *refilled; /* owned; [tiles]; at which of the last two chunks' ends */
   unsigned char *touched; /* owned; [tiles]; 1 where the chunk's slabs took light */
   cascade_reads reads;    /* by the next chunk's slabs */
 } soft_cascade;
@@ -121,6 +130,9 @@ void hl_soft_cascade_release(hl_context *context, hl_pool *pool, soft_cascade *c
  * counted. Tiles where it takes some are then to be marked as touched. */
 void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int sheet);
 void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_job *job);
+
+/* Of the slab before the sheet, before it is shaded: how far receivers have faded to the buffer from its second planes, 0 to 1. */
+float hl_soft_cascade_age(const soft_cascade *cascade, const sheet_stack *sheets, int sheet);
 
 /* After the slab was composited. occupancy: what the light sees; the buffer is found anew only where the next slabs
  * lie. */

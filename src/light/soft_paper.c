@@ -58,7 +58,7 @@ static void blur_rows(void *data, size_t index, int worker) {
   const shadow_buffer *buffer = task->buffer;
   for (int x = 0; x < buffer->tiles_x; x++)
     for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
-      const blur_job job = {buffer->transmittance[c], buffer->scratch[c], buffer->stride, buffer->stride, task->box};
+      const blur_job job = {buffer->transmittance[c], buffer->second[c], buffer->stride, buffer->stride, task->box};
       task->blur->rows(&job, x, (int)index);
     }
 }
@@ -70,10 +70,10 @@ static void blur_columns(void *data, size_t index, int worker) {
   for (int x = 0; x < buffer->tiles_x; x++) {
     if (!task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]) continue;
     for (int c = 0; c < buffer->channels; c++) {
-      const blur_job job = {buffer->scratch[c], buffer->transmittance[c], buffer->stride, buffer->stride, task->box};
+      const blur_job job = {buffer->second[c], buffer->transmittance[c], buffer->stride, buffer->stride, task->box};
       task->blur->columns(&job, x, (int)index);
     }
-    hl_shadow_buffer_find_lit(buffer, x, (int)index, task->blur->lit_blocks);
+    hl_shadow_buffer_find_lit(buffer, x, (int)index, false, task->blur->lit_blocks);
   }
 }
 
@@ -83,7 +83,7 @@ static void weigh_image(void *data, size_t index, int worker) {
   const shadow_buffer *buffer = task->buffer;
   for (int x = 0; x < buffer->tiles_x; x++)
     for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
-      const image_job job = {.from = buffer->transmittance[c], .to = buffer->scratch[c], .stride = buffer->stride,
+      const image_job job = {.from = buffer->transmittance[c], .to = buffer->second[c], .stride = buffer->stride,
                              .count = task->count, .offset = task->offset, .weight = task->taps->weight[c]};
       task->blur->image(&job, x, (int)index);
     }
@@ -98,9 +98,9 @@ static void copy_back(void *data, size_t index, int worker) {
     for (int c = 0; c < buffer->channels; c++)
       for (size_t row = 0; row < TILE; row++) {
         size_t at = (index * TILE + row) * buffer->stride + (size_t)x * TILE;
-        memcpy(buffer->transmittance[c] + at, buffer->scratch[c] + at, TILE * sizeof(float));
+        memcpy(buffer->transmittance[c] + at, buffer->second[c] + at, TILE * sizeof(float));
       }
-    hl_shadow_buffer_find_lit(buffer, x, (int)index, task->blur->lit_blocks);
+    hl_shadow_buffer_find_lit(buffer, x, (int)index, false, task->blur->lit_blocks);
   }
 }
 

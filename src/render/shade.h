@@ -20,6 +20,7 @@ typedef struct shade_volume {
   const kernel *kernel;
   int phong, visible, receives_shadow;
   int lit;                               /* 0: shaded flat, no light changes it */
+  float voxel;                           /* its smallest edge; frame units */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float emission;                        /* ke; of a volume shaded flat 1 */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
@@ -45,7 +46,6 @@ typedef struct shade_light {
   int inverse_square;
   int shadowed;
   float path;                     /* parallel: sheet spacing / |l.h|; else sheet spacing */
-  float reach;                    /* parallel: how far look-ups read around their place; else at distance 1; frame units */
   const shadow_lookup *lookup;    /* where shadowed: the light that reaches a sample */
   const part_lookup *parts;       /* [part_count]; where there are any, it is their mean instead */
   int part_count, channels;

@@ -144,6 +144,7 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
   bool cubic = is_read_cubic(sweep, source, image);
   if (source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, cubic, points, &extent, &seen, &view)) return;
   bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
+  bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
   int reach = soft && source->soft_method == HL_SOFT_SUBLIGHTS ? SUBLIGHT_REACH : 0;
   if (paper) {
     soft_paper begun;
@@ -152,7 +153,7 @@ static void add_light_bytes(const sweep *sweep, int index, const light_image *im
     reach = hl_soft_paper_reach(&begun, sheets->first, sheets->spacing, sheets->count);
   }
   uint64_t tiles = (uint64_t)hl_tiles(view.width) * (uint64_t)hl_tiles(view.height), passing = 0;
-  bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper, reach);
+  bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper || cascade, reach);
   bytes->passing += hl_view_sheets_bytes(sweep, &view, look_up_spare(sweep, source, cubic, &view));
   bytes->passing += tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
   if (soft && source->soft_method == HL_SOFT_SUBLIGHTS)
@@ -196,21 +197,24 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   light->buffer = buffer;
   double edge = vec3_length(view.du);
   bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
+  bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
   int reach = soft && source->soft_method == HL_SOFT_SUBLIGHTS ? SUBLIGHT_REACH : 0;
   const sheet_stack *sheets = &sweep->geometry->sheets;
   if (paper) {
     hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, &view, image);
     reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
   }
-  status = hl_shadow_buffer_reset(sweep->context, sweep->pool, buffer, &view, sweep->channels, paper, reach, error);
+  status = hl_shadow_buffer_reset(sweep->context, sweep->pool, buffer, &view, sweep->channels, paper || cascade, reach, error);
   light->lookup.map = hl_map_of_view(&view);
   light->lookup.map.stride = buffer->stride;
-  for (int c = 0; c < sweep->channels; c++) light->lookup.transmittance[c] = buffer->transmittance[c];
+  for (int c = 0; c < sweep->channels; c++) {
+    light->lookup.transmittance[c] = buffer->transmittance[c];
+    light->lookup.older[c] = cascade ? buffer->second[c] : NULL;
+  }
   double last = sheets->first + (sheets->count - 1) * sheets->spacing;
   if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
     status = hl_sublights_begin(sweep->reserve, sweep->pool, &light->sublights, source, image, sweep->scene->render.light_samples,
                                 sheets->normal, &extent, buffer, error);
-  bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
   if (cascade && image != NULL) hl_light_image_see(source, &seen, sheets->normal, image);
   if (status == HL_OK && cascade)
     status = hl_soft_cascade_begin(sweep->context, sweep->pool, memory, &light->cascade, &seen, image, sheets->normal,
@@ -262,6 +266,9 @@ static void set_up_shading(sweep *sweep) {
     for (int c = 0; c < HL_CHANNELS; c++)
       shade->cast[c] = volume->casts_shadow ? (float)volume->attenuation_color[c] : 0;
     const grid *grid = &sweep->grids[g];
+    double finest = 0;
+    for (int axis = 0; axis < 3; axis++) finest = fmax(finest, vec3_length(grid->frame_to_index.linear.row[axis]));
+    shade->voxel = (float)(1 / finest);
     const double offset[3] = {grid->frame_to_index.offset.x, grid->frame_to_index.offset.y, grid->frame_to_index.offset.z};
     for (int axis = 0; axis < 3; axis++) {
       vec3_store(shade->to_index[axis], grid->frame_to_index.linear.row[axis]);
@@ -290,8 +297,6 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   if (from->buffer == NULL) return;
   light->channels = from->buffer->channels;
   light->lookup = &from->lookup;
-  const view *view = &from->buffer->view;
-  light->reach = (float)((from->source->shadows == HL_SHADOWS_SOFT ? 0 : from->cubic ? 2 : 1) * fmax(vec3_length(view->du), vec3_length(view->dv)));
   light->parts = from->sublights.lookups;
   light->part_count = from->sublights.count;
 }
@@ -336,23 +341,11 @@ static double least_climb(const sweep *sweep, const light_source *source) {
   return least;
 }
 
-/* How far look-ups read around a place at most: nearer to a face, it decides what light they find (shade_lanes.h). */
-static double farthest_reach(const sweep *sweep, int index) {
-  const shade_light *light = &sweep->shade_lights[index];
-  double farthest = light->parallel ? 1 : 0;
-  for (int i = 0; i < sweep->frame->point_count && !light->parallel; i++)
-    farthest = fmax(farthest, vec3_length(vec3_subtract(sweep->frame->points[i], sweep->lights[index].source->position)));
-  return light->reach * farthest;
-}
-
 static double longest_way(const sweep *sweep) {
-  double least = 1, reach = 0;
-  for (int i = 0; i < sweep->geometry->light_count; i++) {
-    if (sweep->lights[i].buffer == NULL) continue;
-    least = fmin(least, least_climb(sweep, sweep->lights[i].source));
-    reach = fmax(reach, farthest_reach(sweep, i));
-  }
-  return least < LEAST_CLIMB ? INFINITY : fmax(sweep->geometry->sheets.spacing / least, reach);
+  double least = 1;
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (sweep->lights[i].buffer != NULL) least = fmin(least, least_climb(sweep, sweep->lights[i].source));
+  return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error) {

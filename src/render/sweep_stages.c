@@ -114,6 +114,9 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
                      affine3_identity(), &sweep->shade.rays);
   sweep->shade.height = (float)(sheet * sheets->spacing);
   sweep->shade.sheet = sheet;
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (sweep->lights[i].cascade.level_count > 0)
+      sweep->lights[i].lookup.young = hl_soft_cascade_age(&sweep->lights[i].cascade, sheets, sheet);
   hl_sweep_layers_sheet(sweep);
   hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task, sweep);
   sweep->seconds_image += hl_clock_seconds() - start;
@@ -155,6 +158,8 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   for (int c = 0; c < job.channels; c++)
     job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
   bool cascade = light->cascade.level_count > 0;
+  for (int c = 0; c < job.channels && cascade; c++)
+    job.older[c] = buffer->second[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
   if (cascade) hl_soft_cascade_count(&light->cascade, tile, &job);
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;

@@ -500,8 +500,11 @@ static void test_fields(void **unused) {
     s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], FIELD, FIELD,
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
     s.field = (field_job){lacking, thin, out, FIELD, FIELD, round % 2 ? thin + 3 * FIELD : NULL, ALL_ROWS};
-    s.left = (left_job){lacking, &s.out.pixels[MARGIN][MARGIN], FIELD, FIELD};
-    s.absorbed = (absorbed_job){lacking, &s.b[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], 0.8f,
+    /* what both read and write: the light in pixels, what was lacked and the older light in rows below */
+    s.left = (left_job){.lacking = lacking, .lacked = &s.out.pixels[MARGIN + 2 * TILE][MARGIN], .to = &s.out.pixels[MARGIN][MARGIN],
+                        .older = &s.out.pixels[MARGIN + 4 * TILE][MARGIN], .stride = FIELD, .stride_to = FIELD,
+                        .kept = round & 1, .again = round >> 1 & 1};
+    s.absorbed = (absorbed_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], 0.8f,
                                 out + 16 * FIELD, out + 32 * FIELD, out + 48 * FIELD, out + 64 * FIELD, FIELD, FIELD};
     s.part = (part_job){lacking, thin, {out, out + 16 * FIELD}, {out + 32 * FIELD, out + 48 * FIELD}, FIELD,
                         random_between(&seed, 0, 1)};
@@ -587,7 +590,11 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
                            .shadowed = i < 2, .path = 0.7f, .lookup = &s->lookups[i], .parts = s->parts[i], .part_count = round % 4,
                            .channels = s->job.channels, .nearest = round % 5 == 4, .cubic = round / 4 % 2};
     s->lookups[i].map = random_map(seed, 9);
-    for (int c = 0; c < HL_CHANNELS; c++) s->lookups[i].transmittance[c] = &s->buffer[c][2][2];
+    s->lookups[i].young = 0.3f;
+    for (int c = 0; c < HL_CHANNELS; c++) {
+      s->lookups[i].transmittance[c] = &s->buffer[c][2][2];
+      s->lookups[i].older[c] = round % 2 ? &s->buffer[c][9][7] : NULL;
+    }
     for (int part = 0; part < 3; part++) {
       s->parts[i][part] = (part_lookup){.map = random_map(seed, part == 0 ? 9 : 2), .weight = {1, 0.7f, salted(seed, 0, 1)}};
       for (int c = 0; c < HL_CHANNELS; c++) s->parts[i][part].left[c] = &s->left[c][2][2];
@@ -622,7 +629,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
     if (round % 8 == 3) s->density[2 * v][20] = NAN;
     s->volumes[v] = (shade_volume){&classifier_bench.classifier, &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
                                    hl_kernel_get((hl_kernel)(round % 3)),
-                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, (round + v) % 6 != 5, 0.5f, 0.8f, 0.3f, 25,
+                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, (round + v) % 6 != 5, round % 4 ? 0.9f : 20, 0.5f, 0.8f, 0.3f, 25,
                                    round % 3 ? 0.4f : 0, {1, 0.5f, 0},
                                    {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}}, {-0.5f, -0.5f, -0.5f},
                                    {8.5f, 9.5f, 10.5f}, NULL, v};

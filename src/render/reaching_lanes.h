@@ -1,0 +1,117 @@
+/* render/reaching_lanes.h - the light that reaches a slab: shadow buffers read where samples are (step 14). */
+#ifndef HL_RENDER_REACHING_LANES_H
+#define HL_RENDER_REACHING_LANES_H
+
+#include "render/light_depth_lanes.h"
+
+LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow_map *map, lanes3 position) {
+  lanes place[3];
+  for (int row = 0; row < 3; row++) place[row] = row_of_point(map->rows[row], position);
+  if (light->parallel) return taps_of_place(map, light->nearest, place[1], place[2]); /* place[0] is 1 everywhere */
+  lanes_int ahead = place[0] > 0.0f;
+  lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
+  return taps_of_place(map, light->nearest, lanes_select(ahead, place[1] / safe, outside), lanes_select(ahead, place[2] / safe, outside));
+}
+
+LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position, uint32_t active) {
+  color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  for (int i = 0; i < light->part_count; i++) {
+    const part_lookup *part = &light->parts[i];
+    shadow_taps taps = taps_of_position(light, &part->map, position);
+    for (int c = 0; c < light->channels; c++)
+      sum.c[c] = lanes_add_scaled(sum.c[c], look_up_part(&part->map, &taps, part->left[c], active), part->weight[c]);
+  }
+  for (int c = 0; c < light->channels; c++) sum.c[c] = sum.c[c] / ((float)PART_ONE * (float)light->part_count);
+  return sum;
+}
+
+/* A buffer's light at a pixel of each lane, between the chunk before's and its own where there are both. */
+LANES_INLINE lanes between_chunks(const shadow_lookup *lookup, lanes older, lanes younger) {
+  return lanes_add_scaled(older, younger - older, lookup->young);
+}
+
+/* As the buffer is interpolated. */
+LANES_INLINE lanes interpolated(const shadow_lookup *lookup, const shadow_taps *taps, int cubic, int channel) {
+  const float *younger = lookup->transmittance[channel], *older = lookup->older[channel];
+  if (cubic) {
+    lanes light = look_up_cubic(&lookup->map, taps, younger);
+    return older == NULL ? light : between_chunks(lookup, look_up_cubic(&lookup->map, taps, older), light);
+  }
+  lanes light = look_up(&lookup->map, taps, younger);
+  return older == NULL ? light : between_chunks(lookup, look_up(&lookup->map, taps, older), light);
+}
+
+LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *taps, const float *buffer, lanes light[NEAR_PIXELS]) {
+  lanes_int at = taps->first.row * (int32_t)lookup->map.stride + taps->first.column;
+  lanes_gather_pairs(buffer, at, &light[0], &light[1]);
+  lanes_gather_pairs(buffer + lookup->map.stride, at, &light[2], &light[3]);
+}
+
+/* What reaches a plane, whose own matter makes the buffer's light vary from pixel to pixel (derived): with T = O E at each pixel, O
+ * what others leave and E = exp(-depth) what the plane does, the mean of T by the pixels' weights is O times that of E.
+ * No more than the brightest of the pixels has. */
+LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps *taps, const light_depths *depths, int channel) {
+  lanes light[NEAR_PIXELS], own[NEAR_PIXELS], greatest = lanes_set(0);
+  near_light(lookup, taps, lookup->transmittance[channel], light);
+  if (lookup->older[channel] != NULL) {
+    lanes older[NEAR_PIXELS];
+    near_light(lookup, taps, lookup->older[channel], older);
+    for (int i = 0; i < NEAR_PIXELS; i++) light[i] = between_chunks(lookup, older[i], light[i]);
+  }
+  for (int i = 0; i < NEAR_PIXELS; i++) {
+    own[i] = exp_of_depth(depths->near[channel][i]);
+    greatest = lanes_max(greatest, light[i]);
+  }
+  lanes sum = between_taps(taps, light[0], light[1], light[2], light[3], 1);
+  lanes of_own = between_taps(taps, own[0], own[1], own[2], own[3], 1);
+  lanes reached = lanes_min(sum / lanes_max(of_own, lanes_set(1e-6f)), greatest);
+  return lanes_select(taps->inside, reached, lanes_set(1.0f));
+}
+
+/* Of the mean over many parts of a light, their pixels' phases of every kind. */
+LANES_INLINE void correct_parts(const light_depths *depths, int channels, color_lanes *reached) {
+  for (int c = 0; c < channels; c++) {
+    lanes own = lanes_set(0);
+    for (int i = 0; i < NEAR_PIXELS; i++) own = own + exp_of_depth(depths->near[c][i]);
+    reached->c[c] = lanes_min(reached->c[c] / lanes_max(own * (1.0f / NEAR_PIXELS), lanes_set(1e-6f)), lanes_set(1.0f));
+  }
+}
+
+/* The light that reaches the slab's first sheet below a place, in the active lanes. */
+LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *taps, lanes3 position, const light_depths *depths,
+                                  uint32_t active) {
+  uint32_t planes = lanes_bits(depths->plane) & active;
+  color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  if (light->part_count > 0) {
+    reached = mean_of_parts(light, position, active);
+    if (planes != 0) correct_parts(depths, light->channels, &reached);
+    return reached;
+  }
+  for (int c = 0; c < light->channels; c++) {
+    if (planes != active) reached.c[c] = interpolated(light->lookup, taps, light->cubic, c);
+    if (planes == 0) continue;
+    lanes of_plane = reaching_plane(light->lookup, taps, depths, c);
+    reached.c[c] = lanes_select(depths->plane, of_plane, reached.c[c]);
+  }
+  return reached;
+}
+
+/* What of one light passes everything between it and a slab's samples, and the slab's own matter, averaged as the eye sees it.
+ * path: of the light through the slab. */
+LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *light, const block_slab *slab,
+                                       block_density *densities, int count, lanes3 towards, lanes path) {
+  lanes3 position = slab->geometry.position;
+  const shadow_map *map = light->part_count > 0 ? &light->parts[0].map : &light->lookup->map;
+  shadow_taps taps = taps_of_position(light, map, position);
+  near_pixels near = light->part_count > 0 ? pixels_of_parts() : pixels_around(&taps);
+  find_steps(map, light->parallel, set3(job->normal), position, &near);
+  light_depths depths = depths_of_light(job, slab, densities, count, towards, path, light->nearest ? NULL : &near);
+  color_lanes passing = reaching(light, &taps, position, &depths, lanes_bits(slab->seen));
+  for (int c = 0; c < light->channels; c++) {
+    lanes own = own_transmittance(slab->depth, slab->left, depths.enter[c], depths.more[c]);
+    passing.c[c] = lanes_min(passing.c[c] * own, lanes_set(1.0f));
+  }
+  return passing;
+}
+
+#endif
