@@ -175,8 +175,9 @@ typedef struct plane_matter {
   table_origin below;   /* where the light to the place lit enters the slab, or the box */
 } plane_matter;
 
-/* Matter is a plane's where light comes through its face, which is near: the transfer function's visible values begin at most two
- * voxels away at the gradient that is there, surely so at most half as far as that is doubled. */
+/* How deep below a surface matter counts as a plane's, in voxels: depth is measured by the gradient, from where the transfer function's
+ * visible values begin. Down to this depth it counts fully, at twice the depth no more. Where light grazes the surface (cosine of 0.2
+ * and less) it counts less, too, and from 0.1 on not at all. */
 static const float SKIN_VOXELS = 2;
 
 LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes way) {
