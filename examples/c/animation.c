@@ -11,8 +11,8 @@
 
 enum { FRAMES = 24 };
 
-/* What a window keeps from frame to frame. The renderer keeps its buffers and what it prepared of the volume: the first
- * frame takes longer than the others. */
+/* What a window keeps from frame to frame. The renderer keeps its buffers and what it prepared of the volume:
+ * the first frame takes longer than the others. */
 typedef struct window {
   hl_context *context;
   hl_volume *volume;
@@ -39,7 +39,8 @@ static void window_close(window *w) {
 
 /* Turns the camera about its target and the axis of the world that its picture is level with. */
 static void turn(hl_camera *camera, double degrees) {
-  double cosine = cos(degrees * 3.14159265358979323846 / 180), sine = sin(degrees * 3.14159265358979323846 / 180);
+  double cosine = cos(degrees * 3.14159265358979323846 / 180),
+         sine = sin(degrees * 3.14159265358979323846 / 180);
   double eye[3], up[3];
   int a, b, c, axis = 0;
   for (a = 0; a < 3; a++) {
@@ -55,8 +56,8 @@ static void turn(hl_camera *camera, double degrees) {
   camera->up[c] = sine * up[b] + cosine * up[c];
 }
 
-/* The frame at an angle into w->image, which follows the window's size. A scene does not change: another angle is another
- * scene, which shares the volume and costs next to nothing. */
+/* The frame at an angle into w->image, which follows the window's size. A scene does not change: another
+ * angle is another scene, which shares the volume and costs next to nothing. */
 static hl_status draw(window *w, int width, int height, double degrees, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(w->first);
   hl_scene *scene = NULL;
@@ -70,7 +71,8 @@ static hl_status draw(window *w, int width, int height, double degrees, hl_error
   }
   if (status == HL_OK) status = hl_scene_create(w->context, &description, &scene, error);
   if (status == HL_OK)
-    status = hl_renderer_render(w->renderer, scene, hl_image_pixels(w->image), 4 * (size_t)width, NULL, error);
+    status = hl_renderer_render(w->renderer, scene, hl_image_pixels(w->image), 4 * (size_t)width, NULL,
+                                error);
   hl_scene_release(scene);
   return status;
 }

@@ -1,4 +1,5 @@
-/* from_memory.c - numbers that a program holds become a picture: volume, look, light and camera, all set here.
+/* from_memory.c - numbers that a program holds become a picture: volume, look, light and camera, all set
+ * here.
  *
  *     cc from_memory.c -o from_memory $(pkg-config --cflags --libs halflight) -lm
  *     ./from_memory picture.png
@@ -85,8 +86,10 @@ int main(int argc, char **argv) {
     return 2;
   }
   simulate();
-  done = hl_context_create(NULL, &context, &error) == HL_OK && make_volume(context, &volume, &error) == HL_OK &&
-         make_scene(context, volume, &scene, &error) == HL_OK && hl_renderer_create(context, &renderer, &error) == HL_OK &&
+  done = hl_context_create(NULL, &context, &error) == HL_OK &&
+         make_volume(context, &volume, &error) == HL_OK &&
+         make_scene(context, volume, &scene, &error) == HL_OK &&
+         hl_renderer_create(context, &renderer, &error) == HL_OK &&
          hl_image_create(context, WIDTH, HEIGHT, &image, &error) == HL_OK &&
          hl_renderer_render(renderer, scene, hl_image_pixels(image), 4 * WIDTH, NULL, &error) == HL_OK &&
          hl_image_write(context, image, argv[1], NULL, &error) == HL_OK;

@@ -1,8 +1,9 @@
-/* layers.c - a picture's lights kept apart, so that they can be turned up and down, and coloured, without rendering again.
+/* layers.c - a picture's lights kept apart, so that they can be turned up and down, and coloured, without
+ * rendering again.
  *
  *     cc layers.c -o layers $(pkg-config --cflags --libs halflight)
- *     ./layers head.nii.gz head        writes head.png, head-evening.png and head.exr, which holds all layers
- */
+ *     ./layers head.nii.gz head        writes head.png, head-evening.png and head.exr, which holds all
+ * layers */
 #include <halflight/halflight.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +16,8 @@ typedef struct picture {
 } picture;
 
 /* An image with layers for ambient light, each light and depth. */
-static hl_status picture_create(hl_context *context, const hl_scene_description *scene, picture *made, hl_error *error) {
+static hl_status picture_create(hl_context *context, const hl_scene_description *scene, picture *made,
+                                hl_error *error) {
   hl_status status = hl_image_create(context, scene->width, scene->height, &made->image, error);
   size_t i;
   made->lights = (hl_light_layers *)calloc(scene->light_count + 1, sizeof *made->lights);
@@ -26,8 +28,10 @@ static hl_status picture_create(hl_context *context, const hl_scene_description 
   made->layers.struct_size = sizeof made->layers;
   made->layers.lights = made->lights;
   made->layers.light_count = scene->light_count;
-  if (status == HL_OK) status = hl_image_add_layer(made->image, "ambient", "RGB", &made->layers.ambient, error);
-  if (status == HL_OK) status = hl_image_add_layer(made->image, "depth", "Z", &made->layers.depth_first, error);
+  if (status == HL_OK)
+    status = hl_image_add_layer(made->image, "ambient", "RGB", &made->layers.ambient, error);
+  if (status == HL_OK)
+    status = hl_image_add_layer(made->image, "depth", "Z", &made->layers.depth_first, error);
   for (i = 0; i < scene->light_count && status == HL_OK; i++) {
     char name[24];
     snprintf(name, sizeof name, "light%u", (unsigned)i);
@@ -57,14 +61,16 @@ static hl_status write_png(hl_context *context, const hl_scene *scene, const hl_
   hl_image_write_options options;
   hl_status status = hl_image_create(context, width, height, &plain, error);
   if (status != HL_OK) return status;
-  memcpy(hl_image_pixels(plain), hl_image_pixels_const(from), (size_t)width * (size_t)height * 4 * sizeof(float));
+  memcpy(hl_image_pixels(plain), hl_image_pixels_const(from),
+         (size_t)width * (size_t)height * 4 * sizeof(float));
   hl_scene_write_options(scene, &options);
   status = hl_image_write(context, plain, path, &options, error);
   hl_image_destroy(plain);
   return status;
 }
 
-static hl_status write_all(hl_context *context, const hl_scene *scene, picture *p, const char *name, hl_error *error) {
+static hl_status write_all(hl_context *context, const hl_scene *scene, picture *p, const char *name,
+                           hl_error *error) {
   static const double dim[3] = {0.3, 0.4, 0.8}, warm[3] = {1.2, 0.7, 0.3};
   char path[1000];
   hl_status status;
@@ -86,8 +92,8 @@ static hl_status draw(hl_context *context, hl_scene *scene, const char *name, hl
   status = picture_create(context, description, &p, error);
   if (status == HL_OK) status = hl_renderer_create(context, &renderer, error);
   if (status == HL_OK)
-    status = hl_renderer_render_layers(renderer, scene, hl_image_pixels(p.image), 4 * (size_t)description->width, &p.layers,
-                                       NULL, error);
+    status = hl_renderer_render_layers(renderer, scene, hl_image_pixels(p.image),
+                                       4 * (size_t)description->width, &p.layers, NULL, error);
   if (status == HL_OK) status = write_all(context, scene, &p, name, error);
   hl_renderer_destroy(renderer);
   hl_image_destroy(p.image);
@@ -105,7 +111,8 @@ int main(int argc, char **argv) {
     fprintf(stderr, "usage: layers VOLUME NAME\n");
     return 2;
   }
-  done = hl_context_create(NULL, &context, &error) == HL_OK && hl_volume_load(context, argv[1], &volume, &error) == HL_OK &&
+  done = hl_context_create(NULL, &context, &error) == HL_OK &&
+         hl_volume_load(context, argv[1], &volume, &error) == HL_OK &&
          hl_scene_for_volume(context, volume, argv[1], &scene, &error) == HL_OK &&
          draw(context, scene, argv[2], &error) == HL_OK;
   if (!done) fprintf(stderr, "layers: %s\n", error.message);

@@ -8,9 +8,11 @@
  *     Qt      QImage(bytes, width, height, stride, QImage::Format_RGBA8888)
  *     GTK 4   gdk_memory_texture_new(width, height, GDK_MEMORY_R8G8B8A8, ..., stride)
  *     SDL     SDL_CreateRGBSurfaceWithFormatFrom(bytes, width, height, 32, stride, SDL_PIXELFORMAT_RGBA32)
- *     OpenGL  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, bytes)
+ *     OpenGL  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+ * bytes)
  *
- * Cairo and Windows' bitmaps want B, G, R, A: swap_red_and_blue(). This program, without a toolkit, writes a PPM file.
+ * Cairo and Windows' bitmaps want B, G, R, A: swap_red_and_blue(). This program, without a toolkit, writes a
+ * PPM file.
  */
 #include <halflight/halflight.h>
 #include <stdio.h>
@@ -25,9 +27,10 @@ void swap_red_and_blue(uint8_t *bytes, size_t count) {
   }
 }
 
-/* A picture of the volume over its background. *bytes: [height][stride], to be freed by the caller; null on failure. */
-static hl_status draw(hl_context *context, const char *path, uint8_t **bytes, int *width, int *height, size_t *stride,
-                      hl_error *error) {
+/* A picture of the volume over its background. *bytes: [height][stride], to be freed by the caller; null on
+ * failure. */
+static hl_status draw(hl_context *context, const char *path, uint8_t **bytes, int *width, int *height,
+                      size_t *stride, hl_error *error) {
   hl_volume *volume = NULL;
   hl_scene *scene = NULL;
   hl_renderer *renderer = NULL;
@@ -40,7 +43,7 @@ static hl_status draw(hl_context *context, const char *path, uint8_t **bytes, in
     const hl_scene_description *description = hl_scene_describe(scene);
     *width = description->width;
     *height = description->height;
-    *stride = 4 * (size_t)*width; /* or more, as the toolkit says */
+    *stride = 4 * (size_t)*width;            /* or more, as the toolkit says */
     hl_scene_write_options(scene, &options); /* its background lies under the volume */
     status = hl_renderer_create(context, &renderer, error);
   }

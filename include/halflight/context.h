@@ -1,7 +1,7 @@
 /* halflight/context.h - the context: memory, messages, progress and cancellation.
  *
- * Where a function takes a pointer and does not say that it may be null, null is refused with HL_ERROR_ARGUMENT; functions
- * without a status do nothing then, or answer null, 0 or NaN. No null crashes.
+ * Where a function takes a pointer and does not say that it may be null, null is refused with
+ * HL_ERROR_ARGUMENT; functions without a status do nothing then, or answer null, 0 or NaN. No null crashes.
  *
  * Every other object is made with a context and must not outlive it. The library keeps no
  * global state, prints nothing, never exits and reads no environment variables.
@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 #if defined(__GNUC__) || defined(__clang__)
-#define HL_API __attribute__((visibility("default")))
+#define HL_API         __attribute__((visibility("default")))
 #define HL_WARN_UNUSED __attribute__((warn_unused_result))
 #else
 #define HL_API
@@ -74,14 +74,14 @@ typedef struct hl_context_options {
   void (*log)(void *user_data, hl_log_level level, const char *message);
   /* fraction in [0,1] of the named stage ("load", "prepare", "render", "write"). */
   void (*progress)(void *user_data, const char *stage, double fraction);
-  /* Asked every few milliseconds; a non-zero answer makes the running call return HL_ERROR_CANCELLED soon: within a
-   * tenth of a second up to 4096 x 4096 pixels and 512^3 voxels. */
+  /* Asked every few milliseconds; a non-zero answer makes the running call return HL_ERROR_CANCELLED soon:
+   * within a tenth of a second up to 4096 x 4096 pixels and 512^3 voxels. */
   int (*cancelled)(void *user_data);
-  uint64_t memory_limit;                /* bytes held through this context at once; 0: no limit */
-  hl_instruction_set instruction_set;   /* an unsupported choice is refused */
-  const char *data_folder;              /* where "data:" in a scene's file names leads; copied; null: nowhere */
-  /* Told the path of every file that is opened to be read: scenes, volumes and the data files that their headers name,
-   * transfer functions, pictures. Who then writes a file can see that it is none of them. */
+  uint64_t memory_limit;              /* bytes held through this context at once; 0: no limit */
+  hl_instruction_set instruction_set; /* an unsupported choice is refused */
+  const char *data_folder;            /* where "data:" in a scene's file names leads; copied; null: nowhere */
+  /* Told the path of every file that is opened to be read: scenes, volumes and the data files that their
+   * headers name, transfer functions, pictures. Who then writes a file can see that it is none of them. */
   void (*reads)(void *user_data, const char *path);
 } hl_context_options;
 
@@ -90,8 +90,8 @@ typedef struct hl_context hl_context; /* usable from several threads at once */
 HL_API void hl_context_options_defaults(hl_context_options *options);
 
 /* options may be null for the defaults. *context is owned by the caller. */
-HL_API HL_WARN_UNUSED hl_status hl_context_create(const hl_context_options *options,
-                                                  hl_context **context, hl_error *error);
+HL_API HL_WARN_UNUSED hl_status hl_context_create(const hl_context_options *options, hl_context **context,
+                                                  hl_error *error);
 
 /* Null is allowed. Everything made with the context must be released before. */
 HL_API void hl_context_destroy(hl_context *context);

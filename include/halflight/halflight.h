@@ -25,7 +25,8 @@
  *         int width = hl_scene_describe(scene)->width, height = hl_scene_describe(scene)->height;
  *         hl_scene_write_options(scene, &options);
  *         done = hl_image_create(context, width, height, &image, &error) == HL_OK &&
- *                hl_renderer_render(renderer, scene, hl_image_pixels(image), 4 * (size_t)width, NULL, &error) == HL_OK &&
+ *                hl_renderer_render(renderer, scene, hl_image_pixels(image), 4 * (size_t)width, NULL,
+ *                                   &error) == HL_OK &&
  *                hl_image_write(context, image, argv[2], &options, &error) == HL_OK;
  *       }
  *       if (!done) fprintf(stderr, "%s\n", error.message);
@@ -37,7 +38,8 @@
  *       return done ? 0 : 1;
  *     }
  *
- * More of them, from arrays in memory, for windows and with layers, are installed in share/doc/halflight/examples.
+ * More of them, from arrays in memory, for windows and with layers, are installed in
+ * share/doc/halflight/examples.
  */
 #ifndef HALFLIGHT_HALFLIGHT_H
 #define HALFLIGHT_HALFLIGHT_H

@@ -11,8 +11,8 @@ extern "C" {
 typedef struct hl_image hl_image;
 
 /* width x height pixels, all zero. *image is owned by the caller. */
-HL_API HL_WARN_UNUSED hl_status hl_image_create(hl_context *context, int width, int height,
-                                                hl_image **image, hl_error *error);
+HL_API HL_WARN_UNUSED hl_status hl_image_create(hl_context *context, int width, int height, hl_image **image,
+                                                hl_error *error);
 HL_API void hl_image_destroy(hl_image *image); /* null is allowed */
 
 HL_API int hl_image_width(const hl_image *image);
@@ -21,59 +21,64 @@ HL_API int hl_image_height(const hl_image *image);
 HL_API float *hl_image_pixels(hl_image *image);
 HL_API const float *hl_image_pixels_const(const hl_image *image);
 
-/* Adds a layer beside the picture's RGBA, all zero. name: letters, digits and '_', not yet taken; channels: one letter
- * each, "RGB", "XYZ" or "Z". *values: [height][width][channels], owned by the image. */
+/* Adds a layer beside the picture's RGBA, all zero. name: letters, digits and '_', not yet taken; channels:
+ * one letter each, "RGB", "XYZ" or "Z". *values: [height][width][channels], owned by the image. */
 HL_API HL_WARN_UNUSED hl_status hl_image_add_layer(hl_image *image, const char *name, const char *channels,
                                                    float **values, hl_error *error);
 
 typedef struct hl_image_write_options {
-  size_t struct_size;      /* set by hl_image_write_options_defaults() */
-  int png_depth;           /* 8 or 16 */
-  double background[3];    /* linear RGB; PNG only */
+  size_t struct_size;         /* set by hl_image_write_options_defaults() */
+  int png_depth;              /* 8 or 16 */
+  double background[3];       /* linear RGB; PNG only */
   int background_transparent; /* PNG keeps alpha (unassociated, as PNG demands) */
-  const char *scene_json;  /* stored in the PNG as the text chunk "halflight:scene"; may be null */
-  double exposure;         /* stops, -32 to 32; PNG only: the picture's light is multiplied by 2^exposure, the background is not */
+  const char *scene_json;     /* stored in the PNG as the text chunk "halflight:scene"; may be null */
+  double exposure; /* stops, -32 to 32; PNG only: the picture's light is multiplied by 2^exposure, the
+                      background is not */
 } hl_image_write_options;
 
 HL_API void hl_image_write_options_defaults(hl_image_write_options *options);
 
 /* By extension: .png (sRGB, composited over the background), .exr (linear float), .npy (float32,
- * height x width x 4). Written to a temporary name beside path and renamed: never half a file. Layers become channels
- * "name.R" and so on of an .exr, and files of their own beside an .npy, "picture-name.npy" (height x width x channels,
- * or height x width), which are written before it; a .png cannot hold them and is refused. options may be null. */
+ * height x width x 4). Written to a temporary name beside path and renamed: never half a file. Layers become
+ * channels "name.R" and so on of an .exr, and files of their own beside an .npy, "picture-name.npy" (height x
+ * width x channels, or height x width), which are written before it; a .png cannot hold them and is refused.
+ * options may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                                                const hl_image_write_options *options, hl_error *error);
 
-/* The same bytes in memory; format: "png", "exr" or "npy". *bytes: [*length], owned by the caller (hl_bytes_release()).
- * Layers fit into "exr" alone. */
-HL_API HL_WARN_UNUSED hl_status hl_image_encode(hl_context *context, const hl_image *image, const char *format,
-                                                const hl_image_write_options *options, unsigned char **bytes,
-                                                size_t *length, hl_error *error);
+/* The same bytes in memory; format: "png", "exr" or "npy". *bytes: [*length], owned by the caller
+ * (hl_bytes_release()). Layers fit into "exr" alone. */
+HL_API HL_WARN_UNUSED hl_status hl_image_encode(hl_context *context, const hl_image *image,
+                                                const char *format, const hl_image_write_options *options,
+                                                unsigned char **bytes, size_t *length, hl_error *error);
 HL_API void hl_bytes_release(hl_context *context, unsigned char *bytes); /* null is allowed */
 
-/* The picture as 8-bit sRGB, for windows and toolkits: bytes R, G, B, A of each pixel, top row first, the same codes as in a
- * .png of png_depth 8. Over the background A is 255; with background_transparent colours are unassociated. bytes: the
- * caller's, [height][row_stride], 4 x width of them used in each row; row_stride in bytes, at least 4 x width. options may
- * be null: over black. */
-HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image, const hl_image_write_options *options, uint8_t *bytes,
+/* The picture as 8-bit sRGB, for windows and toolkits: bytes R, G, B, A of each pixel, top row first, the
+ * same codes as in a .png of png_depth 8. Over the background A is 255; with background_transparent colours
+ * are unassociated. bytes: the caller's, [height][row_stride], 4 x width of them used in each row; row_stride
+ * in bytes, at least 4 x width. options may be null: over black. */
+HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
+                                                  const hl_image_write_options *options, uint8_t *bytes,
                                                   size_t row_stride, hl_error *error);
 
-/* Reads .png (sRGB decoded), .exr (R, G, B, A; missing A is 1) and .npy (float32, height x width x 1, 3 or 4). */
+/* Reads .png (sRGB decoded), .exr (R, G, B, A; missing A is 1) and .npy (float32, height x width x 1, 3 or
+ * 4). */
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);
 
-/* The scene that a PNG carries (hl_image_write_options.scene_json), null-terminated: for hl_scene_from_json(); free with
- * hl_text_release(). bytes: [byte_count], the whole file; name: what errors call it. */
+/* The scene that a PNG carries (hl_image_write_options.scene_json), null-terminated: for
+ * hl_scene_from_json(); free with hl_text_release(). bytes: [byte_count], the whole file; name: what errors
+ * call it. */
 HL_API HL_WARN_UNUSED hl_status hl_image_find_scene(hl_context *context, const char *name, const void *bytes,
                                                     size_t byte_count, char **text, hl_error *error);
 
 /* Differences of b against a over R, G, B, A, linear premultiplied. */
 typedef struct hl_image_difference {
-  size_t struct_size;        /* set by the caller */
-  double rmse;               /* root mean square over all pixels and channels */
-  double maximum;            /* greatest absolute difference */
-  double percentile_99_9;    /* of the pixels' greatest absolute difference */
-  double mean_signed[4];     /* mean of b - a per channel */
+  size_t struct_size;     /* set by the caller */
+  double rmse;            /* root mean square over all pixels and channels */
+  double maximum;         /* greatest absolute difference */
+  double percentile_99_9; /* of the pixels' greatest absolute difference */
+  double mean_signed[4];  /* mean of b - a per channel */
   double rmse_channel[4];
   uint64_t differing_pixels; /* pixels that are not equal */
   int maximum_x, maximum_y;  /* where the greatest difference is */

@@ -10,61 +10,65 @@
 extern "C" {
 #endif
 
-/* Reusable: keeps buffers and prepared volumes between frames. One thread at a time; scenes may be shared by any number of
- * renderers. After fork() the child may render with a renderer that was idle, or with one of its own: either starts
- * threads of its own. */
+/* Reusable: keeps buffers and prepared volumes between frames. One thread at a time; scenes may be shared by
+ * any number of renderers. After fork() the child may render with a renderer that was idle, or with one of
+ * its own: either starts threads of its own. */
 typedef struct hl_renderer hl_renderer;
 
 typedef struct hl_render_statistics {
-  size_t struct_size;         /* set by the caller to sizeof(hl_render_statistics) */
-  double seconds_prepare;     /* bricks, transfer-function tables, buffers */
-  double seconds_render;      /* the sheets */
-  int sheets;                 /* summed over sweeps */
-  int sweeps;                 /* one per slicing direction */
+  size_t struct_size;     /* set by the caller to sizeof(hl_render_statistics) */
+  double seconds_prepare; /* bricks, transfer-function tables, buffers */
+  double seconds_render;  /* the sheets */
+  int sheets;             /* summed over sweeps */
+  int sweeps;             /* one per slicing direction */
   int threads;
   hl_instruction_set instruction_set;
   uint64_t voxels_total;
-  uint64_t voxels_kept;       /* that can matter to the picture */
-  uint64_t samples_shaded;    /* image samples classified, lit and composited */
+  uint64_t voxels_kept;                              /* that can matter to the picture */
+  uint64_t samples_shaded;                           /* image samples classified, lit and composited */
   uint64_t tiles_filled_image, tiles_filled_light;   /* sheet tiles reconstructed */
   uint64_t tiles_skipped_image, tiles_skipped_light; /* skipped because they were already opaque or dark */
   /* wall-clock seconds per stage; the light's fill includes its composite into the shadow buffer. The image
    * is filled and shaded in one stage, whose time is split as the threads spent it. */
   double seconds_sort, seconds_fill_image, seconds_fill_light, seconds_shade, seconds_soften;
-  double seconds_composite_light;                         /* the part of seconds_fill_light that is classification and
-                                                             composite */
-  uint64_t pixels_filled_image, pixels_filled_light;      /* sheet pixels reconstructed, to tell what is hidden too */
-  uint64_t pixels_skipped_image, pixels_skipped_light;    /* in occupied places, but already opaque or dark */
+  double seconds_composite_light; /* the part of seconds_fill_light that is classification and
+                                     composite */
+  uint64_t pixels_filled_image,
+      pixels_filled_light; /* sheet pixels reconstructed, to tell what is hidden too */
+  uint64_t pixels_skipped_image, pixels_skipped_light; /* in occupied places, but already opaque or dark */
 } hl_render_statistics;
 
-HL_API HL_WARN_UNUSED hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_error *error);
+HL_API HL_WARN_UNUSED hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer,
+                                                   hl_error *error);
 HL_API void hl_renderer_destroy(hl_renderer *renderer); /* null is allowed */
 
 /* pixels: the caller's buffer, [height][row_stride] floats, width x 4 of them used in each row: linear
  * premultiplied RGBA of the volumes alone (no background), top row first. row_stride in floats, at
- * least 4 x width. statistics may be null. On an error the buffer's content is undefined. Where it is aligned to 64 bytes,
- * its rows follow each other and its sides are multiples of 16, the picture can be made in it, in less memory. */
-HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float *pixels,
-                                                   size_t row_stride, hl_render_statistics *statistics,
-                                                   hl_error *error);
+ * least 4 x width. statistics may be null. On an error the buffer's content is undefined. Where it is aligned
+ * to 64 bytes, its rows follow each other and its sides are multiples of 16, the picture can be made in it,
+ * in less memory. */
+HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene,
+                                                   float *pixels, size_t row_stride,
+                                                   hl_render_statistics *statistics, hl_error *error);
 
-/* The same, and the layers that are asked for. Takes longer: each light is shaded once more for its picture and once for
- * its shadow. */
-HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene, float *pixels,
-                                                          size_t row_stride, const hl_layers *layers,
+/* The same, and the layers that are asked for. Takes longer: each light is shaded once more for its picture
+ * and once for its shadow. */
+HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene,
+                                                          float *pixels, size_t row_stride,
+                                                          const hl_layers *layers,
                                                           hl_render_statistics *statistics, hl_error *error);
 
-/* How the scene wants its pictures written, by hl_image_write() or hl_image_to_srgb8(): the defaults with its background and
- * exposure. scene may be null: the defaults alone. */
+/* How the scene wants its pictures written, by hl_image_write() or hl_image_to_srgb8(): the defaults with its
+ * background and exposure. scene may be null: the defaults alone. */
 HL_API void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *options);
 
 typedef struct hl_reference_options {
-  size_t struct_size;   /* set by hl_reference_options_defaults() */
-  int light_points;     /* points on each extended light; default 1024 */
-  double step;          /* marching step in smallest voxel edges; default 0.25 */
-  int threads;          /* 0: one per processor */
-  int rays;             /* along each side of a pixel, from 1 to 8; their mean is the pixel; default 1. 0: as many as the
-                           renderer averages where voxels are smaller than pixels */
+  size_t struct_size; /* set by hl_reference_options_defaults() */
+  int light_points;   /* points on each extended light; default 1024 */
+  double step;        /* marching step in smallest voxel edges; default 0.25 */
+  int threads;        /* 0: one per processor */
+  int rays; /* along each side of a pixel, from 1 to 8; their mean is the pixel; default 1. 0: as many as the
+               renderer averages where voxels are smaller than pixels */
 } hl_reference_options;
 
 HL_API void hl_reference_options_defaults(hl_reference_options *options);

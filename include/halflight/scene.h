@@ -40,100 +40,106 @@ typedef enum hl_shadows {
 
 typedef enum hl_falloff { HL_FALLOFF_NONE = 0, HL_FALLOFF_INVERSE_SQUARE = 1 } hl_falloff;
 
-/* An image that a light projects along its rays (section 4 of the paper): a ray has the colour of the image where it
- * passes the light screen, a parallelogram in space, over its whole length, before the screen too; rays that pass beside
- * the screen are dark. Bilinear between the middles of pixels. */
+/* An image that a light projects along its rays (section 4 of the paper): a ray has the colour of the image
+ * where it passes the light screen, a parallelogram in space, over its whole length, before the screen too;
+ * rays that pass beside the screen are dark. Bilinear between the middles of pixels. */
 typedef struct hl_light_texture {
-  const char *file;             /* where the pixels came from, for hl_scene_to_json; may be null */
-  const float *pixels;          /* [height][width][3]: linear RGB, top row first; null: the light has no texture */
+  const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
+  const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light has no texture */
   int width, height;
   double screen_center[3];
-  double screen_right[3];       /* from the centre to the middle of the image's right edge */
-  double screen_up[3];          /* from the centre to the middle of its top edge */
+  double screen_right[3]; /* from the centre to the middle of the image's right edge */
+  double screen_up[3];    /* from the centre to the middle of its top edge */
 } hl_light_texture;
 
-/* An image on the surface of an extended light itself: what each of its points sends, times color and intensity. Soft
- * shadows take its shape and colours; without them the light has its mean. A rect's image has its right edge at the end of
- * edge1 and its top at that of edge2; that of a disk or polygon fills the square or rectangle around it, upright (along
- * `up`) and not mirrored for who stands before its normal; spheres and directional lights show it to every sample.
- * Bilinear between the middles of pixels. */
+/* An image on the surface of an extended light itself: what each of its points sends, times color and
+ * intensity. Soft shadows take its shape and colours; without them the light has its mean. A rect's image has
+ * its right edge at the end of edge1 and its top at that of edge2; that of a disk or polygon fills the square
+ * or rectangle around it, upright (along `up`) and not mirrored for who stands before its normal; spheres and
+ * directional lights show it to every sample. Bilinear between the middles of pixels. */
 typedef struct hl_light_emission {
-  const char *file;             /* where the pixels came from, for hl_scene_to_json; may be null */
-  const float *pixels;          /* [height][width][3]: linear RGB, top row first; null: the light is even */
+  const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
+  const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light is even */
   int width, height;
-  double up[3];                 /* not for rects; where it points along the light's normal, [0, 1, 0] in its place */
+  double up[3]; /* not for rects; where it points along the light's normal, [0, 1, 0] in its place */
 } hl_light_emission;
 
 /* The axes that a light's places and directions are in. */
 typedef enum hl_light_frame {
   HL_LIGHT_FRAME_WORLD = 0,
-  HL_LIGHT_FRAME_CAMERA = 1 /* right, up and towards the viewer, from the camera's target: the light goes with the camera */
+  HL_LIGHT_FRAME_CAMERA =
+      1 /* right, up and towards the viewer, from the camera's target: the light goes with the camera */
 } hl_light_frame;
 
 typedef struct hl_light {
   hl_light_type type;
-  hl_light_frame frame;         /* of all that follows, texture and emission included */
-  double direction[3];          /* directional, spot: the way the light travels */
-  double angular_diameter_deg;  /* directional: > 0 is soft */
-  double position[3];           /* point, spot, rect, disk (its centre) */
-  double radius;                /* point and spot (spheres), disk */
-  double normal[3];             /* disk */
-  double edge1[3], edge2[3];    /* rect: full edges */
-  double opening_angle_deg;     /* spot: full angle of its cone, beyond which it is dark */
-  double falloff_angle_deg;     /* spot: width of the smooth edge inside the cone */
-  const double (*vertices)[3];  /* polygon; [vertex_count][3] */
+  hl_light_frame frame;        /* of all that follows, texture and emission included */
+  double direction[3];         /* directional, spot: the way the light travels */
+  double angular_diameter_deg; /* directional: > 0 is soft */
+  double position[3];          /* point, spot, rect, disk (its centre) */
+  double radius;               /* point and spot (spheres), disk */
+  double normal[3];            /* disk */
+  double edge1[3], edge2[3];   /* rect: full edges */
+  double opening_angle_deg;    /* spot: full angle of its cone, beyond which it is dark */
+  double falloff_angle_deg;    /* spot: width of the smooth edge inside the cone */
+  const double (*vertices)[3]; /* polygon; [vertex_count][3] */
   size_t vertex_count;
   double color[3];
-  double intensity;             /* I_light = color * intensity at the sample (no falloff unless asked) */
+  double intensity; /* I_light = color * intensity at the sample (no falloff unless asked) */
   hl_falloff falloff;
   hl_shadows shadows;
-  hl_light_texture texture;     /* copied with its pixels by hl_scene_create() */
-  hl_light_emission emission;   /* likewise; not beside a texture */
+  hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */
+  hl_light_emission emission; /* likewise; not beside a texture */
 } hl_light;
 
-typedef struct hl_opacity_point { double value, opacity; } hl_opacity_point;
-typedef struct hl_color_point { double value; double color[3]; } hl_color_point;
+typedef struct hl_opacity_point {
+  double value, opacity;
+} hl_opacity_point;
+typedef struct hl_color_point {
+  double value;
+  double color[3];
+} hl_color_point;
 
 /* Piecewise linear in data values, constant beyond the end points. */
 typedef struct hl_transfer_function {
-  double unit_distance;             /* world units; opacities are per this length */
-  const hl_opacity_point *opacity;  /* sorted by value */
+  double unit_distance;            /* world units; opacities are per this length */
+  const hl_opacity_point *opacity; /* sorted by value */
   size_t opacity_count;
-  const hl_color_point *color;      /* sorted by value; linear RGB */
+  const hl_color_point *color; /* sorted by value; linear RGB */
   size_t color_count;
 } hl_transfer_function;
 
 typedef enum hl_shading {
   HL_SHADING_PHONG = 0,
-  HL_SHADING_NONE = 1,         /* a medium: lit and shadowed, without a surface */
-  HL_SHADING_FLAT = 2          /* the transfer function's colour itself: no light, no shadow received */
+  HL_SHADING_NONE = 1, /* a medium: lit and shadowed, without a surface */
+  HL_SHADING_FLAT = 2  /* the transfer function's colour itself: no light, no shadow received */
 } hl_shading;
 
 typedef struct hl_material {
   double ambient, diffuse, specular, shininess; /* ka kd ks n */
-  double emission;             /* ke: the part of the colour that is sent without any light; 0 by default */
+  double emission; /* ke: the part of the colour that is sent without any light; 0 by default */
 } hl_material;
 
 typedef struct hl_scene_volume {
-  const char *name;             /* may be null */
-  const char *file;             /* where the voxels came from, for hl_scene_to_json; may be null */
-  const char *shapes;           /* or the text they came from, as for hl_volume_from_shapes; may be null */
-  const char *array;            /* how they were loaded from the file (hl_volume_load_options), for hl_scene_to_json; */
-  int component;                /* null, HL_COMPONENT_DEFAULT and 0: by default */
+  const char *name;   /* may be null */
+  const char *file;   /* where the voxels came from, for hl_scene_to_json; may be null */
+  const char *shapes; /* or the text they came from, as for hl_volume_from_shapes; may be null */
+  const char *array;  /* how they were loaded from the file (hl_volume_load_options), for hl_scene_to_json; */
+  int component;      /* null, HL_COMPONENT_DEFAULT and 0: by default */
   double spacing[3];
-  hl_volume *volume;            /* retained by the scene */
-  double scale;                 /* transform: scale, then rotate, then translate */
+  hl_volume *volume; /* retained by the scene */
+  double scale;      /* transform: scale, then rotate, then translate */
   double rotate_axis[3];
   double rotate_angle_deg;
   double translate[3];
   hl_transfer_function transfer_function;
   hl_shading shading;
   hl_material material;
-  double attenuation_color[3];  /* relative extinction of R, G, B */
+  double attenuation_color[3]; /* relative extinction of R, G, B */
   int visible, casts_shadow, receives_shadow;
-  int clipped;                  /* non-zero: only the box clip_min..clip_max is there */
+  int clipped;                     /* non-zero: only the box clip_min..clip_max is there */
   double clip_min[3], clip_max[3]; /* world units of the volume's own file, before the transform */
-  double axis_scale[3];         /* times `scale`: along x, y and z of the volume's own file, before the rotation */
+  double axis_scale[3]; /* times `scale`: along x, y and z of the volume's own file, before the rotation */
 } hl_scene_volume;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
@@ -148,46 +154,47 @@ typedef enum hl_slicing { HL_SLICING_HALF_VECTOR = 0, HL_SLICING_IMAGE_ALIGNED =
 typedef enum hl_shadow_lookup {
   HL_LOOKUP_BILINEAR = 0,
   HL_LOOKUP_NEAREST = 1,
-  HL_LOOKUP_CUBIC = 2,         /* cubic convolution: sharper; of sub-lights bilinear */
-  HL_LOOKUP_AUTO = 3           /* cubic, of coarser pixels, where shadows are a cascade and lights even, and where they are hard and
-                                  sheets closer than 5/6 of a voxel; elsewhere bilinear */
+  HL_LOOKUP_CUBIC = 2, /* cubic convolution: sharper; of sub-lights bilinear */
+  HL_LOOKUP_AUTO = 3 /* cubic, of coarser pixels, where shadows are a cascade and lights even, and where they
+                        are hard and sheets closer than 5/6 of a voxel; elsewhere bilinear */
 } hl_shadow_lookup;
 
 /* What a pixel shows of the volumes along its ray. */
 typedef enum hl_compositing {
-  HL_COMPOSITING_LIGHT = 0,    /* lit matter, front to back */
-  HL_COMPOSITING_MAXIMUM = 1   /* maximum projection: the colour of the greatest value that the transfer function shows (opacity
-                                  above 0), without light; of several volumes, the greatest of each channel */
+  HL_COMPOSITING_LIGHT = 0, /* lit matter, front to back */
+  HL_COMPOSITING_MAXIMUM =
+      1 /* maximum projection: the colour of the greatest value that the transfer function shows (opacity
+           above 0), without light; of several volumes, the greatest of each channel */
 } hl_compositing;
 
 typedef struct hl_render_settings {
-  hl_shadows shadows;          /* off, hard or soft */
+  hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
-  int light_samples;           /* sublights: M, for M x M parts */
-  double sheet_spacing;        /* in voxels: the smallest voxel edge of the scene */
+  int light_samples;    /* sublights: M, for M x M parts */
+  double sheet_spacing; /* in voxels: the smallest voxel edge of the scene */
   hl_kernel kernel;
   hl_reconstruction reconstruction;
   hl_slicing slicing;
   hl_shadow_lookup shadow_lookup;
-  int shadow_resolution;       /* pixels along the longer side; 0: auto */
-  int threads;                 /* 0: one per processor */
+  int shadow_resolution; /* pixels along the longer side; 0: auto */
+  int threads;           /* 0: one per processor */
   hl_compositing compositing;
 } hl_render_settings;
 
 typedef struct hl_scene_description {
-  size_t struct_size;          /* set by hl_scene_description_defaults() */
-  int width, height;           /* pixels */
-  double background[3];        /* linear RGB */
-  int background_transparent;  /* PNG keeps alpha */
+  size_t struct_size;         /* set by hl_scene_description_defaults() */
+  int width, height;          /* pixels */
+  double background[3];       /* linear RGB */
+  int background_transparent; /* PNG keeps alpha */
   hl_camera camera;
-  double ambient[3];           /* Ia */
+  double ambient[3]; /* Ia */
   const hl_light *lights;
   size_t light_count;
   const hl_scene_volume *volumes;
   size_t volume_count;
   hl_render_settings render;
-  const char *description;     /* one sentence on the scene; may be null */
-  double exposure;             /* stops: a PNG shows the volumes' light times 2^exposure; 0 by default */
+  const char *description; /* one sentence on the scene; may be null */
+  double exposure;         /* stops: a PNG shows the volumes' light times 2^exposure; 0 by default */
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* immutable and counted */
@@ -222,9 +229,9 @@ HL_API void hl_text_release(hl_context *context, char *text);
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
                                                     hl_scene **scene, hl_error *error);
 
-/* What hl_scene_for_volume() takes a volume for, and makes its transfer function and lights for: "scanned body", "scanned
- * brain", "scanned matter", "labels", "field", "flow", "signed field", "smoke or cloud" or "one value". file as there (may be null). *kind
- * is a constant. */
+/* What hl_scene_for_volume() takes a volume for, and makes its transfer function and lights for: "scanned
+ * body", "scanned brain", "scanned matter", "labels", "field", "flow", "signed field", "smoke or cloud" or
+ * "one value". file as there (may be null). *kind is a constant. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind,
                                                 hl_error *error);
 
@@ -239,15 +246,15 @@ HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
 
 /* How a scene is looked at. */
 typedef struct hl_view {
-  double up[3];          /* unit: up in the picture, at elevation 0 and roll 0 */
-  double front[3];       /* unit, at a right angle to up: from the things to the eye at azimuth 0 and elevation 0 */
-  double azimuth_deg;    /* positive: the eye moves to its right, about up */
-  double elevation_deg;  /* -90 to 90; positive: the eye rises */
-  double roll_deg;       /* positive: the picture turns clockwise */
+  double up[3];    /* unit: up in the picture, at elevation 0 and roll 0 */
+  double front[3]; /* unit, at a right angle to up: from the things to the eye at azimuth 0 and elevation 0 */
+  double azimuth_deg;   /* positive: the eye moves to its right, about up */
+  double elevation_deg; /* -90 to 90; positive: the eye rises */
+  double roll_deg;      /* positive: the picture turns clockwise */
 } hl_view;
 
-/* Sides to look from. With a body's anatomy (hl_volume_info's space) they are the body's own: from the left one sees its
- * left. Else left and right are the viewer's, who stands in front. */
+/* Sides to look from. With a body's anatomy (hl_volume_info's space) they are the body's own: from the left
+ * one sees its left. Else left and right are the viewer's, who stands in front. */
 typedef enum hl_side {
   HL_SIDE_AUTOMATIC = 0, /* the three-quarter view that shows most */
   HL_SIDE_FRONT = 1,
@@ -256,32 +263,35 @@ typedef enum hl_side {
   HL_SIDE_RIGHT = 4,
   HL_SIDE_TOP = 5,
   HL_SIDE_BOTTOM = 6,
-  HL_SIDE_ISO = 7        /* azimuth 45 and the elevation at which three edges of a cube look alike, 35.26 */
+  HL_SIDE_ISO = 7 /* azimuth 45 and the elevation at which three edges of a cube look alike, 35.26 */
 } hl_side;
 
-/* The view from a side. up: of no set length; null: as the file's anatomy says, or else as the things seem to stand. Without
- * anatomy the picture's right at the front is +x (where up is along x: +y), so that the front is at -y where z is up.
- * The camera of a scene that has none is hl_camera_frame_view() of the automatic side. */
-HL_API HL_WARN_UNUSED hl_status hl_view_choose(const hl_scene_description *description, hl_side side, const double up[3],
-                                               hl_view *view, hl_error *error);
+/* The view from a side. up: of no set length; null: as the file's anatomy says, or else as the things seem to
+ * stand. Without anatomy the picture's right at the front is +x (where up is along x: +y), so that the front
+ * is at -y where z is up. The camera of a scene that has none is hl_camera_frame_view() of the automatic
+ * side. */
+HL_API HL_WARN_UNUSED hl_status hl_view_choose(const hl_scene_description *description, hl_side side,
+                                               const double up[3], hl_view *view, hl_error *error);
 
-/* The view that the description's camera has, with roll 0: up is its up vector, or an axis of the world that this was made
- * level with. Fails where position and target are the same. */
+/* The view that the description's camera has, with roll 0: up is its up vector, or an axis of the world that
+ * this was made level with. Fails where position and target are the same. */
 HL_API HL_WARN_UNUSED hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *view);
 
-/* Places the camera so that what is seen of all volumes fills the picture and is in its middle, with room for turning: at
- * zoom 1 nothing leaves the picture however the camera turns about view->up (hl_camera_turn), and, as far as this view stays
- * filled to four fifths, however it turns at all. camera->type and fovy_deg are kept. Fails where zoom is not from 1e-6 to 1e6, the
- * view or the field of view is impossible, or there is no volume (HL_ERROR_ARGUMENT), and for lack of memory. */
-HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description *description, const hl_view *view,
-                                                     double zoom, hl_camera *camera, hl_error *error);
+/* Places the camera so that what is seen of all volumes fills the picture and is in its middle, with room for
+ * turning: at zoom 1 nothing leaves the picture however the camera turns about view->up (hl_camera_turn),
+ * and, as far as this view stays filled to four fifths, however it turns at all. camera->type and fovy_deg
+ * are kept. Fails where zoom is not from 1e-6 to 1e6, the view or the field of view is impossible, or there
+ * is no volume (HL_ERROR_ARGUMENT), and for lack of memory. */
+HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description *description,
+                                                     const hl_view *view, double zoom, hl_camera *camera,
+                                                     hl_error *error);
 
 /* Turns the camera about its target, at its distance. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *camera);
 
-/* Places the camera so that what is seen of all volumes fills the picture, tight for this direction alone: azimuth 0 looks
- * along the world's +y, positive turns the eye to the right; elevation 90 looks straight down z. zoom 1 frames everything.
- * camera->type and fovy_deg are kept. */
+/* Places the camera so that what is seen of all volumes fills the picture, tight for this direction alone:
+ * azimuth 0 looks along the world's +y, positive turns the eye to the right; elevation 90 looks straight down
+ * z. zoom 1 frames everything. camera->type and fovy_deg are kept. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg,
                                                 double elevation_deg, double zoom, hl_camera *camera);
 
@@ -290,8 +300,8 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *descri
                                               hl_camera *camera);
 
 /* The direction (unit, the way light travels) of a light that stands, seen by the camera, at azimuth
- * (positive: right) and elevation (positive: up) from the line of sight: 0,0 is a headlight. camera null: direction
- * becomes 0, 0, 0, which hl_scene_create() refuses; direction null: nothing is done. */
+ * (positive: right) and elevation (positive: up) from the line of sight: 0,0 is a headlight. camera null:
+ * direction becomes 0, 0, 0, which hl_scene_create() refuses; direction null: nothing is done. */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                                double direction[3]);
 /* The same for a light in HL_LIGHT_FRAME_CAMERA. */
@@ -300,7 +310,8 @@ HL_API void hl_light_direction_beside(double azimuth_deg, double elevation_deg, 
 /* Transfer functions made by the library own their points: free with hl_transfer_function_release(). */
 /* From the volume's histogram: separates air from things in CT, MR and simulations alike. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
-                                                               hl_transfer_function *function, hl_error *error);
+                                                               hl_transfer_function *function,
+                                                               hl_error *error);
 /* name: one of hl_preset_name(0..). Presets in units of the volume's own kind adapt to its range. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context, const char *name,
                                                             const hl_volume *volume,
@@ -308,10 +319,12 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context,
 /* Replaces the colours by a named colormap over [low, high]. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *context, const char *name,
                                                               double low, double high,
-                                                              hl_transfer_function *function, hl_error *error);
-/* Between which two values of the volume nearly all lies that the function lets be seen, from whatever side: a good range for
- * a colormap. Where nothing is seen, the volume's range. range[0] < range[1]. */
-HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume, const hl_transfer_function *function,
+                                                              hl_transfer_function *function,
+                                                              hl_error *error);
+/* Between which two values of the volume nearly all lies that the function lets be seen, from whatever side:
+ * a good range for a colormap. Where nothing is seen, the volume's range. range[0] < range[1]. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume,
+                                                                const hl_transfer_function *function,
                                                                 double range[2], hl_error *error);
 /* Reads Halflight's own JSON object, ParaView's .json colour maps or Slicer's .vp.json. A file with colours
  * alone gives no opacity points (opacity null): take them from elsewhere. */

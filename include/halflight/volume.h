@@ -21,9 +21,9 @@ typedef enum hl_voxel_type {
   HL_VOXEL_I32 = 6,
   HL_VOXEL_F32 = 7,
   HL_VOXEL_F64 = 8,
-  HL_VOXEL_U64 = 9,  /* 64 and 32 bit integers and doubles are kept to 24 bits, as float */
+  HL_VOXEL_U64 = 9, /* 64 and 32 bit integers and doubles are kept to 24 bits, as float */
   HL_VOXEL_I64 = 10,
-  HL_VOXEL_F16 = 11  /* IEEE 754 binary16, kept as float */
+  HL_VOXEL_F16 = 11 /* IEEE 754 binary16, kept as float */
 } hl_voxel_type;
 
 typedef struct hl_volume hl_volume;
@@ -47,23 +47,23 @@ typedef struct hl_volume_description {
   double value_offset;       /* default 0 */
   const void *voxels;        /* voxel (0,0,0) */
   ptrdiff_t stride_bytes[3]; /* bytes from one voxel to the next along i, j, k; all 0: packed */
-  int borrow;                /* non-zero: packed u8, u16 and f32 voxels are not copied and must outlive the volume */
-  hl_space space;            /* default unknown */
+  int borrow;     /* non-zero: packed u8, u16 and f32 voxels are not copied and must outlive the volume */
+  hl_space space; /* default unknown */
 } hl_volume_description;
 
 #define HL_HISTOGRAM_BINS 256
 
 /* What a volume is. All values are data values (scale and offset applied). */
 typedef struct hl_volume_info {
-  size_t struct_size;          /* set by the caller to sizeof(hl_volume_info) */
+  size_t struct_size; /* set by the caller to sizeof(hl_volume_info) */
   size_t dimensions[3];
-  hl_voxel_type type;          /* as in the file */
-  double spacing[3];           /* length of each axis, world units */
+  hl_voxel_type type; /* as in the file */
+  double spacing[3];  /* length of each axis, world units */
   double origin[3];
-  double direction[3][3];      /* direction[row][column]; columns are the unit axes */
-  double range[2];             /* least and greatest finite value; 0, 0 if there is none */
-  double mean;                 /* over finite voxels */
-  uint64_t nonfinite_count;    /* NaN and infinite voxels: transparent when rendered */
+  double direction[3][3];                /* direction[row][column]; columns are the unit axes */
+  double range[2];                       /* least and greatest finite value; 0, 0 if there is none */
+  double mean;                           /* over finite voxels */
+  uint64_t nonfinite_count;              /* NaN and infinite voxels: transparent when rendered */
   uint64_t histogram[HL_HISTOGRAM_BINS]; /* equal bins over range, finite voxels */
   hl_space space;
 } hl_volume_info;
@@ -73,14 +73,14 @@ HL_API void hl_volume_description_defaults(hl_volume_description *description);
 
 /* Voxels are copied unless description->borrow. *volume is owned by the caller (release it). */
 HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
-                                                 const hl_volume_description *description,
-                                                 hl_volume **volume, hl_error *error);
+                                                 const hl_volume_description *description, hl_volume **volume,
+                                                 hl_error *error);
 
-/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk and NumPy .npy files (axes [z][y][x]), told by
- * content first and by name where the content has no mark. Of several arrays and components one is taken by default
- * (hl_volume_load_options), and a warning tells it. */
-HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path,
-                                               hl_volume **volume, hl_error *error);
+/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk and NumPy .npy files (axes [z][y][x]),
+ * told by content first and by name where the content has no mark. Of several arrays and components one is
+ * taken by default (hl_volume_load_options), and a warning tells it. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume,
+                                               hl_error *error);
 
 /* Instead of the index of a component. */
 enum {
@@ -90,11 +90,14 @@ enum {
 
 typedef struct hl_volume_load_options {
   size_t struct_size; /* set by hl_volume_load_options_defaults() */
-  const char *array;  /* name of one of the file's arrays; null: the file's active one, else the first scalar, else the first */
-  int component;      /* from 0 on, or an HL_COMPONENT_ value; default HL_COMPONENT_DEFAULT. Volumes of a series (time)
-                         are components too */
-  double spacing[3];  /* distance of voxels along i, j, k, world units, in place of the file's; all 0 (default): the file's */
-  const void *bytes;  /* the file's content, borrowed during the call, in place of a file; path then names it. Default null */
+  const char *array;  /* name of one of the file's arrays; null: the file's active one, else the first scalar,
+                         else the first */
+  int component; /* from 0 on, or an HL_COMPONENT_ value; default HL_COMPONENT_DEFAULT. Volumes of a series
+                    (time) are components too */
+  double spacing[3]; /* distance of voxels along i, j, k, world units, in place of the file's; all 0
+                        (default): the file's */
+  const void *bytes; /* the file's content, borrowed during the call, in place of a file; path then names it.
+                        Default null */
   size_t byte_count;
 } hl_volume_load_options;
 
@@ -106,9 +109,9 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const c
                                                     const hl_volume_load_options *options, hl_volume **volume,
                                                     hl_error *error);
 
-/* Writes .nrrd (gzip), .raw or .raw.gz, told by the name's end; bare voxels need their size and type in the name,
- * as for reading. Data values are kept: as 8 or 16 bit integers where the volume has such without a scale, else as
- * float. The file appears whole or not at all. */
+/* Writes .nrrd (gzip), .raw or .raw.gz, told by the name's end; bare voxels need their size and type in the
+ * name, as for reading. Data values are kept: as 8 or 16 bit integers where the volume has such without a
+ * scale, else as float. The file appears whole or not at all. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path,
                                                hl_error *error);
 
@@ -119,18 +122,20 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_v
 
 /* An array of the file that a volume was loaded from. */
 typedef struct hl_volume_array {
-  size_t struct_size;  /* set by the caller */
-  const char *name;    /* "" where the format has no names; the volume's */
-  size_t components;   /* values per voxel, or volumes of a series */
-  hl_voxel_type type;  /* 0: of a kind that is not read */
-  int of_cells;        /* VTK: values between the points */
-  int chosen;          /* the volume is made of it */
-  int component;       /* of the chosen one: what was read; HL_COMPONENT_MAGNITUDE for that */
+  size_t struct_size; /* set by the caller */
+  const char *name;   /* "" where the format has no names; the volume's */
+  size_t components;  /* values per voxel, or volumes of a series */
+  hl_voxel_type type; /* 0: of a kind that is not read */
+  int of_cells;       /* VTK: values between the points */
+  int chosen;         /* the volume is made of it */
+  int component;      /* of the chosen one: what was read; HL_COMPONENT_MAGNITUDE for that */
 } hl_volume_array;
 
-/* How many arrays the file has (those beyond 256 are not listed); 0: the volume came from memory or shapes. */
+/* How many arrays the file has (those beyond 256 are not listed); 0: the volume came from memory or
+ * shapes. */
 HL_API size_t hl_volume_array_count(const hl_volume *volume);
-HL_API HL_WARN_UNUSED hl_status hl_volume_get_array(const hl_volume *volume, size_t index, hl_volume_array *array);
+HL_API HL_WARN_UNUSED hl_status hl_volume_get_array(const hl_volume *volume, size_t index,
+                                                    hl_volume_array *array);
 
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */
 HL_API double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k);

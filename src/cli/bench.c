@@ -10,10 +10,14 @@
 #include "input.h"
 #include "render.h"
 
-static const cli_choice moves[] = {{"camera", MOVE_CAMERA}, {"light", MOVE_LIGHT}, {"tf", MOVE_TF}, {NULL, 0}};
+static const cli_choice moves[] = {
+    {"camera", MOVE_CAMERA}, {"light", MOVE_LIGHT}, {"tf", MOVE_TF}, {NULL, 0}};
 
-const cli_choice bench_settings[SETTING_COUNT + 1] = {{"off", SETTING_OFF}, {"hard", SETTING_HARD}, {"soft_paper", SETTING_PAPER},
-                                                      {"soft_cascade", SETTING_CASCADE}, {"soft_sublights", SETTING_SUBLIGHTS},
+const cli_choice bench_settings[SETTING_COUNT + 1] = {{"off", SETTING_OFF},
+                                                      {"hard", SETTING_HARD},
+                                                      {"soft_paper", SETTING_PAPER},
+                                                      {"soft_cascade", SETTING_CASCADE},
+                                                      {"soft_sublights", SETTING_SUBLIGHTS},
                                                       {NULL, 0}};
 
 static const cli_option bench_options[BENCH_OPTION_COUNT] = {
@@ -33,7 +37,8 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
     [BENCH_MOVE] = {.name = "move",
                     .kind = OPTION_CHOICE,
                     .choices = moves,
-                    .help = "what changes from frame to frame: the camera turns\n(default), the light turns, or opacities change"},
+                    .help = "what changes from frame to frame: the camera turns\n(default), the light turns, "
+                            "or opacities change"},
     [BENCH_SIZE] = {.name = "size",
                     .kind = OPTION_NUMBERS,
                     .argument = "WxH",
@@ -54,7 +59,10 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                              .count = 1,
                              .low = 0.01,
                              .high = 100},
-    [BENCH_KERNEL] = {.name = "kernel", .kind = OPTION_CHOICE, .choices = kernel_choices, .help = "of each voxel"},
+    [BENCH_KERNEL] = {.name = "kernel",
+                      .kind = OPTION_CHOICE,
+                      .choices = kernel_choices,
+                      .help = "of each voxel"},
     [BENCH_RECONSTRUCTION] = {.name = "reconstruction",
                               .kind = OPTION_CHOICE,
                               .choices = reconstruction_choices,
@@ -71,10 +79,11 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                                .kind = OPTION_CHOICE,
                                .choices = instruction_set_choices,
                                .help = "the best there is, unless given"},
-    [BENCH_MAX_MEMORY] = {.name = "max-memory",
-                          .kind = OPTION_BYTES,
-                          .argument = "BYTES",
-                          .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [BENCH_MAX_MEMORY] =
+        {.name = "max-memory",
+         .kind = OPTION_BYTES,
+         .argument = "BYTES",
+         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
     [BENCH_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "medians as JSON"},
 };
 
@@ -82,20 +91,27 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
 typedef struct bench_job {
   cli_host *host;
   const cli_value *values;
-  hl_scene *scene;                       /* owned */
+  hl_scene *scene; /* owned */
   bool bare;
-  hl_renderer *renderer[SETTING_COUNT];  /* owned */
-  hl_image *image;                       /* owned; the frame */
+  hl_renderer *renderer[SETTING_COUNT]; /* owned */
+  hl_image *image;                      /* owned; the frame */
   bench_result *result;
 } bench_job;
 
 /* Options that bench shares with render, as render's own. */
 static int change_scene(bench_job *job) {
-  static const struct { enum bench_option from; enum render_option to; } shared[] = {
-      {BENCH_SIZE, RENDER_SIZE},     {BENCH_TF, RENDER_TF},           {BENCH_SHEET_SPACING, RENDER_SHEET_SPACING},
-      {BENCH_KERNEL, RENDER_KERNEL}, {BENCH_THREADS, RENDER_THREADS}, {BENCH_RECONSTRUCTION, RENDER_RECONSTRUCTION}};
+  static const struct {
+    enum bench_option from;
+    enum render_option to;
+  } shared[] = {{BENCH_SIZE, RENDER_SIZE},
+                {BENCH_TF, RENDER_TF},
+                {BENCH_SHEET_SPACING, RENDER_SHEET_SPACING},
+                {BENCH_KERNEL, RENDER_KERNEL},
+                {BENCH_THREADS, RENDER_THREADS},
+                {BENCH_RECONSTRUCTION, RENDER_RECONSTRUCTION}};
   cli_value values[RENDER_OPTION_COUNT] = {0};
-  for (size_t i = 0; i < sizeof shared / sizeof shared[0]; i++) values[shared[i].to] = job->values[shared[i].from];
+  for (size_t i = 0; i < sizeof shared / sizeof shared[0]; i++)
+    values[shared[i].to] = job->values[shared[i].from];
   return render_change_scene(job->host, values, job->bare, &job->scene);
 }
 
@@ -128,9 +144,11 @@ static int open_renderers(bench_job *job) {
   hl_status made = hl_image_create(job->host->context, result->width, result->height, &job->image, &error);
   if (made != HL_OK) return host_fail(job->host, PHASE_RUN, made, &error);
   for (int setting = 0; setting < SETTING_COUNT; setting++) {
-    result->run[setting].supported = !job->values[BENCH_ONLY].given || job->values[BENCH_ONLY].choice == setting;
+    result->run[setting].supported = !job->values[BENCH_ONLY].given ||
+                                     job->values[BENCH_ONLY].choice == setting;
     result->run[setting].samples = calloc((size_t)result->frames, sizeof(bench_sample));
-    if (result->run[setting].samples == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for %d frames", result->frames);
+    if (result->run[setting].samples == NULL)
+      return fail(EXIT_CODE_FAILURE, "out of memory for %d frames", result->frames);
     hl_status status = hl_renderer_create(job->host->context, &job->renderer[setting], &error);
     if (status != HL_OK) return host_fail(job->host, PHASE_RUN, status, &error);
   }
@@ -158,7 +176,8 @@ static bench_sample sample_of(double frame, const hl_render_statistics *statisti
   return sample;
 }
 
-/* One frame of one setting; frame -1 is the warm-up. A setting that the renderer does not know is left out from then on. */
+/* One frame of one setting; frame -1 is the warm-up. A setting that the renderer does not know is left out
+ * from then on. */
 static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   bench_result *result = job->result;
   bench_run *run = &result->run[setting];
@@ -169,8 +188,8 @@ static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   hl_error error = {0};
   run->statistics = (hl_render_statistics){.struct_size = sizeof run->statistics};
   double start = clock_seconds(), spent = processor_seconds();
-  hl_status status = hl_renderer_render(job->renderer[setting], scene, hl_image_pixels(job->image), 4 * (size_t)result->width,
-                                        &run->statistics, &error);
+  hl_status status = hl_renderer_render(job->renderer[setting], scene, hl_image_pixels(job->image),
+                                        4 * (size_t)result->width, &run->statistics, &error);
   bench_sample sample = sample_of(clock_seconds() - start, &run->statistics);
   sample.processor = processor_seconds() - spent;
   hl_scene_release(scene);

@@ -22,7 +22,14 @@ enum bench_option {
 };
 
 /* What is compared: kinds of shadows. */
-enum bench_setting { SETTING_OFF, SETTING_HARD, SETTING_PAPER, SETTING_CASCADE, SETTING_SUBLIGHTS, SETTING_COUNT };
+enum bench_setting {
+  SETTING_OFF,
+  SETTING_HARD,
+  SETTING_PAPER,
+  SETTING_CASCADE,
+  SETTING_SUBLIGHTS,
+  SETTING_COUNT
+};
 extern const cli_choice bench_settings[SETTING_COUNT + 1]; /* their names, in that order */
 
 /* What changes from frame to frame. */
@@ -47,8 +54,8 @@ typedef struct bench_sample {
 
 typedef struct bench_run {
   bool supported;
-  bench_sample first;    /* the warm-up's first frame: includes preparing the volumes */
-  bench_sample *samples; /* owned; [frames] */
+  bench_sample first;              /* the warm-up's first frame: includes preparing the volumes */
+  bench_sample *samples;           /* owned; [frames] */
   hl_render_statistics statistics; /* of the last frame */
 } bench_run;
 
@@ -58,9 +65,10 @@ typedef struct bench_result {
   bench_run run[SETTING_COUNT];
 } bench_result;
 
-/* The scene as a frame of one setting sees it; null after a printed error. at: 0 to 1, the place in the motion. */
-hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setting setting, enum bench_move move,
-                         double at, int *exit_code);
+/* The scene as a frame of one setting sees it; null after a printed error. at: 0 to 1, the place in the
+ * motion. */
+hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setting setting,
+                         enum bench_move move, double at, int *exit_code);
 
 /* A scene without files: balls in a box. */
 hl_status bench_scene_built_in(hl_context *context, hl_scene **scene, hl_error *error);

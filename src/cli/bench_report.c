@@ -8,8 +8,8 @@
 #include "json_writer.h"
 
 static const char *const move_names[] = {"camera", "light", "tf"};
-static const char *const stage_names[STAGE_COUNT] = {"prepare", "sort", "splat_eye", "splat_light", "shade",
-                                                     "composite_light", "soften", "other"};
+static const char *const stage_names[STAGE_COUNT] = {
+    "prepare", "sort", "splat_eye", "splat_light", "shade", "composite_light", "soften", "other"};
 
 static int compare(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -77,7 +77,8 @@ static void print_result(json_writer *json, const bench_result *result) {
   json_text(json, "instruction_set", hl_instruction_set_name(statistics->instruction_set));
   json_integer(json, "voxels_total", statistics->voxels_total);
   json_open_object(json, "frame_ms");
-  for (int i = 0; i < SETTING_COUNT; i++) json_number(json, bench_settings[i].name, median_ms(&result->run[i], result->frames, WHOLE_FRAME));
+  for (int i = 0; i < SETTING_COUNT; i++)
+    json_number(json, bench_settings[i].name, median_ms(&result->run[i], result->frames, WHOLE_FRAME));
   json_close(json);
   json_open_object(json, "processor_ms");
   for (int i = 0; i < SETTING_COUNT; i++)
@@ -113,7 +114,8 @@ static void print_row(const char *name, const bench_result *result, int stage) {
   putchar('\n');
 }
 
-static void print_count(const char *name, const bench_result *result, uint64_t (*count)(const hl_render_statistics *)) {
+static void print_count(const char *name, const bench_result *result,
+                        uint64_t (*count)(const hl_render_statistics *)) {
   printf("  %-16s", name);
   for (int i = 0; i < SETTING_COUNT; i++)
     if (result->run[i].supported) printf(" %15" PRIu64, count(&result->run[i].statistics));
@@ -128,9 +130,9 @@ static uint64_t samples(const hl_render_statistics *s) { return s->samples_shade
 
 void bench_print_text(const bench_result *result) {
   const hl_render_statistics *statistics = &first_measured(result)->statistics;
-  printf("%s: %dx%d, %d threads, %s, %d frames, moving %s; milliseconds (medians)\n  %-16s", result->input, result->width,
-         result->height, statistics->threads, hl_instruction_set_name(statistics->instruction_set), result->frames,
-         move_names[result->move], "");
+  printf("%s: %dx%d, %d threads, %s, %d frames, moving %s; milliseconds (medians)\n  %-16s", result->input,
+         result->width, result->height, statistics->threads,
+         hl_instruction_set_name(statistics->instruction_set), result->frames, move_names[result->move], "");
   for (int i = 0; i < SETTING_COUNT; i++)
     if (result->run[i].supported) printf(" %15s", bench_settings[i].name);
   putchar('\n');

@@ -11,7 +11,8 @@ enum { SUBLIGHTS_SIDE = 4 };
 
 /* v turned about a unit axis (Rodrigues). */
 static void rotate(double v[3], const double axis[3], double angle_rad) {
-  double c = cos(angle_rad), s = sin(angle_rad), dot = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2], turned[3];
+  double c = cos(angle_rad), s = sin(angle_rad), dot = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2],
+         turned[3];
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     turned[i] = v[i] * c + (axis[j] * v[k] - axis[k] * v[j]) * s + axis[i] * dot * (1 - c);
@@ -26,8 +27,10 @@ static void turn_camera(hl_camera *camera, const double axis[3], double angle_ra
   for (int i = 0; i < 3; i++) camera->position[i] += camera->target[i];
 }
 
-/* A light turns about the camera's target, and about its up: the second of its own axes where it goes with the camera. */
-static void turn_light(hl_light *light, const double target_in_world[3], const double axis_in_world[3], double angle_rad) {
+/* A light turns about the camera's target, and about its up: the second of its own axes where it goes with
+ * the camera. */
+static void turn_light(hl_light *light, const double target_in_world[3], const double axis_in_world[3],
+                       double angle_rad) {
   static const double origin[3] = {0, 0, 0}, up[3] = {0, 1, 0};
   const bool beside = light->frame == HL_LIGHT_FRAME_CAMERA;
   const double *target = beside ? origin : target_in_world, *axis = beside ? up : axis_in_world;
@@ -37,11 +40,13 @@ static void turn_light(hl_light *light, const double target_in_world[3], const d
   for (int i = 0; i < 3; i++) light->position[i] += target[i];
 }
 
-/* Lights turn a sixth of the way round and back: seen from the camera, they stay on their side of the volume. */
+/* Lights turn a sixth of the way round and back: seen from the camera, they stay on their side of the
+ * volume. */
 static double light_angle(double at) { return turn / 12 * sin(turn * at); }
 
 static void set_shadows(hl_scene_description *description, hl_light *lights, enum bench_setting setting) {
-  static const hl_soft_method methods[SETTING_COUNT] = {[SETTING_PAPER] = HL_SOFT_PAPER, [SETTING_CASCADE] = HL_SOFT_CASCADE,
+  static const hl_soft_method methods[SETTING_COUNT] = {[SETTING_PAPER] = HL_SOFT_PAPER,
+                                                        [SETTING_CASCADE] = HL_SOFT_CASCADE,
                                                         [SETTING_SUBLIGHTS] = HL_SOFT_SUBLIGHTS};
   hl_render_settings *render = &description->render;
   render->shadows = setting == SETTING_OFF    ? HL_SHADOWS_OFF
@@ -55,7 +60,8 @@ static void set_shadows(hl_scene_description *description, hl_light *lights, enu
 
 static void move_scene(hl_scene_description *description, hl_light *lights, enum bench_move move, double at) {
   hl_camera *camera = &description->camera;
-  double axis[3], length = sqrt(camera->up[0] * camera->up[0] + camera->up[1] * camera->up[1] + camera->up[2] * camera->up[2]);
+  double axis[3], length = sqrt(camera->up[0] * camera->up[0] + camera->up[1] * camera->up[1] +
+                                camera->up[2] * camera->up[2]);
   for (int i = 0; i < 3; i++) axis[i] = camera->up[i] / length;
   if (move == MOVE_CAMERA) turn_camera(camera, axis, turn * at);
   for (size_t i = 0; move == MOVE_LIGHT && i < description->light_count; i++)
@@ -71,8 +77,8 @@ static hl_opacity_point *fade(const hl_transfer_function *function, double at) {
   return points;
 }
 
-hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setting setting, enum bench_move move,
-                         double at, int *exit_code) {
+hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setting setting,
+                         enum bench_move move, double at, int *exit_code) {
   hl_scene_description description = *hl_scene_describe(scene);
   hl_light *lights = calloc(description.light_count + 1, sizeof *lights);
   hl_scene_volume *volumes = calloc(description.volume_count + 1, sizeof *volumes);
@@ -81,8 +87,10 @@ hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setti
   hl_error error = {0};
   hl_status status = lights == NULL || volumes == NULL ? HL_ERROR_MEMORY : HL_OK;
   if (status == HL_OK) {
-    if (description.light_count > 0) memcpy(lights, description.lights, description.light_count * sizeof *lights);
-    if (description.volume_count > 0) memcpy(volumes, description.volumes, description.volume_count * sizeof *volumes);
+    if (description.light_count > 0)
+      memcpy(lights, description.lights, description.light_count * sizeof *lights);
+    if (description.volume_count > 0)
+      memcpy(volumes, description.volumes, description.volume_count * sizeof *volumes);
     description.lights = lights;
     description.volumes = volumes;
     set_shadows(&description, lights, setting);

@@ -59,10 +59,11 @@ static const cli_option diff_options[DIFF_OPTION_COUNT] = {
                       .count = 1,
                       .above = true,
                       .high = INFINITY},
-    [DIFF_MAX_MEMORY] = {.name = "max-memory",
-                         .kind = OPTION_BYTES,
-                         .argument = "BYTES",
-                         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [DIFF_MAX_MEMORY] =
+        {.name = "max-memory",
+         .kind = OPTION_BYTES,
+         .argument = "BYTES",
+         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
     [DIFF_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "metrics as JSON"},
 };
 
@@ -187,8 +188,9 @@ static int compare(cli_host *host, image_pair *comparison) {
 static int run_diff(const cli_value *values, char **operands) {
   if (values[DIFF_AMPLIFY].given && !values[DIFF_OUTPUT].given)
     return fail(EXIT_CODE_USAGE, "--amplify is for --output: give both or none");
-  int exit_code =
-      values[DIFF_OUTPUT].given ? output_check(values[DIFF_OUTPUT].text, picture_extensions, operands, 2) : EXIT_CODE_OK;
+  int exit_code = values[DIFF_OUTPUT].given
+                      ? output_check(values[DIFF_OUTPUT].text, picture_extensions, operands, 2)
+                      : EXIT_CODE_OK;
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host host;
   cli_host_options options = {.subject = operands[0], .memory_limit = values[DIFF_MAX_MEMORY].bytes};

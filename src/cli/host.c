@@ -61,7 +61,9 @@ static void on_log(void *user_data, hl_log_level level, const char *message) {
   warn("%s", message);
 }
 
-static void on_reads(void *user_data, const char *path) { read_files_add(&((cli_host *)user_data)->read, path); }
+static void on_reads(void *user_data, const char *path) {
+  read_files_add(&((cli_host *)user_data)->read, path);
+}
 
 static bool terminal_can_redraw(void) {
   const char *terminal = getenv("TERM");

@@ -9,8 +9,8 @@
 
 typedef struct cli_host {
   hl_context *context;
-  bool quiet;          /* no warnings, no bar, no summary */
-  bool bar;            /* stderr is a terminal that can redraw a line */
+  bool quiet; /* no warnings, no bar, no summary */
+  bool bar;   /* stderr is a terminal that can redraw a line */
   bool color;
   bool drawn;          /* a bar is on the line now */
   double drawn_at;     /* seconds; bars are redrawn ten times a second at most */

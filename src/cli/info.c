@@ -18,23 +18,26 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
                    .kind = OPTION_SWITCH,
                    .group = "Options",
                    .help = "as JSON, with 256 histogram bins"},
-    [INFO_ARRAY] = {.name = "array",
-                    .kind = OPTION_TEXT,
-                    .argument = "NAME",
-                    .help = "of the file's arrays this one (default: the active\none, else the first of one component)"},
+    [INFO_ARRAY] =
+        {.name = "array",
+         .kind = OPTION_TEXT,
+         .argument = "NAME",
+         .help = "of the file's arrays this one (default: the active\none, else the first of one component)"},
     [INFO_COMPONENT] = {.name = "component",
                         .kind = OPTION_NUMBERS,
                         .argument = "N|magnitude",
-                        .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude\n(default: the only one; of 2 or 3 the magnitude,\nelse 0)",
+                        .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or "
+                                "their magnitude\n(default: the only one; of 2 or 3 the magnitude,\nelse 0)",
                         .choices = magnitudes,
                         .count = 1,
                         .whole = true,
                         .low = 0,
                         .high = 1e9},
-    [INFO_MAX_MEMORY] = {.name = "max-memory",
-                         .kind = OPTION_BYTES,
-                         .argument = "BYTES",
-                         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [INFO_MAX_MEMORY] =
+        {.name = "max-memory",
+         .kind = OPTION_BYTES,
+         .argument = "BYTES",
+         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
 };
 
 /* The file's arrays, and what the volume is made of. */
@@ -62,8 +65,8 @@ static void print_arrays(const hl_volume *volume) {
   size_t count = hl_volume_array_count(volume);
   for (size_t n = 0; hl_volume_get_array(volume, n, &array) == HL_OK; n++) {
     if (count == 1 && array.components == 1 && array.name[0] == '\0') return;
-    printf("  %s  %s%s%s", n == 0 ? "arrays    " : "          ", array.name, array.name[0] != '\0' ? ", " : "",
-           hl_voxel_type_name(array.type));
+    printf("  %s  %s%s%s", n == 0 ? "arrays    " : "          ", array.name,
+           array.name[0] != '\0' ? ", " : "", hl_voxel_type_name(array.type));
     if (array.components > 1) printf(", %zu components", array.components);
     printf("%s", array.of_cells ? ", of cells" : "");
     if (array.chosen && array.component == HL_COMPONENT_MAGNITUDE) printf(": the magnitude is shown");
@@ -73,7 +76,8 @@ static void print_arrays(const hl_volume *volume) {
   }
 }
 
-static int print_json(const char *path, const hl_volume *volume, const hl_volume_info *info, const char *kind) {
+static int print_json(const char *path, const hl_volume *volume, const hl_volume_info *info,
+                      const char *kind) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
   json_writer json = {0};
   json_open_object(&json, NULL);
@@ -123,7 +127,8 @@ static void print_histogram(const hl_volume_info *info) {
   printf("  %11.5g\n", info->range[1]);
 }
 
-static int print_text(const char *path, const hl_volume *volume, const hl_volume_info *info, const char *kind) {
+static int print_text(const char *path, const hl_volume *volume, const hl_volume_info *info,
+                      const char *kind) {
   const double(*d)[3] = info->direction;
   uint64_t voxels = (uint64_t)info->dimensions[0] * info->dimensions[1] * info->dimensions[2];
   printf("%s\n", path);
@@ -138,7 +143,8 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
            d[1][axis], d[2][axis]);
   double low[3], high[3];
   input_world_box(info, low, high);
-  printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1], low[2], high[2]);
+  printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
+         low[2], high[2]);
   if (info->space != HL_SPACE_UNKNOWN) printf("  space       %s\n", hl_space_name(info->space));
   printf("  range       %.9g to %.9g, mean %.9g\n", info->range[0], info->range[1], info->mean);
   if (info->nonfinite_count > 0)
@@ -161,15 +167,18 @@ static int run_info(const cli_value *values, char **operands) {
   cli_input input = {0};
   input_load_options(&values[INFO_ARRAY], &values[INFO_COMPONENT], NULL, &load);
   exit_code = input_open(operands[0], values[INFO_MAX_MEMORY].bytes, &input);
-  hl_status status = exit_code == EXIT_CODE_OK ? input_load_volume(host.context, &input, &load, &volume, &error) : HL_OK;
-  if (status != HL_OK)
-    exit_code = host_fail(&host, PHASE_READ, status, &error);
+  hl_status status = exit_code == EXIT_CODE_OK
+                         ? input_load_volume(host.context, &input, &load, &volume, &error)
+                         : HL_OK;
+  if (status != HL_OK) exit_code = host_fail(&host, PHASE_READ, status, &error);
   else if (exit_code == EXIT_CODE_OK && hl_volume_get_info(volume, &info) != HL_OK)
     exit_code = fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", operands[0]);
-  else if (exit_code == EXIT_CODE_OK && (status = hl_volume_guess(volume, input.title, &kind, &error)) != HL_OK)
+  else if (exit_code == EXIT_CODE_OK &&
+           (status = hl_volume_guess(volume, input.title, &kind, &error)) != HL_OK)
     exit_code = host_fail(&host, PHASE_RUN, status, &error);
   else if (exit_code == EXIT_CODE_OK)
-    exit_code = values[INFO_JSON].given ? print_json(input.title, volume, &info, kind) : print_text(input.title, volume, &info, kind);
+    exit_code = values[INFO_JSON].given ? print_json(input.title, volume, &info, kind)
+                                        : print_text(input.title, volume, &info, kind);
   input_close(&input);
   hl_volume_release(volume);
   host_close(&host);
@@ -181,7 +190,8 @@ const cli_command info_command = {
     .operands = "VOLUME",
     .operand_count = 1,
     .summary = "show size, type, placement, range and histogram of a volume file",
-    .description = "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.",
+    .description =
+        "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.",
     .options = info_options,
     .option_count = INFO_OPTION_COUNT,
     .run = run_info,

@@ -46,8 +46,11 @@ static int read_piece(cli_input *input, int descriptor, size_t *capacity, uint64
   enum { LEAST_ROOM = 65536 };
   if (!await_bytes(descriptor)) return fail(EXIT_CODE_INTERRUPTED, "interrupted; nothing was written");
   if (*capacity - input->length < LEAST_ROOM) {
-    unsigned char *larger = *capacity > SIZE_MAX / 4 ? NULL : realloc(input->bytes, 2 * *capacity + LEAST_ROOM);
-    if (larger == NULL) return fail(EXIT_CODE_FAILURE, "out of memory: %s has more than %zu bytes", input->title, input->length);
+    unsigned char *larger = *capacity > SIZE_MAX / 4 ? NULL
+                                                     : realloc(input->bytes, 2 * *capacity + LEAST_ROOM);
+    if (larger == NULL)
+      return fail(EXIT_CODE_FAILURE, "out of memory: %s has more than %zu bytes", input->title,
+                  input->length);
     input->bytes = larger;
     *capacity = 2 * *capacity + LEAST_ROOM;
   }
@@ -57,8 +60,9 @@ static int read_piece(cli_input *input, int descriptor, size_t *capacity, uint64
   *ended = got == 0;
   if (got > 0) input->length += (size_t)got;
   if (limit > 0 && input->length > limit)
-    return fail(EXIT_CODE_FAILURE, "out of memory: %s has more than the %llu bytes that may be held of it: raise --max-memory", input->title,
-                (unsigned long long)limit);
+    return fail(EXIT_CODE_FAILURE,
+                "out of memory: %s has more than the %llu bytes that may be held of it: raise --max-memory",
+                input->title, (unsigned long long)limit);
   return EXIT_CODE_OK;
 }
 
@@ -66,14 +70,18 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
   size_t capacity = 0;
   long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   if (limit == 0 && pages > 0 && page_bytes > 0) limit = (uint64_t)pages * (uint64_t)page_bytes / 2;
-  enum { LONGEST_SCENE = 16 << 20, TELLING = 65536 }; /* bytes: what the library reads of a scene; that tell what it is */
+  enum {
+    LONGEST_SCENE = 16 << 20,
+    TELLING = 65536
+  }; /* bytes: what the library reads of a scene; that tell what it is */
   bool ended = false, scene = false;
   int exit_code = EXIT_CODE_OK;
   while (exit_code == EXIT_CODE_OK && !ended) {
     exit_code = read_piece(input, descriptor, &capacity, limit, &ended);
     if (input->length <= TELLING) scene = kind_by_content(input->bytes, input->length) == INPUT_SCENE;
     if (exit_code == EXIT_CODE_OK && scene && input->length > LONGEST_SCENE)
-      exit_code = fail(EXIT_CODE_INPUT, "%s: more than %d bytes, too large for a scene", input->title, (int)LONGEST_SCENE);
+      exit_code = fail(EXIT_CODE_INPUT, "%s: more than %d bytes, too large for a scene", input->title,
+                       (int)LONGEST_SCENE);
   }
   return exit_code;
 }
@@ -82,8 +90,11 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
 
 /* False where the name says nothing. */
 static bool kind_by_name(const char *path, input_kind *kind) {
-  static const char *const volumes[] = {".raw", ".gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".vti", ".vtk", ".npy"};
-  *kind = has_extension(path, ".json") ? INPUT_SCENE : has_extension(path, ".png") ? INPUT_PICTURE : INPUT_VOLUME;
+  static const char *const volumes[] = {".raw", ".gz",  ".nrrd", ".nhdr", ".mha",
+                                        ".mhd", ".nii", ".vti",  ".vtk",  ".npy"};
+  *kind = has_extension(path, ".json")  ? INPUT_SCENE
+          : has_extension(path, ".png") ? INPUT_PICTURE
+                                        : INPUT_VOLUME;
   if (*kind != INPUT_VOLUME) return true;
   for (size_t i = 0; i < sizeof volumes / sizeof volumes[0]; i++)
     if (has_extension(path, volumes[i])) return true;
@@ -98,7 +109,8 @@ static int open_pipe(cli_input *input, int descriptor, uint64_t limit) {
 
 static int open_standard_input(cli_input *input, uint64_t limit) {
   input->title = "standard input";
-  if (isatty(STDIN_FILENO)) return fail(EXIT_CODE_USAGE, "'-': standard input is a terminal: give a file, or a pipe");
+  if (isatty(STDIN_FILENO))
+    return fail(EXIT_CODE_USAGE, "'-': standard input is a terminal: give a file, or a pipe");
   return open_pipe(input, STDIN_FILENO, limit);
 }
 
@@ -109,7 +121,8 @@ static int open_file(cli_input *input, int descriptor, uint64_t limit) {
   input_kind told = kind_by_content(first, got > 0 ? (size_t)got : 0);
   if (!kind_by_name(input->path, &input->kind)) input->kind = told;
   else if (input->kind == INPUT_PICTURE && told != INPUT_PICTURE && got > 0) input->kind = told;
-  return input->kind == INPUT_PICTURE && descriptor >= 0 ? read_whole(input, descriptor, limit) : EXIT_CODE_OK;
+  return input->kind == INPUT_PICTURE && descriptor >= 0 ? read_whole(input, descriptor, limit)
+                                                         : EXIT_CODE_OK;
 }
 
 int input_open(const char *path, uint64_t limit, cli_input *input) {
@@ -119,7 +132,8 @@ int input_open(const char *path, uint64_t limit, cli_input *input) {
   struct stat about;
   bool known = descriptor >= 0 && fstat(descriptor, &about) == 0;
   bool piped = known && (S_ISFIFO(about.st_mode) || S_ISSOCK(about.st_mode));
-  int exit_code = piped ? open_pipe(input, descriptor, limit) : open_file(input, known ? descriptor : -1, limit);
+  int exit_code = piped ? open_pipe(input, descriptor, limit)
+                        : open_file(input, known ? descriptor : -1, limit);
   if (descriptor >= 0) close(descriptor);
   return exit_code;
 }
@@ -135,12 +149,13 @@ void input_load_options(const cli_value *array, const cli_value *component, cons
                         hl_volume_load_options *options) {
   hl_volume_load_options_defaults(options);
   if (array->given) options->array = array->text;
-  if (component->given) options->component = component->chosen ? HL_COMPONENT_MAGNITUDE : (int)component->number[0];
+  if (component->given)
+    options->component = component->chosen ? HL_COMPONENT_MAGNITUDE : (int)component->number[0];
   if (spacing != NULL && spacing->given) memcpy(options->spacing, spacing->number, sizeof options->spacing);
 }
 
-hl_status input_load_volume(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
-                            hl_volume **volume, hl_error *error) {
+hl_status input_load_volume(hl_context *context, const cli_input *input,
+                            const hl_volume_load_options *options, hl_volume **volume, hl_error *error) {
   hl_volume_load_options chosen;
   hl_volume_load_options_defaults(&chosen);
   if (options != NULL) chosen = *options;
@@ -150,7 +165,8 @@ hl_status input_load_volume(hl_context *context, const cli_input *input, const h
 }
 
 /* The scene's volume says how it was read. */
-static hl_status name_source(hl_context *context, const hl_volume_load_options *options, hl_scene **scene, hl_error *error) {
+static hl_status name_source(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,
+                             hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
   hl_scene_volume volume = description.volumes[0];
   hl_scene *named = NULL;
@@ -165,8 +181,8 @@ static hl_status name_source(hl_context *context, const hl_volume_load_options *
   return HL_OK;
 }
 
-static hl_status load_volume_scene(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
-                                   hl_scene **scene, hl_error *error) {
+static hl_status load_volume_scene(hl_context *context, const cli_input *input,
+                                   const hl_volume_load_options *options, hl_scene **scene, hl_error *error) {
   hl_volume *volume = NULL;
   const char *file = strcmp(input->path, "-") == 0 ? STANDARD_INPUT : input->path;
   hl_status status = input_load_volume(context, input, options, &volume, error);
@@ -177,20 +193,24 @@ static hl_status load_volume_scene(hl_context *context, const cli_input *input, 
 }
 
 /* A picture names files as the command line did that made it: from the current folder. */
-static hl_status load_picture_scene(hl_context *context, const cli_input *input, hl_scene **scene, hl_error *error) {
+static hl_status load_picture_scene(hl_context *context, const cli_input *input, hl_scene **scene,
+                                    hl_error *error) {
   char *text = NULL;
   hl_status status = hl_image_find_scene(context, input->title, input->bytes, input->length, &text, error);
-  if (status == HL_OK) status = hl_scene_from_json(context, text, strlen(text), NULL, input->title, scene, error);
+  if (status == HL_OK)
+    status = hl_scene_from_json(context, text, strlen(text), NULL, input->title, scene, error);
   hl_text_release(context, text);
   return status;
 }
 
-hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options, hl_scene **scene,
-                     hl_error *error) {
+hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
+                     hl_scene **scene, hl_error *error) {
   if (input->kind == INPUT_VOLUME) return load_volume_scene(context, input, options, scene, error);
-  if (input->kind == INPUT_PICTURE && input->bytes != NULL) return load_picture_scene(context, input, scene, error);
+  if (input->kind == INPUT_PICTURE && input->bytes != NULL)
+    return load_picture_scene(context, input, scene, error);
   if (input->bytes == NULL) return hl_scene_load(context, input->path, scene, error);
-  return hl_scene_from_json(context, (const char *)input->bytes, input->length, NULL, input->title, scene, error);
+  return hl_scene_from_json(context, (const char *)input->bytes, input->length, NULL, input->title, scene,
+                            error);
 }
 
 void input_world_box(const hl_volume_info *info, double low[3], double high[3]) {

@@ -1,6 +1,8 @@
-/* cli/input.h - what subcommands take as INPUT: a scene, a picture that carries one, or a bare volume for which one is made.
+/* cli/input.h - what subcommands take as INPUT: a scene, a picture that carries one, or a bare volume for
+ * which one is made.
  *
- * A pipe, "-" among them, is read whole, once: then its first bytes tell what it is, and readers that go back can.
+ * A pipe, "-" among them, is read whole, once: then its first bytes tell what it is, and readers that go back
+ * can.
  */
 #ifndef HL_CLI_INPUT_H
 #define HL_CLI_INPUT_H
@@ -13,18 +15,20 @@
 typedef enum input_kind { INPUT_SCENE, INPUT_PICTURE, INPUT_VOLUME } input_kind;
 
 typedef struct cli_input {
-  const char *path;      /* as given; "-" is standard input */
-  const char *title;     /* what messages call it */
+  const char *path;  /* as given; "-" is standard input */
+  const char *title; /* what messages call it */
   input_kind kind;
-  unsigned char *bytes;  /* owned; [length]: the content of what is no ordinary file, or of a picture; else null */
+  unsigned char
+      *bytes; /* owned; [length]: the content of what is no ordinary file, or of a picture; else null */
   size_t length;
 } cli_input;
 
 /* The part of a path after its last slash. */
 const char *input_base_name(const char *path);
 
-/* Finds out what an input is: told by name; where the name says nothing, by its first bytes. limit: bytes that may be held
- * of a pipe; 0: half of the machine's memory. Returns the exit code; close it in any case. */
+/* Finds out what an input is: told by name; where the name says nothing, by its first bytes. limit: bytes
+ * that may be held of a pipe; 0: half of the machine's memory. Returns the exit code; close it in any
+ * case. */
 int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
@@ -33,15 +37,15 @@ void input_load_options(const cli_value *array, const cli_value *component, cons
                         hl_volume_load_options *options);
 
 /* How bare volumes are read (hl_volume_load_options without bytes); null: by default. */
-hl_status input_load_volume(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
-                            hl_volume **volume, hl_error *error);
+hl_status input_load_volume(hl_context *context, const cli_input *input,
+                            const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
-/* The box around the cells of a volume's voxels, half a voxel beyond their centres, in its file's world: least and greatest
- * x, y, z. */
+/* The box around the cells of a volume's voxels, half a voxel beyond their centres, in its file's world:
+ * least and greatest x, y, z. */
 void input_world_box(const hl_volume_info *info, double low[3], double high[3]);
 
 /* The scene that it is, carries, or that is made for it. */
-hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options, hl_scene **scene,
-                     hl_error *error);
+hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
+                     hl_scene **scene, hl_error *error);
 
 #endif

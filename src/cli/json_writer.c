@@ -23,14 +23,10 @@ static void print_text(const char *text) {
   putchar('"');
   for (const unsigned char *c = (const unsigned char *)text; *c != '\0';) {
     int length = utf8_length(c);
-    if (*c == '"' || *c == '\\')
-      printf("\\%c", *c);
-    else if (*c < 0x20)
-      printf("\\u%04x", *c);
-    else if (length == 0)
-      fputs("\\ufffd", stdout);
-    else
-      fwrite(c, 1, (size_t)length, stdout);
+    if (*c == '"' || *c == '\\') printf("\\%c", *c);
+    else if (*c < 0x20) printf("\\u%04x", *c);
+    else if (length == 0) fputs("\\ufffd", stdout);
+    else fwrite(c, 1, (size_t)length, stdout);
     c += length > 0 ? length : 1;
   }
   putchar('"');
@@ -81,10 +77,8 @@ void json_close(json_writer *writer) {
 
 void json_text(json_writer *writer, const char *key, const char *value) {
   begin_value(writer, key);
-  if (value == NULL)
-    fputs("null", stdout);
-  else
-    print_text(value);
+  if (value == NULL) fputs("null", stdout);
+  else print_text(value);
 }
 
 void json_bool(json_writer *writer, const char *key, bool value) {

@@ -12,8 +12,8 @@
 
 typedef struct json_writer {
   int depth;
-  bool first;      /* nothing yet in the innermost object or array */
-  char close[16];  /* closing bracket of each level */
+  bool first;     /* nothing yet in the innermost object or array */
+  char close[16]; /* closing bracket of each level */
 } json_writer;
 
 void json_open_object(json_writer *writer, const char *key);

@@ -10,7 +10,7 @@
 #include "message.h"
 
 static const cli_command *const commands[] = {&render_command, &info_command, &make_command, &diff_command,
-                                             &bench_command};
+                                              &bench_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 /* Names that are promised, and refused until they are kept. */
@@ -76,15 +76,16 @@ static int run_command(const cli_command *command, int argument_count, char **ar
   return help ? print_topic(command->name) : command->run(values, operands);
 }
 
-/* What the shell closed stays taken: else the picture's file would get its number, and messages would go into it. Nothing
- * can be written to standard output then, which is told. */
+/* What the shell closed stays taken: else the picture's file would get its number, and messages would go into
+ * it. Nothing can be written to standard output then, which is told. */
 static void keep_standard_streams(void) {
   for (int descriptor = 0; descriptor < 3; descriptor++)
     if (fcntl(descriptor, F_GETFD) == -1 && errno == EBADF)
       (void)open("/dev/null", descriptor == 1 ? O_RDONLY : O_RDWR);
 }
 
-/* A reader that goes away and a limit on file sizes end a write with a message, not the program without one. */
+/* A reader that goes away and a limit on file sizes end a write with a message, not the program without
+ * one. */
 static void take_errors_for_signals(void) {
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);

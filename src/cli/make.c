@@ -29,7 +29,8 @@ static const cli_option make_options[MAKE_OPTION_COUNT] = {
                      .kind = OPTION_TEXT,
                      .argument = "VOLUME",
                      .group = "Options",
-                     .help = "file to write: .nrrd, .raw or .raw.gz (default: SHAPE's\nname with .nrrd in the current folder)"},
+                     .help = "file to write: .nrrd, .raw or .raw.gz (default: SHAPE's\nname with .nrrd in "
+                             "the current folder)"},
     [MAKE_SIZE] = {.name = "size",
                    .kind = OPTION_NUMBERS,
                    .argument = "N",
@@ -58,11 +59,14 @@ static const cli_option make_options[MAKE_OPTION_COUNT] = {
                       .whole = true,
                       .low = 0,
                       .high = 1024},
-    [MAKE_MAX_MEMORY] = {.name = "max-memory",
-                         .kind = OPTION_BYTES,
-                         .argument = "BYTES",
-                         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
-    [MAKE_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "no progress bar, no warnings, no summary"},
+    [MAKE_MAX_MEMORY] =
+        {.name = "max-memory",
+         .kind = OPTION_BYTES,
+         .argument = "BYTES",
+         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [MAKE_QUIET] = {.name = "quiet",
+                    .kind = OPTION_SWITCH,
+                    .help = "no progress bar, no warnings, no summary"},
 };
 
 static int print_list(void) {
@@ -73,7 +77,8 @@ static int print_list(void) {
 
 static int print_shape(const char *shape) {
   const char *text = hl_shape_preset_text(shape);
-  if (text == NULL) return fail(EXIT_CODE_USAGE, "--print: '%s' is not ready-made: see 'halflight make --list'", shape);
+  if (text == NULL)
+    return fail(EXIT_CODE_USAGE, "--print: '%s' is not ready-made: see 'halflight make --list'", shape);
   puts(text);
   return finish_stdout();
 }
@@ -100,8 +105,8 @@ static int read_text(const char *path, char **text, size_t *length) {
   return bad ? fail(EXIT_CODE_INPUT, "%s: cannot be read", path) : EXIT_CODE_OK;
 }
 
-static hl_status make(cli_host *host, const cli_value *values, const char *shape, const char *text, size_t length,
-                      hl_volume **volume, hl_error *error) {
+static hl_status make(cli_host *host, const cli_value *values, const char *shape, const char *text,
+                      size_t length, hl_volume **volume, hl_error *error) {
   hl_shapes_options options;
   hl_shapes_options_defaults(&options);
   if (values[MAKE_SIZE].given) options.size = (int)values[MAKE_SIZE].number[0];
@@ -150,10 +155,12 @@ static int make_and_save(const cli_value *values, char *shape, const char *outpu
 static int run_make(const cli_value *values, char **operands) {
   char *shape = operands[0];
   if (values[MAKE_LIST].given && shape == NULL) return print_list();
-  if (values[MAKE_LIST].given) return fail(EXIT_CODE_USAGE, "--list takes no SHAPE, but '%s' was given", shape);
+  if (values[MAKE_LIST].given)
+    return fail(EXIT_CODE_USAGE, "--list takes no SHAPE, but '%s' was given", shape);
   if (shape == NULL) return fail(EXIT_CODE_USAGE, "make needs SHAPE: see 'halflight make --list'");
   if (values[MAKE_PRINT].given) return print_shape(shape);
-  char *output = values[MAKE_OUTPUT].given ? strdup(values[MAKE_OUTPUT].text) : output_default_name(shape, ".nrrd");
+  char *output = values[MAKE_OUTPUT].given ? strdup(values[MAKE_OUTPUT].text)
+                                           : output_default_name(shape, ".nrrd");
   if (output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   int exit_code = output_check(output, volume_extensions, operands, 1);
   if (exit_code == EXIT_CODE_OK) exit_code = make_and_save(values, shape, output);

@@ -6,7 +6,7 @@
 
 enum {
   EXIT_CODE_OK = 0,
-  EXIT_CODE_FAILURE = 1,     /* while running; or a limit of `diff` was exceeded */
+  EXIT_CODE_FAILURE = 1, /* while running; or a limit of `diff` was exceeded */
   EXIT_CODE_USAGE = 2,
   EXIT_CODE_INPUT = 3,       /* a file that was given is missing or malformed */
   EXIT_CODE_UNSUPPORTED = 4, /* understood, but not in this version or on this machine */

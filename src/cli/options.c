@@ -35,17 +35,13 @@ static void list_choices(const cli_option *option, const char *separator, char *
 static void describe_numbers(const cli_option *option, char *text, size_t size) {
   const char *kind = option->whole ? "whole number" : "number";
   char range[80];
-  if (isinf(option->high) && isinf(option->low))
-    snprintf(range, sizeof range, "that is finite");
+  if (isinf(option->high) && isinf(option->low)) snprintf(range, sizeof range, "that is finite");
   else if (isinf(option->high))
     snprintf(range, sizeof range, "%s %.9g", option->above ? "above" : "of at least", option->low);
-  else if (option->above)
-    snprintf(range, sizeof range, "above %.9g, up to %.9g", option->low, option->high);
-  else
-    snprintf(range, sizeof range, "from %.9g to %.9g", option->low, option->high);
+  else if (option->above) snprintf(range, sizeof range, "above %.9g, up to %.9g", option->low, option->high);
+  else snprintf(range, sizeof range, "from %.9g to %.9g", option->low, option->high);
   size_t used;
-  if (option->count == 1)
-    used = (size_t)snprintf(text, size, "a %s %s", kind, range);
+  if (option->count == 1) used = (size_t)snprintf(text, size, "a %s %s", kind, range);
   else
     used = (size_t)snprintf(text, size, "%d %ss joined by '%c', each %s", option->count, kind,
                             option->separator, isinf(option->low) ? "finite" : range);
@@ -77,8 +73,10 @@ static int refuse_value(const cli_option *option, const char *text) {
       return fail(EXIT_CODE_USAGE, "--%s: '%s' is not a whole number above 0 with an optional K, M, G or T",
                   option->name, text);
     case OPTION_COLOR:
-      return fail(EXIT_CODE_USAGE, "--%s: '%s' is no colour: give linear R,G,B each from %.9g to %.9g, #rrggbb, or a CSS name%s",
-                  option->name, text, option->low, option->high, option->choices != NULL ? ", or transparent" : "");
+      return fail(
+          EXIT_CODE_USAGE,
+          "--%s: '%s' is no colour: give linear R,G,B each from %.9g to %.9g, #rrggbb, or a CSS name%s",
+          option->name, text, option->low, option->high, option->choices != NULL ? ", or transparent" : "");
     case OPTION_SWITCH:
     case OPTION_TEXT: break;
   }
@@ -180,8 +178,8 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   const char *meant = length > 0 ? nearest_name(name, option_name, command) : NULL;
   const char *does = synonym_of(name, command);
   if (does != NULL && meant != NULL && strcmp(does, meant) != 0)
-    return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s, or --%s?", name, command->name, does,
-                meant);
+    return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s, or --%s?", name,
+                command->name, does, meant);
   if (does != NULL) meant = does;
   if (meant != NULL)
     return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s?", name, command->name,
@@ -207,7 +205,8 @@ static int parse_option(const cli_command *command, int argument_count, char **a
   if (option->reserved)
     return fail(EXIT_CODE_UNSUPPORTED, "--%s is not yet in this version (%s)", option->name, hl_version());
   cli_value *value = &values[option - command->options];
-  if (value->given && !option->repeatable) return fail(EXIT_CODE_USAGE, "--%s is given twice: give it once", option->name);
+  if (value->given && !option->repeatable)
+    return fail(EXIT_CODE_USAGE, "--%s is given twice: give it once", option->name);
   if (option->kind == OPTION_SWITCH) {
     if (attached != NULL)
       return fail(EXIT_CODE_USAGE, "--%s takes no value, but '%s' was given", option->name, attached);
@@ -244,8 +243,10 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
       int exit_code = parse_option(command, argument_count, arguments, &i, values);
       if (exit_code != EXIT_CODE_OK) return exit_code;
     } else if (argument[0] == '\0') {
-      return fail(EXIT_CODE_USAGE, "an empty name was given, '': %s needs %s", command->name, command->operands);
-    } else if (operand_count == (command->operand_most > 0 ? command->operand_most : command->operand_count)) {
+      return fail(EXIT_CODE_USAGE, "an empty name was given, '': %s needs %s", command->name,
+                  command->operands);
+    } else if (operand_count ==
+               (command->operand_most > 0 ? command->operand_most : command->operand_count)) {
       return fail(EXIT_CODE_USAGE, "'%s' is too much: %s takes %s only; see 'halflight help %s'", argument,
                   command->name, command->operands, command->name);
     } else {
@@ -260,9 +261,9 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
 
 /* "--shadows off|hard|soft" */
 static void option_heading(const cli_option *option, char *text, size_t size) {
-  size_t used =
-      (size_t)(option->letter != '\0' ? snprintf(text, size, "-%c, --%s", option->letter, option->name)
-                                      : snprintf(text, size, "--%s", option->name));
+  size_t used = (size_t)(option->letter != '\0'
+                             ? snprintf(text, size, "-%c, --%s", option->letter, option->name)
+                             : snprintf(text, size, "--%s", option->name));
   if (option->kind == OPTION_SWITCH) return;
   char choices[200] = "";
   if (option->argument == NULL) list_choices(option, "|", choices, sizeof choices);

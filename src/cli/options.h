@@ -29,30 +29,30 @@ typedef struct cli_choice {
 } cli_choice;
 
 typedef struct cli_option {
-  const char *name;     /* without the dashes */
-  char letter;          /* of the short form; 0: none */
+  const char *name; /* without the dashes */
+  char letter;      /* of the short form; 0: none */
   cli_option_kind kind;
   const char *argument; /* the value as help shows it; null for a switch, or to list the choices */
   const char *help;     /* lines, the first one short */
   const char *group;    /* heading above this option in help; null: same group as the one before */
   const cli_choice *choices;
-  int count;            /* OPTION_NUMBERS: 1 to 3 */
-  char separator;       /* between them: ',' or 'x' */
-  bool whole;           /* whole numbers only */
-  bool above;           /* low itself is excluded */
-  double low, high;     /* the accepted range */
-  bool repeatable;      /* OPTION_TEXT: each time adds a text */
-  bool reserved;        /* known, but not in this version: not shown in help, refused when given */
+  int count;        /* OPTION_NUMBERS: 1 to 3 */
+  char separator;   /* between them: ',' or 'x' */
+  bool whole;       /* whole numbers only */
+  bool above;       /* low itself is excluded */
+  double low, high; /* the accepted range */
+  bool repeatable;  /* OPTION_TEXT: each time adds a text */
+  bool reserved;    /* known, but not in this version: not shown in help, refused when given */
 } cli_option;
 
 enum { MAXIMUM_REPEATS = 32 };
 
 typedef struct cli_value {
   bool given;
-  const char *text;  /* as given; of a repeatable option the last one */
+  const char *text;                   /* as given; of a repeatable option the last one */
   const char *texts[MAXIMUM_REPEATS]; /* all of them; [count] */
   int count;
-  bool chosen;       /* one of the choices was given, and choice is its value */
+  bool chosen; /* one of the choices was given, and choice is its value */
   int choice;
   double number[3];
   uint64_t bytes;
@@ -60,10 +60,10 @@ typedef struct cli_value {
 
 typedef struct cli_command {
   const char *name;
-  const char *operands;  /* as help shows them: "INPUT" */
-  int operand_count;     /* so many at least */
-  int operand_most;      /* so many at most; 0: exactly operand_count */
-  const char *summary;   /* one line, for the list of commands */
+  const char *operands; /* as help shows them: "INPUT" */
+  int operand_count;    /* so many at least */
+  int operand_most;     /* so many at most; 0: exactly operand_count */
+  const char *summary;  /* one line, for the list of commands */
   const char *description;
   const cli_option *options;
   size_t option_count;
@@ -81,11 +81,12 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
 /* Prints the help text of a subcommand on stdout. */
 void options_print_help(const cli_command *command);
 
-/* The subcommand's option that does what a word of other programs means ("rotate" -> "azimuth"); null: none is known. */
+/* The subcommand's option that does what a word of other programs means ("rotate" -> "azimuth"); null: none
+ * is known. */
 const char *synonym_of(const char *word, const cli_command *command);
 
-/* A colour as OPTION_COLOR takes it, as linear RGB: numbers between low and high are linear already, #rgb, #rrggbb and
- * CSS names are sRGB. False if text is none. */
+/* A colour as OPTION_COLOR takes it, as linear RGB: numbers between low and high are linear already, #rgb,
+ * #rrggbb and CSS names are sRGB. False if text is none. */
 bool parse_color(const char *text, double low, double high, double color[3]);
 
 /* The candidate nearest to text, or null if none is near. candidate(data, i) is null past the last. */

@@ -29,8 +29,8 @@ static int check_folder(const char *path) {
   const char *name = slash != NULL ? folder : ".";
   int exit_code = EXIT_CODE_OK;
   if (access(name, W_OK | X_OK) != 0)
-    exit_code =
-        fail(EXIT_CODE_FAILURE, "%s: its folder '%s' cannot be written: %s", path, name, strerror(errno));
+    exit_code = fail(EXIT_CODE_FAILURE, "%s: its folder '%s' cannot be written: %s", path, name,
+                     strerror(errno));
   free(folder);
   return exit_code;
 }
@@ -42,7 +42,8 @@ static int check_extension(const char *path, const char *const *extensions) {
   for (int i = 0; extensions[i] != NULL; i++) {
     if (has_extension(path, extensions[i])) return EXIT_CODE_OK;
     const char *before = i == 0 ? "" : extensions[i + 1] != NULL ? ", " : " or ";
-    if (used < sizeof list) used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", before, extensions[i]);
+    if (used < sizeof list)
+      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", before, extensions[i]);
   }
   return fail(EXIT_CODE_USAGE, "--output: '%s' must end in %s", path, list);
 }

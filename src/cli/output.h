@@ -18,8 +18,8 @@ int output_check(const char *path, const char *const *extensions, char *const *i
 /* All of the bytes on standard output; returns the exit code. */
 int output_to_stdout(const unsigned char *bytes, size_t length);
 
-/* "head.png" for "scans/head.nii.gz" and ".png", in the current folder; owned by the caller (free), null without
- * memory. */
+/* "head.png" for "scans/head.nii.gz" and ".png", in the current folder; owned by the caller (free), null
+ * without memory. */
 char *output_default_name(const char *input, const char *extension);
 
 #endif

@@ -31,10 +31,14 @@ void read_files_release(cli_read_files *read) { free(read->files); }
 int read_files_protect(const cli_read_files *read, const char *path, const char *reader) {
   struct stat about;
   if (stat(path, &about) != 0)
-    return errno != ENAMETOOLONG ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
-  if (read->incomplete) return fail(EXIT_CODE_FAILURE, "out of memory for the names of the files that were read");
+    return errno != ENAMETOOLONG
+               ? EXIT_CODE_OK
+               : fail(EXIT_CODE_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
+  if (read->incomplete)
+    return fail(EXIT_CODE_FAILURE, "out of memory for the names of the files that were read");
   for (size_t i = 0; i < read->count; i++)
     if (about.st_dev == read->files[i].device && about.st_ino == read->files[i].inode)
-      return fail(EXIT_CODE_USAGE, "--output: '%s' is a file that '%s' needs: choose another name", path, reader);
+      return fail(EXIT_CODE_USAGE, "--output: '%s' is a file that '%s' needs: choose another name", path,
+                  reader);
   return EXIT_CODE_OK;
 }

@@ -21,7 +21,8 @@ typedef struct cli_read_files {
 void read_files_add(cli_read_files *read, const char *path);
 void read_files_release(cli_read_files *read);
 
-/* Refuses a path that leads to one of the files, or is too long for any; reader: what read them ("scene.json"). Returns the exit code. */
+/* Refuses a path that leads to one of the files, or is too long for any; reader: what read them
+ * ("scene.json"). Returns the exit code. */
 int read_files_protect(const cli_read_files *read, const char *path, const char *reader);
 
 #endif

@@ -15,16 +15,16 @@
 typedef struct render_job {
   cli_host host;
   const cli_value *values;
-  char **inputs;   /* [input_count], null after the last */
+  char **inputs; /* [input_count], null after the last */
   int input_count;
-  char *input;     /* the first */
-  char *output;    /* owned */
-  bool to_stdout;  /* OUT is "-" */
-  bool bare;       /* INPUT is a volume file */
-  hl_scene *scene; /* owned */
-  hl_image *image; /* owned */
+  char *input;          /* the first */
+  char *output;         /* owned */
+  bool to_stdout;       /* OUT is "-" */
+  bool bare;            /* INPUT is a volume file */
+  hl_scene *scene;      /* owned */
+  hl_image *image;      /* owned */
   render_layers layers; /* owned */
-  double started;  /* seconds of clock_seconds() */
+  double started;       /* seconds of clock_seconds() */
   render_result result;
 } render_job;
 
@@ -42,7 +42,8 @@ static const char *nameable(const char *input) {
   return strncmp(input, "/dev/fd/", 8) == 0 ? "pipe" : input;
 }
 
-/* INPUT's name with the format's extension; of a picture's own scene "NAME-again.png", not the picture itself. */
+/* INPUT's name with the format's extension; of a picture's own scene "NAME-again.png", not the picture
+ * itself. */
 static char *default_output(const render_job *job) {
   const char *extension = wanted_extension(job->values);
   bool again = has_extension(job->input, ".png") && strcmp(extension, ".png") == 0;
@@ -57,9 +58,11 @@ static int choose_output(render_job *job) {
   if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   if (values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
   if (job->to_stdout && isatty(STDOUT_FILENO))
-    return fail(EXIT_CODE_USAGE, "--output: standard output is a terminal, which shows no picture: redirect it");
+    return fail(EXIT_CODE_USAGE,
+                "--output: standard output is a terminal, which shows no picture: redirect it");
   if (job->to_stdout && values[RENDER_JSON].given)
-    return fail(EXIT_CODE_USAGE, "--json: standard output is the picture's: give --output a name, or leave --json out");
+    return fail(EXIT_CODE_USAGE,
+                "--json: standard output is the picture's: give --output a name, or leave --json out");
   if (job->to_stdout) return EXIT_CODE_OK;
   if (values[RENDER_FORMAT].given && !has_extension(job->output, wanted_extension(values)))
     return fail(EXIT_CODE_USAGE, "--format %s: '%s' does not end in %s: rename OUT, or leave --format out",
@@ -86,12 +89,14 @@ static int protect_what_was_read(const render_job *job) {
   if (job->to_stdout || job->values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
   int exit_code = read_files_protect(&job->host.read, job->output, job->input);
   if (exit_code != EXIT_CODE_OK || !job->values[RENDER_LAYERS].given) return exit_code;
-  return render_layers_protect(&job->host, job->output, hl_scene_describe(job->scene)->light_count, job->input);
+  return render_layers_protect(&job->host, job->output, hl_scene_describe(job->scene)->light_count,
+                               job->input);
 }
 
 static int job_load(render_job *job) {
   int exit_code = render_load_inputs(&job->host, job->values, job->inputs, &job->bare, &job->scene);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = protect_what_was_read(job);
   job->result.seconds.load = clock_seconds() - job->started;
   return exit_code;
@@ -122,9 +127,9 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
   options.threads = description->render.threads;
   options.rays = 0;
   double started = clock_seconds();
-  hl_status status =
-      hl_reference_render_layers(job->host.context, job->scene, &options, hl_image_pixels(job->image),
-                                 4 * (size_t)description->width, wanted_layers(job), error);
+  hl_status status = hl_reference_render_layers(job->host.context, job->scene, &options,
+                                                hl_image_pixels(job->image), 4 * (size_t)description->width,
+                                                wanted_layers(job), error);
   statistics->seconds_render = clock_seconds() - started;
   statistics->threads = options.threads > 0 ? options.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
   statistics->instruction_set = HL_INSTRUCTION_SET_SCALAR;
@@ -147,8 +152,8 @@ static int job_render(render_job *job) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
   hl_error error = {0};
   job->result.statistics.struct_size = sizeof job->result.statistics;
-  hl_status status =
-      hl_image_create(job->host.context, description->width, description->height, &job->image, &error);
+  hl_status status = hl_image_create(job->host.context, description->width, description->height, &job->image,
+                                     &error);
   if (status == HL_OK && job->values[RENDER_LAYERS].given)
     status = render_layers_create(job->image, description, &job->layers, &error);
   if (status == HL_OK)
@@ -161,7 +166,8 @@ static int job_render(render_job *job) {
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-static hl_status write_to_stdout(render_job *job, const hl_image_write_options *options, int *exit_code, hl_error *error) {
+static hl_status write_to_stdout(render_job *job, const hl_image_write_options *options, int *exit_code,
+                                 hl_error *error) {
   unsigned char *bytes = NULL;
   size_t length = 0;
   const char *format = format_names[job->values[RENDER_FORMAT].given ? job->values[RENDER_FORMAT].choice : 0];
@@ -208,7 +214,8 @@ static int job_write(render_job *job) {
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));
-  if (!job->bare || job->values[RENDER_TF].given || render_look_recolors(job->values, true) || !wanted) return;
+  if (!job->bare || job->values[RENDER_TF].given || render_look_recolors(job->values, true) || !wanted)
+    return;
   if (hl_volume_guess(description->volumes[0].volume, job->input, &job->result.taken_for, NULL) != HL_OK)
     job->result.taken_for = NULL;
 }

@@ -64,10 +64,11 @@ extern const cli_option render_options[RENDER_OPTION_COUNT];
 /* Refuses options that contradict each other. */
 int render_check_options(const cli_value *values);
 
-/* The scene of the operands: a scene, a picture that carries one, or volumes; *bare: one that was made for volumes. Each of
- * several volumes has its own look, in one world, and is called by its file's name without folder and extensions, with -2
- * and so on behind it where that is taken. Returns the exit code. */
-int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare, hl_scene **scene);
+/* The scene of the operands: a scene, a picture that carries one, or volumes; *bare: one that was made for
+ * volumes. Each of several volumes has its own look, in one world, and is called by its file's name without
+ * folder and extensions, with -2 and so on behind it where that is taken. Returns the exit code. */
+int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                       hl_scene **scene);
 
 /* A place in a scene (a JSON pointer) that an error begins with follows the input's name. */
 void render_name_scene(const char *input, bool bare, hl_error *error);
@@ -79,23 +80,25 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
 /* Whether --tf, --colormap, --range or --threshold were given. */
 bool render_recolors(const cli_value *values);
 
-/* --look: whether it gives volumes other transfer functions, the one of a volume, and what else it changes. bare: see
- * render_change_scene. */
+/* --look: whether it gives volumes other transfer functions, the one of a volume, and what else it changes.
+ * bare: see render_change_scene. */
 bool render_look_recolors(const cli_value *values, bool bare);
 hl_status render_look_function(cli_host *host, const cli_value *values, const hl_volume *volume,
                                hl_transfer_function *function, hl_error *error);
 void render_change_look(const cli_value *values, bool bare, hl_scene_description *description);
 
-/* Says which options were given that light alone makes seen, where there is none; true where there is none. */
+/* Says which options were given that light alone makes seen, where there is none; true where there is
+ * none. */
 bool render_warn_of_no_light(const cli_value *values, const hl_scene_description *description);
 
-/* The transfer function that they make of that of volume number `index`. Its points are owned by the caller, also after a
- * failure (render_release_function); the volume's own function is left alone. */
+/* The transfer function that they make of that of volume number `index`. Its points are owned by the caller,
+ * also after a failure (render_release_function); the volume's own function is left alone. */
 int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_description *description,
                              size_t index, hl_transfer_function *function);
 void render_release_function(hl_transfer_function *function);
 
-/* What --tf and --colormap NAME=... call a volume: its name in the scene, else its file's without folder and extensions. */
+/* What --tf and --colormap NAME=... call a volume: its name in the scene, else its file's without folder and
+ * extensions. */
 void render_volume_name(const hl_scene_volume *volume, size_t index, char *name, size_t size);
 
 /* Refuses --tf and --colormap NAME=... for names that no volume has. */
@@ -113,13 +116,14 @@ typedef struct render_layers {
   hl_light_layers *lights; /* owned */
 } render_layers;
 
-/* Adds a layer "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean" and "normal" to the picture, and
- * "emission" where a volume shines by itself. Released in any case. */
-hl_status render_layers_create(hl_image *image, const hl_scene_description *description, render_layers *layers, hl_error *error);
+/* Adds a layer "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean" and "normal" to the
+ * picture, and "emission" where a volume shines by itself. Released in any case. */
+hl_status render_layers_create(hl_image *image, const hl_scene_description *description,
+                               render_layers *layers, hl_error *error);
 void render_layers_release(render_layers *layers);
 
-/* Refuses an OUT whose layers, in files of their own, would be written over a file that the run has read; input: what
- * errors call the scene. */
+/* Refuses an OUT whose layers, in files of their own, would be written over a file that the run has read;
+ * input: what errors call the scene. */
 int render_layers_protect(const cli_host *host, const char *output, size_t light_count, const char *input);
 
 /* Refuses --layers for an OUT that cannot hold them. */

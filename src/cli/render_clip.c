@@ -1,7 +1,7 @@
 /* cli/render_clip.c - `--clip AXIS=LO:HI`: a part of each volume along an axis of its own world.
  *
- * A bare number is a fraction of the box around the volume's cells; a number with a unit is a coordinate. A side that is
- * left out stays where the box, or the scene's own clip box, ends.
+ * A bare number is a fraction of the box around the volume's cells; a number with a unit is a coordinate. A
+ * side that is left out stays where the box, or the scene's own clip box, ends.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -49,7 +49,8 @@ int render_check_clip(const cli_value *clip) {
   for (int n = 0; n < clip->count; n++)
     if (!read_range(clip->texts[n], &range))
       return fail(EXIT_CODE_USAGE,
-                  "--clip: '%s' is not AXIS=LO:HI with LO below HI: fractions from 0 to 1 (x=0:0.5), or coordinates in the "
+                  "--clip: '%s' is not AXIS=LO:HI with LO below HI: fractions from 0 to 1 (x=0:0.5), or "
+                  "coordinates in the "
                   "file's own unit, which is written mm or u whatever it is (x=10mm:40mm)",
                   clip->texts[n]);
   return EXIT_CODE_OK;
@@ -63,7 +64,8 @@ static double place_of(const clip_end *end, double otherwise, double low, double
 int render_clip(const cli_value *clip, hl_scene_volume *volume) {
   double low[3], high[3];
   hl_volume_info info = {.struct_size = sizeof info};
-  if (hl_volume_get_info(volume->volume, &info) != HL_OK) return fail(EXIT_CODE_FAILURE, "--clip: the volume's place is not known");
+  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
+    return fail(EXIT_CODE_FAILURE, "--clip: the volume's place is not known");
   input_world_box(&info, low, high);
   if (!volume->clipped) {
     memcpy(volume->clip_min, low, sizeof low);
@@ -77,7 +79,8 @@ int render_clip(const cli_value *clip, hl_scene_volume *volume) {
     *least = place_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
     *greatest = place_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);
     if (!(*least < *greatest))
-      return fail(EXIT_CODE_USAGE, "--clip: '%s': nothing is left between %.9g and %.9g; the volume goes from %.9g to %.9g",
+      return fail(EXIT_CODE_USAGE,
+                  "--clip: '%s': nothing is left between %.9g and %.9g; the volume goes from %.9g to %.9g",
                   clip->texts[n], *least, *greatest, low[range.axis], high[range.axis]);
   }
   return EXIT_CODE_OK;

@@ -55,7 +55,8 @@ static bool is_volume(const hl_scene_description *description, const char *name,
   return false;
 }
 
-/* Where "NAME=..." goes on after the name; null: for every volume. A file that is there may have a '=' in its name. */
+/* Where "NAME=..." goes on after the name; null: for every volume. A file that is there may have a '=' in its
+ * name. */
 static const char *after_name(const char *text) {
   const char *equals = strchr(text, '=');
   return equals == NULL || access(text, F_OK) == 0 ? NULL : equals + 1;
@@ -77,17 +78,20 @@ static int check_names(const char *option, const cli_value *given, const hl_scen
   for (int n = 0; n < given->count; n++) {
     const char *text = given->texts[n], *rest = after_name(text);
     if (rest == NULL && given->count > 1)
-      return fail(EXIT_CODE_USAGE, "--%s: '%s' beside another --%s: say whose each is, NAME=... (volumes: %s)", option, text,
+      return fail(EXIT_CODE_USAGE,
+                  "--%s: '%s' beside another --%s: say whose each is, NAME=... (volumes: %s)", option, text,
                   option, names);
     if (rest != NULL && !is_volume(description, text, (size_t)(rest - text) - 1))
-      return fail(EXIT_CODE_USAGE, "--%s: '%s': no volume has the name before '=': there is %s", option, text, names);
+      return fail(EXIT_CODE_USAGE, "--%s: '%s': no volume has the name before '=': there is %s", option, text,
+                  names);
   }
   return EXIT_CODE_OK;
 }
 
 int render_check_names(const cli_value *values, const hl_scene_description *description) {
   int exit_code = check_names("tf", &values[RENDER_TF], description);
-  return exit_code == EXIT_CODE_OK ? check_names("colormap", &values[RENDER_COLORMAP], description) : exit_code;
+  return exit_code == EXIT_CODE_OK ? check_names("colormap", &values[RENDER_COLORMAP], description)
+                                   : exit_code;
 }
 
 /* What a repeatable option says of a volume; null: nothing. The last word counts. */
@@ -113,8 +117,7 @@ static int load_function(cli_host *host, const char *name, const hl_volume *volu
     status = hl_transfer_function_preset(host->context, name, volume, function, &error);
   else if (strpbrk(name, "./") != NULL || access(name, F_OK) == 0)
     status = hl_transfer_function_load(host->context, name, function, &error);
-  else
-    return refuse_name("tf", name, "preset or file", "presets", preset_name);
+  else return refuse_name("tf", name, "preset or file", "presets", preset_name);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 
@@ -136,25 +139,30 @@ static void visible_range(const hl_volume *volume, const hl_transfer_function *f
   if (high > range[0] && high < range[1]) range[1] = high;
 }
 
-/* Opacity and colours are spread anew, so that what was seen from visible[0] to visible[1] is from range[0] to range[1]. */
+/* Opacity and colours are spread anew, so that what was seen from visible[0] to visible[1] is from range[0]
+ * to range[1]. */
 static void spread(hl_transfer_function *function, const double visible[2], const double range[2]) {
   double factor = (range[1] - range[0]) / (visible[1] - visible[0]);
   hl_opacity_point *opacity = (hl_opacity_point *)function->opacity;
   hl_color_point *color = (hl_color_point *)function->color;
   for (size_t n = 0; n < function->opacity_count; n++)
     opacity[n].value = range[0] + (opacity[n].value - visible[0]) * factor;
-  for (size_t n = 0; n < function->color_count; n++) color[n].value = range[0] + (color[n].value - visible[0]) * factor;
+  for (size_t n = 0; n < function->color_count; n++)
+    color[n].value = range[0] + (color[n].value - visible[0]) * factor;
 }
 
-/* Clear below, then nearly opaque within a voxel's edge. The ramp before it gives surfaces a slope that is shaded without
- * stairs; it is a twentieth of the volume's values wide, and ends halfway to the least of them. */
-static int make_opaque_from(const cli_host *host, const hl_volume *volume, double threshold, hl_transfer_function *function) {
+/* Clear below, then nearly opaque within a voxel's edge. The ramp before it gives surfaces a slope that is
+ * shaded without stairs; it is a twentieth of the volume's values wide, and ends halfway to the least of
+ * them. */
+static int make_opaque_from(const cli_host *host, const hl_volume *volume, double threshold,
+                            hl_transfer_function *function) {
   enum { POINTS = 2 };
   hl_volume_info info = {.struct_size = sizeof info};
-  if (hl_volume_get_info(volume, &info) != HL_OK) return fail(EXIT_CODE_FAILURE, "--threshold: the volume is not known");
+  if (hl_volume_get_info(volume, &info) != HL_OK)
+    return fail(EXIT_CODE_FAILURE, "--threshold: the volume is not known");
   if (!host->quiet && (threshold > info.range[1] || threshold <= info.range[0]))
-    warn("--threshold %.9g: the volume's values go from %.9g to %.9g: %s", threshold, info.range[0], info.range[1],
-         threshold > info.range[1] ? "nothing is opaque" : "everything is");
+    warn("--threshold %.9g: the volume's values go from %.9g to %.9g: %s", threshold, info.range[0],
+         info.range[1], threshold > info.range[1] ? "nothing is opaque" : "everything is");
   hl_opacity_point *points = realloc((void *)function->opacity, POINTS * sizeof *points);
   if (points == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
   double ramp = (info.range[1] - info.range[0]) / 20;
@@ -170,13 +178,15 @@ static int make_opaque_from(const cli_host *host, const hl_volume *volume, doubl
 
 /* A function whose points are the caller's own (free); null where there are none. */
 static int copy_function(const hl_transfer_function *from, hl_transfer_function *to) {
-  size_t opacity_bytes = from->opacity_count * sizeof *from->opacity, color_bytes = from->color_count * sizeof *from->color;
+  size_t opacity_bytes = from->opacity_count * sizeof *from->opacity,
+         color_bytes = from->color_count * sizeof *from->color;
   hl_opacity_point *opacity = malloc(opacity_bytes + 1);
   hl_color_point *color = malloc(color_bytes + 1);
   if (opacity_bytes > 0 && opacity != NULL) memcpy(opacity, from->opacity, opacity_bytes);
   if (color_bytes > 0 && color != NULL) memcpy(color, from->color, color_bytes);
   *to = (hl_transfer_function){from->unit_distance, opacity, from->opacity_count, color, from->color_count};
-  return opacity != NULL && color != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
+  return opacity != NULL && color != NULL ? EXIT_CODE_OK
+                                          : fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
 }
 
 void render_release_function(hl_transfer_function *function) {
@@ -209,7 +219,8 @@ static int color_by_name(cli_host *host, const char *name, const hl_volume *volu
     return refuse_name("colormap", name, "colormap", "colormaps", colormap_name);
   hl_status status = hl_transfer_function_seen_range(volume, function, seen, &error);
   if (range == NULL) range = seen;
-  if (status == HL_OK) status = hl_transfer_function_colormap(host->context, name, range[0], range[1], &colors, &error);
+  if (status == HL_OK)
+    status = hl_transfer_function_colormap(host->context, name, range[0], range[1], &colors, &error);
   if (status != HL_OK) return host_fail(host, PHASE_CHANGE, status, &error);
   int exit_code = replace(&colors, function);
   hl_transfer_function_release(host->context, &colors);
@@ -236,10 +247,12 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
   if (exit_code != EXIT_CODE_OK) return exit_code;
   double visible[2];
   visible_range(volume->volume, function, visible);
-  if (values[RENDER_RANGE].given && !values[RENDER_THRESHOLD].given) spread(function, visible, values[RENDER_RANGE].number);
+  if (values[RENDER_RANGE].given && !values[RENDER_THRESHOLD].given)
+    spread(function, visible, values[RENDER_RANGE].number);
   if (values[RENDER_THRESHOLD].given)
     exit_code = make_opaque_from(host, volume->volume, values[RENDER_THRESHOLD].number[0], function);
   if (exit_code == EXIT_CODE_OK && colormap != NULL)
-    exit_code = color_by_name(host, colormap, volume->volume, values[RENDER_RANGE].given ? values[RENDER_RANGE].number : NULL, function);
+    exit_code = color_by_name(host, colormap, volume->volume,
+                              values[RENDER_RANGE].given ? values[RENDER_RANGE].number : NULL, function);
   return exit_code;
 }

@@ -1,7 +1,8 @@
 /* cli/render_inputs.c - the scene of what `halflight render` is given: one scene, or volumes.
  *
- * Each of several volumes gets the look that it would have alone; light, background and direction of view are those of the
- * first, whose camera is moved so that all are in the picture. Sheets are as fine as the finest of them asks for.
+ * Each of several volumes gets the look that it would have alone; light, background and direction of view are
+ * those of the first, whose camera is moved so that all are in the picture. Sheets are as fine as the finest
+ * of them asks for.
  */
 #include <math.h>
 #include <stdio.h>
@@ -11,27 +12,31 @@
 #include "input.h"
 #include "render.h"
 
-/* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read; a bare volume is
- * itself the file of the scene's volume. A line that begins with the name, which may begin with a slash too, stays. */
+/* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read; a bare
+ * volume is itself the file of the scene's volume. A line that begins with the name, which may begin with a
+ * slash too, stays. */
 void render_name_scene(const char *input, bool bare, hl_error *error) {
   char line[sizeof error->message];
   if (error->message[0] != '/' || strncmp(error->message, input, strlen(input)) == 0) return;
   static const char file[] = "/volumes/0/file: ";
   bool itself = bare && strncmp(error->message, file, sizeof file - 1) == 0;
   snprintf(line, sizeof line, "%s", error->message + (itself ? sizeof file - 1 : 0));
-  snprintf(error->message, sizeof error->message, "%.300s: %.690s", strcmp(input, "-") == 0 ? "standard input" : input, line);
+  snprintf(error->message, sizeof error->message, "%.300s: %.690s",
+           strcmp(input, "-") == 0 ? "standard input" : input, line);
 }
 
 /* Options of how a volume is read are for volumes alone. */
 static int check_kinds(const cli_value *values, const cli_input *inputs, size_t count) {
   for (size_t n = 0; n < count && count > 1; n++)
     if (inputs[n].kind != INPUT_VOLUME)
-      return fail(EXIT_CODE_USAGE, "'%s' is no volume file: several INPUTs are volumes of one picture, a scene stands alone",
+      return fail(EXIT_CODE_USAGE,
+                  "'%s' is no volume file: several INPUTs are volumes of one picture, a scene stands alone",
                   inputs[n].path);
   if (inputs[0].kind == INPUT_VOLUME) return EXIT_CODE_OK;
   for (int which = RENDER_ARRAY; which <= RENDER_SPACING; which++)
     if (values[which].given)
-      return fail(EXIT_CODE_USAGE, "--%s is for volume files, and '%s' is a scene: write \"%s\" beside its \"file\"",
+      return fail(EXIT_CODE_USAGE,
+                  "--%s is for volume files, and '%s' is a scene: write \"%s\" beside its \"file\"",
                   render_options[which].name, inputs[0].path, render_options[which].name);
   return EXIT_CODE_OK;
 }
@@ -71,7 +76,8 @@ static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene 
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 
-static int load_each(cli_host *host, const cli_value *values, const cli_input *inputs, size_t count, hl_scene **scenes) {
+static int load_each(cli_host *host, const cli_value *values, const cli_input *inputs, size_t count,
+                     hl_scene **scenes) {
   hl_volume_load_options options;
   input_load_options(&values[RENDER_ARRAY], &values[RENDER_COMPONENT], &values[RENDER_SPACING], &options);
   for (size_t n = 0; n < count; n++) {
@@ -84,7 +90,8 @@ static int load_each(cli_host *host, const cli_value *values, const cli_input *i
   return EXIT_CODE_OK;
 }
 
-int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare, hl_scene **scene) {
+int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                       hl_scene **scene) {
   cli_input inputs[MAXIMUM_OPERANDS] = {{0}};
   hl_scene *scenes[MAXIMUM_OPERANDS] = {NULL};
   size_t count = 0;

@@ -1,4 +1,5 @@
-/* cli/render_layers.c - `halflight render --layers`: the layers of a picture, in buffers of the picture's own. */
+/* cli/render_layers.c - `halflight render --layers`: the layers of a picture, in buffers of the picture's
+ * own. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,14 +20,16 @@ static bool shines(const hl_scene_volume *volume) {
 }
 
 /* Where no volume shines there is no layer for it, as before volumes could. */
-static hl_status add_emission(hl_image *image, const hl_scene_description *description, hl_layers *layers, hl_error *error) {
+static hl_status add_emission(hl_image *image, const hl_scene_description *description, hl_layers *layers,
+                              hl_error *error) {
   for (size_t i = 0; i < description->volume_count; i++)
-    if (shines(&description->volumes[i])) return hl_image_add_layer(image, "emission", "RGB", &layers->emission, error);
+    if (shines(&description->volumes[i]))
+      return hl_image_add_layer(image, "emission", "RGB", &layers->emission, error);
   return HL_OK;
 }
 
-hl_status render_layers_create(hl_image *image, const hl_scene_description *description, render_layers *layers,
-                               hl_error *error) {
+hl_status render_layers_create(hl_image *image, const hl_scene_description *description,
+                               render_layers *layers, hl_error *error) {
   size_t light_count = description->light_count;
   *layers = (render_layers){.all = {.struct_size = sizeof layers->all}};
   layers->lights = calloc(light_count + 1, sizeof *layers->lights);
@@ -40,7 +43,8 @@ hl_status render_layers_create(hl_image *image, const hl_scene_description *desc
   if (status == HL_OK) status = add_emission(image, description, &layers->all, error);
   for (size_t i = 0; i < light_count && status == HL_OK; i++)
     status = add_light(image, i, &layers->lights[i], error);
-  if (status == HL_OK) status = hl_image_add_layer(image, "depth_first", "Z", &layers->all.depth_first, error);
+  if (status == HL_OK)
+    status = hl_image_add_layer(image, "depth_first", "Z", &layers->all.depth_first, error);
   if (status == HL_OK) status = hl_image_add_layer(image, "depth_mean", "Z", &layers->all.depth_mean, error);
   if (status == HL_OK) status = hl_image_add_layer(image, "normal", "XYZ", &layers->all.normal, error);
   return status;
@@ -80,7 +84,8 @@ int render_layers_check(const cli_value *values) {
   const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
   if (!values[RENDER_LAYERS].given) return EXIT_CODE_OK;
   bool to_stdout = output->given && strcmp(output->text, "-") == 0;
-  bool exr = format->given && strcmp(format->text, "exr") == 0, npy = format->given && strcmp(format->text, "npy") == 0;
+  bool exr = format->given && strcmp(format->text, "exr") == 0,
+       npy = format->given && strcmp(format->text, "npy") == 0;
   if (to_stdout && exr) return EXIT_CODE_OK;
   if (to_stdout) return fail(EXIT_CODE_USAGE, "--layers: standard output takes one file: add --format exr");
   if (!output->given && (exr || npy)) return EXIT_CODE_OK;

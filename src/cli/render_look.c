@@ -14,7 +14,10 @@ typedef struct look {
 
 static const look looks[] = {
     [LOOK_AUTO] = {.preset = NULL},
-    [LOOK_MIP] = {.preset = "mip", .keeps_functions = true, .on_black = true, .compositing = HL_COMPOSITING_MAXIMUM},
+    [LOOK_MIP] = {.preset = "mip",
+                  .keeps_functions = true,
+                  .on_black = true,
+                  .compositing = HL_COMPOSITING_MAXIMUM},
 };
 
 static const look *look_of(const cli_value *values) {
@@ -41,9 +44,10 @@ void render_change_look(const cli_value *values, bool bare, hl_scene_description
 }
 
 /* What light alone changes. */
-static const enum render_option of_light[] = {RENDER_LIGHT,        RENDER_LIGHT_SIZE,        RENDER_SHADOWS,      RENDER_SOFT_METHOD,
-                                              RENDER_LIGHT_SAMPLES, RENDER_SHADOW_RESOLUTION, RENDER_SHADOW_LOOKUP, RENDER_AMBIENT,
-                                              RENDER_SHADING};
+static const enum render_option of_light[] = {
+    RENDER_LIGHT,         RENDER_LIGHT_SIZE,    RENDER_SHADOWS,
+    RENDER_SOFT_METHOD,   RENDER_LIGHT_SAMPLES, RENDER_SHADOW_RESOLUTION,
+    RENDER_SHADOW_LOOKUP, RENDER_AMBIENT,       RENDER_SHADING};
 
 bool render_warn_of_no_light(const cli_value *values, const hl_scene_description *description) {
   bool maximum = description->render.compositing == HL_COMPOSITING_MAXIMUM;

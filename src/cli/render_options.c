@@ -9,19 +9,24 @@ static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
 static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {NULL, 0}};
 static const cli_choice magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
 static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
-static const cli_choice sides[] = {{"front", HL_SIDE_FRONT}, {"back", HL_SIDE_BACK},     {"left", HL_SIDE_LEFT}, {"right", HL_SIDE_RIGHT},
-                                   {"top", HL_SIDE_TOP},     {"bottom", HL_SIDE_BOTTOM}, {"iso", HL_SIDE_ISO},   {NULL, 0}};
+static const cli_choice sides[] = {
+    {"front", HL_SIDE_FRONT}, {"back", HL_SIDE_BACK},     {"left", HL_SIDE_LEFT}, {"right", HL_SIDE_RIGHT},
+    {"top", HL_SIDE_TOP},     {"bottom", HL_SIDE_BOTTOM}, {"iso", HL_SIDE_ISO},   {NULL, 0}};
 /* The value is 2 axis + sign. */
-static const cli_choice axes[] = {{"+x", 0}, {"-x", 1}, {"+y", 2}, {"-y", 3}, {"+z", 4}, {"-z", 5},
-                                  {"x", 0},  {"y", 2},  {"z", 4},  {NULL, 0}};
-static const cli_choice shadings[] = {{"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {"flat", HL_SHADING_FLAT}, {NULL, 0}};
+static const cli_choice axes[] = {{"+x", 0}, {"-x", 1}, {"+y", 2}, {"-y", 3}, {"+z", 4},
+                                  {"-z", 5}, {"x", 0},  {"y", 2},  {"z", 4},  {NULL, 0}};
+static const cli_choice shadings[] = {
+    {"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {"flat", HL_SHADING_FLAT}, {NULL, 0}};
 static const cli_choice shadow_kinds[] = {
     {"off", HL_SHADOWS_OFF}, {"hard", HL_SHADOWS_HARD}, {"soft", HL_SHADOWS_SOFT}, {NULL, 0}};
 static const cli_choice soft_methods[] = {
     {"cascade", HL_SOFT_CASCADE}, {"paper", HL_SOFT_PAPER}, {"sublights", HL_SOFT_SUBLIGHTS}, {NULL, 0}};
 static const cli_choice resolutions[] = {{"auto", 0}, {NULL, 0}};
-static const cli_choice lookups[] = {
-    {"auto", HL_LOOKUP_AUTO}, {"bilinear", HL_LOOKUP_BILINEAR}, {"cubic", HL_LOOKUP_CUBIC}, {"nearest", HL_LOOKUP_NEAREST}, {NULL, 0}};
+static const cli_choice lookups[] = {{"auto", HL_LOOKUP_AUTO},
+                                     {"bilinear", HL_LOOKUP_BILINEAR},
+                                     {"cubic", HL_LOOKUP_CUBIC},
+                                     {"nearest", HL_LOOKUP_NEAREST},
+                                     {NULL, 0}};
 const cli_choice kernel_choices[] = {{"bspline", HL_KERNEL_BSPLINE},
                                      {"gaussian", HL_KERNEL_GAUSSIAN},
                                      {"linear", HL_KERNEL_LINEAR},
@@ -68,31 +73,37 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_BACKGROUND] = {.name = "background",
                            .kind = OPTION_COLOR,
                            .argument = "COLOR|transparent",
-                           .help = "under a .png: linear R,G,B 0..1, #rrggbb or a CSS\nname (both sRGB; default black, of bare volumes\ndark grey; black for --look mip)",
+                           .help = "under a .png: linear R,G,B 0..1, #rrggbb or a CSS\nname (both sRGB; "
+                                   "default black, of bare volumes\ndark grey; black for --look mip)",
                            .choices = backgrounds,
                            .low = 0,
                            .high = 1},
-    [RENDER_EXPOSURE] = {.name = "exposure",
-                         .kind = OPTION_NUMBERS,
-                         .argument = "STOPS",
-                         .help = "a .png shows the volumes' light times 2^STOPS\n(default 0; the background stays)",
-                         .count = 1,
-                         .low = -32,
-                         .high = 32},
-    [RENDER_LAYERS] = {.name = "layers",
-                       .kind = OPTION_SWITCH,
-                       .help = "each light, its shadow, ambient, depth, normals:\nchannels of an .exr, files beside an .npy"},
+    [RENDER_EXPOSURE] =
+        {.name = "exposure",
+         .kind = OPTION_NUMBERS,
+         .argument = "STOPS",
+         .help = "a .png shows the volumes' light times 2^STOPS\n(default 0; the background stays)",
+         .count = 1,
+         .low = -32,
+         .high = 32},
+    [RENDER_LAYERS] =
+        {.name = "layers",
+         .kind = OPTION_SWITCH,
+         .help =
+             "each light, its shadow, ambient, depth, normals:\nchannels of an .exr, files beside an .npy"},
 
     [RENDER_VIEW] = {.name = "view",
                      .kind = OPTION_CHOICE,
                      .choices = sides,
                      .argument = "SIDE",
                      .group = "Camera",
-                     .help = "front, back, left, right, top, bottom or iso: of\nthe body where the file knows it; frames anew\n(default: a three-quarter view, chosen)"},
+                     .help = "front, back, left, right, top, bottom or iso: of\nthe body where the file "
+                             "knows it; frames anew\n(default: a three-quarter view, chosen)"},
     [RENDER_UP] = {.name = "up",
                    .kind = OPTION_NUMBERS,
                    .argument = "AXIS|X,Y,Z",
-                   .help = "which way is up: an axis, as +z or -y, or a vector;\nframes anew (default: chosen)",
+                   .help =
+                       "which way is up: an axis, as +z or -y, or a vector;\nframes anew (default: chosen)",
                    .choices = axes,
                    .count = 3,
                    .separator = ',',
@@ -101,7 +112,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_AZIMUTH] = {.name = "azimuth",
                         .kind = OPTION_NUMBERS,
                         .argument = "DEG",
-                        .help = "turned about up; 0 is from the front (along +y\nwhere z is up), positive: the eye moves right\n(default: chosen)",
+                        .help = "turned about up; 0 is from the front (along +y\nwhere z is up), positive: "
+                                "the eye moves right\n(default: chosen)",
                         .count = 1,
                         .low = -360,
                         .high = 360},
@@ -137,15 +149,18 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_SWITCH,
                       .help = "parallel projection, the same framing"},
 
-    [RENDER_ARRAY] = {.name = "array",
-                      .kind = OPTION_TEXT,
-                      .argument = "NAME",
-                      .group = "Volume files",
-                      .help = "of the file's arrays this one (default: the active\none, else the first of one component)"},
+    [RENDER_ARRAY] =
+        {.name = "array",
+         .kind = OPTION_TEXT,
+         .argument = "NAME",
+         .group = "Volume files",
+         .help = "of the file's arrays this one (default: the active\none, else the first of one component)"},
     [RENDER_COMPONENT] = {.name = "component",
                           .kind = OPTION_NUMBERS,
                           .argument = "N|magnitude",
-                          .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude\n(default: the only one; of 2 or 3 the magnitude,\nelse 0)",
+                          .help =
+                              "of several values per voxel, or volumes of a\nseries, this one, from 0; or "
+                              "their magnitude\n(default: the only one; of 2 or 3 the magnitude,\nelse 0)",
                           .choices = magnitudes,
                           .count = 1,
                           .whole = true,
@@ -161,17 +176,20 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .above = true,
                         .high = INFINITY},
 
-    [RENDER_LOOK] = {.name = "look",
-                     .kind = OPTION_CHOICE,
-                     .choices = look_choices,
-                     .group = "Look (of every volume)",
-                     .help = "chosen from the data (default), or a maximum\nprojection: the greatest value along each ray"},
+    [RENDER_LOOK] =
+        {.name = "look",
+         .kind = OPTION_CHOICE,
+         .choices = look_choices,
+         .group = "Look (of every volume)",
+         .help =
+             "chosen from the data (default), or a maximum\nprojection: the greatest value along each ray"},
     [RENDER_TF] =
         {.name = "tf",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]FILE|PRESET",
          .help = "transfer function: a JSON file (Halflight's,\nParaView's, Slicer's .vp.json) or a preset,\n"
-                 "see 'halflight help presets'; of volume NAME\nalone (again for others; default: chosen from the\ndata)",
+                 "see 'halflight help presets'; of volume NAME\nalone (again for others; default: chosen "
+                 "from the\ndata)",
          .repeatable = true},
     [RENDER_COLORMAP] =
         {.name = "colormap",
@@ -194,37 +212,41 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                           .count = 1,
                           .low = -INFINITY,
                           .high = INFINITY},
-    [RENDER_CLIP] = {.name = "clip",
-                     .kind = OPTION_TEXT,
-                     .argument = "AXIS=LO:HI",
-                     .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or the file's own units (x=10mm:40mm);\n"
-                             "again for other axes",
-                     .repeatable = true},
+    [RENDER_CLIP] =
+        {.name = "clip",
+         .kind = OPTION_TEXT,
+         .argument = "AXIS=LO:HI",
+         .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or the file's own units (x=10mm:40mm);\n"
+                 "again for other axes",
+         .repeatable = true},
     [RENDER_SHADING] = {.name = "shading",
                         .kind = OPTION_CHOICE,
                         .choices = shadings,
-                        .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light (default phong;\nof smoke none)"},
+                        .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light "
+                                "(default phong;\nof smoke none)"},
 
     [RENDER_AMBIENT] = {.name = "ambient",
                         .kind = OPTION_COLOR,
                         .argument = "COLOR",
                         .group = "Light and shadows",
-                        .help = "light from everywhere: a number for grey, linear\nR,G,B, #rrggbb or a CSS name (default 0.2; of bare\nvolumes chosen)",
+                        .help = "light from everywhere: a number for grey, linear\nR,G,B, #rrggbb or a CSS "
+                                "name (default 0.2; of bare\nvolumes chosen)",
                         .low = 0,
                         .high = 1000},
-    [RENDER_LIGHT] =
-        {.name = "light",
-         .kind = OPTION_NUMBERS,
-         .argument = "AZ,EL",
-         .help = "direction of the first light, seen from the\ncamera: 0,0 is a headlight, -40,40 upper left\n(default -40,45)",
-         .count = 2,
-         .separator = ',',
-         .low = -360,
-         .high = 360},
+    [RENDER_LIGHT] = {.name = "light",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "AZ,EL",
+                      .help = "direction of the first light, seen from the\ncamera: 0,0 is a headlight, "
+                              "-40,40 upper left\n(default -40,45)",
+                      .count = 2,
+                      .separator = ',',
+                      .low = -360,
+                      .high = 360},
     [RENDER_LIGHT_SIZE] = {.name = "light-size",
                            .kind = OPTION_NUMBERS,
                            .argument = "DEG",
-                           .help = "angular diameter of the first light; 0 is hard\n(default 7; with --light in a scene that has no\nlight 0)",
+                           .help = "angular diameter of the first light; 0 is hard\n(default 7; with --light "
+                                   "in a scene that has no\nlight 0)",
                            .count = 1,
                            .low = 0,
                            .high = 90},
@@ -247,7 +269,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_SHADOW_RESOLUTION] = {.name = "shadow-resolution",
                                   .kind = OPTION_NUMBERS,
                                   .argument = "N|auto",
-                                  .help = "longer side of the shadow buffer, in pixels\n(default auto: as fine as the volumes and the\npicture want)",
+                                  .help = "longer side of the shadow buffer, in pixels\n(default auto: as "
+                                          "fine as the volumes and the\npicture want)",
                                   .choices = resolutions,
                                   .count = 1,
                                   .whole = true,
@@ -258,19 +281,25 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                               .choices = lookups,
                               .help = "how the shadow buffer is read (default auto: cubic\nor bilinear)"},
 
-    [RENDER_SHEET_SPACING] = {.name = "sheet-spacing",
-                              .kind = OPTION_NUMBERS,
-                              .argument = "VOXELS",
-                              .group = "Sheets",
-                              .help = "distance of sheets in smallest voxel edges\n(default 0.5; of bare volumes 0.25 to 1, chosen)",
-                              .count = 1,
-                              .low = 0.01,
-                              .high = 100},
-    [RENDER_KERNEL] = {.name = "kernel", .kind = OPTION_CHOICE, .choices = kernel_choices, .help = "of each voxel (default bspline; of bare volumes of\nlabels linear)"},
-    [RENDER_RECONSTRUCTION] = {.name = "reconstruction",
-                               .kind = OPTION_CHOICE,
-                               .choices = reconstruction_choices,
-                               .help = "push footprints, or pull samples: the same\npicture to rounding (default auto)"},
+    [RENDER_SHEET_SPACING] =
+        {.name = "sheet-spacing",
+         .kind = OPTION_NUMBERS,
+         .argument = "VOXELS",
+         .group = "Sheets",
+         .help =
+             "distance of sheets in smallest voxel edges\n(default 0.5; of bare volumes 0.25 to 1, chosen)",
+         .count = 1,
+         .low = 0.01,
+         .high = 100},
+    [RENDER_KERNEL] = {.name = "kernel",
+                       .kind = OPTION_CHOICE,
+                       .choices = kernel_choices,
+                       .help = "of each voxel (default bspline; of bare volumes of\nlabels linear)"},
+    [RENDER_RECONSTRUCTION] =
+        {.name = "reconstruction",
+         .kind = OPTION_CHOICE,
+         .choices = reconstruction_choices,
+         .help = "push footprints, or pull samples: the same\npicture to rounding (default auto)"},
     [RENDER_SLICING] = {.name = "slicing",
                         .kind = OPTION_CHOICE,
                         .choices = slicings,
@@ -296,11 +325,13 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                      .low = 0.001,
                      .high = 10},
 
-    [RENDER_DATA] = {.name = "data",
-                     .kind = OPTION_TEXT,
-                     .argument = "DIR",
-                     .group = "Running",
-                     .help = "folder of the files that scenes call data:NAME\n(default: $HALFLIGHT_DATA, or ../shared/data)"},
+    [RENDER_DATA] =
+        {.name = "data",
+         .kind = OPTION_TEXT,
+         .argument = "DIR",
+         .group = "Running",
+         .help =
+             "folder of the files that scenes call data:NAME\n(default: $HALFLIGHT_DATA, or ../shared/data)"},
     [RENDER_THREADS] = {.name = "threads",
                         .kind = OPTION_NUMBERS,
                         .argument = "N",
@@ -309,17 +340,20 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .whole = true,
                         .low = 0,
                         .high = 1024},
-    [RENDER_INSTRUCTION_SET] = {.name = "instruction-set",
-                                .kind = OPTION_CHOICE,
-                                .choices = instruction_set_choices,
-                                .help = "any gives the same picture (default auto: the\nfastest that the processor has)"},
-    [RENDER_MAX_MEMORY] = {.name = "max-memory",
-                           .kind = OPTION_BYTES,
-                           .argument = "BYTES",
-                           .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
-    [RENDER_PRINT_SCENE] = {.name = "print-scene",
-                            .kind = OPTION_SWITCH,
-                            .help = "the scene on standard output, no picture: a\nscene file that gives the same bytes"},
+    [RENDER_INSTRUCTION_SET] =
+        {.name = "instruction-set",
+         .kind = OPTION_CHOICE,
+         .choices = instruction_set_choices,
+         .help = "any gives the same picture (default auto: the\nfastest that the processor has)"},
+    [RENDER_MAX_MEMORY] =
+        {.name = "max-memory",
+         .kind = OPTION_BYTES,
+         .argument = "BYTES",
+         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [RENDER_PRINT_SCENE] =
+        {.name = "print-scene",
+         .kind = OPTION_SWITCH,
+         .help = "the scene on standard output, no picture: a\nscene file that gives the same bytes"},
     [RENDER_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "statistics on standard output"},
     [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
 };
@@ -335,18 +369,23 @@ int render_check_options(const cli_value *values) {
   if (values[RENDER_RANGE].given && values[RENDER_RANGE].number[0] >= values[RENDER_RANGE].number[1])
     return fail(EXIT_CODE_USAGE, "--range: '%s': LO must be below HI", values[RENDER_RANGE].text);
   if (values[RENDER_THRESHOLD].given && values[RENDER_RANGE].given && !values[RENDER_COLORMAP].given)
-    return fail(EXIT_CODE_USAGE, "--threshold says what is opaque: --range beside it needs --colormap, to spread");
-  static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT, RENDER_DEPTH, RENDER_LAYERS, RENDER_REFERENCE, RENDER_JSON};
+    return fail(EXIT_CODE_USAGE,
+                "--threshold says what is opaque: --range beside it needs --colormap, to spread");
+  static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT,    RENDER_DEPTH,
+                                 RENDER_LAYERS, RENDER_REFERENCE, RENDER_JSON};
   for (size_t n = 0; values[RENDER_PRINT_SCENE].given && n < sizeof pictures / sizeof *pictures; n++)
     if (values[pictures[n]].given)
-      return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s", render_options[pictures[n]].name);
+      return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s",
+                  render_options[pictures[n]].name);
   int exit_code = render_check_clip(&values[RENDER_CLIP]);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   if (values[RENDER_EXPOSURE].given && named && !has_extension(output->text, ".png"))
-    return fail(EXIT_CODE_USAGE, "--exposure is for .png pictures, not for '%s': .exr and .npy hold linear light as it is",
+    return fail(EXIT_CODE_USAGE,
+                "--exposure is for .png pictures, not for '%s': .exr and .npy hold linear light as it is",
                 output->text);
   if (values[RENDER_EXPOSURE].given && format->given && format->choice != 0)
-    return fail(EXIT_CODE_USAGE, "--exposure is for .png pictures: %s holds linear light as it is", format->text);
+    return fail(EXIT_CODE_USAGE, "--exposure is for .png pictures: %s holds linear light as it is",
+                format->text);
   if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
     return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
   for (int which = RENDER_LIGHT_POINTS; which <= RENDER_STEP; which++)

@@ -15,14 +15,15 @@ static const char *soft_method_name(hl_soft_method method) {
   return method == HL_SOFT_PAPER ? "paper" : method == HL_SOFT_SUBLIGHTS ? "sublights" : "cascade";
 }
 
-/* The most memory this program ever had resident. Linux counts in KiB; ru_maxrss, the way elsewhere, starts at what the
- * process that started this one had. */
+/* The most memory this program ever had resident. Linux counts in KiB; ru_maxrss, the way elsewhere, starts
+ * at what the process that started this one had. */
 static uint64_t peak_memory_bytes(void) {
   unsigned long long kibibytes = 0;
   FILE *status = fopen("/proc/self/status", "r");
   if (status != NULL) {
     char line[256];
-    while (kibibytes == 0 && fgets(line, sizeof line, status) != NULL) (void)sscanf(line, "VmHWM: %llu kB", &kibibytes);
+    while (kibibytes == 0 && fgets(line, sizeof line, status) != NULL)
+      (void)sscanf(line, "VmHWM: %llu kB", &kibibytes);
     fclose(status);
     if (kibibytes > 0) return 1024 * (uint64_t)kibibytes;
   }
@@ -104,13 +105,15 @@ void render_print_summary(const render_result *result) {
   bool soft = description->render.shadows == HL_SHADOWS_SOFT && !result->reference;
   char light[80] = "maximum projection", sheets[40] = "ray-marched";
   if (!is_maximum(description))
-    snprintf(light, sizeof light, "%s shadows%s%s%s", shadows_name(description->render.shadows), soft ? " (" : "",
-             soft ? soft_method_name(description->render.soft_method) : "", soft ? ")" : "");
+    snprintf(light, sizeof light, "%s shadows%s%s%s", shadows_name(description->render.shadows),
+             soft ? " (" : "", soft ? soft_method_name(description->render.soft_method) : "",
+             soft ? ")" : "");
   if (!result->reference) snprintf(sheets, sizeof sheets, "%d sheets", result->statistics.sheets);
-  say("%s: %dx%d, %s, %s, %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)",
-      result->output, description->width, description->height, light, sheets, seconds->total, seconds->load, seconds->prepare,
+  say("%s: %dx%d, %s, %s, %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)", result->output,
+      description->width, description->height, light, sheets, seconds->total, seconds->load, seconds->prepare,
       seconds->render, seconds->write);
   if (result->taken_for != NULL && isatty(STDERR_FILENO))
-    say("%s: taken for %s; the transfer function was chosen from this file alone: --print-scene writes it down, for --tf",
+    say("%s: taken for %s; the transfer function was chosen from this file alone: --print-scene writes it "
+        "down, for --tf",
         result->input, result->taken_for);
 }

@@ -65,7 +65,8 @@ static int choose_view(const scene_change *change, hl_view *view) {
     vector[axis] = !up->chosen ? up->number[axis] : up->choice / 2 != axis ? 0 : up->choice % 2 ? -1 : 1;
   hl_side side = values[RENDER_VIEW].given ? (hl_side)values[RENDER_VIEW].choice : HL_SIDE_AUTOMATIC;
   if (up->given && vector[0] == 0 && vector[1] == 0 && vector[2] == 0)
-    return fail(EXIT_CODE_USAGE, "--up: '%s' has no direction: give an axis, as +z, or a vector that is not 0", up->text);
+    return fail(EXIT_CODE_USAGE,
+                "--up: '%s' has no direction: give an axis, as +z, or a vector that is not 0", up->text);
   hl_status status = hl_view_choose(&change->description, side, up->given ? vector : NULL, view, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(change->host, PHASE_CHANGE, status, &error);
 }
@@ -76,10 +77,12 @@ static bool turn_view(const cli_value *values, hl_view *view) {
   if (values[RENDER_AZIMUTH].given) view->azimuth_deg = values[RENDER_AZIMUTH].number[0];
   if (values[RENDER_ELEVATION].given) view->elevation_deg = values[RENDER_ELEVATION].number[0];
   if (values[RENDER_ROLL].given) view->roll_deg = values[RENDER_ROLL].number[0];
-  return view->azimuth_deg != before.azimuth_deg || view->elevation_deg != before.elevation_deg || view->roll_deg != before.roll_deg;
+  return view->azimuth_deg != before.azimuth_deg || view->elevation_deg != before.elevation_deg ||
+         view->roll_deg != before.roll_deg;
 }
 
-/* A camera that is framed anew is framed before it is turned: frames of a turn have one target and one distance. */
+/* A camera that is framed anew is framed before it is turned: frames of a turn have one target and one
+ * distance. */
 static int change_camera(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
@@ -98,12 +101,14 @@ static int change_camera(scene_change *change) {
   if (exit_code != EXIT_CODE_OK) return exit_code;
   double zoom = values[RENDER_ZOOM].given ? values[RENDER_ZOOM].number[0] : 1;
   hl_error error = {0};
-  hl_status status = framed ? hl_camera_frame_view(description, &view, zoom, &description->camera, &error) : HL_OK;
+  hl_status status = framed ? hl_camera_frame_view(description, &view, zoom, &description->camera, &error)
+                            : HL_OK;
   if (status == HL_ERROR_MEMORY) return host_fail(change->host, PHASE_CHANGE, status, &error);
   if (status == HL_OK && turn_view(values, &view)) status = hl_camera_turn(&view, &description->camera);
   if (status == HL_OK) return EXIT_CODE_OK;
   return fail(EXIT_CODE_USAGE,
-              "--view, --up, --azimuth, --elevation, --roll, --zoom: no visible volume to frame: place the camera in the scene");
+              "--view, --up, --azimuth, --elevation, --roll, --zoom: no visible volume to frame: place the "
+              "camera in the scene");
 }
 
 static const char *light_type_name(hl_light_type type) {
@@ -129,7 +134,8 @@ static int change_first_light(scene_change *change) {
     }
     light->type = HL_LIGHT_DIRECTIONAL;
     const double *angles = values[RENDER_LIGHT].number;
-    if (light->frame == HL_LIGHT_FRAME_CAMERA) hl_light_direction_beside(angles[0], angles[1], light->direction);
+    if (light->frame == HL_LIGHT_FRAME_CAMERA)
+      hl_light_direction_beside(angles[0], angles[1], light->direction);
     else hl_light_direction(&change->description.camera, angles[0], angles[1], light->direction);
   }
   if (!values[RENDER_LIGHT_SIZE].given) return EXIT_CODE_OK;
@@ -173,10 +179,12 @@ static int change_volume(scene_change *change, size_t index) {
   if (exit_code != EXIT_CODE_OK || (!looks && !render_recolors(values))) return exit_code;
   hl_transfer_function look = {0};
   hl_error error = {0};
-  hl_status status = looks ? render_look_function(change->host, values, volume->volume, &look, &error) : HL_OK;
+  hl_status status = looks ? render_look_function(change->host, values, volume->volume, &look, &error)
+                           : HL_OK;
   if (status != HL_OK) return host_fail(change->host, PHASE_READ, status, &error);
   if (looks) volume->transfer_function = look;
-  exit_code = render_transfer_function(change->host, values, &change->description, index, &change->functions[index]);
+  exit_code = render_transfer_function(change->host, values, &change->description, index,
+                                       &change->functions[index]);
   volume->transfer_function = change->functions[index];
   hl_transfer_function_release(change->host->context, &look);
   return exit_code;
@@ -185,7 +193,8 @@ static int change_volume(scene_change *change, size_t index) {
 static int change_volumes(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
-  bool changed = render_look_recolors(values, change->bare) || render_recolors(values) || values[RENDER_SHADING].given || values[RENDER_CLIP].given;
+  bool changed = render_look_recolors(values, change->bare) || render_recolors(values) ||
+                 values[RENDER_SHADING].given || values[RENDER_CLIP].given;
   if (!changed || description->volume_count == 0) return EXIT_CODE_OK;
   change->volumes = calloc(description->volume_count, sizeof *change->volumes);
   change->functions = calloc(description->volume_count, sizeof *change->functions);
@@ -194,7 +203,8 @@ static int change_volumes(scene_change *change) {
   memcpy(change->volumes, description->volumes, description->volume_count * sizeof *change->volumes);
   description->volumes = change->volumes;
   int exit_code = render_check_names(values, description);
-  for (size_t i = 0; i < description->volume_count && exit_code == EXIT_CODE_OK; i++) exit_code = change_volume(change, i);
+  for (size_t i = 0; i < description->volume_count && exit_code == EXIT_CODE_OK; i++)
+    exit_code = change_volume(change, i);
   return exit_code;
 }
 
@@ -202,7 +212,8 @@ static void change_settings(const cli_value *values, hl_scene_description *descr
   hl_render_settings *settings = &description->render;
   if (values[RENDER_SOFT_METHOD].given)
     settings->soft_method = (hl_soft_method)values[RENDER_SOFT_METHOD].choice;
-  if (values[RENDER_LIGHT_SAMPLES].given) settings->light_samples = (int)values[RENDER_LIGHT_SAMPLES].number[0];
+  if (values[RENDER_LIGHT_SAMPLES].given)
+    settings->light_samples = (int)values[RENDER_LIGHT_SAMPLES].number[0];
   if (values[RENDER_SHADOW_RESOLUTION].given) /* 0 for "auto" */
     settings->shadow_resolution = (int)values[RENDER_SHADOW_RESOLUTION].number[0];
   if (values[RENDER_SHADOW_LOOKUP].given)

@@ -1,4 +1,5 @@
-/* cli/synonyms.c - what people type who know ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba or a plotting library.
+/* cli/synonyms.c - what people type who know ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba or a
+ * plotting library.
  *
  * A word leads to the option that does the same; a subcommand that lacks this option offers nothing.
  */
@@ -12,12 +13,16 @@ static const struct {
 } meanings[] = {
     {"output", "out outfile output-file file save screenshot image png write destination dest render-output"},
     {"format", "type filetype file-format output-format ext extension render-format"},
-    {"size", "width height w h resolution res geometry resize scale dimensions image-size view-size window-size pixels "
-             "film-size imagesize"},
+    {"size",
+     "width height w h resolution res geometry resize scale dimensions image-size view-size window-size "
+     "pixels "
+     "film-size imagesize"},
     {"depth", "bits bit-depth color-depth"},
-    {"background", "bg background-color bgcolor background-colour canvas backdrop world-color transparent alpha"},
+    {"background",
+     "bg background-color bgcolor background-colour canvas backdrop world-color transparent alpha"},
     {"layers", "passes aov aovs channels buffers depth-map zbuffer normals render-layers"},
-    {"azimuth", "rotate rotation yaw theta angle turn spin orbit rotate-z heading azim camera-position camera"},
+    {"azimuth",
+     "rotate rotation yaw theta angle turn spin orbit rotate-z heading azim camera-position camera"},
     {"elevation", "pitch phi tilt altitude elev rotate-x inclination"},
     {"roll", "rotate-y bank twist"},
     {"up", "view-up viewup up-vector orientation"},
@@ -26,9 +31,12 @@ static const struct {
     {"fovy", "fov field-of-view view-angle focal-length perspective vfov angle-of-view"},
     {"ortho", "orthographic parallel parallel-projection orthogonal ortho-scale"},
     {"tf", "transfer-function transferfunction opacity alpha-map transfer ctf otf preset opacity-function"},
-    {"colormap", "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
-    {"range", "clim window level window-level vmin vmax scalar-range data-range color-range rescale-range clims min max "
-              "limits contrast"},
+    {"colormap",
+     "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
+    {"range",
+     "clim window level window-level vmin vmax scalar-range data-range color-range rescale-range clims min "
+     "max "
+     "limits contrast"},
     {"threshold", "iso isovalue isosurface iso-value contour level-set cutoff surface lower-threshold"},
     {"clip", "crop cut roi cutplane clipping slab extent subset box clip-box slice bbox clipping-plane"},
     {"shading", "shade shader material lighting phong"},

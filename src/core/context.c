@@ -13,8 +13,8 @@
 #include "core/cpu.h"
 #include "core/error.h"
 
-/* Large blocks in large pages where the system has them: tiles of a plane lie in as many small pages as they have rows, and
- * finding those took longer than reading them. */
+/* Large blocks in large pages where the system has them: tiles of a plane lie in as many small pages as they
+ * have rows, and finding those took longer than reading them. */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
 
 static void *default_allocate(void *user_data, size_t size, size_t alignment) {
@@ -48,9 +48,10 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   hl_context_options_defaults(&chosen);
   if (options != NULL) {
     if (options->struct_size != sizeof *options)
-      return hl_fail(error, HL_ERROR_ARGUMENT,
-                     "hl_context_create: struct_size is %zu, expected %zu: call hl_context_options_defaults first",
-                     options->struct_size, sizeof *options);
+      return hl_fail(
+          error, HL_ERROR_ARGUMENT,
+          "hl_context_create: struct_size is %zu, expected %zu: call hl_context_options_defaults first",
+          options->struct_size, sizeof *options);
     chosen = *options;
   }
   if ((chosen.allocate == NULL) != (chosen.release == NULL))
@@ -62,7 +63,8 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   hl_instruction_set best = hl_cpu_best_instruction_set();
   if (chosen.instruction_set == HL_INSTRUCTION_SET_AUTO) chosen.instruction_set = best;
   if (!hl_cpu_has_instruction_set(chosen.instruction_set))
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "instruction set %s: this processor or build does not have it; its best is %s",
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "instruction set %s: this processor or build does not have it; its best is %s",
                    hl_instruction_set_name(chosen.instruction_set), hl_instruction_set_name(best));
   size_t folder_bytes = chosen.data_folder != NULL ? strlen(chosen.data_folder) + 1 : 0;
   hl_context *made = chosen.allocate(chosen.user_data, sizeof *made + folder_bytes, 64);
@@ -104,7 +106,8 @@ void hl_log(const hl_context *context, hl_log_level level, const char *format, .
 }
 
 void hl_progress(const hl_context *context, const char *stage, double fraction) {
-  if (context->options.progress != NULL) context->options.progress(context->options.user_data, stage, fraction);
+  if (context->options.progress != NULL)
+    context->options.progress(context->options.user_data, stage, fraction);
 }
 
 bool hl_cancelled(const hl_context *context) {

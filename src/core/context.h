@@ -8,8 +8,8 @@
 #include <halflight/context.h>
 
 struct hl_context {
-  hl_context_options options;             /* callbacks filled in; instruction_set resolved */
-  atomic_uint_least64_t held, peak;       /* bytes */
+  hl_context_options options;       /* callbacks filled in; instruction_set resolved */
+  atomic_uint_least64_t held, peak; /* bytes */
 };
 
 void hl_log(const hl_context *context, hl_log_level level, const char *format, ...)

@@ -26,8 +26,8 @@ void hl_make_printable(char *line) {
     if ((unsigned char)*line < 0x20 || *line == 0x7f) *line = '?';
 }
 
-static hl_status fail(hl_error *error, hl_status code, int line, int column, int64_t offset, const char *format,
-                      va_list arguments) {
+static hl_status fail(hl_error *error, hl_status code, int line, int column, int64_t offset,
+                      const char *format, va_list arguments) {
   if (error == NULL) return code;
   error->code = code;
   error->line = line;
@@ -63,6 +63,7 @@ hl_status hl_fail_offset(hl_error *error, hl_status code, int64_t offset, const 
 }
 
 hl_status hl_fail_memory(hl_error *error, size_t bytes, const char *what) {
-  return hl_fail(error, HL_ERROR_MEMORY, "out of memory: %s needs %zu bytes more than there are or than the limit allows",
-                 what, bytes);
+  return hl_fail(error, HL_ERROR_MEMORY,
+                 "out of memory: %s needs %zu bytes more than there are or than the limit allows", what,
+                 bytes);
 }

@@ -26,8 +26,8 @@ hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, h
   return HL_OK;
 }
 
-hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity, size_t *count,
-                       hl_error *error) {
+hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity,
+                       size_t *count, hl_error *error) {
   enum { MILLISECONDS_BETWEEN_QUESTIONS = 20 };
   for (*count = 0;;) {
     struct pollfd wanted = {.fd = descriptor, .events = POLLIN};
@@ -46,8 +46,8 @@ typedef struct file_reading {
   hl_context *context;
   const char *path;
   int descriptor;
-  hl_file_judge judge; /* null: limit stands */
-  size_t limit;        /* bytes that the file may have */
+  hl_file_judge judge;  /* null: limit stands */
+  size_t limit;         /* bytes that the file may have */
   unsigned char *bytes; /* owned; [capacity] */
   size_t length, capacity;
 } file_reading;
@@ -80,7 +80,8 @@ static hl_status read_all(file_reading *file, hl_error *error) {
                           room < GREATEST_PIECE ? room : GREATEST_PIECE, &got, error);
     if (status != HL_OK) return status;
     if (file->length + got > file->limit)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: more than %zu bytes, too large for a file of this kind", file->path, file->limit);
+      return hl_fail(error, HL_ERROR_INPUT, "%s: more than %zu bytes, too large for a file of this kind",
+                     file->path, file->limit);
   }
   return HL_OK;
 }
@@ -92,8 +93,7 @@ static hl_status read_file(file_reading *file, unsigned char **bytes, size_t *le
   if (status != HL_OK) return status;
   if (fstat(file->descriptor, &information) == 0 && S_ISDIR(information.st_mode))
     status = hl_fail(error, HL_ERROR_IO, "%s: is a folder, expected a file", file->path);
-  else
-    status = read_all(file, error);
+  else status = read_all(file, error);
   close(file->descriptor);
   if (status != HL_OK) {
     hl_release(file->context, file->bytes);
@@ -105,25 +105,27 @@ static hl_status read_file(file_reading *file, unsigned char **bytes, size_t *le
   return HL_OK;
 }
 
-hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes, size_t *length,
-                       hl_error *error) {
+hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes,
+                       size_t *length, hl_error *error) {
   file_reading file = {.context = context, .path = path, .limit = limit};
   return read_file(&file, bytes, length, error);
 }
 
-hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_judge judge, unsigned char **bytes, size_t *length,
-                              hl_error *error) {
+hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_judge judge,
+                              unsigned char **bytes, size_t *length, hl_error *error) {
   file_reading file = {.context = context, .path = path, .judge = judge, .limit = SIZE_MAX};
   return read_file(&file, bytes, length, error);
 }
 
-/* "folder/name.XXXXXX" for "folder/name", cut short, between two characters, where that would be longer than names may be. */
+/* "folder/name.XXXXXX" for "folder/name", cut short, between two characters, where that would be longer than
+ * names may be. */
 static char *temporary_path(hl_context *context, const char *path) {
   static const char suffix[] = ".XXXXXX";
   const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
   size_t kept = strlen(name), most = NAME_MAX - (sizeof suffix - 1);
   if (kept > most)
-    for (kept = most; kept > 0 && ((unsigned char)name[kept] & 0xc0) == 0x80;) kept--; /* not within a UTF-8 character */
+    for (kept = most; kept > 0 && ((unsigned char)name[kept] & 0xc0) == 0x80;)
+      kept--; /* not within a UTF-8 character */
   size_t length = (size_t)(name - path) + kept;
   char *made = hl_allocate(context, length + sizeof suffix, 1);
   if (made == NULL) return NULL;

@@ -6,24 +6,29 @@
 
 #include "core/error.h"
 
-/* Opens for reading, and tells the context's `reads` callback; a pipe without a writer does not hold it up. */
+/* Opens for reading, and tells the context's `reads` callback; a pipe without a writer does not hold it
+ * up. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Reads up to capacity bytes, 0 at the end. Where there is nothing yet, as in a pipe, it waits and asks whether to stop. */
-hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity, size_t *count,
-                       hl_error *error);
+/* Reads up to capacity bytes, 0 at the end. Where there is nothing yet, as in a pipe, it waits and asks
+ * whether to stop. */
+hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity,
+                       size_t *count, hl_error *error);
 
 /* Reads a whole file of at most limit bytes. *bytes is owned by the caller (hl_release) and is
  * followed by one zero byte. */
-hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes, size_t *length,
-                       hl_error *error);
+hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes,
+                       size_t *length, hl_error *error);
 
-/* Looks at the first length bytes of a file and says how many it may have in all (*limit), or why it is refused. Asked after
- * 64 KiB, and each time that twice as many have been read; not asked about files of less. */
-typedef hl_status (*hl_file_judge)(const char *path, const unsigned char *bytes, size_t length, size_t *limit, hl_error *error);
+/* Looks at the first length bytes of a file and says how many it may have in all (*limit), or why it is
+ * refused. Asked after 64 KiB, and each time that twice as many have been read; not asked about files of
+ * less. */
+typedef hl_status (*hl_file_judge)(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
+                                   hl_error *error);
 
-/* The same, with a limit that follows from what the file says of itself: of what never ends little is read. */
-hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_judge judge, unsigned char **bytes, size_t *length,
-                              hl_error *error);
+/* The same, with a limit that follows from what the file says of itself: of what never ends little is
+ * read. */
+hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_judge judge,
+                              unsigned char **bytes, size_t *length, hl_error *error);
 
 /* An output under a temporary name beside its final one. */
 typedef struct hl_output {
@@ -40,7 +45,8 @@ hl_status hl_output_commit(hl_output *output, hl_error *error);
 /* Closes and removes the temporary file; harmless after a commit. */
 void hl_output_abort(hl_output *output);
 
-/* folder + "/" + path, or path itself where it is absolute or folder is null or empty; null without memory. */
+/* folder + "/" + path, or path itself where it is absolute or folder is null or empty; null without
+ * memory. */
 char *hl_path_join(hl_context *context, const char *folder, const char *path);
 /* The folder part of a path ("" if none), owned by the caller; null without memory. */
 char *hl_path_folder(hl_context *context, const char *path);

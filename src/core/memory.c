@@ -22,8 +22,7 @@ static bool reserve(hl_context *context, size_t bytes) {
     return false;
   }
   uint64_t peak = atomic_load(&context->peak);
-  while (held > peak && !atomic_compare_exchange_weak(&context->peak, &peak, held)) {
-  }
+  while (held > peak && !atomic_compare_exchange_weak(&context->peak, &peak, held)) {}
   return true;
 }
 
@@ -46,7 +45,9 @@ void *hl_allocate_zeroed(hl_context *context, size_t count, size_t size) {
   return memory;
 }
 
-static block_header *header_of(void *memory) { return (block_header *)((unsigned char *)memory - HEADER_BYTES); }
+static block_header *header_of(void *memory) {
+  return (block_header *)((unsigned char *)memory - HEADER_BYTES);
+}
 
 void *hl_reallocate(hl_context *context, void *old, size_t count, size_t size) {
   void *fresh = hl_allocate(context, count, size);

@@ -46,7 +46,8 @@ static int on_seek(void *cookie, off64_t *offset, int whence) {
   return 0;
 }
 
-hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_output_memory *memory, hl_error *error) {
+hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_output_memory *memory,
+                                 hl_error *error) {
   memset(memory, 0, sizeof *memory);
   memory->output.context = context;
   memory->output.path = hl_copy_text(context, name);
@@ -57,7 +58,8 @@ hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_outpu
   return hl_fail_memory(error, 65536, name);
 }
 
-hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **bytes, size_t *length, hl_error *error) {
+hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **bytes, size_t *length,
+                                  hl_error *error) {
   bool failed = fflush(memory->output.file) != 0 || ferror(memory->output.file);
   if (failed) {
     hl_fail_memory(error, memory->capacity > 0 ? memory->capacity : 65536, memory->output.path);

@@ -1,13 +1,14 @@
 /* core/pool.c - the thread team. Jobs come in quick succession (two a sheet), so workers spin a while for the
  * next one before they sleep; with more threads than processors they sleep at once.
  *
- * Each thread has a share of a job's indices, one after another: in job after job of the same kind it meets the same part
- * of the memory. A share is one 64-bit word on its own line of the cache: generation, end, next index. Its owner claims an
- * index from one end by compare-and-swap; who has none left takes those of others from the other end. Every second thread
- * begins with its last index: two threads meet in the middle of a job, and what one takes of the other's share is what it had
- * the job before. So nobody waits for a worker that the system has not woken: on a busy machine the caller does the work
- * alone. A job's description stays in its slot (by the generation's parity) until all that claimed of it have said so, since
- * a later job of the same parity cannot start before that. */
+ * Each thread has a share of a job's indices, one after another: in job after job of the same kind it meets
+ * the same part of the memory. A share is one 64-bit word on its own line of the cache: generation, end, next
+ * index. Its owner claims an index from one end by compare-and-swap; who has none left takes those of others
+ * from the other end. Every second thread begins with its last index: two threads meet in the middle of a
+ * job, and what one takes of the other's share is what it had the job before. So nobody waits for a worker
+ * that the system has not woken: on a busy machine the caller does the work alone. A job's description stays
+ * in its slot (by the generation's parity) until all that claimed of it have said so, since a later job of
+ * the same parity cannot start before that. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
@@ -25,7 +26,8 @@
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 
-/* Between two questions whether to stop, while a job runs: far less than a person notices, far more than asking takes. */
+/* Between two questions whether to stop, while a job runs: far less than a person notices, far more than
+ * asking takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
 /* Calls that take less than this together need no look at the clock in between; so many of them at most. */
 static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
@@ -40,7 +42,7 @@ typedef struct worker {
 typedef struct job {
   void (*function)(void *, size_t, int);
   void *data;
-  size_t base;           /* of the shares' indices */
+  size_t base;                     /* of the shares' indices */
   _Alignas(64) atomic_size_t done; /* indices finished, as far as their workers have said so */
 } job;
 
@@ -63,10 +65,10 @@ struct hl_pool {
   job jobs[2];
   atomic_uint_least64_t generation; /* of the last job, once its shares are there */
   atomic_bool stop;
-  atomic_bool cancelled;        /* indices are passed over */
+  atomic_bool cancelled; /* indices are passed over */
   atomic_int sleepers;
   pthread_mutex_t mutex;
-  pthread_cond_t wake;       /* generation or stop changed */
+  pthread_cond_t wake; /* generation or stop changed */
   /* the calling thread's own */
   _Alignas(64) int64_t asked, read; /* when it last asked, and when it read the clock, nanoseconds */
   int readings, unread;             /* calls that pass without reading it: in a row, and still to come */
@@ -142,8 +144,8 @@ static bool claim_index(hl_pool *pool, int number, claim *claimed) {
   return false;
 }
 
-/* Works on whatever is to be done until nothing is. A job does not end before its workers have said what they did, so that all
- * that one claims before it does are of the same job. */
+/* Works on whatever is to be done until nothing is. A job does not end before its workers have said what they
+ * did, so that all that one claims before it does are of the same job. */
 static void work(hl_pool *pool, int number) {
   claim claimed;
   while (claim_index(pool, number, &claimed)) {
@@ -197,7 +199,8 @@ static void wait_until_done(hl_pool *pool, const job *job, size_t count) {
   }
 }
 
-static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(void *, size_t, int), void *data) {
+static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(void *, size_t, int),
+                     void *data) {
   uint64_t generation = atomic_load(&pool->generation) + 1, threads = (uint64_t)pool->threads;
   job *job = &pool->jobs[generation & 1];
   job->function = function;
@@ -205,7 +208,8 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
   job->base = base;
   atomic_store(&job->done, 0);
   for (uint64_t i = 0; i < threads; i++)
-    atomic_store(&pool->shares[i].range, generation << (2 * INDEX_BITS) | count * (i + 1) / threads << INDEX_BITS | count * i / threads);
+    atomic_store(&pool->shares[i].range, generation << (2 * INDEX_BITS) |
+                                             count * (i + 1) / threads << INDEX_BITS | count * i / threads);
   atomic_store(&pool->generation, generation);
   wake_sleepers(pool);
   work(pool, 0);
@@ -233,7 +237,8 @@ typedef struct fill_job {
 static void fill_part(void *data, size_t index, int worker) {
   (void)worker;
   const fill_job *job = data;
-  size_t first = index * FLOATS_A_TASK, end = job->count - first < FLOATS_A_TASK ? job->count : first + FLOATS_A_TASK;
+  size_t first = index * FLOATS_A_TASK,
+         end = job->count - first < FLOATS_A_TASK ? job->count : first + FLOATS_A_TASK;
   for (size_t i = first; i < end; i++) job->floats[i] = job->value;
 }
 
@@ -304,7 +309,8 @@ hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_er
   made->process = getpid();
   start_workers(made);
   if (made->started < threads)
-    hl_log(context, HL_LOG_WARNING, "the system starts only %d of %d threads: it will take longer", made->started, threads);
+    hl_log(context, HL_LOG_WARNING, "the system starts only %d of %d threads: it will take longer",
+           made->started, threads);
   made->threads = made->started;
   *pool = made;
   return HL_OK;

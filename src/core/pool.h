@@ -4,8 +4,8 @@
  * depend on which worker gets which index; every output has one owner index.
  *
  * Between indices the caller asks the context's cancel callback, every few milliseconds at most. Once it says
- * stop, indices not yet begun are passed over, in this run and in those after it: what was to be computed is then
- * unfinished, and whoever is about to use it asks hl_pool_cancelled first.
+ * stop, indices not yet begun are passed over, in this run and in those after it: what was to be computed is
+ * then unfinished, and whoever is about to use it asks hl_pool_cancelled first.
  */
 #ifndef HL_CORE_POOL_H
 #define HL_CORE_POOL_H
@@ -16,19 +16,20 @@
 
 typedef struct hl_pool hl_pool;
 
-/* threads: at least 1, the caller included; 0: one per processor. Where the system starts fewer, the team is smaller, and
- * a warning says so. The threads take no signals: those go to the program's own. */
+/* threads: at least 1, the caller included; 0: one per processor. Where the system starts fewer, the team is
+ * smaller, and a warning says so. The threads take no signals: those go to the program's own. */
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error);
 void hl_pool_destroy(hl_pool *pool); /* null is allowed */
 
-/* False in a child process made by fork(): threads stay with the parent. All that can be done there with the pool is to
- * destroy it. */
+/* False in a child process made by fork(): threads stay with the parent. All that can be done there with the
+ * pool is to destroy it. */
 bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
 
 /* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns
  * when all are done. Not to be called from inside such a function. */
-void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker), void *data);
+void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
+                 void *data);
 
 /* floats[0 .. count) = value, shared out. */
 void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);

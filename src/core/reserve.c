@@ -15,7 +15,8 @@ static void drop(reserve_block *block, hl_context *context) {
 
 void *hl_reserve_take(hl_reserve *reserve, size_t count, size_t size) {
   size_t bytes;
-  if (!reserve->keeps || reserve->taken == RESERVE_BLOCKS || !hl_multiply(count, size, &bytes) || bytes < LEAST_KEPT)
+  if (!reserve->keeps || reserve->taken == RESERVE_BLOCKS || !hl_multiply(count, size, &bytes) ||
+      bytes < LEAST_KEPT)
     return hl_allocate(reserve->context, count, size);
   reserve_block *block = &reserve->block[reserve->taken];
   if (!fits(block->bytes, bytes)) {

@@ -1,7 +1,8 @@
 /* core/reserve.h - large blocks kept from frame to frame.
  *
- * A block that is given back to the system comes again as empty pages, and finding and clearing those took 4 to 15 % of a frame.
- * Blocks are lent instead: frames take much the same blocks in the same order, so that each gets the one it had before. */
+ * A block that is given back to the system comes again as empty pages, and finding and clearing those took 4
+ * to 15 % of a frame. Blocks are lent instead: frames take much the same blocks in the same order, so that
+ * each gets the one it had before. */
 #ifndef HL_CORE_RESERVE_H
 #define HL_CORE_RESERVE_H
 
@@ -18,12 +19,13 @@ typedef struct reserve_block {
 
 typedef struct hl_reserve {
   hl_context *context;
-  bool keeps;          /* else what is taken anew is released when it is returned */
-  int taken;           /* blocks of this frame */
+  bool keeps;                          /* else what is taken anew is released when it is returned */
+  int taken;                           /* blocks of this frame */
   reserve_block block[RESERVE_BLOCKS]; /* zero: none yet */
 } hl_reserve;
 
-/* count * size bytes, uninitialised, from the reserve or as hl_allocate() gives them; null where that does. */
+/* count * size bytes, uninitialised, from the reserve or as hl_allocate() gives them; null where that
+ * does. */
 void *hl_reserve_take(hl_reserve *reserve, size_t count, size_t size);
 /* Of hl_reserve_take() only; null is allowed. */
 void hl_reserve_return(hl_reserve *reserve, void *memory);

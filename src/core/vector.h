@@ -7,13 +7,20 @@
 
 #define HL_PI 3.14159265358979323846
 
-typedef struct vec3 { double x, y, z; } vec3;
+typedef struct vec3 {
+  double x, y, z;
+} vec3;
 
 /* Rows; m * v = (dot(row0, v), ...). */
-typedef struct mat3 { vec3 row[3]; } mat3;
+typedef struct mat3 {
+  vec3 row[3];
+} mat3;
 
 /* p -> linear * p + offset */
-typedef struct affine3 { mat3 linear; vec3 offset; } affine3;
+typedef struct affine3 {
+  mat3 linear;
+  vec3 offset;
+} affine3;
 
 static inline vec3 vec3_of(const double v[3]) { return (vec3){v[0], v[1], v[2]}; }
 static inline void vec3_store(float out[3], vec3 v) {
@@ -55,10 +62,13 @@ static inline mat3 mat3_multiply(mat3 a, mat3 b) {
 }
 static inline mat3 mat3_transpose(mat3 m) { return mat3_from_columns(m.row[0], m.row[1], m.row[2]); }
 /* The greatest determinant that rows of these lengths can have. */
-static inline double mat3_row_sizes(mat3 m) { return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]); }
+static inline double mat3_row_sizes(mat3 m) {
+  return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]);
+}
 /* False if m is singular to working precision, whatever the scales of its rows or of its columns. */
 static inline bool mat3_invert(mat3 m, mat3 *inverse) {
-  vec3 c0 = vec3_cross(m.row[1], m.row[2]), c1 = vec3_cross(m.row[2], m.row[0]), c2 = vec3_cross(m.row[0], m.row[1]);
+  vec3 c0 = vec3_cross(m.row[1], m.row[2]), c1 = vec3_cross(m.row[2], m.row[0]),
+       c2 = vec3_cross(m.row[0], m.row[1]);
   double determinant = vec3_dot(m.row[0], c0);
   double size = fmin(mat3_row_sizes(m), mat3_row_sizes(mat3_transpose(m)));
   if (!(fabs(determinant) > 1e-12 * size) || !isfinite(determinant)) return false;
@@ -69,13 +79,15 @@ static inline bool mat3_invert(mat3 m, mat3 *inverse) {
 /* Right-handed turn by angle_rad about the unit axis (Rodrigues). */
 static inline mat3 mat3_rotation(vec3 axis, double angle_rad) {
   double c = cos(angle_rad), s = sin(angle_rad), t = 1 - c;
-  return (mat3){{{t * axis.x * axis.x + c, t * axis.x * axis.y - s * axis.z, t * axis.x * axis.z + s * axis.y},
-                 {t * axis.x * axis.y + s * axis.z, t * axis.y * axis.y + c, t * axis.y * axis.z - s * axis.x},
-                 {t * axis.x * axis.z - s * axis.y, t * axis.y * axis.z + s * axis.x, t * axis.z * axis.z + c}}};
+  return (mat3){
+      {{t * axis.x * axis.x + c, t * axis.x * axis.y - s * axis.z, t * axis.x * axis.z + s * axis.y},
+       {t * axis.x * axis.y + s * axis.z, t * axis.y * axis.y + c, t * axis.y * axis.z - s * axis.x},
+       {t * axis.x * axis.z - s * axis.y, t * axis.y * axis.z + s * axis.x, t * axis.z * axis.z + c}}};
 }
 
 static inline double mat3_shortest_column(mat3 m) {
-  return fmin(vec3_length(mat3_column(m, 0)), fmin(vec3_length(mat3_column(m, 1)), vec3_length(mat3_column(m, 2))));
+  return fmin(vec3_length(mat3_column(m, 0)),
+              fmin(vec3_length(mat3_column(m, 1)), vec3_length(mat3_column(m, 2))));
 }
 
 static inline affine3 affine3_identity(void) {

@@ -59,15 +59,16 @@ void hl_codes_of_row(const hl_codes *codes, const float *pixels, int width, int 
     int x = (int)((pixel - pixels) / 4);
     float offset = codes->depth == 16 || is_empty(pixel) ? 0.0f : dither_offset(x, y);
     for (int c = 0; c < 3; c++)
-      to = put_code(to, hl_srgb_encode_offset(&codes->encoder, stored_value(codes, pixel, c), offset), codes->depth);
+      to = put_code(to, hl_srgb_encode_offset(&codes->encoder, stored_value(codes, pixel, c), offset),
+                    codes->depth);
     if (codes->transparent)
       to = put_code(to, quantise(pixel[3], codes->encoder.maximum, offset), codes->depth);
-    else if (codes->opaque_alpha)
-      to = put_code(to, codes->encoder.maximum, codes->depth);
+    else if (codes->opaque_alpha) to = put_code(to, codes->encoder.maximum, codes->depth);
   }
 }
 
-hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth, hl_codes *codes, hl_error *error) {
+hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth,
+                         hl_codes *codes, hl_error *error) {
   *codes = (hl_codes){.depth = depth, .transparent = options->background_transparent != 0};
   for (int c = 0; c < 3; c++) codes->background[c] = (float)options->background[c];
   codes->exposure = (float)hl_exposure_factor(options->exposure);
@@ -76,12 +77,13 @@ hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *opti
 
 void hl_codes_end(hl_codes *codes) { hl_srgb_encoder_destroy(&codes->encoder); }
 
-hl_status hl_image_to_srgb8(const hl_image *image, const hl_image_write_options *options, uint8_t *bytes, size_t row_stride,
-                            hl_error *error) {
+hl_status hl_image_to_srgb8(const hl_image *image, const hl_image_write_options *options, uint8_t *bytes,
+                            size_t row_stride, hl_error *error) {
   if (image == NULL || bytes == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_to_srgb8: image and bytes must not be null");
   if (row_stride < 4 * (size_t)image->width)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_to_srgb8: row_stride is %zu, expected 4 x width = %zu at least", row_stride,
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_image_to_srgb8: row_stride is %zu, expected 4 x width = %zu at least", row_stride,
                    4 * (size_t)image->width);
   hl_image_write_options chosen;
   hl_image_write_options_defaults(&chosen);
@@ -92,7 +94,8 @@ hl_status hl_image_to_srgb8(const hl_image *image, const hl_image_write_options 
   if (status != HL_OK) return status;
   codes.opaque_alpha = true;
   for (int y = 0; y < image->height; y++)
-    hl_codes_of_row(&codes, image->pixels + (size_t)y * (size_t)image->width * 4, image->width, y, bytes + (size_t)y * row_stride);
+    hl_codes_of_row(&codes, image->pixels + (size_t)y * (size_t)image->width * 4, image->width, y,
+                    bytes + (size_t)y * row_stride);
   hl_codes_end(&codes);
   return HL_OK;
 }

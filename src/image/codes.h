@@ -16,10 +16,12 @@ typedef struct hl_codes {
   float exposure;      /* what the picture's light is multiplied by */
 } hl_codes;
 
-hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth, hl_codes *codes, hl_error *error);
+hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth,
+                         hl_codes *codes, hl_error *error);
 void hl_codes_end(hl_codes *codes);
 
-/* Row y of a picture, pixels [width][4], as codes: [width][3 or 4], of 16 bits with the greater byte first. */
+/* Row y of a picture, pixels [width][4], as codes: [width][3 or 4], of 16 bits with the greater byte
+ * first. */
 void hl_codes_of_row(const hl_codes *codes, const float *pixels, int width, int y, unsigned char *to);
 
 #endif

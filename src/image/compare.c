@@ -39,10 +39,8 @@ static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, 
   memset(counts, 0, 65536 * sizeof *counts);
   for (size_t i = 0; i < pixels; i++) {
     uint32_t bits = difference_bits(a->pixels + 4 * i, b->pixels + 4 * i);
-    if (high < 0)
-      counts[bits >> 16]++;
-    else if ((int64_t)(bits >> 16) == high)
-      counts[bits & 0xffff]++;
+    if (high < 0) counts[bits >> 16]++;
+    else if ((int64_t)(bits >> 16) == high) counts[bits & 0xffff]++;
   }
   uint32_t half = 0;
   while (*rank >= counts[half]) *rank -= counts[half++];

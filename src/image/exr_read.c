@@ -210,13 +210,15 @@ static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
   const exr_attr_chlist_t *list = NULL;
   exr_attr_box2i_t window;
   hl_image_claim claim = {0};
-  if (exr_get_data_window(file, part, &window) != EXR_ERR_SUCCESS || exr_get_channels(file, part, &list) != EXR_ERR_SUCCESS ||
-      window.max.x < window.min.x || window.max.y < window.min.y)
+  if (exr_get_data_window(file, part, &window) != EXR_ERR_SUCCESS ||
+      exr_get_channels(file, part, &list) != EXR_ERR_SUCCESS || window.max.x < window.min.x ||
+      window.max.y < window.min.y)
     return claim;
   claim.width = (uint64_t)((int64_t)window.max.x - window.min.x + 1);
   claim.height = (uint64_t)((int64_t)window.max.y - window.min.y + 1);
   if (claim.width <= HL_IMAGE_SIDE_MAX && claim.height <= HL_IMAGE_SIDE_MAX)
-    claim.bytes = claim.width * claim.height * 4 * (uint64_t)(list->num_channels > 0 ? list->num_channels : 0);
+    claim.bytes = claim.width * claim.height * 4 *
+                  (uint64_t)(list->num_channels > 0 ? list->num_channels : 0);
   return claim;
 }
 
@@ -225,7 +227,8 @@ hl_image_claim hl_exr_claim(const unsigned char *bytes, size_t length) {
   exr_reading reading = {.name = "a picture", .bytes = bytes, .length = length};
   hl_image_claim claim = {0};
   int parts = 0;
-  if (start_read(&reading) == EXR_ERR_SUCCESS && exr_get_count(reading.file, &parts) == EXR_ERR_SUCCESS && parts > 0) {
+  if (start_read(&reading) == EXR_ERR_SUCCESS && exr_get_count(reading.file, &parts) == EXR_ERR_SUCCESS &&
+      parts > 0) {
     claim = claim_of_part(reading.file, 0);
     claim.known = claim.width > 0;
     for (int part = 1; part < parts; part++) claim.bytes += claim_of_part(reading.file, part).bytes;

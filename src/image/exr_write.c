@@ -1,7 +1,8 @@
 /* exr_write.c - pictures as OpenEXR through OpenEXRCore: scanlines, ZIP, 32-bit float, linear.
  *
- * In: named float channels (exr.h), or a picture with its layers. Out: bytes in output->file; values are stored bit by bit. OpenEXRCore
- * writes through on_write, so that a full disk is noticed here and the file is the caller's temporary one.
+ * In: named float channels (exr.h), or a picture with its layers. Out: bytes in output->file; values are
+ * stored bit by bit. OpenEXRCore writes through on_write, so that a full disk is noticed here and the file is
+ * the caller's temporary one.
  */
 #define _GNU_SOURCE
 #include <errno.h>
@@ -53,8 +54,8 @@ static exr_result_t write_header(exr_writing *writing, exr_context_t file) {
   int part = 0;
   exr_result_t result = exr_add_part(file, "halflight", EXR_STORAGE_SCANLINE, &part);
   if (result == EXR_ERR_SUCCESS)
-    result =
-        exr_initialize_required_attr_simple(file, part, writing->width, writing->height, EXR_COMPRESSION_ZIP);
+    result = exr_initialize_required_attr_simple(file, part, writing->width, writing->height,
+                                                 EXR_COMPRESSION_ZIP);
   for (size_t i = 0; i < writing->channel_count && result == EXR_ERR_SUCCESS; i++)
     result = exr_add_channel(file, part, writing->channels[i].name, EXR_PIXEL_FLOAT,
                              EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
@@ -72,8 +73,8 @@ static void place_channels(const exr_writing *writing, exr_encode_pipeline_t *pi
       to->user_bytes_per_element = sizeof(float);
       to->user_pixel_stride = (int32_t)(from->pixel_stride * sizeof(float));
       to->user_line_stride = (int32_t)(from->pixel_stride * sizeof(float) * (size_t)writing->width);
-      to->encode_from_ptr =
-          (const uint8_t *)(from->values + (size_t)y * (size_t)writing->width * from->pixel_stride);
+      to->encode_from_ptr = (const uint8_t *)(from->values +
+                                              (size_t)y * (size_t)writing->width * from->pixel_stride);
     }
   }
 }
@@ -135,7 +136,9 @@ hl_status hl_exr_encode_channels(int width, int height, const hl_exr_channel *ch
   return HL_OK;
 }
 
-typedef struct layer_channel_name { char text[HL_IMAGE_LAYER_NAME + 3]; } layer_channel_name; /* "layer.C" */
+typedef struct layer_channel_name {
+  char text[HL_IMAGE_LAYER_NAME + 3];
+} layer_channel_name; /* "layer.C" */
 
 /* R, G, B, A, and the layers' channels. names: room for all of the latter. */
 static void list_channels(const hl_image *image, layer_channel_name *names, hl_exr_channel *channels) {
@@ -161,8 +164,7 @@ hl_status hl_exr_encode(const hl_image *image, const hl_image_write_options *opt
   hl_status status = HL_OK;
   if (names == NULL || channels == NULL)
     status = hl_fail_memory(error, count * sizeof *channels, output->path);
-  else
-    list_channels(image, names, channels);
+  else list_channels(image, names, channels);
   if (status == HL_OK)
     status = hl_exr_encode_channels(image->width, image->height, channels, count, output, error);
   hl_release(output->context, names);

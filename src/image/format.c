@@ -24,13 +24,29 @@ typedef struct picture_format {
   hl_status (*decode)(hl_context *, const char *, const unsigned char *, size_t, hl_image **, hl_error *);
   hl_image_claim (*claim)(const unsigned char *, size_t);
   bool holds_layers; /* encode writes them too */
-  hl_status (*encode_layer)(const hl_image *, const hl_image_layer *, hl_output *, hl_error *); /* in files of their own */
+  hl_status (*encode_layer)(const hl_image *, const hl_image_layer *, hl_output *,
+                            hl_error *); /* in files of their own */
 } picture_format;
 
 static const picture_format formats[] = {
-    {".png", "PNG", {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, 8, hl_png_encode, hl_png_decode, hl_png_claim, false, NULL},
+    {".png",
+     "PNG",
+     {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'},
+     8,
+     hl_png_encode,
+     hl_png_decode,
+     hl_png_claim,
+     false,
+     NULL},
     {".exr", "OpenEXR", {0x76, 0x2f, 0x31, 0x01}, 4, hl_exr_encode, hl_exr_decode, hl_exr_claim, true, NULL},
-    {".npy", "NPY", {0x93, 'N', 'U', 'M', 'P', 'Y'}, 6, hl_npy_encode, hl_npy_decode, hl_npy_claim, false,
+    {".npy",
+     "NPY",
+     {0x93, 'N', 'U', 'M', 'P', 'Y'},
+     6,
+     hl_npy_encode,
+     hl_npy_decode,
+     hl_npy_claim,
+     false,
      hl_npy_encode_layer}};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
@@ -61,16 +77,15 @@ void hl_image_write_options_defaults(hl_image_write_options *options) {
 
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error) {
   if (options->struct_size != sizeof *options)
-    return hl_fail(
-        error, HL_ERROR_ARGUMENT,
-        "%s: struct_size is %zu, expected %zu: call hl_image_write_options_defaults first",
-        caller, options->struct_size, sizeof *options);
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "%s: struct_size is %zu, expected %zu: call hl_image_write_options_defaults first", caller,
+                   options->struct_size, sizeof *options);
   if (options->png_depth != 8 && options->png_depth != 16)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: png_depth is %d, expected 8 or 16",
-                   caller, options->png_depth);
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: png_depth is %d, expected 8 or 16", caller,
+                   options->png_depth);
   if (!(fabs(options->exposure) <= HL_IMAGE_EXPOSURE_MAX))
-    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: exposure is %g, expected stops from -%d to %d",
-                   caller, options->exposure, (int)HL_IMAGE_EXPOSURE_MAX, (int)HL_IMAGE_EXPOSURE_MAX);
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: exposure is %g, expected stops from -%d to %d", caller,
+                   options->exposure, (int)HL_IMAGE_EXPOSURE_MAX, (int)HL_IMAGE_EXPOSURE_MAX);
   for (int c = 0; c < 3; c++)
     if (!isfinite(options->background[c]))
       return hl_fail(error, HL_ERROR_ARGUMENT, "%s: background[%d] is not a finite number", caller, c);
@@ -117,7 +132,8 @@ static hl_status write_layers(const picture_format *format, hl_context *context,
                               const char *path, hl_error *error) {
   if (image->layer_count == 0 || format->holds_layers) return HL_OK;
   if (format->encode_layer == NULL)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s cannot hold layers: write .exr or .npy", path, format->title);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s cannot hold layers: write .exr or .npy", path,
+                   format->title);
   hl_status status = HL_OK;
   for (size_t i = 0; i < image->layer_count && status == HL_OK; i++)
     status = write_layer_file(format, context, image, &image->layers[i], path, error);
@@ -150,9 +166,11 @@ hl_status hl_image_write(hl_context *context, const hl_image *image, const char 
 }
 
 hl_status hl_image_encode(hl_context *context, const hl_image *image, const char *format_name,
-                          const hl_image_write_options *options, unsigned char **bytes, size_t *length, hl_error *error) {
+                          const hl_image_write_options *options, unsigned char **bytes, size_t *length,
+                          hl_error *error) {
   if (context == NULL || image == NULL || format_name == NULL || bytes == NULL || length == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_encode: context, image, format, bytes and length must not be null");
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_image_encode: context, image, format, bytes and length must not be null");
   *bytes = NULL;
   *length = 0;
   hl_image_write_options chosen;
@@ -164,11 +182,11 @@ hl_status hl_image_encode(hl_context *context, const hl_image *image, const char
   snprintf(extension, sizeof extension, ".%.6s", format_name);
   const picture_format *format = format_by_name(extension);
   if (format == NULL)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_image_encode: unknown picture format \"%.20s\": give png, exr or npy",
-                   format_name);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "hl_image_encode: unknown picture format \"%.20s\": give png, exr or npy", format_name);
   if (image->layer_count > 0 && !format->holds_layers)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_image_encode: %s cannot hold layers in one stream: give exr",
-                   format->title);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "hl_image_encode: %s cannot hold layers in one stream: give exr", format->title);
   hl_output_memory memory;
   status = hl_output_memory_begin(context, "a picture in memory", &memory, error);
   if (status != HL_OK) return status;
@@ -185,25 +203,29 @@ void hl_bytes_release(hl_context *context, unsigned char *bytes) { hl_release(co
 static hl_status fail_unknown(const char *path, hl_error *error) {
   const picture_format *named = format_by_name(path);
   if (named != NULL)
-    return hl_fail_offset(error, HL_ERROR_INPUT, 0, "%s: byte 0: not a %s file: its first bytes are not the mark of one", path,
+    return hl_fail_offset(error, HL_ERROR_INPUT, 0,
+                          "%s: byte 0: not a %s file: its first bytes are not the mark of one", path,
                           named->title);
   return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 0,
                         "%s: byte 0: unknown picture format: expected a PNG, OpenEXR or NPY file", path);
 }
 
 /* How long the file may be that begins like this. What is compressed may grow by less than half. */
-static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit, hl_error *error) {
+static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
+                       hl_error *error) {
   const picture_format *format = format_by_content(bytes, length);
   if (format == NULL) return fail_unknown(path, error);
   hl_image_claim claim = format->claim(bytes, length);
   if (!claim.known && length > header_bytes_max)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: no header of a picture within its first %zu bytes: damaged %s file", path,
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: no header of a picture within its first %zu bytes: damaged %s file", path,
                    header_bytes_max, format->title);
   if (!claim.known) return HL_OK;
   hl_status status = hl_image_check_size(path, claim.width, claim.height, error);
   if (status == HL_OK) *limit = (size_t)claim.bytes + (size_t)claim.bytes / 2 + extra_bytes_max;
   if (status == HL_OK && length > *limit)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: more than %zu bytes, too many for a picture of %" PRIu64 " x %" PRIu64 " pixels",
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: more than %zu bytes, too many for a picture of %" PRIu64 " x %" PRIu64 " pixels",
                    path, *limit, claim.width, claim.height);
   return status;
 }
@@ -217,7 +239,8 @@ hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
   hl_status status = hl_file_read_judged(context, path, judge, &bytes, &length, error);
   if (status != HL_OK) return status;
   const picture_format *format = format_by_content(bytes, length);
-  status = format != NULL ? format->decode(context, path, bytes, length, image, error) : fail_unknown(path, error);
+  status = format != NULL ? format->decode(context, path, bytes, length, image, error)
+                          : fail_unknown(path, error);
   hl_release(context, bytes);
   return status;
 }

@@ -19,7 +19,8 @@ hl_status hl_exr_encode(const hl_image *image, const hl_image_write_options *opt
 hl_status hl_npy_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error);
 /* One layer alone; the picture's own file leaves layers out. */
-hl_status hl_npy_encode_layer(const hl_image *image, const hl_image_layer *layer, hl_output *output, hl_error *error);
+hl_status hl_npy_encode_layer(const hl_image *image, const hl_image_layer *layer, hl_output *output,
+                              hl_error *error);
 
 /* Decoders take the bytes of a whole file, which may be anything; name is what errors call it. */
 hl_status hl_png_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
@@ -31,9 +32,9 @@ hl_status hl_npy_decode(hl_context *context, const char *name, const unsigned ch
 
 /* What a file's first bytes say of the whole. */
 typedef struct hl_image_claim {
-  bool known;             /* false: it takes more of them to tell */
+  bool known; /* false: it takes more of them to tell */
   uint64_t width, height;
-  uint64_t bytes;         /* of pixels, without compression */
+  uint64_t bytes; /* of pixels, without compression */
 } hl_image_claim;
 
 /* Reads no more than the header; one that is broken claims nothing: its decoder says what is wrong. */

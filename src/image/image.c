@@ -13,7 +13,8 @@
 
 enum { ROWS_BETWEEN_QUESTIONS = 64 };
 
-/* Rows of zeros; false: cancelled. The system gives memory as it is first touched, a gigabyte or two a second. */
+/* Rows of zeros; false: cancelled. The system gives memory as it is first touched, a gigabyte or two a
+ * second. */
 static bool clear_rows(hl_context *context, float *rows, size_t row_floats, size_t count) {
   for (size_t y = 0; y < count; y++) {
     if (y % ROWS_BETWEEN_QUESTIONS == ROWS_BETWEEN_QUESTIONS - 1 && hl_cancelled(context)) return false;
@@ -90,7 +91,8 @@ static hl_status check_layer(const hl_image *image, const char *name, const char
                    (int)HL_IMAGE_LAYER_CHANNELS);
   for (size_t i = 0; i < image->layer_count; i++)
     if (strcmp(image->layers[i].name, name) == 0)
-      return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_add_layer: the picture has a layer '%s' already", name);
+      return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_add_layer: the picture has a layer '%s' already",
+                     name);
   return HL_OK;
 }
 

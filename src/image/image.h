@@ -22,7 +22,7 @@ typedef struct hl_image_layer {
 struct hl_image {
   hl_context *context;
   int width, height;
-  float *pixels; /* owned; [height][width][4]; linear premultiplied R, G, B, A; top row first */
+  float *pixels;          /* owned; [height][width][4]; linear premultiplied R, G, B, A; top row first */
   hl_image_layer *layers; /* owned; [layer_count] */
   size_t layer_count;
 };

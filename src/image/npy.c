@@ -1,7 +1,7 @@
 /* npy.c - pictures as NumPy arrays (NPY format), float32, C order.
  *
- * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer with its own channels, or as
- * height x width where it has one. Read: versions 1 to 3,
+ * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer with its own
+ * channels, or as height x width where it has one. Read: versions 1 to 3,
  * '<f4' or '<f8', height x width or height x width x 1, 3 or 4; grey fills R, G and B, a missing alpha is 1.
  * Values are stored bit by bit.
  *
@@ -238,7 +238,8 @@ static float take_float(const unsigned char *from, size_t bytes) {
   return value;
 }
 
-static void convert_row(const unsigned char *from, size_t value_bytes, uint64_t channels, int y, hl_image *image) {
+static void convert_row(const unsigned char *from, size_t value_bytes, uint64_t channels, int y,
+                        hl_image *image) {
   float *pixel = image->pixels + (size_t)y * (size_t)image->width * 4;
   for (int x = 0; x < image->width; x++, pixel += 4) {
     for (uint64_t c = 0; c < channels; c++, from += value_bytes) pixel[c] = take_float(from, value_bytes);

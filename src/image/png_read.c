@@ -147,12 +147,14 @@ static uint32_t take_32(const unsigned char *from) {
   return (uint32_t)from[0] << 24 | (uint32_t)from[1] << 16 | (uint32_t)from[2] << 8 | from[3];
 }
 
-/* From IHDR (PNG specification, section 11.2.2), which follows the mark: width, height, bit depth, colour type. */
+/* From IHDR (PNG specification, section 11.2.2), which follows the mark: width, height, bit depth, colour
+ * type. */
 hl_image_claim hl_png_claim(const unsigned char *bytes, size_t length) {
   static const unsigned char channels[7] = {1, 0, 3, 1, 2, 0, 4}; /* of each colour type */
   enum { IHDR = 12, WIDTH = 16, HEIGHT = 20, DEPTH = 24, TYPE = 25 };
   hl_image_claim claim = {0};
-  if (length <= TYPE || memcmp(bytes + IHDR, "IHDR", 4) != 0 || bytes[TYPE] > 6 || bytes[DEPTH] > 16) return claim;
+  if (length <= TYPE || memcmp(bytes + IHDR, "IHDR", 4) != 0 || bytes[TYPE] > 6 || bytes[DEPTH] > 16)
+    return claim;
   claim = (hl_image_claim){true, take_32(bytes + WIDTH), take_32(bytes + HEIGHT), 0};
   if (claim.width <= HL_IMAGE_SIDE_MAX && claim.height <= HL_IMAGE_SIDE_MAX)
     claim.bytes = (1 + (claim.width * channels[bytes[TYPE]] * bytes[DEPTH] + 7) / 8) * claim.height;
@@ -165,16 +167,12 @@ hl_status hl_png_decode(hl_context *context, const char *name, const unsigned ch
   reading.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reading, on_error, on_warning, &reading,
                                          on_allocate, on_release);
   reading.info = reading.png == NULL ? NULL : png_create_info_struct(reading.png);
-  if (reading.info == NULL)
-    reading.status = hl_fail_memory(error, sizeof reading, name);
-  else
-    read_png(&reading);
+  if (reading.info == NULL) reading.status = hl_fail_memory(error, sizeof reading, name);
+  else read_png(&reading);
   png_destroy_read_struct(&reading.png, &reading.info, NULL);
   hl_release(context, reading.rows);
   hl_release(context, reading.linear);
-  if (reading.status != HL_OK)
-    hl_image_destroy(reading.image);
-  else
-    *image = reading.image;
+  if (reading.status != HL_OK) hl_image_destroy(reading.image);
+  else *image = reading.image;
   return reading.status;
 }

@@ -86,7 +86,8 @@ static void write_png(png_writing *writing) {
   for (int y = 0; y < image->height; y++) {
     writing->status = hl_encode_step(writing->output->context, y, image->height, writing->error);
     if (writing->status != HL_OK) return;
-    hl_codes_of_row(&writing->codes, image->pixels + (size_t)y * (size_t)image->width * 4, image->width, y, writing->row);
+    hl_codes_of_row(&writing->codes, image->pixels + (size_t)y * (size_t)image->width * 4, image->width, y,
+                    writing->row);
     png_write_row(writing->png, writing->row);
   }
   png_write_end(writing->png, NULL);
@@ -104,8 +105,7 @@ hl_status hl_png_encode(const hl_image *image, const hl_image_write_options *opt
   writing.info = writing.png == NULL ? NULL : png_create_info_struct(writing.png);
   if (writing.row == NULL || writing.info == NULL)
     writing.status = hl_fail_memory(error, row_bytes, output->path);
-  else
-    write_png(&writing);
+  else write_png(&writing);
   png_destroy_write_struct(&writing.png, &writing.info);
   hl_release(output->context, writing.row);
   hl_codes_end(&writing.codes);

@@ -22,8 +22,8 @@ static double fifth_root(double value, double guess) {
   return r;
 }
 
-/* Derived: with the fraction's binary digits b1 b2 ..., 2^0.b1b2... is the product of 2^(1/2) where b1 is 1, 2^(1/4) where b2
- * is, and so on; square roots are exact to the last bit everywhere, powers are not. */
+/* Derived: with the fraction's binary digits b1 b2 ..., 2^0.b1b2... is the product of 2^(1/2) where b1 is 1,
+ * 2^(1/4) where b2 is, and so on; square roots are exact to the last bit everywhere, powers are not. */
 double hl_exposure_factor(double stops) {
   double whole = floor(stops), fraction = stops - whole, root = 2, factor = 1;
   for (int digit = 0; digit < 53 && fraction > 0; digit++) {
@@ -99,10 +99,8 @@ int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear) {
   int low = encoder->first[key], high = encoder->first[key + 1];
   while (low < high) {
     int middle = (low + high + 1) / 2;
-    if (linear >= encoder->threshold[middle])
-      low = middle;
-    else
-      high = middle - 1;
+    if (linear >= encoder->threshold[middle]) low = middle;
+    else high = middle - 1;
   }
   return low;
 }

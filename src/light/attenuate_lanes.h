@@ -24,12 +24,14 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
   return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
-/* The part of the slab before the sheet that lies in the volume's box, block by block. whole: all of it does. */
-LANES_INLINE covered_part covered_block(const float *enter, const float *leave, int whole, int block, float height,
-                                        float spacing) {
+/* The part of the slab before the sheet that lies in the volume's box, block by block. whole: all of it
+ * does. */
+LANES_INLINE covered_part covered_block(const float *enter, const float *leave, int whole, int block,
+                                        float height, float spacing) {
   if (enter == NULL) return (covered_part){lanes_set(0), lanes_set(1.0f)};
   if (whole) return covered(lanes_set(-1e30f), lanes_set(1e30f), height, spacing);
-  return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height, spacing);
+  return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height,
+                 spacing);
 }
 
 /* The blocks of a tile with a pixel that some light reaches. */
@@ -38,8 +40,9 @@ static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], i
   for (int block = 0; block < TILE_BLOCKS; block++) {
     lanes greatest = lanes_set(0);
     for (int c = 0; c < channels; c++)
-      greatest = lanes_max(greatest, lanes_load_block(transmittance[c] + (size_t)(block / 4 * BLOCK) * stride +
-                                                          block % 4 * BLOCK, stride));
+      greatest = lanes_max(
+          greatest, lanes_load_block(
+                        transmittance[c] + (size_t)(block / 4 * BLOCK) * stride + block % 4 * BLOCK, stride));
     lit |= (uint32_t)(lanes_bits(greatest >= DARK) != 0) << block;
   }
   return lit;
@@ -52,11 +55,13 @@ LANES_INLINE void cut_way(covered_part part, table_place *a, table_place *b) {
   *b = place_of_coordinate(lanes_fma(way, lanes_min(part.begin + part.length, lanes_set(1.0f)), from));
 }
 
-typedef struct attenuated_block { int taken, lit; } attenuated_block;
+typedef struct attenuated_block {
+  int taken, lit;
+} attenuated_block;
 
 /* Whether it took any light, and whether it left enough. */
-LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels, int tile_x, int tile_y,
-                                              int block) {
+LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
+                                              int tile_x, int tile_y, int block) {
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
@@ -64,7 +69,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     table_place a = classify_place(volume->classifier, lanes_load(volume->before + block * BLOCK_PIXELS));
     table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
     if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
-    covered_part part = covered_block(volume->enter, volume->leave, volume->whole, block, job->height, job->spacing);
+    covered_part part = covered_block(volume->enter, volume->leave, volume->whole, block, job->height,
+                                      job->spacing);
     if (volume->enter != NULL) cut_way(part, &a, &b);
     lanes extinction = sums_of_way(volume->classifier, a, b).extinction * part.length;
     for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
@@ -72,7 +78,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
   if (lanes_bits(any > 0.0f) == 0) return (attenuated_block){0, 1};
   int x = block % 4 * BLOCK, y = block / 4 * BLOCK;
-  lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x), block_v(tile_y * TILE + y));
+  lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x),
+                                  block_v(tile_y * TILE + y));
   lanes greatest = lanes_set(0);
   for (int c = 0; c < channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;
@@ -88,12 +95,15 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     }
     if (job->moment[c] == NULL) continue;
     float *moment = job->moment[c] + (size_t)y * job->moment_stride + x;
-    lanes_store_block(moment, job->moment_stride, lanes_add_scaled(lanes_load_block(moment, job->moment_stride), before - after, job->place));
+    lanes_store_block(
+        moment, job->moment_stride,
+        lanes_add_scaled(lanes_load_block(moment, job->moment_stride), before - after, job->place));
   }
   return (attenuated_block){1, lanes_bits(greatest >= DARK) != 0};
 }
 
-LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int volume_count, int channels, int tile_x, int tile_y) {
+LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int volume_count, int channels,
+                                                 int tile_x, int tile_y) {
   uint32_t left = 0;
   attenuated_blocks blocks = {0, 0};
   for (int i = 0; i < volume_count; i++) left |= job->volumes[i].blocks;

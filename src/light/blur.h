@@ -6,7 +6,8 @@
 
 #include "light/attenuate.h"
 
-/* A box of width 2 reach + 1 + 2 edge pixels: whole weights out to reach, weight edge (0 to 1) one further. */
+/* A box of width 2 reach + 1 + 2 edge pixels: whole weights out to reach, weight edge (0 to 1) one
+ * further. */
 typedef struct blur_box {
   int reach;
   float edge;
@@ -29,12 +30,12 @@ blur_box hl_blur_box_of_variance(double variance);
 
 /* Weighted sums of a field's pixels around each pixel: a penumbra by its taps (light_image.h). */
 typedef struct image_job {
-  const float *from;        /* pixel (0,0); rows stride apart */
+  const float *from; /* pixel (0,0); rows stride apart */
   float *to;
   size_t stride;
   int count;
-  const ptrdiff_t *offset;  /* [count]; from a pixel to the one that is weighed */
-  const float *weight;      /* [count] */
+  const ptrdiff_t *offset; /* [count]; from a pixel to the one that is weighed */
+  const float *weight;     /* [count] */
 } image_job;
 typedef void image_tile_function(const image_job *job, int tile_x, int tile_y);
 

@@ -9,7 +9,8 @@
 LANES_INLINE lanes blur_sixteen(const float *from, ptrdiff_t step, const blur_box *box) {
   lanes ends = lanes_load(from - (box->reach + 1) * step) + lanes_load(from + (box->reach + 1) * step);
   lanes sum = lanes_add_scaled(lanes_load(from), ends, box->edge);
-  for (int i = 1; i <= box->reach; i++) sum = sum + (lanes_load(from - i * step) + lanes_load(from + i * step));
+  for (int i = 1; i <= box->reach; i++)
+    sum = sum + (lanes_load(from - i * step) + lanes_load(from + i * step));
   return sum * box->scale;
 }
 

@@ -11,7 +11,8 @@ void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *fi
 /* Fewer are faster looked at one by one. */
 enum { MANY_TILES = 4 };
 
-bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0, int y1) {
+bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
+                          int y1) {
   if (x0 < 0) x0 = 0;
   if (x1 >= level->tiles_x) x1 = level->tiles_x - 1;
   for (int y = y0 < 0 ? 0 : y0; y <= y1 && y < level->tiles_y && x0 <= x1; y++) {
@@ -32,8 +33,10 @@ int hl_cascade_doubling_reach(int from, int to) {
   return reach;
 }
 
-/* Says whether a tile is all zeros after some of its rows were found. What the others hold is not read: they may be cleared. */
-static void note_zeros(const cascade_level *level, const cascade_field *field, int x, int y, tile_rows rows, int above_zero) {
+/* Says whether a tile is all zeros after some of its rows were found. What the others hold is not read: they
+ * may be cleared. */
+static void note_zeros(const cascade_level *level, const cascade_field *field, int x, int y, tile_rows rows,
+                       int above_zero) {
   unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
   bool whole = rows.end - rows.first == TILE;
   if (above_zero || whole) *zeros = !above_zero;
@@ -47,7 +50,7 @@ typedef struct add_task {
   const cascade_field *a, *b, *to;
   field_job job;
   field_tile_function *function;
-  bool doubled;         /* b is coarser: a of zeros may be left out */
+  bool doubled; /* b is coarser: a of zeros may be left out */
 } add_task;
 
 /* In a row of tiles from x0 to x1, both included. */
@@ -74,7 +77,8 @@ static bool row_is_zeros(const cascade_level *level, const cascade_field *field,
 
 /* Most rows of a pass hold nothing, and are zeros already. */
 static void add_tiles(const add_task *task, row_part part) {
-  if (row_is_zeros(task->level, task->to, part) && sum_is_zeros(task, part.first, part.end - 1, part.y)) return;
+  if (row_is_zeros(task->level, task->to, part) && sum_is_zeros(task, part.first, part.end - 1, part.y))
+    return;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, part.y, task->reach);
   if (!read.any) return;
   for (int x = part.first; x < part.end; x++) {
@@ -85,7 +89,8 @@ static void add_tiles(const add_task *task, row_part part) {
     }
     field_job job = task->job;
     job.rows = hl_cascade_rows_read(&read, x);
-    if (task->doubled && task->a != NULL && task->a->zeros[part.y * task->level->tiles_x + x]) job.a = job.thin = NULL;
+    if (task->doubled && task->a != NULL && task->a->zeros[part.y * task->level->tiles_x + x])
+      job.a = job.thin = NULL;
     note_zeros(task->level, task->to, x, part.y, job.rows, task->function(&job, x, part.y));
   }
 }
@@ -100,20 +105,31 @@ static add_task task_of_add(const cascade_crew *crew, const cascade_level *level
                             const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
                             const cascade_level *level, const cascade_field *to, int reach) {
   const cascade_functions *functions = crew->functions;
-  field_tile_function *function = level_a->scale < level->scale                 ? functions->add_half
+  field_tile_function *function = level_a->scale < level->scale                ? functions->add_half
                                   : b != NULL && level_b->scale > level->scale ? functions->add_double
                                                                                : functions->add;
-  add_task task = {.reads = crew->reads, .reach = reach, .level = level, .level_a = level_a, .level_b = level_b, .a = a, .b = b,
-                   .to = to, .function = function, .doubled = function == functions->add_double};
-  task.job = (field_job){.a = a == NULL ? NULL : a->pixels, .b = b == NULL ? NULL : b->pixels, .to = to->pixels,
-                         .stride_in = b == NULL ? level_a->stride : level_b->stride, .stride = level->stride,
+  add_task task = {.reads = crew->reads,
+                   .reach = reach,
+                   .level = level,
+                   .level_a = level_a,
+                   .level_b = level_b,
+                   .a = a,
+                   .b = b,
+                   .to = to,
+                   .function = function,
+                   .doubled = function == functions->add_double};
+  task.job = (field_job){.a = a == NULL ? NULL : a->pixels,
+                         .b = b == NULL ? NULL : b->pixels,
+                         .to = to->pixels,
+                         .stride_in = b == NULL ? level_a->stride : level_b->stride,
+                         .stride = level->stride,
                          .thin = thin == NULL ? NULL : thin->pixels};
   return task;
 }
 
-void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a, const cascade_field *thin,
-                    const cascade_level *level_b, const cascade_field *b, const cascade_level *level, const cascade_field *to,
-                    int reach) {
+void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
+                    const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
+                    const cascade_level *level, const cascade_field *to, int reach) {
   add_task task = task_of_add(crew, level_a, a, thin, level_b, b, level, to, reach);
   hl_pool_run(crew->pool, hl_cascade_row_parts(level), add_part, &task);
 }
@@ -133,8 +149,10 @@ static void blur_part(void *data, size_t index, int worker) {
   const blur_task *task = data;
   const row_part part = hl_cascade_row_part(task->level, index);
   int y = part.y, around = task->reach_x;
-  if (row_is_zeros(task->level, task->to, part) && (task->a == NULL || row_is_zeros(task->level, task->a, part)) &&
-      hl_cascade_all_zeros(task->level, task->from, part.first - around, part.end - 1 + around, y - task->reach_y, y + task->reach_y))
+  if (row_is_zeros(task->level, task->to, part) &&
+      (task->a == NULL || row_is_zeros(task->level, task->a, part)) &&
+      hl_cascade_all_zeros(task->level, task->from, part.first - around, part.end - 1 + around,
+                           y - task->reach_y, y + task->reach_y))
     return;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
   if (!read.any) return;
@@ -142,7 +160,8 @@ static void blur_part(void *data, size_t index, int worker) {
     size_t tile = (size_t)y * (size_t)task->level->tiles_x + (size_t)x;
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     bool skip = (task->a == NULL || task->a->zeros[tile]) &&
-                hl_cascade_all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x, y - task->reach_y, y + task->reach_y);
+                hl_cascade_all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x,
+                                     y - task->reach_y, y + task->reach_y);
     if (skip) {
       hl_cascade_clear_tile(task->level, task->to, x, y);
       continue;
@@ -151,7 +170,8 @@ static void blur_part(void *data, size_t index, int worker) {
     job.rows = hl_cascade_rows_read(&read, x);
     job.u = task->level->boxes[x].box;
     job.v = task->level->boxes[task->level->tiles_x + y].box;
-    if (task->a != NULL && task->a->zeros[tile]) job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
+    if (task->a != NULL && task->a->zeros[tile])
+      job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
     if (task->thin != NULL && task->thin->zeros[tile]) job.thin = NULL;
     note_zeros(task->level, task->to, x, y, job.rows, task->function(&job, x, y));
   }
@@ -168,12 +188,21 @@ static int fill_boxes(cascade_box *boxes, int count, double variance, double res
 }
 
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
-                         const cascade_field *a, const cascade_field *thin, const cascade_field *to, cascade_blur blur,
-                         int reach) {
-  blur_task task = {.reads = crew->reads, .reach = reach, .level = level, .from = from, .a = a, .thin = thin, .to = to,
+                         const cascade_field *a, const cascade_field *thin, const cascade_field *to,
+                         cascade_blur blur, int reach) {
+  blur_task task = {.reads = crew->reads,
+                    .reach = reach,
+                    .level = level,
+                    .from = from,
+                    .a = a,
+                    .thin = thin,
+                    .to = to,
                     .function = crew->functions->blur_add};
-  task.job = (field_blur_job){.from = from->pixels, .a = a == NULL ? NULL : a->pixels, .to = to->pixels,
-                                 .thin = thin == NULL ? NULL : thin->pixels, .stride = level->stride};
+  task.job = (field_blur_job){.from = from->pixels,
+                              .a = a == NULL ? NULL : a->pixels,
+                              .to = to->pixels,
+                              .thin = thin == NULL ? NULL : thin->pixels,
+                              .stride = level->stride};
   task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur.variance, blur.resampled[0]);
   task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur.variance, blur.resampled[1]);
   hl_pool_run(crew->pool, hl_cascade_row_parts(level), blur_part, &task);
@@ -204,7 +233,7 @@ enum { MERGE_SUMS = 6 };
 
 typedef struct merge_task {
   const cascade_level *level;
-  int ratio;            /* of the levels' scales */
+  int ratio; /* of the levels' scales */
   part_task part;
   add_task sums[MERGE_SUMS];
 } merge_task;
@@ -213,19 +242,27 @@ typedef struct merge_task {
 static void merge_row(void *data, size_t index, int worker) {
   merge_task *task = data;
   size_t first = index * (size_t)task->ratio, end = first + (size_t)task->ratio;
-  for (size_t row = first; row < end && row < (size_t)task->level->tiles_y; row++) part_row(&task->part, row, worker);
-  for (int i = 0; i < MERGE_SUMS; i++) add_tiles(&task->sums[i], (row_part){(int)index, 0, task->sums[i].level->tiles_x});
+  for (size_t row = first; row < end && row < (size_t)task->level->tiles_y; row++)
+    part_row(&task->part, row, worker);
+  for (int i = 0; i < MERGE_SUMS; i++)
+    add_tiles(&task->sums[i], (row_part){(int)index, 0, task->sums[i].level->tiles_x});
 }
 
-void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a, const cascade_matter *b,
-                      double late, const cascade_matter *spare, const cascade_level *next, const cascade_matter *first,
-                      const cascade_matter *second) {
+void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a,
+                      const cascade_matter *b, double late, const cascade_matter *spare,
+                      const cascade_level *next, const cascade_matter *first, const cascade_matter *second) {
   merge_task task = {.level = level, .ratio = next->scale / level->scale};
-  task.part = (part_task){level, {b->absorbed, b->thin, spare->absorbed, spare->thin},
-                          {b->absorbed->pixels, b->thin->pixels, {b->absorbed->pixels, spare->absorbed->pixels},
-                           {b->thin->pixels, spare->thin->pixels}, level->stride, (float)late},
+  task.part = (part_task){level,
+                          {b->absorbed, b->thin, spare->absorbed, spare->thin},
+                          {b->absorbed->pixels,
+                           b->thin->pixels,
+                           {b->absorbed->pixels, spare->absorbed->pixels},
+                           {b->thin->pixels, spare->thin->pixels},
+                           level->stride,
+                           (float)late},
                           crew->functions->part};
-  const cascade_field *of_a[2] = {a->absorbed, a->thin}, *of_b[2] = {b->absorbed, b->thin}, *of_spare[2] = {spare->absorbed, spare->thin};
+  const cascade_field *of_a[2] = {a->absorbed, a->thin}, *of_b[2] = {b->absorbed, b->thin},
+                      *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
   for (int i = 0; i < 2; i++) {
     /* what goes to the first, by way of the second's fields */

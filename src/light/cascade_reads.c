@@ -9,7 +9,8 @@ static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, int fir
   memset(reads->before, 0, (width + 1) * ((size_t)reads->tiles_y + 1) * sizeof *reads->before);
   for (size_t word = 0; word < words; word++) {
     uint64_t bits = 0;
-    for (int sheet = first_sheet; sheet <= last_sheet; sheet++) bits |= occupancy->by_sheet[(size_t)sheet * words + word];
+    for (int sheet = first_sheet; sheet <= last_sheet; sheet++)
+      bits |= occupancy->by_sheet[(size_t)sheet * words + word];
     for (; bits != 0; bits &= bits - 1) {
       size_t tile = word * 64 + (size_t)__builtin_ctzll(bits);
       reads->before[(tile / width + 1) * (width + 1) + tile % width + 1] = 1;
@@ -17,7 +18,8 @@ static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, int fir
   }
 }
 
-void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int first_sheet, int last_sheet) {
+void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int first_sheet,
+                           int last_sheet) {
   mark_tiles(reads, occupancy, first_sheet, last_sheet);
   size_t stride = (size_t)reads->tiles_x + 1;
   for (int y = 1; y <= reads->tiles_y; y++) {
@@ -46,6 +48,7 @@ read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int r
   row.all = band_of(reads, top, top + TILE * scale - 1 + 2 * reach);
   row.any = row.all.lower[reads->tiles_x] != row.all.upper[reads->tiles_x];
   if (!row.any) return row;
-  for (int i = 0; i < TILE / BLOCK; i++) row.blocks[i] = band_of(reads, top + i * step, top + (i + 1) * step - 1 + 2 * reach);
+  for (int i = 0; i < TILE / BLOCK; i++)
+    row.blocks[i] = band_of(reads, top + i * step, top + (i + 1) * step - 1 + 2 * reach);
   return row;
 }

@@ -1,4 +1,5 @@
-/* light/cascade_reads.h - where a cascade's buffer is read before it is found anew, and so what its passes must find. */
+/* light/cascade_reads.h - where a cascade's buffer is read before it is found anew, and so what its passes
+ * must find. */
 #ifndef HL_LIGHT_CASCADE_READS_H
 #define HL_LIGHT_CASCADE_READS_H
 
@@ -8,7 +9,8 @@
 /* Sums over rectangles of tiles are four of these (a summed-area table). */
 typedef struct cascade_reads {
   int tiles_x, tiles_y;
-  uint32_t *before; /* owned; [tiles_y + 1][tiles_x + 1]; of the tiles above and to the left, those that are read */
+  uint32_t *
+      before; /* owned; [tiles_y + 1][tiles_x + 1]; of the tiles above and to the left, those that are read */
 } cascade_reads;
 
 /* Of a pass that must find everything, as its results are kept. */
@@ -18,9 +20,12 @@ enum { READ_EVERYWHERE = -1 };
 void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int first_sheet, int last_sheet);
 
 /* Rows of the table around some rows of tiles: at the first of them, and after the last. */
-typedef struct read_band { const uint32_t *upper, *lower; } read_band;
+typedef struct read_band {
+  const uint32_t *upper, *lower;
+} read_band;
 
-/* A row of tiles of a level with pixels `scale` wide, and what is read within `reach` pixels of the buffer of it. */
+/* A row of tiles of a level with pixels `scale` wide, and what is read within `reach` pixels of the buffer of
+ * it. */
 typedef struct read_row {
   int scale, reach, tiles_x;
   int around;                     /* reach in tiles */

@@ -4,7 +4,8 @@
 
 #include "light/light_source.h"
 
-/* Brightness is smoothstep((cos(angle to the axis) - outer) * scale): 0 outside the cone, 1 within its edge. */
+/* Brightness is smoothstep((cos(angle to the axis) - outer) * scale): 0 outside the cone, 1 within its
+ * edge. */
 typedef struct light_cone {
   float axis[3]; /* unit, the way the light travels; frame space */
   float outer;   /* cosine where light begins */

@@ -6,8 +6,8 @@
 
 /* ---- points on lights ---- */
 
-/* The unit square onto the disk of radius 1, squares around the middle onto circles (Shirley and Chiu, "A low distortion
- * map between disk and square", 1997). */
+/* The unit square onto the disk of radius 1, squares around the middle onto circles (Shirley and Chiu, "A low
+ * distortion map between disk and square", 1997). */
 static void square_to_disk(double a, double b, double *x, double *y) {
   a = 2 * a - 1;
   b = 2 * b - 1;
@@ -35,7 +35,8 @@ typedef struct flat_polygon {
 } flat_polygon;
 
 static void vertex_at(const flat_polygon *polygon, size_t index, double *x, double *y) {
-  vec3 offset = vec3_subtract(vec3_of(polygon->light->vertices[index % polygon->light->vertex_count]), polygon->centre);
+  vec3 offset = vec3_subtract(vec3_of(polygon->light->vertices[index % polygon->light->vertex_count]),
+                              polygon->centre);
   *x = vec3_dot(offset, polygon->u);
   *y = vec3_dot(offset, polygon->v);
 }
@@ -44,7 +45,8 @@ static flat_polygon flatten(const hl_light *light) {
   polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
   flat_polygon polygon = {.light = light, .centre = shape.centre};
   for (size_t i = 0; i < light->vertex_count; i++) {
-    vec3 edge = vec3_subtract(vec3_of(light->vertices[(i + 1) % light->vertex_count]), vec3_of(light->vertices[i]));
+    vec3 edge = vec3_subtract(vec3_of(light->vertices[(i + 1) % light->vertex_count]),
+                              vec3_of(light->vertices[i]));
     edge = vec3_subtract(edge, vec3_scale(shape.normal, vec3_dot(edge, shape.normal)));
     if (vec3_length(edge) > vec3_length(polygon.u)) polygon.u = edge;
   }
@@ -53,8 +55,9 @@ static flat_polygon flatten(const hl_light *light) {
   return polygon;
 }
 
-/* Area left of x: the integral of y dx along the outline, as far as it lies there (derived: Green; the cut adds
- * nothing, being along y). The outline runs against the clock as seen along the normal, so the sign turns. */
+/* Area left of x: the integral of y dx along the outline, as far as it lies there (derived: Green; the cut
+ * adds nothing, being along y). The outline runs against the clock as seen along the normal, so the sign
+ * turns. */
 static double area_left_of(const flat_polygon *polygon, double x) {
   double area = 0;
   for (size_t i = 0; i < polygon->light->vertex_count; i++) {
@@ -105,7 +108,8 @@ static vec3 point_of_polygon(const hl_light *light, double a, double b) {
   double wanted = a * area_left_of(&polygon, high);
   for (int i = 0; i < 40; i++) {
     double middle = (low + high) / 2;
-    if (area_left_of(&polygon, middle) < wanted) low = middle; else high = middle;
+    if (area_left_of(&polygon, middle) < wanted) low = middle;
+    else high = middle;
   }
   double y = height_of_part(&polygon, low, b);
   return vec3_add(vec3_scale(polygon.u, low), vec3_scale(polygon.v, y));
@@ -129,7 +133,9 @@ vec3 hl_light_point(const light_source *source, double a, double b) {
 /* ---- what the sheets see ---- */
 
 /* A symmetric 2x2 matrix along u and v. */
-typedef struct covariance { double uu, uv, vv; } covariance;
+typedef struct covariance {
+  double uu, uv, vv;
+} covariance;
 
 /* Turns u and v by the angle at which uv vanishes, tan(2 angle) = 2 uv / (uu - vv) (derived). */
 static covariance turn_to_axes(covariance c, vec3 *u, vec3 *v) {
@@ -142,27 +148,34 @@ static covariance turn_to_axes(covariance c, vec3 *u, vec3 *v) {
   return (covariance){mean + half, 0, fmax(mean - half, 0)};
 }
 
-static vec3 onto_plane(vec3 x, vec3 normal) { return vec3_subtract(x, vec3_scale(normal, vec3_dot(x, normal))); }
+static vec3 onto_plane(vec3 x, vec3 normal) {
+  return vec3_subtract(x, vec3_scale(normal, vec3_dot(x, normal)));
+}
 
-/* Where a direction in the sheets starts from that no shape asks to turn: a rect's edge, or the light's tilt. */
+/* Where a direction in the sheets starts from that no shape asks to turn: a rect's edge, or the light's
+ * tilt. */
 static vec3 first_axis(const light_source *source, vec3 normal) {
   vec3 axis = onto_plane(source->direction, normal);
   if (source->light->type == HL_LIGHT_RECT) axis = onto_plane(vec3_of(source->light->edge1), normal);
-  return vec3_length(axis) > 1e-3 * vec3_length(source->light->type == HL_LIGHT_RECT ? vec3_of(source->light->edge1)
-                                                                                    : source->direction)
-             ? vec3_normalise(axis) : vec3_perpendicular(normal);
+  return vec3_length(axis) > 1e-3 * vec3_length(source->light->type == HL_LIGHT_RECT
+                                                    ? vec3_of(source->light->edge1)
+                                                    : source->direction)
+             ? vec3_normalise(axis)
+             : vec3_perpendicular(normal);
 }
 
-/* A point of the light on the plane, on its way to the content's middle. Points that lie as low as the content are held
- * within four times their distance; a light among the content is seen from afar. */
+/* A point of the light on the plane, on its way to the content's middle. Points that lie as low as the
+ * content are held within four times their distance; a light among the content is seen from afar. */
 static vec3 seen_on_plane(const light_source *source, vec3 normal, vec3 offset) {
   if (source->parallel) {
     vec3 way = vec3_add(source->direction, offset);
     return vec3_scale(way, vec3_dot(source->direction, normal) / fmax(vec3_dot(way, normal), 0.05));
   }
   vec3 way = vec3_subtract(vec3_add(source->position, offset), source->content);
-  double whole = vec3_dot(normal, vec3_subtract(source->position, source->content)), part = vec3_dot(normal, way);
-  if (whole >= 0) return vec3_subtract(vec3_add(source->position, offset), vec3_scale(normal, vec3_dot(offset, normal)));
+  double whole = vec3_dot(normal, vec3_subtract(source->position, source->content)),
+         part = vec3_dot(normal, way);
+  if (whole >= 0)
+    return vec3_subtract(vec3_add(source->position, offset), vec3_scale(normal, vec3_dot(offset, normal)));
   double scale = part < whole / 4 ? whole / part : 4;
   return vec3_add(source->content, vec3_scale(way, scale));
 }
@@ -179,7 +192,8 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
     for (int j = 0; j < MOMENT_SIDE; j++) {
       double square[2];
       hl_light_grid_part(MOMENT_SIDE, i, j, square);
-      vec3 point = vec3_subtract(seen_on_plane(source, normal, hl_light_point(source, square[0], square[1])), centre);
+      vec3 point = vec3_subtract(seen_on_plane(source, normal, hl_light_point(source, square[0], square[1])),
+                                 centre);
       double u = vec3_dot(point, seen.u), v = vec3_dot(point, seen.v);
       sum = vec3_add(sum, point);
       c = (covariance){c.uu + u * u, c.uv + u * v, c.vv + v * v};
@@ -202,7 +216,8 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   return seen;
 }
 
-void hl_sheet_light_place(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset, double place[3]) {
+void hl_sheet_light_place(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset,
+                          double place[3]) {
   vec3 point = source->parallel ? seen_on_plane(source, normal, offset) : vec3_add(source->position, offset);
   vec3 from_middle = vec3_subtract(point, seen->middle);
   double height = source->parallel ? fmax(vec3_dot(source->direction, normal), 0.1) : 1;
@@ -211,8 +226,8 @@ void hl_sheet_light_place(const sheet_light *seen, const light_source *source, v
   place[2] = source->parallel ? 0 : vec3_dot(from_middle, normal);
 }
 
-/* Derived: a point of the light at x + z h, seen from a receiver at slope s, lies at x - s z on the plane through the
- * light's centre; of the mean square of that a box has 1/12. */
+/* Derived: a point of the light at x + z h, seen from a receiver at slope s, lies at x - s z on the plane
+ * through the light's centre; of the mean square of that a box has 1/12. */
 double hl_sheet_light_squared_width(const sheet_light *light, int axis, double slope) {
   double width = axis == 0 ? light->width_u : light->width_v;
   if (light->parallel) return width * width;

@@ -28,10 +28,13 @@ static void add_color(const hl_light_emission *emission, double s, double t, dou
   }
 }
 
-/* Mean over cell (i, j) of side x side. A parallel light's offset is of its way, opposite to where it is seen. */
-static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j, double mean[HL_CHANNELS]) {
+/* Mean over cell (i, j) of side x side. A parallel light's offset is of its way, opposite to where it is
+ * seen. */
+static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j,
+                         double mean[HL_CHANNELS]) {
   const hl_light_emission *emission = &source->light->emission;
-  int longer = emission->width > emission->height ? emission->width : emission->height, n = 2 * longer / side + 1;
+  int longer = emission->width > emission->height ? emission->width : emission->height,
+      n = 2 * longer / side + 1;
   n = n < LEAST_SAMPLES ? LEAST_SAMPLES : n > GREATEST_SAMPLES ? GREATEST_SAMPLES : n;
   for (int c = 0; c < HL_CHANNELS; c++) mean[c] = 0;
   for (int k = 0; k < n * n; k++) {
@@ -43,7 +46,8 @@ static void mean_of_cell(const light_source *source, const emission_plane *plane
   for (int c = 0; c < HL_CHANNELS; c++) mean[c] /= n * n;
 }
 
-void hl_light_image_weights(const light_source *source, int side, float (*weights)[HL_CHANNELS], double mean[HL_CHANNELS]) {
+void hl_light_image_weights(const light_source *source, int side, float (*weights)[HL_CHANNELS],
+                            double mean[HL_CHANNELS]) {
   size_t cells = (size_t)side * (size_t)side;
   for (int c = 0; c < HL_CHANNELS; c++) mean[c] = source->light->emission.pixels == NULL;
   for (size_t i = 0; i < cells; i++)
@@ -59,7 +63,8 @@ void hl_light_image_weights(const light_source *source, int side, float (*weight
     }
   }
   for (size_t i = 0; i < cells; i++)
-    for (int c = 0; c < HL_CHANNELS; c++) weights[i][c] = mean[c] > 0 ? (float)((double)weights[i][c] / mean[c]) : 1;
+    for (int c = 0; c < HL_CHANNELS; c++)
+      weights[i][c] = mean[c] > 0 ? (float)((double)weights[i][c] / mean[c]) : 1;
 }
 
 /* Weights of all cells, dark ones too, in their order. */
@@ -75,7 +80,8 @@ static void weigh_cells(const light_source *source, light_image *image) {
     }
 }
 
-hl_status hl_light_image_create(hl_context *context, const light_source *source, light_image **image, hl_error *error) {
+hl_status hl_light_image_create(hl_context *context, const light_source *source, light_image **image,
+                                hl_error *error) {
   *image = NULL;
   if (source->light->emission.pixels == NULL) return HL_OK;
   *image = hl_allocate_zeroed(context, 1, sizeof **image);
@@ -117,7 +123,8 @@ static void finish(light_image *image) {
 }
 
 /* Parallel light that comes from further along u casts its shadows back along u. */
-void hl_light_image_see(const light_source *source, const sheet_light *seen, vec3 normal, light_image *image) {
+void hl_light_image_see(const light_source *source, const sheet_light *seen, vec3 normal,
+                        light_image *image) {
   double unit = fmax(seen->width_u, seen->width_v) * (source->parallel ? -1 : 1);
   for (int i = 0; i < IMAGE_CELLS; i++) {
     double place[3];
@@ -151,18 +158,21 @@ bool hl_light_image_colored(const hl_light *light) {
 
 void hl_light_image_steps(const light_image *image, double width, int step[2]) {
   for (int axis = 0; axis < 2; axis++)
-    step[axis] = (int)fmin(fmax(1, ceil(image->range[axis] * width / IMAGE_SIDE)), 2 * BLUR_GREATEST_REACH - 4);
+    step[axis] = (int)fmin(fmax(1, ceil(image->range[axis] * width / IMAGE_SIDE)),
+                           2 * BLUR_GREATEST_REACH - 4);
 }
 
 /* Each cell falls on the four taps around it, by its distances to them. */
-void hl_light_image_taps(const light_image *image, double width, const int step[2], const double slope[2], image_taps *taps) {
+void hl_light_image_taps(const light_image *image, double width, const int step[2], const double slope[2],
+                         image_taps *taps) {
   enum { GRID = IMAGE_SIDE + 3 };
   float grid[GRID][GRID][HL_CHANNELS] = {{{0}}};
   int first[2] = {INT32_MAX, INT32_MAX}, tap[IMAGE_CELLS][2];
   float part[IMAGE_CELLS][2];
   for (int i = 0; i < image->count; i++) {
     const image_cell *cell = &image->cells[i];
-    const double at[2] = {(cell->u - slope[0] * cell->z) * width / step[0], (cell->v - slope[1] * cell->z) * width / step[1]};
+    const double at[2] = {(cell->u - slope[0] * cell->z) * width / step[0],
+                          (cell->v - slope[1] * cell->z) * width / step[1]};
     for (int axis = 0; axis < 2; axis++) {
       tap[i][axis] = (int)floor(at[axis]);
       part[i][axis] = (float)(at[axis] - tap[i][axis]);
@@ -176,7 +186,8 @@ void hl_light_image_taps(const light_image *image, double width, const int step[
     for (int corner = 0; corner < 4; corner++) {
       int right = corner & 1, below = corner >> 1;
       float weight = (right ? part[i][0] : 1 - part[i][0]) * (below ? part[i][1] : 1 - part[i][1]);
-      for (int c = 0; c < HL_CHANNELS; c++) grid[y + below][x + right][c] += weight * image->cells[i].weight[c];
+      for (int c = 0; c < HL_CHANNELS; c++)
+        grid[y + below][x + right][c] += weight * image->cells[i].weight[c];
     }
   }
   taps->count = 0;

@@ -1,28 +1,69 @@
 /* light/light_parts.c - where the parts of a light stand. */
 #include "light/light_extent.h"
 
-/* Points of which every half-plane holds as nearly as can be the share that it covers: found by scripts/light_points, which
- * says how. A disk's are where the square's map takes them. Of sixteen on a disk the root mean square error of penumbrae under
- * straight edges is 0.0326 of the light, 0.028 to 0.036 by the edge's direction, where the turned grid has 0.0362. */
+/* Points of which every half-plane holds as nearly as can be the share that it covers: found by
+ * scripts/light_points, which says how. A disk's are where the square's map takes them. Of sixteen on a disk
+ * the root mean square error of penumbrae under straight edges is 0.0326 of the light, 0.028 to 0.036 by the
+ * edge's direction, where the turned grid has 0.0362. */
 enum { SEARCHED_SIDES = 3, MOST_SEARCHED = 16 };
 typedef double part_points[MOST_SEARCHED][2];
 
 static const part_points of_disk[SEARCHED_SIDES] = {
     {{0.1656, 0.3936}, {0.3808, 0.7391}, {0.6651, 0.1651}, {0.8361, 0.7296}},
-    {{0.0899, 0.3785}, {0.2579, 0.6495}, {0.2871, 0.9225}, {0.2690, 0.1387}, {0.5308, 0.4326}, {0.6079, 0.7393},
-     {0.6960, 0.1017}, {0.8610, 0.3611}, {0.9143, 0.8010}},
-    {{0.0848, 0.2038}, {0.1576, 0.4860}, {0.0827, 0.7232}, {0.2211, 0.9150}, {0.3004, 0.0995}, {0.3202, 0.3419},
-     {0.3492, 0.6622}, {0.5053, 0.8904}, {0.5675, 0.1100}, {0.5498, 0.3799}, {0.6411, 0.6732}, {0.7782, 0.8864},
-     {0.8094, 0.1272}, {0.8966, 0.2963}, {0.7765, 0.5014}, {0.9413, 0.7115}},
+    {{0.0899, 0.3785},
+     {0.2579, 0.6495},
+     {0.2871, 0.9225},
+     {0.2690, 0.1387},
+     {0.5308, 0.4326},
+     {0.6079, 0.7393},
+     {0.6960, 0.1017},
+     {0.8610, 0.3611},
+     {0.9143, 0.8010}},
+    {{0.0848, 0.2038},
+     {0.1576, 0.4860},
+     {0.0827, 0.7232},
+     {0.2211, 0.9150},
+     {0.3004, 0.0995},
+     {0.3202, 0.3419},
+     {0.3492, 0.6622},
+     {0.5053, 0.8904},
+     {0.5675, 0.1100},
+     {0.5498, 0.3799},
+     {0.6411, 0.6732},
+     {0.7782, 0.8864},
+     {0.8094, 0.1272},
+     {0.8966, 0.2963},
+     {0.7765, 0.5014},
+     {0.9413, 0.7115}},
 };
 
 static const part_points of_square[SEARCHED_SIDES] = {
     {{0.2017, 0.3906}, {0.3330, 0.8200}, {0.5909, 0.1396}, {0.8743, 0.6498}},
-    {{0.1667, 0.1310}, {0.1039, 0.5282}, {0.2330, 0.9038}, {0.4320, 0.2531}, {0.4713, 0.6085}, {0.6365, 0.8670},
-     {0.8252, 0.0967}, {0.7109, 0.4042}, {0.9206, 0.7074}},
-    {{0.0523, 0.2182}, {0.2064, 0.4136}, {0.0867, 0.6713}, {0.1787, 0.9431}, {0.2643, 0.1162}, {0.3826, 0.5170},
-     {0.3572, 0.7554}, {0.5410, 0.8724}, {0.4845, 0.1589}, {0.5973, 0.3412}, {0.6303, 0.6295}, {0.8090, 0.8986},
-     {0.7363, 0.0492}, {0.9174, 0.2378}, {0.8260, 0.4692}, {0.9302, 0.7083}},
+    {{0.1667, 0.1310},
+     {0.1039, 0.5282},
+     {0.2330, 0.9038},
+     {0.4320, 0.2531},
+     {0.4713, 0.6085},
+     {0.6365, 0.8670},
+     {0.8252, 0.0967},
+     {0.7109, 0.4042},
+     {0.9206, 0.7074}},
+    {{0.0523, 0.2182},
+     {0.2064, 0.4136},
+     {0.0867, 0.6713},
+     {0.1787, 0.9431},
+     {0.2643, 0.1162},
+     {0.3826, 0.5170},
+     {0.3572, 0.7554},
+     {0.5410, 0.8724},
+     {0.4845, 0.1589},
+     {0.5973, 0.3412},
+     {0.6303, 0.6295},
+     {0.8090, 0.8986},
+     {0.7363, 0.0492},
+     {0.9174, 0.2378},
+     {0.8260, 0.4692},
+     {0.9302, 0.7083}},
 };
 
 void hl_light_grid_part(int side, int i, int j, double square[2]) {
@@ -36,6 +77,7 @@ void hl_light_part(const light_source *source, int side, int i, int j, double sq
     hl_light_grid_part(side, i, j, square);
     return;
   }
-  const part_points *points = source->light->type == HL_LIGHT_RECT ? &of_square[side - 2] : &of_disk[side - 2];
+  const part_points *points = source->light->type == HL_LIGHT_RECT ? &of_square[side - 2]
+                                                                   : &of_disk[side - 2];
   for (int axis = 0; axis < 2; axis++) square[axis] = (*points)[i * side + j][axis];
 }

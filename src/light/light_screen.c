@@ -1,4 +1,5 @@
-/* light/light_screen.c - where a light's image stands, averaged to the picture's pixels and blurred by the light's shape. */
+/* light/light_screen.c - where a light's image stands, averaged to the picture's pixels and blurred by the
+ * light's shape. */
 #include "light/light_screen.h"
 
 #include "core/context.h"
@@ -6,21 +7,25 @@
 #include "scene/light_shape.h"
 #include "splat/view.h"
 
-/* The image as a picture plane that the light looks through: its pixels are the view's. Derived: a sample x lies on the
- * ray through c + s R + t U; with the light at P, x - P = w (c - P + s R + t U), and for parallel light along d,
- * x = c + s R + t U + k d: three linear equations, w or k being the third unknown. */
+/* The image as a picture plane that the light looks through: its pixels are the view's. Derived: a sample x
+ * lies on the ray through c + s R + t U; with the light at P, x - P = w (c - P + s R + t U), and for parallel
+ * light along d, x = c + s R + t U + k d: three linear equations, w or k being the third unknown. */
 static view view_of_screen(const light_source *source, int width, int height) {
   vec3 corner = vec3_add(vec3_subtract(source->screen_center, source->screen_right), source->screen_up);
-  view view = {.perspective = !source->parallel, .width = width, .height = height, .origin = source->position,
+  view view = {.perspective = !source->parallel,
+               .width = width,
+               .height = height,
+               .origin = source->position,
                .corner = source->parallel ? corner : vec3_subtract(corner, source->position),
-               .du = vec3_scale(source->screen_right, 2.0 / width), .dv = vec3_scale(source->screen_up, -2.0 / height),
+               .du = vec3_scale(source->screen_right, 2.0 / width),
+               .dv = vec3_scale(source->screen_up, -2.0 / height),
                .direction = source->direction};
   hl_view_finish(&view);
   return view;
 }
 
-/* Length of a vector of the screen where its shadow falls on the content's middle, across the light's ray there; where the
- * content lies before the screen, its own. */
+/* Length of a vector of the screen where its shadow falls on the content's middle, across the light's ray
+ * there; where the content lies before the screen, its own. */
 static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
   vec3 way = source->direction;
   double magnified = 1;
@@ -37,8 +42,9 @@ static double length_at_content(const light_source *source, const view *view, ve
 /* Weights of neighbouring pixels for each pixel of a result. */
 typedef struct axis_weights {
   int count, taps;
-  int *first;      /* owned; [count]; the first pixel that is weighed; all of them are in the image, beyond which it is dark */
-  float *weights;  /* owned; [count][taps] */
+  int *first; /* owned; [count]; the first pixel that is weighed; all of them are in the image, beyond which
+                 it is dark */
+  float *weights; /* owned; [count][taps] */
 } axis_weights;
 
 /* The part of a kernel below x, its half width being 1. */
@@ -53,9 +59,10 @@ static double part_of_disk(double x) {
   return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
 }
 
-/* Result pixel i is the kernel's mean around start + (i + 1/2) step, in pixels of the image, which has length of them. */
-static hl_status weigh_axis(hl_context *context, kernel_part *part, double half_width, double start, double step, int count,
-                            int length, axis_weights *axis, hl_error *error) {
+/* Result pixel i is the kernel's mean around start + (i + 1/2) step, in pixels of the image, which has length
+ * of them. */
+static hl_status weigh_axis(hl_context *context, kernel_part *part, double half_width, double start,
+                            double step, int count, int length, axis_weights *axis, hl_error *error) {
   axis->count = count;
   axis->taps = (int)fmin(ceil(2 * half_width) + 2, length);
   size_t taps = (size_t)axis->taps;
@@ -68,8 +75,8 @@ static hl_status weigh_axis(hl_context *context, kernel_part *part, double half_
     int first = (int)fmin(fmax(floor(middle - half_width), 0), length - axis->taps);
     axis->first[i] = first;
     for (int tap = 0; tap < axis->taps; tap++)
-      axis->weights[(size_t)i * taps + (size_t)tap] =
-          (float)(part((first + tap + 1 - middle) / half_width) - part((first + tap - middle) / half_width));
+      axis->weights[(size_t)i * taps + (size_t)tap] = (float)(part((first + tap + 1 - middle) / half_width) -
+                                                              part((first + tap - middle) / half_width));
   }
   return HL_OK;
 }
@@ -80,7 +87,8 @@ static void release_axis(hl_context *context, axis_weights *axis) {
 }
 
 /* One line of pixels of three channels, from_step and to_step floats apart. */
-static void convolve_line(const float *from, size_t from_step, const axis_weights *axis, float *to, size_t to_step) {
+static void convolve_line(const float *from, size_t from_step, const axis_weights *axis, float *to,
+                          size_t to_step) {
   for (int i = 0; i < axis->count; i++) {
     const float *weights = axis->weights + (size_t)i * (size_t)axis->taps;
     const float *pixel = from + (size_t)axis->first[i] * from_step;
@@ -94,11 +102,12 @@ static void convolve_line(const float *from, size_t from_step, const axis_weight
 enum { LINES_BETWEEN_QUESTIONS = 16 };
 
 /* Rows, then columns. */
-static hl_status convolve(hl_context *context, const float *from, int width, int height, const axis_weights *u,
-                          const axis_weights *v, float *to, hl_error *error) {
+static hl_status convolve(hl_context *context, const float *from, int width, int height,
+                          const axis_weights *u, const axis_weights *v, float *to, hl_error *error) {
   size_t narrow_width = (size_t)u->count * 3;
   float *narrow = hl_allocate(context, narrow_width, (size_t)height * sizeof *narrow);
-  if (narrow == NULL) return hl_fail_memory(error, narrow_width * (size_t)height * sizeof *narrow, "a light's texture");
+  if (narrow == NULL)
+    return hl_fail_memory(error, narrow_width * (size_t)height * sizeof *narrow, "a light's texture");
   bool cancelled = false;
   for (int y = 0; y < height && !cancelled; y++) {
     convolve_line(from + 3 * (size_t)y * (size_t)width, 3, u, narrow + (size_t)y * narrow_width, 3);
@@ -121,10 +130,11 @@ typedef struct level_plan {
 static hl_status make_level(hl_context *context, kernel_part *part, const float *from, int width, int height,
                             const level_plan *plan, float *to, hl_error *error) {
   axis_weights u = {0}, v = {0};
-  hl_status status =
-      weigh_axis(context, part, plan->half_width[0], plan->start[0], plan->step[0], plan->width, width, &u, error);
+  hl_status status = weigh_axis(context, part, plan->half_width[0], plan->start[0], plan->step[0],
+                                plan->width, width, &u, error);
   if (status == HL_OK)
-    status = weigh_axis(context, part, plan->half_width[1], plan->start[1], plan->step[1], plan->height, height, &v, error);
+    status = weigh_axis(context, part, plan->half_width[1], plan->start[1], plan->step[1], plan->height,
+                        height, &v, error);
   if (status == HL_OK) status = convolve(context, from, width, height, &u, &v, to, error);
   release_axis(context, &u);
   release_axis(context, &v);
@@ -133,15 +143,20 @@ static hl_status make_level(hl_context *context, kernel_part *part, const float 
 
 /* ---- how much the light's extent blurs ---- */
 
-/* Standard deviations in pixels of the image, along u and v, of what a point of the screen casts at distance 1 behind it
- * (point light: at an infinite one): the light's spread, moved onto the screen along the ray to the content's middle. */
-static void spread_on_screen(const light_source *source, const view *view, vec3 content, double deviation[2]) {
+/* Standard deviations in pixels of the image, along u and v, of what a point of the screen casts at distance
+ * 1 behind it (point light: at an infinite one): the light's spread, moved onto the screen along the ray to
+ * the content's middle. */
+static void spread_on_screen(const light_source *source, const view *view, vec3 content,
+                             double deviation[2]) {
   vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
   mat3 inverse, spread = source->spread;
-  if (source->light->type == HL_LIGHT_POINT || source->light->type == HL_LIGHT_SPOT) /* the disk that faces the content */
+  if (source->light->type == HL_LIGHT_POINT ||
+      source->light->type == HL_LIGHT_SPOT) /* the disk that faces the content */
     spread = hl_light_spread(source->light, vec3_scale(ray, -1));
   deviation[0] = deviation[1] = 0;
-  if (source->shadows != HL_SHADOWS_SOFT || !mat3_invert(mat3_from_columns(ray, view->du, view->dv), &inverse)) return;
+  if (source->shadows != HL_SHADOWS_SOFT ||
+      !mat3_invert(mat3_from_columns(ray, view->du, view->dv), &inverse))
+    return;
   for (int axis = 0; axis < 2; axis++) {
     vec3 row = inverse.row[1 + axis];
     deviation[axis] = sqrt(fmax(vec3_dot(row, mat3_apply(spread, row)), 0));
@@ -155,12 +170,14 @@ static double blur_at(const light_source *source, const view *view, vec3 point) 
   return fabs(1 - 1 / fmax(w, 0.05));
 }
 
-/* Level 0 blurs by 1.4 pixels of the picture, every other by the root of 2 more; pixels of a level are half as large as
- * its blur, no smaller than 0.7 of the picture's; an image that is magnified beyond the greatest side gets coarser ones. */
+/* Level 0 blurs by 1.4 pixels of the picture, every other by the root of 2 more; pixels of a level are half
+ * as large as its blur, no smaller than 0.7 of the picture's; an image that is magnified beyond the greatest
+ * side gets coarser ones. */
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
 enum { GREATEST_LEVEL_SIDE = 8192 };
 
-static level_plan plan_level(const light_screen *screen, const double deviation[2], double half_widths, double blur) {
+static level_plan plan_level(const light_screen *screen, const double deviation[2], double half_widths,
+                             double blur) {
   level_plan plan;
   int size[2];
   const int image[2] = {screen->width, screen->height};
@@ -169,7 +186,8 @@ static level_plan plan_level(const light_screen *screen, const double deviation[
     plan.half_width[axis] = fmax(half_widths * sigma, 0.5 / (double)screen->sharpness[axis]);
     double extent = image[axis] + 2 * plan.half_width[axis];
     plan.step[axis] = fmax(fmax(sigma * LEVEL_PIXEL, least), extent / (GREATEST_LEVEL_SIDE - 4));
-    size[axis] = (int)fmin(ceil(extent / plan.step[axis] + 4), GREATEST_LEVEL_SIDE); /* two more on either side */
+    size[axis] = (int)fmin(ceil(extent / plan.step[axis] + 4),
+                           GREATEST_LEVEL_SIDE); /* two more on either side */
     plan.start[axis] = (image[axis] - size[axis] * plan.step[axis]) / 2;
   }
   plan.width = size[0];
@@ -177,14 +195,16 @@ static level_plan plan_level(const light_screen *screen, const double deviation[
   return plan;
 }
 
-static hl_status make_levels(hl_context *context, const light_source *source, const view *view, const vec3 *points,
-                             int point_count, vec3 content, light_screen *screen, size_t averaged, hl_error *error) {
+static hl_status make_levels(hl_context *context, const light_source *source, const view *view,
+                             const vec3 *points, int point_count, vec3 content, light_screen *screen,
+                             size_t averaged, hl_error *error) {
   double deviation[2], widest = 0, reach = 0;
   level_plan plans[SCREEN_LEVELS];
   kernel_part *part = source->light->type == HL_LIGHT_RECT ? part_of_box : part_of_disk;
   double half_widths = source->light->type == HL_LIGHT_RECT ? sqrt(3) : 2; /* in standard deviations */
   spread_on_screen(source, view, content, deviation);
-  for (int axis = 0; axis < 2; axis++) widest = fmax(widest, deviation[axis] * (double)screen->sharpness[axis]);
+  for (int axis = 0; axis < 2; axis++)
+    widest = fmax(widest, deviation[axis] * (double)screen->sharpness[axis]);
   for (int i = 0; i < point_count; i++) reach = fmax(reach, blur_at(source, view, points[i]));
   if (!(widest * reach > 0.25)) return HL_OK; /* a quarter of the picture's pixel */
   double first = FIRST_BLUR / widest;
@@ -209,7 +229,8 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
       level->scale[axis] = (float)(1 / plans[l].step[axis]);
       level->shift[axis] = (float)(-plans[l].start[axis] / plans[l].step[axis]);
     }
-    hl_status status = make_level(context, part, screen->pixels, screen->width, screen->height, &plans[l], to, error);
+    hl_status status = make_level(context, part, screen->pixels, screen->width, screen->height, &plans[l], to,
+                                  error);
     if (status != HL_OK) return status;
     to += (size_t)level->width * (size_t)level->height * 3;
   }
@@ -226,25 +247,28 @@ static int resolution(double length, int count, double pixel, float *sharpness) 
   return chosen;
 }
 
-static hl_status average_image(hl_context *context, const hl_light_texture *texture, light_screen *screen, hl_error *error) {
+static hl_status average_image(hl_context *context, const hl_light_texture *texture, light_screen *screen,
+                               hl_error *error) {
   level_plan plan = {screen->width, screen->height, {0, 0}, {0, 0}, {0, 0}};
   plan.step[0] = (double)texture->width / screen->width;
   plan.step[1] = (double)texture->height / screen->height;
   for (int axis = 0; axis < 2; axis++) plan.half_width[axis] = plan.step[axis] / 2;
-  screen->memory = hl_allocate(context, (size_t)screen->width * (size_t)screen->height, 3 * sizeof *screen->memory);
+  screen->memory = hl_allocate(context, (size_t)screen->width * (size_t)screen->height,
+                               3 * sizeof *screen->memory);
   if (screen->memory == NULL)
     return hl_fail_memory(error, (size_t)screen->width * (size_t)screen->height * 12, "a light's texture");
   screen->pixels = screen->memory;
-  return make_level(context, part_of_box, texture->pixels, texture->width, texture->height, &plan, screen->memory,
-                    error);
+  return make_level(context, part_of_box, texture->pixels, texture->width, texture->height, &plan,
+                    screen->memory, error);
 }
 
 static void store_row(float to[4], const double from[4]) {
   for (int column = 0; column < 4; column++) to[column] = (float)from[column];
 }
 
-hl_status hl_light_screen_create(hl_context *context, const light_source *source, const vec3 *points, int point_count,
-                                 vec3 content, double pixel, light_screen *screen, hl_error *error) {
+hl_status hl_light_screen_create(hl_context *context, const light_source *source, const vec3 *points,
+                                 int point_count, vec3 content, double pixel, light_screen *screen,
+                                 hl_error *error) {
   const hl_light_texture *texture = &source->light->texture;
   *screen = (light_screen){.pixels = texture->pixels, .parallel = source->parallel};
   if (texture->pixels == NULL) return HL_OK;
@@ -265,7 +289,11 @@ hl_status hl_light_screen_create(hl_context *context, const light_source *source
     status = average_image(context, texture, screen, error);
     averaged = (size_t)screen->width * (size_t)screen->height * 3;
   }
-  return status == HL_OK ? make_levels(context, source, &view, points, point_count, content, screen, averaged, error) : status;
+  return status == HL_OK
+             ? make_levels(context, source, &view, points, point_count, content, screen, averaged, error)
+             : status;
 }
 
-void hl_light_screen_release(hl_context *context, light_screen *screen) { hl_release(context, screen->memory); }
+void hl_light_screen_release(hl_context *context, light_screen *screen) {
+  hl_release(context, screen->memory);
+}

@@ -1,12 +1,14 @@
 /* light/light_screen.h - the image that a light projects (section 4, fig. 9), ready for lookups at samples.
  *
- * Every sample is projected onto the screen along its light ray: the pattern is as sharp as its image, whatever the shadow
- * buffer's resolution. An image finer than the picture is averaged down to the picture's pixels once a frame.
+ * Every sample is projected onto the screen along its light ray: the pattern is as sharp as its image,
+ * whatever the shadow buffer's resolution. An image finer than the picture is averaged down to the picture's
+ * pixels once a frame.
  *
- * Through an extended light's soft shadows the screen is seen by each point of the light from elsewhere: at the distance t
- * behind the screen the image is convolved with the light's shape, scaled by t (parallel light) or by 1 - Zs / Z, the
- * screen being at Zs and the sample at Z from a near light (eq. (5), the screen as occluder). Levels of doubling variance
- * are made once a frame, and each sample takes its own mean of two. */
+ * Through an extended light's soft shadows the screen is seen by each point of the light from elsewhere: at
+ * the distance t behind the screen the image is convolved with the light's shape, scaled by t (parallel
+ * light) or by 1 - Zs / Z, the screen being at Zs and the sample at Z from a near light (eq. (5), the screen
+ * as occluder). Levels of doubling variance are made once a frame, and each sample takes its own mean of
+ * two. */
 #ifndef HL_LIGHT_LIGHT_SCREEN_H
 #define HL_LIGHT_LIGHT_SCREEN_H
 
@@ -15,9 +17,9 @@
 
 /* The image blurred by the light's own shape, dark beyond the screen: a border of zeros. */
 typedef struct screen_level {
-  const float *pixels;          /* [height][width][3]; in the screen's memory */
+  const float *pixels; /* [height][width][3]; in the screen's memory */
   int width, height;
-  float scale[2], shift[2];     /* pixels of the image -> of the level */
+  float scale[2], shift[2]; /* pixels of the image -> of the level */
 } screen_level;
 
 enum { SCREEN_LEVELS = 24 };
@@ -25,23 +27,26 @@ enum { SCREEN_LEVELS = 24 };
 typedef struct light_screen {
   const float *pixels; /* [height][width][3], linear RGB; null: the light has no texture */
   int width, height;
-  float map[3][4];     /* frame space -> (w, w u, w v): u, v in pixels from the image's top left corner; w <= 0: the ray
-                          does not pass the screen's plane */
-  float sharpness[2];  /* along u and v: pixels of the picture that one of the image covers, at least 1 */
-  float beyond[4];     /* parallel: frame space -> distance along the rays from the screen; else it follows from w */
+  float map[3][4]; /* frame space -> (w, w u, w v): u, v in pixels from the image's top left corner; w <= 0:
+                      the ray does not pass the screen's plane */
+  float sharpness[2]; /* along u and v: pixels of the picture that one of the image covers, at least 1 */
+  float beyond[4]; /* parallel: frame space -> distance along the rays from the screen; else it follows from
+                    * w */
   int parallel;
-  float first;         /* 1 / square of the distance (point light: of the part) at which the image is level 0; level l
-                          has 2^l times that square, and the blur's variance with it */
-  float edge[2];       /* along u and v: width in pixels of the image of the box that blurs as much, at distance 1 */
-  int level_count;     /* 0: the light has no extent that matters */
+  float first; /* 1 / square of the distance (point light: of the part) at which the image is level 0; level l
+                  has 2^l times that square, and the blur's variance with it */
+  float
+      edge[2]; /* along u and v: width in pixels of the image of the box that blurs as much, at distance 1 */
+  int level_count; /* 0: the light has no extent that matters */
   screen_level level[SCREEN_LEVELS];
-  float *memory;       /* owned; the image averaged and its levels; null where neither is needed */
+  float *memory; /* owned; the image averaged and its levels; null where neither is needed */
 } light_screen;
 
-/* points: corners of what is lit, content: their middle; pixel: edge of a picture's pixel there; frame units. Release
- * with hl_light_screen_release(), after a failure too. */
-hl_status hl_light_screen_create(hl_context *context, const light_source *source, const vec3 *points, int point_count,
-                                 vec3 content, double pixel, light_screen *screen, hl_error *error);
+/* points: corners of what is lit, content: their middle; pixel: edge of a picture's pixel there; frame units.
+ * Release with hl_light_screen_release(), after a failure too. */
+hl_status hl_light_screen_create(hl_context *context, const light_source *source, const vec3 *points,
+                                 int point_count, vec3 content, double pixel, light_screen *screen,
+                                 hl_error *error);
 void hl_light_screen_release(hl_context *context, light_screen *screen);
 
 #endif

@@ -5,14 +5,19 @@
 #include "light/light_screen.h"
 #include "splat/rays_lanes.h"
 
-/* How far within the screen's two edges of one axis a place is: 0 to 1 over one pixel of the picture, or over more. */
+/* How far within the screen's two edges of one axis a place is: 0 to 1 over one pixel of the picture, or over
+ * more. */
 LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
   lanes half = lanes_set(0.5f);
-  return lanes_clamp(lanes_fma(u, sharpness, half), 0, 1) * lanes_clamp(lanes_fma(size - u, sharpness, half), 0, 1);
+  return lanes_clamp(lanes_fma(u, sharpness, half), 0, 1) *
+         lanes_clamp(lanes_fma(size - u, sharpness, half), 0, 1);
 }
 
 /* One axis of a bilinear lookup: the two pixels, held at the image's borders, and the way between them. */
-typedef struct screen_taps { lanes_int first, second; lanes part; } screen_taps;
+typedef struct screen_taps {
+  lanes_int first, second;
+  lanes part;
+} screen_taps;
 
 LANES_INLINE screen_taps taps_at(lanes u, int size) {
   lanes at = lanes_clamp(u - 0.5f, 0, (float)(size - 1));
@@ -27,7 +32,8 @@ LANES_INLINE screen_taps taps_at(lanes u, int size) {
 LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u, lanes v, lanes color[3]) {
   screen_taps x = taps_at(u, width), y = taps_at(v, height);
   lanes_int top = y.first * (int32_t)width, bottom = y.second * (int32_t)width;
-  lanes_int at[4] = {(top + x.first) * 3, (top + x.second) * 3, (bottom + x.first) * 3, (bottom + x.second) * 3};
+  lanes_int at[4] = {(top + x.first) * 3, (top + x.second) * 3, (bottom + x.first) * 3,
+                     (bottom + x.second) * 3};
   for (int c = 0; c < 3; c++) {
     lanes a = lanes_gather(pixels + c, at[0]), b = lanes_gather(pixels + c, at[1]);
     lanes d = lanes_gather(pixels + c, at[2]), e = lanes_gather(pixels + c, at[3]);
@@ -37,21 +43,24 @@ LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u
 }
 
 /* The image itself, its screen's edges as wide as a box of the blur. */
-LANES_INLINE void sharp_pattern(const light_screen *screen, lanes blur, lanes u, lanes v, lanes weight, lanes pattern[3]) {
+LANES_INLINE void sharp_pattern(const light_screen *screen, lanes blur, lanes u, lanes v, lanes weight,
+                                lanes pattern[3]) {
   lanes sharp_u = lanes_set(screen->sharpness[0]), sharp_v = lanes_set(screen->sharpness[1]);
   lanes edge_u = sharp_u / lanes_max(blur * screen->edge[0] * sharp_u, lanes_set(1.0f));
   lanes edge_v = sharp_v / lanes_max(blur * screen->edge[1] * sharp_v, lanes_set(1.0f));
-  lanes inside = within_edges(u, (float)screen->width, edge_u) * within_edges(v, (float)screen->height, edge_v) * weight;
+  lanes inside = within_edges(u, (float)screen->width, edge_u) *
+                 within_edges(v, (float)screen->height, edge_v) * weight;
   if (lanes_bits(inside > 0.0f) == 0) return;
   lanes color[3];
   read_image(screen->pixels, screen->width, screen->height, u, v, color);
   for (int c = 0; c < 3; c++) pattern[c] = lanes_fma(color[c], inside, pattern[c]);
 }
 
-/* The mean of the two levels whose variances are around the sample's, variance being linear in their weights. Below the
- * first level the image itself, whose edges are then the sharpest thing in it and made wide by themselves, stays as long as
- * it can: by the square. */
-LANES_INLINE void soft_pattern(const light_screen *screen, lanes blur, lanes u, lanes v, lanes ahead, lanes pattern[3]) {
+/* The mean of the two levels whose variances are around the sample's, variance being linear in their weights.
+ * Below the first level the image itself, whose edges are then the sharpest thing in it and made wide by
+ * themselves, stays as long as it can: by the square. */
+LANES_INLINE void soft_pattern(const light_screen *screen, lanes blur, lanes u, lanes v, lanes ahead,
+                               lanes pattern[3]) {
   lanes variance = lanes_min(blur * blur * screen->first, lanes_set(1e30f));
   lanes_int above = variance >= 1.0f, last = lanes_set_int(screen->level_count - 1);
   lanes_int bits = (lanes_int)lanes_max(variance, lanes_set(1.0f)), level = (bits >> 23) - 127;
@@ -66,7 +75,8 @@ LANES_INLINE void soft_pattern(const light_screen *screen, lanes blur, lanes u, 
     if (lanes_bits(weight > 0.0f) == 0) continue;
     const screen_level *at = &screen->level[l];
     lanes color[3];
-    read_image(at->pixels, at->width, at->height, lanes_line(u, at->scale[0], at->shift[0]), lanes_line(v, at->scale[1], at->shift[1]), color);
+    read_image(at->pixels, at->width, at->height, lanes_line(u, at->scale[0], at->shift[0]),
+               lanes_line(v, at->scale[1], at->shift[1]), color);
     for (int c = 0; c < 3; c++) pattern[c] = lanes_fma(color[c], weight, pattern[c]);
   }
 }
@@ -84,7 +94,8 @@ LANES_INLINE void screen_pattern(const light_screen *screen, lanes3 position, la
     return;
   }
   lanes beyond = row_of_point(screen->beyond, position);
-  lanes blur = screen->parallel ? lanes_abs(beyond) : lanes_abs(1.0f - 1.0f / lanes_max(safe, lanes_set(0.05f)));
+  lanes blur = screen->parallel ? lanes_abs(beyond)
+                                : lanes_abs(1.0f - 1.0f / lanes_max(safe, lanes_set(0.05f)));
   soft_pattern(screen, blur, u, v, ahead, pattern);
 }
 

@@ -1,9 +1,10 @@
 /* light/light_sector.c - the axes of a light's sectors. */
 #include "light/light_sector.h"
 
-/* Three axes at the angle phi to the eye's direction, and three to its opposite turned by 60 degrees: of an octahedron
- * seen along a face for phi = 54.7 degrees. With 45 degrees every direction lies within 59 degrees of an axis. Wide
- * pictures need axes closer to the eye's direction, so that their corners' rays still cross the sheets. */
+/* Three axes at the angle phi to the eye's direction, and three to its opposite turned by 60 degrees: of an
+ * octahedron seen along a face for phi = 54.7 degrees. With 45 degrees every direction lies within 59 degrees
+ * of an axis. Wide pictures need axes closer to the eye's direction, so that their corners' rays still cross
+ * the sheets. */
 light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
   const double usual = 45 * HL_PI / 180, flattest = 75 * HL_PI / 180, closest = 15 * HL_PI / 180;
   double phi = fmax(fmin(usual, flattest - widest), closest);

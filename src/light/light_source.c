@@ -25,7 +25,8 @@ light_source hl_light_source(const hl_light *light, const hl_render_settings *se
   }
   source.spread = hl_light_spread(light, source.direction);
   double distance = source.parallel ? 1 : vec3_length(vec3_subtract(content, source.position));
-  if (source.shadows == HL_SHADOWS_SOFT && !(trace(source.spread) > POINT_LIKE * distance * distance)) source.shadows = HL_SHADOWS_HARD;
+  if (source.shadows == HL_SHADOWS_SOFT && !(trace(source.spread) > POINT_LIKE * distance * distance))
+    source.shadows = HL_SHADOWS_HARD;
   return source;
 }
 

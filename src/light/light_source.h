@@ -8,15 +8,16 @@
 
 typedef struct light_source {
   bool parallel;
-  vec3 direction;  /* unit, the way light travels: parallel, a spot light's axis, or from the
-                      light's centre to its screen's or the content's */
-  vec3 position;   /* of the light's centre, unless parallel; frame space */
-  vec3 content;    /* the middle of what is lit; frame space */
-  mat3 spread;     /* mean of x x' over the light, from its centre; parallel: over the directions, at distance 1 */
+  vec3 direction; /* unit, the way light travels: parallel, a spot light's axis, or from the
+                     light's centre to its screen's or the content's */
+  vec3 position;  /* of the light's centre, unless parallel; frame space */
+  vec3 content;   /* the middle of what is lit; frame space */
+  mat3
+      spread; /* mean of x x' over the light, from its centre; parallel: over the directions, at distance 1 */
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
   const hl_light *light;
-  int light_index;    /* in the scene */
+  int light_index;              /* in the scene */
   const light_sectors *sectors; /* the frame's, where this is one sector of a light; else null */
   int sector;
   vec3 screen_center, screen_right, screen_up; /* of a light with a texture: the light screen; frame space */

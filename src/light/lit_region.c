@@ -1,4 +1,5 @@
-/* light/lit_region.c - bounds of a light screen, of a spot light's cone and of a light's sector, seen from the light. */
+/* light/lit_region.c - bounds of a light screen, of a spot light's cone and of a light's sector, seen from
+ * the light. */
 #include "light/lit_region.h"
 
 static bool bound_screen(const view *view, const light_source *source, double low[2], double high[2]) {
@@ -7,7 +8,8 @@ static bool bound_screen(const view *view, const light_source *source, double lo
   for (int corner = 0; corner < 4; corner++) {
     vec3 at = vec3_add(source->screen_center, vec3_scale(source->screen_right, corner & 1 ? 1 : -1));
     double uv[2];
-    if (!hl_view_project(view, vec3_add(at, vec3_scale(source->screen_up, corner & 2 ? 1 : -1)), uv)) return false;
+    if (!hl_view_project(view, vec3_add(at, vec3_scale(source->screen_up, corner & 2 ? 1 : -1)), uv))
+      return false;
     for (int axis = 0; axis < 2; axis++) {
       low[axis] = fmin(low[axis], uv[axis]);
       high[axis] = fmax(high[axis], uv[axis]);
@@ -16,9 +18,10 @@ static bool bound_screen(const view *view, const light_source *source, double lo
   return true;
 }
 
-/* Derived: planes through the light that contain the view's other axis touch the cone of half angle a where their angle
- * phi from the view's normal n has r sin(psi - phi) = +- sin a, r and psi being the length and angle of the cone's axis in
- * the plane of n and this axis. corner, du and dv of the view are n and its axes, unit and perpendicular. */
+/* Derived: planes through the light that contain the view's other axis touch the cone of half angle a where
+ * their angle phi from the view's normal n has r sin(psi - phi) = +- sin a, r and psi being the length and
+ * angle of the cone's axis in the plane of n and this axis. corner, du and dv of the view are n and its axes,
+ * unit and perpendicular. */
 static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
   const vec3 axes[2] = {view->du, view->dv};
   vec3 cone = vec3_normalise(vec3_of(source->light->direction));

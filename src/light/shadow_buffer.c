@@ -11,8 +11,8 @@
 static const double WIDEST = 6;
 enum { GREATEST_SIDE = 8192, BORDER_PIXELS = 2 };
 
-static void bound_points(const view *unit, const light_source *source, const vec3 *points, int count, double low[2],
-                         double high[2]) {
+static void bound_points(const view *unit, const light_source *source, const vec3 *points, int count,
+                         double low[2], double high[2]) {
   low[0] = low[1] = INFINITY;
   high[0] = high[1] = -INFINITY;
   for (int i = 0; i < count; i++) {
@@ -37,8 +37,8 @@ static void bound_points(const view *unit, const light_source *source, const vec
 }
 
 /* What is to be lit, and around it what casts penumbrae onto it, as far as there is anything. */
-static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent, double low[2],
-                         double high[2]) {
+static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent,
+                         double low[2], double high[2]) {
   double content_low[2], content_high[2];
   bound_points(unit, source, extent->points, extent->point_count, low, high);
   if (!(extent->margin > 0)) return;
@@ -51,7 +51,8 @@ static void bound_buffer(const view *unit, const light_source *source, const sha
 
 /* Pixel edge in the units of the unit view: world for parallel light, at distance 1 for a point light, whose
  * pixels grow with distance and must still be small enough at the far side. */
-static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent, const double size[2]) {
+static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent,
+                         const double size[2]) {
   double pixel = extent->pixel;
   if (!source->parallel) {
     double farthest = 0;
@@ -66,7 +67,10 @@ static double pixel_edge(const light_source *source, vec3 normal, const shadow_e
 }
 
 /* A buffer's pixels along one axis. */
-typedef struct pixel_row { int count; double start, pixel; } pixel_row;
+typedef struct pixel_row {
+  int count;
+  double start, pixel;
+} pixel_row;
 
 static pixel_row row_around(double low, double high, double size, double pixel) {
   int count = (int)ceil((size + 2 * BORDER_PIXELS * pixel) / pixel);
@@ -74,9 +78,9 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
   return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
 }
 
-/* Pixels a little smaller, so that the first and the last one but the borders' have their middles just inside the bounds: light
- * that runs along a box's face and is read beside it is then not mixed with what passes outside. Soft shadows' are square, and
- * so are those of what is thinner than this part of one. */
+/* Pixels a little smaller, so that the first and the last one but the borders' have their middles just inside
+ * the bounds: light that runs along a box's face and is read beside it is then not mixed with what passes
+ * outside. Soft shadows' are square, and so are those of what is thinner than this part of one. */
 static const double LEAST_FITTED = 0.25;
 
 static pixel_row row_between(double low, double size, double pixel) {
@@ -89,7 +93,8 @@ static pixel_row row_between(double low, double size, double pixel) {
 
 void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view) {
   double low[2], high[2], size[2];
-  vec3 tilt = vec3_subtract(source->direction, vec3_scale(plane_normal, vec3_dot(source->direction, plane_normal)));
+  vec3 tilt = vec3_subtract(source->direction,
+                            vec3_scale(plane_normal, vec3_dot(source->direction, plane_normal)));
   vec3 u = vec3_length(tilt) > 1e-3 ? vec3_normalise(tilt) : vec3_perpendicular(plane_normal);
   if (vec3_length(extent->u) > 0) u = extent->u;
   vec3 v = vec3_cross(plane_normal, u), zero = {0, 0, 0};
@@ -117,7 +122,8 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
   hl_view_finish(view);
 }
 
-static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floats, size_t tiles, hl_error *error) {
+static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floats, size_t tiles,
+                         hl_error *error) {
   if (buffer->capacity < floats) {
     hl_release(context, buffer->memory);
     buffer->memory = hl_allocate(context, floats, sizeof(float));
@@ -152,12 +158,13 @@ uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int
   return buffer.plane * (uint64_t)channels * (second ? 2 : 1) * sizeof(float) + tiles * 4;
 }
 
-hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view, int channels,
-                                 bool second, int reach, hl_error *error) {
+hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view,
+                                 int channels, bool second, int reach, hl_error *error) {
   size_t margin = lay_out(view, reach, buffer);
   buffer->channels = channels;
   buffer->origin = margin * buffer->stride + margin;
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, planes = (size_t)channels * (second ? 2 : 1);
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y,
+         planes = (size_t)channels * (second ? 2 : 1);
   hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);
   if (status != HL_OK) return status;
   hl_pool_fill(pool, buffer->memory, planes * buffer->plane, 1);
@@ -171,13 +178,16 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
   return HL_OK;
 }
 
-static uint16_t lit_blocks_of(const shadow_buffer *buffer, float *const planes[HL_CHANNELS], int x, int y, lit_blocks_function *lit_blocks) {
+static uint16_t lit_blocks_of(const shadow_buffer *buffer, float *const planes[HL_CHANNELS], int x, int y,
+                              lit_blocks_function *lit_blocks) {
   const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
-  for (int c = 0; c < buffer->channels; c++) transmittance[c] = planes[c] + (size_t)y * TILE * buffer->stride + (size_t)x * TILE;
+  for (int c = 0; c < buffer->channels; c++)
+    transmittance[c] = planes[c] + (size_t)y * TILE * buffer->stride + (size_t)x * TILE;
   return (uint16_t)lit_blocks(transmittance, buffer->channels, buffer->stride);
 }
 
-void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both, lit_blocks_function *lit_blocks) {
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
+                               lit_blocks_function *lit_blocks) {
   uint16_t lit = lit_blocks_of(buffer, buffer->transmittance, x, y, lit_blocks);
   if (both) lit |= lit_blocks_of(buffer, buffer->second, x, y, lit_blocks);
   buffer->tile_lit[y * buffer->tiles_x + x] = lit;

@@ -1,4 +1,5 @@
-/* light/shadow_lookup.h - what a sample needs to know of shadow buffers: where it is in them, and the light that is left. */
+/* light/shadow_lookup.h - what a sample needs to know of shadow buffers: where it is in them, and the light
+ * that is left. */
 #ifndef HL_LIGHT_SHADOW_LOOKUP_H
 #define HL_LIGHT_SHADOW_LOOKUP_H
 
@@ -7,23 +8,24 @@
 
 /* Where samples are in a buffer. */
 typedef struct shadow_map {
-  float rows[3][4];               /* frame space -> (w, w u, w v) of the buffer */
-  size_t stride;                  /* of its pixels' rows */
+  float rows[3][4]; /* frame space -> (w, w u, w v) of the buffer */
+  size_t stride;    /* of its pixels' rows */
   int width, height;
 } shadow_map;
 
 typedef struct shadow_lookup {
   shadow_map map;
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) */
-  const float *older[HL_CHANNELS]; /* pixel (0,0); null: none. The light that samples fade from, to transmittance */
-  float young;                     /* how far they have faded, 0 to 1 */
+  const float
+      *older[HL_CHANNELS]; /* pixel (0,0); null: none. The light that samples fade from, to transmittance */
+  float young;             /* how far they have faded, 0 to 1 */
 } shadow_lookup;
 
 /* The buffer of one part of a light. */
 typedef struct part_lookup {
   shadow_map map;
   const part_pixel *left[HL_CHANNELS]; /* pixel (0,0) */
-  float weight[HL_CHANNELS];      /* in the mean over all parts; 1 but for lights with an image */
+  float weight[HL_CHANNELS];           /* in the mean over all parts; 1 but for lights with an image */
 } part_lookup;
 
 /* Of a view; the stride is the caller's. */

@@ -1,11 +1,13 @@
-/* light/shadow_lookup_lanes.h - a shadow buffer read at sixteen places: between its pixels, or at the nearest. */
+/* light/shadow_lookup_lanes.h - a shadow buffer read at sixteen places: between its pixels, or at the
+ * nearest. */
 #ifndef HL_LIGHT_SHADOW_LOOKUP_LANES_H
 #define HL_LIGHT_SHADOW_LOOKUP_LANES_H
 
 #include "light/shadow_lookup.h"
 #include "simd/lanes.h"
 
-/* Where samples are in a shadow buffer: the first of two by two pixels, and how far they are on the way to the others. */
+/* Where samples are in a shadow buffer: the first of two by two pixels, and how far they are on the way to
+ * the others. */
 typedef struct shadow_taps {
   lanes_int inside;
   lanes_squares first;
@@ -16,7 +18,8 @@ typedef struct shadow_taps {
 LANES_INLINE shadow_taps taps_of_place(const shadow_map *map, int nearest, lanes u, lanes v) {
   shadow_taps taps;
   taps.inside = (u > 0.0f) & (v > 0.0f) & (u < (float)map->width) & (v < (float)map->height);
-  lanes x = lanes_clamp(u - 0.5f, 0, (float)(map->width - 1)), y = lanes_clamp(v - 0.5f, 0, (float)(map->height - 1));
+  lanes x = lanes_clamp(u - 0.5f, 0, (float)(map->width - 1)),
+        y = lanes_clamp(v - 0.5f, 0, (float)(map->height - 1));
   if (nearest) {
     x = lanes_from_int(lanes_truncate(x + 0.5f));
     y = lanes_from_int(lanes_truncate(y + 0.5f));
@@ -41,8 +44,9 @@ LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const
   return between_taps(taps, a, b, c, d, 1);
 }
 
-/* Cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image processing", 1981, eq. 15), which keeps
- * second moments: it blurs by nothing. weight: of the four pixels from the one before the first. */
+/* Cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image processing",
+ * 1981, eq. 15), which keeps second moments: it blurs by nothing. weight: of the four pixels from the one
+ * before the first. */
 LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   lanes rest = 1.0f - way, both = way * rest * -0.5f;
   weight[0] = both * rest;
@@ -51,9 +55,11 @@ LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   weight[3] = both * way;
 }
 
-/* Between four by four pixels, within what the nearest four hold: beside an edge it would overshoot, and inside a box's face take
- * more light than was taken. Called: shadows that are read otherwise keep their registers. */
-static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps, const float *buffer) {
+/* Between four by four pixels, within what the nearest four hold: beside an edge it would overshoot, and
+ * inside a box's face take more light than was taken. Called: shadows that are read otherwise keep their
+ * registers. */
+static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps,
+                                                             const float *buffer) {
   lanes across[4], down[4], pixel[4], sum = lanes_set(0);
   lanes_int at = taps->first.row * (int32_t)map->stride + taps->first.column;
   cubic_weights(taps->fx, across);
@@ -72,7 +78,8 @@ static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *m
   return lanes_select(taps->inside, lanes_min(lanes_max(sum, least), greatest), lanes_set(1.0f));
 }
 
-LANES_INLINE lanes look_up_part(const shadow_map *map, const shadow_taps *taps, const part_pixel *buffer, uint32_t active) {
+LANES_INLINE lanes look_up_part(const shadow_map *map, const shadow_taps *taps, const part_pixel *buffer,
+                                uint32_t active) {
   lanes_int square[4];
   lanes_gather_short_squares(buffer, map->stride, taps->first, active, square);
   return between_taps(taps, lanes_from_int(square[0]), lanes_from_int(square[1]), lanes_from_int(square[2]),

@@ -6,7 +6,8 @@
 #include "core/memory.h"
 #include "light/cascade_passes.h"
 
-/* Chunks that a sweep is cut into at most; where they need not be thin, pixels of omega; the least of one, pixels. */
+/* Chunks that a sweep is cut into at most; where they need not be thin, pixels of omega; the least of one,
+ * pixels. */
 static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.15;
 
 static double omega_at(const soft_cascade *cascade, double height) {
@@ -15,17 +16,21 @@ static double omega_at(const soft_cascade *cascade, double height) {
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
 }
 
-/* Chunks between a receiver and a level's groups at least: level 0 keeps three groups, level 1 two, every other five. */
+/* Chunks between a receiver and a level's groups at least: level 0 keeps three groups, level 1 two, every
+ * other five. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
 
 /* Chunks after which a level's sums are found anew. */
 static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
 
-/* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give. What resampling blurs is
- * taken off the penumbra (resampled_by), but for an image, which keeps four. */
+/* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give. What
+ * resampling blurs is taken off the penumbra (resampled_by), but for an image, which keeps four. */
 static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = cascade->chunk * chunks_before(level) * cascade->least_part, own = cascade->image == NULL ? 1.5 : 4;
-  int scale = 1, greatest = level < 2 ? 1 << level : 1 << (level - 1); /* coarser ones were less exact, and hardly cheaper */
+  double penumbra = cascade->chunk * chunks_before(level) * cascade->least_part,
+         own = cascade->image == NULL ? 1.5 : 4;
+  int scale = 1, greatest = level < 2
+                                ? 1 << level
+                                : 1 << (level - 1); /* coarser ones were less exact, and hardly cheaper */
   while (2 * scale * own <= penumbra && scale < greatest) scale *= 2;
   return scale;
 }
@@ -36,7 +41,9 @@ static cascade_field field_of_plane(const cascade_level *level, size_t plane) {
 }
 
 /* Hands out the next plane of a level's memory. */
-static cascade_field next_field(const cascade_level *level, size_t *used) { return field_of_plane(level, (*used)++); }
+static cascade_field next_field(const cascade_level *level, size_t *used) {
+  return field_of_plane(level, (*used)++);
+}
 
 /* How wide each column or row of tiles sees the light. */
 static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
@@ -54,20 +61,23 @@ static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer 
   cascade_level *level = &cascade->level[index];
   size_t channels = (size_t)cascade->channels;
   level->scale = level_scale(cascade, index);
-  if (index > 0 && level->scale > 2 * cascade->level[index - 1].scale) level->scale = 2 * cascade->level[index - 1].scale;
+  if (index > 0 && level->scale > 2 * cascade->level[index - 1].scale)
+    level->scale = 2 * cascade->level[index - 1].scale;
   level->tiles_x = (buffer->tiles_x + level->scale - 1) / level->scale;
   level->tiles_y = (buffer->tiles_y + level->scale - 1) / level->scale;
   level->stride = (size_t)level->tiles_x * TILE + CASCADE_MARGIN;
   level->plane = ((size_t)level->tiles_y * TILE + CASCADE_MARGIN) * level->stride;
   level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
   level->capacity = index < 2 ? CASCADE_FEW_GROUPS : CASCADE_GROUPS;
-  level->planes = channels * (2 * (size_t)level->capacity + 2) + (index == 0 ? 2 * channels * MOMENT_PLANES : 1);
+  level->planes = channels * (2 * (size_t)level->capacity + 2) +
+                  (index == 0 ? 2 * channels * MOMENT_PLANES : 1);
   if (cascade->image != NULL) level->planes += 2 * channels;
   level->pixels = level->planes * level->plane + (CASCADE_MARGIN + 1) * level->stride;
 }
 
 /* Zeros for all levels, handed out to them. */
-static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade, hl_error *error) {
+static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory *memory,
+                             soft_cascade *cascade, hl_error *error) {
   size_t pixels = 0;
   for (int i = 0; i < cascade->level_count; i++) pixels += cascade->level[i].pixels;
   if (memory->capacity < pixels) {
@@ -75,12 +85,14 @@ static hl_status open_memory(hl_context *context, hl_pool *pool, cascade_memory 
     memory->pixels = hl_allocate(context, pixels, sizeof *memory->pixels);
     memory->capacity = memory->pixels == NULL ? 0 : pixels;
     memory->zeros = false;
-    if (memory->pixels == NULL) return hl_fail_memory(error, pixels * sizeof *memory->pixels, "a cascade of shadows");
+    if (memory->pixels == NULL)
+      return hl_fail_memory(error, pixels * sizeof *memory->pixels, "a cascade of shadows");
   }
   if (!memory->zeros) hl_pool_clear(pool, memory->pixels, memory->capacity * sizeof *memory->pixels);
   memory->zeros = false;
   field_pixel *next = memory->pixels;
-  for (int i = 0; i < cascade->level_count; next += cascade->level[i].pixels, i++) cascade->level[i].memory = next;
+  for (int i = 0; i < cascade->level_count; next += cascade->level[i].pixels, i++)
+    cascade->level[i].memory = next;
   return HL_OK;
 }
 
@@ -100,7 +112,8 @@ static void sum_up_parts(cascade_level *level) {
 static hl_status open_level(hl_context *context, soft_cascade *cascade, int index, const sheet_light *light,
                             hl_error *error) {
   cascade_level *level = &cascade->level[index];
-  size_t channels = (size_t)cascade->channels, used = 0, tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
+  size_t channels = (size_t)cascade->channels, used = 0,
+         tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
   level->flags = hl_allocate(context, level->planes, tiles);
   level->boxes = hl_allocate(context, (size_t)(level->tiles_x + level->tiles_y), sizeof *level->boxes);
   if (level->flags == NULL || level->boxes == NULL)
@@ -117,7 +130,8 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
     for (int i = 0; i < 2; i++) level->sum[i][c] = next_field(level, &used);
   }
   if (index > 0) level->scratch = next_field(level, &used);
-  for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++) level->mean[c % 2][c / 2] = next_field(level, &used);
+  for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++)
+    level->mean[c % 2][c / 2] = next_field(level, &used);
   for (size_t c = 0; c < channels && index == 0; c++) {
     cascade->shade[c] = level->sum[0][c];
     cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
@@ -129,12 +143,16 @@ static hl_status open_level(hl_context *context, soft_cascade *cascade, int inde
 }
 
 /* Chunks and levels for a buffer whose view, tiles and channels are known. */
-static void plan(soft_cascade *cascade, const sheet_light *light, const light_image *image, vec3 normal, double first,
-                 double last, double pixel, const shadow_buffer *buffer) {
+static void plan(soft_cascade *cascade, const sheet_light *light, const light_image *image, vec3 normal,
+                 double first, double last, double pixel, const shadow_buffer *buffer) {
   double widest = fmax(light->width_u, light->width_v);
-  *cascade = (soft_cascade){.parallel = light->parallel, .channels = buffer->channels, .rate = widest / pixel,
-                            .widest = widest, .least_part = fmin(light->width_u, light->width_v) / widest,
-                            .light_height = vec3_dot(light->middle, normal), .image = image};
+  *cascade = (soft_cascade){.parallel = light->parallel,
+                            .channels = buffer->channels,
+                            .rate = widest / pixel,
+                            .widest = widest,
+                            .least_part = fmin(light->width_u, light->width_v) / widest,
+                            .light_height = vec3_dot(light->middle, normal),
+                            .image = image};
   const vec3 along[2] = {light->u, light->v};
   for (int axis = 0; axis < 2; axis++) {
     cascade->slope_start[axis] = vec3_dot(buffer->view.corner, along[axis]);
@@ -146,19 +164,25 @@ static void plan(soft_cascade *cascade, const sheet_light *light, const light_im
   double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
   cascade->chunk_start = start;
   cascade->chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
-  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels 0 and 1) */
+  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels
+   * 0 and 1) */
   int levels = 2 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) lay_out_level(cascade, i, buffer);
 }
 
-void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
-                           double pixel, const view *view, int channels, uint64_t *kept, uint64_t *passing) {
+void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, vec3 normal, double first,
+                           double last, double pixel, const view *view, int channels, uint64_t *kept,
+                           uint64_t *passing) {
   soft_cascade cascade;
-  shadow_buffer buffer = {.view = *view, .channels = channels, .tiles_x = hl_tiles(view->width), .tiles_y = hl_tiles(view->height)};
+  shadow_buffer buffer = {.view = *view,
+                          .channels = channels,
+                          .tiles_x = hl_tiles(view->width),
+                          .tiles_y = hl_tiles(view->height)};
   plan(&cascade, light, image, normal, first, last, pixel, &buffer);
   *kept = 0;
-  *passing = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y * 2 + ((uint64_t)buffer.tiles_x + 1) * ((uint64_t)buffer.tiles_y + 1) * 4;
+  *passing = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y * 2 +
+             ((uint64_t)buffer.tiles_x + 1) * ((uint64_t)buffer.tiles_y + 1) * 4;
   for (int i = 0; i < cascade.level_count; i++) {
     const cascade_level *level = &cascade.level[i];
     uint64_t tiles_x = (uint64_t)level->tiles_x, tiles_y = (uint64_t)level->tiles_y;
@@ -167,17 +191,20 @@ void hl_soft_cascade_bytes(const sheet_light *light, const light_image *image, v
   }
 }
 
-hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory, soft_cascade *cascade,
-                                const sheet_light *light, const light_image *image, vec3 normal, double first, double last,
-                                double pixel, double lookup_variance, shadow_buffer *buffer, hl_error *error) {
+hl_status hl_soft_cascade_begin(hl_context *context, hl_pool *pool, cascade_memory *memory,
+                                soft_cascade *cascade, const sheet_light *light, const light_image *image,
+                                vec3 normal, double first, double last, double pixel, double lookup_variance,
+                                shadow_buffer *buffer, hl_error *error) {
   plan(cascade, light, image, normal, first, last, pixel, buffer);
   cascade->lookup_variance = lookup_variance;
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   cascade->touched = hl_allocate_zeroed(context, tiles, 1);
   cascade->refilled = hl_allocate_zeroed(context, tiles, 1);
   cascade->reads = (cascade_reads){buffer->tiles_x, buffer->tiles_y, NULL};
-  cascade->reads.before = hl_allocate(context, (size_t)(buffer->tiles_x + 1) * (size_t)(buffer->tiles_y + 1), sizeof(uint32_t));
-  if (cascade->touched == NULL || cascade->refilled == NULL || cascade->reads.before == NULL) return hl_fail_memory(error, 5 * tiles, "a cascade of shadows");
+  cascade->reads.before = hl_allocate(context, (size_t)(buffer->tiles_x + 1) * (size_t)(buffer->tiles_y + 1),
+                                      sizeof(uint32_t));
+  if (cascade->touched == NULL || cascade->refilled == NULL || cascade->reads.before == NULL)
+    return hl_fail_memory(error, 5 * tiles, "a cascade of shadows");
   hl_status status = open_memory(context, pool, memory, cascade, error);
   for (int i = 0; i < cascade->level_count && status == HL_OK; i++)
     status = open_level(context, cascade, i, light, error);
@@ -202,14 +229,16 @@ static void clear_moments(const soft_cascade *cascade) {
   for (size_t tile = 0; tile < (size_t)level->tiles_x * (size_t)level->tiles_y; tile++) {
     size_t at = tile / (size_t)level->tiles_x * TILE * level->stride + tile % (size_t)level->tiles_x * TILE;
     for (int c = 0; c < cascade->channels && cascade->touched[tile]; c++)
-      for (size_t row = 0; row < TILE; row++) memset(cascade->moment[c] + at + row * level->stride, 0, TILE * sizeof(float));
+      for (size_t row = 0; row < TILE; row++)
+        memset(cascade->moment[c] + at + row * level->stride, 0, TILE * sizeof(float));
   }
   for (int c = 0; c < cascade->channels; c++)
     memset(cascade->lacked[c], 0, (size_t)level->tiles_y * TILE * level->stride * sizeof(float));
 }
 
 static void give_back_memory(hl_pool *pool, soft_cascade *cascade) {
-  for (int i = 0; i < cascade->level_count; i++) hl_pool_run(pool, cascade->level[i].planes, clear_plane, &cascade->level[i]);
+  for (int i = 0; i < cascade->level_count; i++)
+    hl_pool_run(pool, cascade->level[i].planes, clear_plane, &cascade->level[i]);
   clear_moments(cascade);
   cascade->memory->zeros = !hl_pool_cancelled(pool);
 }
@@ -231,13 +260,19 @@ static double variance_between(double wide, double narrow) {
   return fmax(wide * wide - narrow * narrow, 0) / 12;
 }
 
-/* What a level's sums are blurred by its pixels on the way to the buffer (derived: halving takes the mean of two pixels, of
- * variance 1/4, and the bilinear way back weighs 3/4 and 1/4, of variance 3/4; s^2 in all from s to 2 s, a geometric sum). */
-static double resampled_by(const cascade_level *level) { return ((double)level->scale * level->scale - 1) / 3; }
+/* What a level's sums are blurred by its pixels on the way to the buffer (derived: halving takes the mean of
+ * two pixels, of variance 1/4, and the bilinear way back weighs 3/4 and 1/4, of variance 3/4; s^2 in all from
+ * s to 2 s, a geometric sum). */
+static double resampled_by(const cascade_level *level) {
+  return ((double)level->scale * level->scale - 1) / 3;
+}
 
-/* From a level's sum to a place in a level as fine or finer. What resampling blurs too much for this way is owed by the next. */
-static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega, cascade_level *to) {
-  double variance = variance_between(receiver - from->sum_omega, receiver - omega), pixel = (double)from->scale * from->scale;
+/* From a level's sum to a place in a level as fine or finer. What resampling blurs too much for this way is
+ * owed by the next. */
+static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega,
+                                 cascade_level *to) {
+  double variance = variance_between(receiver - from->sum_omega, receiver - omega),
+         pixel = (double)from->scale * from->scale;
   cascade_blur blur = {.variance = variance / pixel};
   for (int axis = 0; axis < 2; axis++) {
     double resampled = resampled_by(from) - resampled_by(to) + from->owed[axis];
@@ -262,7 +297,8 @@ static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   const cascade_group *from = &level->group[0];
   cascade_group *to = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++) {
-    hl_cascade_add(crew, level, &from->absorbed[c], NULL, NULL, NULL, next, &to->absorbed[c], READ_EVERYWHERE);
+    hl_cascade_add(crew, level, &from->absorbed[c], NULL, NULL, NULL, next, &to->absorbed[c],
+                   READ_EVERYWHERE);
     hl_cascade_add(crew, level, &from->thin[c], NULL, NULL, NULL, next, &to->thin[c], READ_EVERYWHERE);
   }
   to->omega = from->omega;
@@ -271,9 +307,10 @@ static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   forget_oldest(level, 1);
 }
 
-/* The two oldest groups of a level go to the next, where the first has a group at its own place already and the second lies
- * between that and a new one at the third's place: what it took is shared between them by its distances (derived: kernels
- * are then linear between groups, so that what a penumbra's middle should be is kept). */
+/* The two oldest groups of a level go to the next, where the first has a group at its own place already and
+ * the second lies between that and a new one at the third's place: what it took is shared between them by its
+ * distances (derived: kernels are then linear between groups, so that what a penumbra's middle should be is
+ * kept). */
 static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
   cascade_group a = level->group[0], b = level->group[1];
@@ -282,8 +319,9 @@ static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew)
   cascade_group *first = &next->group[next->count - 1], *second = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++) {
     const cascade_matter spare = {&level->scratch, &level->sum[!level->newest][c]};
-    hl_cascade_merge(crew, level, &(cascade_matter){&a.absorbed[c], &a.thin[c]}, &(cascade_matter){&b.absorbed[c], &b.thin[c]}, late,
-                     &spare, next, &(cascade_matter){&first->absorbed[c], &first->thin[c]},
+    hl_cascade_merge(crew, level, &(cascade_matter){&a.absorbed[c], &a.thin[c]},
+                     &(cascade_matter){&b.absorbed[c], &b.thin[c]}, late, &spare, next,
+                     &(cascade_matter){&first->absorbed[c], &first->thin[c]},
                      &(cascade_matter){&second->absorbed[c], &second->thin[c]});
   }
   first->filled = first->filled || a.filled || b.filled;
@@ -307,8 +345,15 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
   const cascade_field *end[2] = {&task->end->absorbed[channel], &task->end->thin[channel]};
   size_t tile = tile_y * (size_t)level->tiles_x + tile_x;
   bool touched = task->cascade->touched[tile];
-  absorbed_job job = {task->cascade->lacked[channel], task->buffer->transmittance[channel], task->cascade->moment[channel],
-                      (float)task->length, start[0]->pixels, start[1]->pixels, end[0]->pixels, end[1]->pixels, level->stride,
+  absorbed_job job = {task->cascade->lacked[channel],
+                      task->buffer->transmittance[channel],
+                      task->cascade->moment[channel],
+                      (float)task->length,
+                      start[0]->pixels,
+                      start[1]->pixels,
+                      end[0]->pixels,
+                      end[1]->pixels,
+                      level->stride,
                       task->buffer->stride};
   if (!touched) {
     for (int i = 0; i < 2; i++) hl_cascade_clear_tile(level, end[i], (int)tile_x, (int)tile_y);
@@ -321,8 +366,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
   }
 }
 
-/* What the chunk's slabs took of the light that reached the chunk goes to the groups at its two ends. Tiles stay marked until the
- * buffer is refilled. */
+/* What the chunk's slabs took of the light that reached the chunk goes to the groups at its two ends. Tiles
+ * stay marked until the buffer is refilled. */
 static void absorb_part(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
@@ -333,7 +378,8 @@ static void absorb_part(void *data, size_t index, int worker) {
   }
 }
 
-static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, double omega, const cascade_crew *crew) {
+static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, double omega,
+                       const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0];
   cascade_group *start = &level->group[level->count - 1], *end = &level->group[level->count++];
   end->filled = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
@@ -366,7 +412,8 @@ float hl_soft_cascade_age(const soft_cascade *cascade, const sheet_stack *sheets
 void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_job *job) {
   const cascade_level *level = &cascade->level[0];
   size_t tile_x = tile % (size_t)level->tiles_x, tile_y = tile / (size_t)level->tiles_x;
-  for (int c = 0; c < cascade->channels; c++) job->moment[c] = cascade->moment[c] + tile_y * TILE * level->stride + tile_x * TILE;
+  for (int c = 0; c < cascade->channels; c++)
+    job->moment[c] = cascade->moment[c] + tile_y * TILE * level->stride + tile_x * TILE;
   job->moment_stride = level->stride;
   job->place = (float)cascade->slab;
 }
@@ -374,10 +421,12 @@ void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_j
 /* Reaches add up, but for what is read everywhere. */
 static int reach_beyond(int reach, int more) { return reach == READ_EVERYWHERE ? reach : reach + more; }
 
-/* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's thin matter
- * and added to own there (null: zeros), as far as it is read. Blurs are done at the farther level, where they are cheap. */
+/* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's
+ * thin matter and added to own there (null: zeros), as far as it is read. Blurs are done at the farther
+ * level, where they are cheap. */
 static void bring(cascade_level *from, const cascade_field *sum, cascade_blur blur, cascade_level *to_level,
-                  const cascade_field *own, const cascade_field *thin, const cascade_field *to, int reach, const cascade_crew *crew) {
+                  const cascade_field *own, const cascade_field *thin, const cascade_field *to, int reach,
+                  const cascade_crew *crew) {
   if (from->scale == to_level->scale) {
     hl_cascade_blur_add(crew, from, sum, own, thin, to, blur, reach);
     return;
@@ -406,29 +455,37 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
   const cascade_field *sum = from->sum[from->newest];
   level->newest = !level->newest;
   for (int c = 0; c < channels; c++)
-    bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c], reach, crew);
+    bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c],
+          reach, crew);
 }
 
 /* Nothing lies before the farthest group, whose penumbra pays for the look-up. */
-static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group, const cascade_crew *crew) {
+static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
+                       const cascade_crew *crew) {
   level->owed[0] = level->owed[1] = cascade->lookup_variance;
   for (int c = 0; c < cascade->channels; c++)
-    hl_cascade_add(crew, level, &group->absorbed[c], NULL, NULL, NULL, level, &level->sum[level->newest][c], READ_EVERYWHERE);
+    hl_cascade_add(crew, level, &group->absorbed[c], NULL, NULL, NULL, level, &level->sum[level->newest][c],
+                   READ_EVERYWHERE);
 }
 
 /* ---- where the next slabs read ---- */
 
 /* In the tiles that sheets up to the next chunk's end can touch. */
-static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const sheet_stack *sheets, int sheet) {
+static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const sheet_stack *sheets,
+                       int sheet) {
   int last = sheet;
-  while (last < sheets->count - 1 && omega_at(cascade, hl_sheet_height(sheets, last)) - cascade->chunk_start < cascade->chunk) last++;
+  while (last < sheets->count - 1 &&
+         omega_at(cascade, hl_sheet_height(sheets, last)) - cascade->chunk_start < cascade->chunk)
+    last++;
   hl_cascade_reads_find(&cascade->reads, occupancy, sheet, last);
 }
 
-/* How far what is on the way from one group, or the sum behind it, to the next is blurred and resampled, pixels of the buffer. */
+/* How far what is on the way from one group, or the sum behind it, to the next is blurred and resampled,
+ * pixels of the buffer. */
 static int reach_of(const cascade_level *level, double variance, const cascade_level *next) {
   double own = variance * level->greatest_part / ((double)level->scale * level->scale);
-  return (hl_blur_box_of_variance(own).reach + 1) * level->scale + hl_cascade_doubling_reach(level->scale, next->scale);
+  return (hl_blur_box_of_variance(own).reach + 1) * level->scale +
+         hl_cascade_doubling_reach(level->scale, next->scale);
 }
 
 /* How far what passed group g of a level is still blurred on its way to the buffer, pixels of that. */
@@ -440,7 +497,8 @@ static int reach_behind(const soft_cascade *cascade, int index, int g, double re
     const cascade_level *level = &cascade->level[i];
     for (; later < level->count; later++) {
       if (!level->group[later].filled) continue;
-      reach += reach_of(from, variance_between(receiver - omega, receiver - level->group[later].omega), level);
+      reach += reach_of(from, variance_between(receiver - omega, receiver - level->group[later].omega),
+                        level);
       from = level;
       omega = level->group[later].omega;
     }
@@ -448,9 +506,9 @@ static int reach_behind(const soft_cascade *cascade, int index, int g, double re
   return reach + reach_of(from, variance_between(receiver - omega, 0), &cascade->level[0]);
 }
 
-/* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. Empty groups are left
- * out, which keeps blurs few and kernels boxes. Returns the nearest level with anything in sum; null if nothing is in
- * the way. */
+/* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. Empty
+ * groups are left out, which keeps blurs few and kernels boxes. Returns the nearest level with anything in
+ * sum; null if nothing is in the way. */
 static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *sum = NULL;
   bool due = false;
@@ -501,12 +559,18 @@ static void light_part(void *data, size_t index, int worker) {
     size_t tile = (size_t)part.y * (size_t)level->tiles_x + (size_t)tile_x;
     if (!hl_cascade_is_read(&read, &read.all, tile_x)) continue;
     bool shaded = false;
-    for (int c = 0; c < buffer->channels && task->any; c++) shaded = shaded || !task->cascade->shade[c].zeros[tile];
+    for (int c = 0; c < buffer->channels && task->any; c++)
+      shaded = shaded || !task->cascade->shade[c].zeros[tile];
     bool kept = task->cascade->touched[tile], again = task->cascade->refilled[tile] & REFILLED_BEFORE;
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
-      left_job job = {.lacking = task->cascade->shade[c].pixels, .stride = level->stride, .lacked = task->cascade->lacked[c],
-                      .to = buffer->transmittance[c], .older = buffer->second[c], .stride_to = buffer->stride,
-                      .kept = kept, .again = again};
+      left_job job = {.lacking = task->cascade->shade[c].pixels,
+                      .stride = level->stride,
+                      .lacked = task->cascade->lacked[c],
+                      .to = buffer->transmittance[c],
+                      .older = buffer->second[c],
+                      .stride_to = buffer->stride,
+                      .kept = kept,
+                      .again = again};
       task->functions->left(&job, tile_x, part.y);
     }
     buffer->tile_touched[tile] = shaded || kept;
@@ -541,11 +605,13 @@ static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, bool any
 static void begin_chunk(soft_cascade *cascade) {
   size_t tiles = (size_t)cascade->level[0].tiles_x * (size_t)cascade->level[0].tiles_y;
   memset(cascade->touched, 0, tiles);
-  for (size_t tile = 0; tile < tiles; tile++) cascade->refilled[tile] = cascade->refilled[tile] & REFILLED_NOW ? REFILLED_BEFORE : 0;
+  for (size_t tile = 0; tile < tiles; tile++)
+    cascade->refilled[tile] = cascade->refilled[tile] & REFILLED_NOW ? REFILLED_BEFORE : 0;
 }
 
 void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
-                             const sheet_stack *sheets, int sheet, hl_pool *pool, const cascade_functions *functions) {
+                             const sheet_stack *sheets, int sheet, hl_pool *pool,
+                             const cascade_functions *functions) {
   double omega = omega_at(cascade, hl_sheet_height(sheets, sheet));
   if (!isfinite(omega) || omega - cascade->chunk_start < cascade->chunk) return;
   const cascade_crew crew = {pool, functions, &cascade->reads};

@@ -1,10 +1,10 @@
 /* light/soft_cascade_image.c - a cascade's groups through a light with an image: each by its own kernel.
  *
- * Boxes may be blurred step by step, since of them variances alone matter. An image must be whole in every penumbra: what
- * group o absorbed is weighed at once by the taps of the image, scaled to w(o -> r) (light_image.h), far groups first:
- * s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel (derived as in soft_cascade.h; without thin matter it is
- * the sum over groups of K(G), which is the light's mean of what its cells see). Nothing is kept from one receiver to the
- * next; far groups are coarse. */
+ * Boxes may be blurred step by step, since of them variances alone matter. An image must be whole in every
+ * penumbra: what group o absorbed is weighed at once by the taps of the image, scaled to w(o -> r)
+ * (light_image.h), far groups first: s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel (derived
+ * as in soft_cascade.h; without thin matter it is the sum over groups of K(G), which is the light's mean of
+ * what its cells see). Nothing is kept from one receiver to the next; far groups are coarse. */
 #include "light/cascade_passes.h"
 
 #include <string.h>
@@ -13,10 +13,10 @@ typedef struct image_pass {
   const soft_cascade *cascade;
   cascade_level *level;
   const cascade_group *group;
-  double width;         /* of the group's penumbra, pixels of the level */
+  double width; /* of the group's penumbra, pixels of the level */
   int step[2];
-  bool averaged;        /* pre holds the group's means over step pixels */
-  int reach;            /* of the taps and the means, tiles */
+  bool averaged; /* pre holds the group's means over step pixels */
+  int reach;     /* of the taps and the means, tiles */
   const cascade_functions *functions;
 } image_pass;
 
@@ -25,9 +25,11 @@ static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_le
   return level == &cascade->level[0] ? &cascade->shade[channel] : &level->sum[0][channel];
 }
 
-/* What is read of a row of tiles: by the next slabs, or for the next finer level, which weighs neighbouring pixels. */
+/* What is read of a row of tiles: by the next slabs, or for the next finer level, which weighs neighbouring
+ * pixels. */
 static read_row row_read(const soft_cascade *cascade, const cascade_level *level, size_t y) {
-  return hl_cascade_read_row(&cascade->reads, level->scale, (int)y, hl_cascade_doubling_reach(level->scale, 1));
+  return hl_cascade_read_row(&cascade->reads, level->scale, (int)y,
+                             hl_cascade_doubling_reach(level->scale, 1));
 }
 
 /* ---- the sum of the farther levels ---- */
@@ -42,18 +44,24 @@ typedef struct start_task {
   const cascade_functions *functions;
 } start_task;
 
-static void start_tile(const start_task *task, const cascade_field *from, const cascade_field *to, int x, int y) {
+static void start_tile(const start_task *task, const cascade_field *from, const cascade_field *to, int x,
+                       int y) {
   const cascade_level *level = task->level, *farther = task->farther;
   int ratio = farther == NULL ? 1 : farther->scale / level->scale;
   if (farther == NULL || !any_near(farther, from, x / ratio, y / ratio, ratio - 1)) {
     hl_cascade_clear_tile(level, to, x, y);
     return;
   }
-  field_job job = {.a = from->pixels, .to = to->pixels, .stride_in = farther->stride, .stride = level->stride, .rows = ALL_ROWS};
+  field_job job = {.a = from->pixels,
+                   .to = to->pixels,
+                   .stride_in = farther->stride,
+                   .stride = level->stride,
+                   .rows = ALL_ROWS};
   size_t at = (size_t)y * TILE * level->stride + (size_t)x * TILE;
   int above_zero = ratio == 1 || task->functions->double_tile(&job, x, y);
   for (size_t row = 0; row < TILE && ratio == 1; row++)
-    memcpy(to->pixels + at + row * level->stride, from->pixels + at + row * level->stride, TILE * sizeof(field_pixel));
+    memcpy(to->pixels + at + row * level->stride, from->pixels + at + row * level->stride,
+           TILE * sizeof(field_pixel));
   to->zeros[y * level->tiles_x + x] = !above_zero;
 }
 
@@ -81,25 +89,32 @@ static void average_row(void *data, size_t index, int worker) {
     const cascade_field *from[2] = {&pass->group->absorbed[c], &pass->group->thin[c]};
     for (int i = 0; i < 2; i++) {
       const cascade_field *to = &level->mean[i][c];
-      field_blur_job job = {.from = from[i]->pixels, .to = to->pixels, .stride = level->stride,
-                          .u = hl_blur_box((float)pass->step[0]), .v = hl_blur_box((float)pass->step[1]), .rows = ALL_ROWS};
+      field_blur_job job = {.from = from[i]->pixels,
+                            .to = to->pixels,
+                            .stride = level->stride,
+                            .u = hl_blur_box((float)pass->step[0]),
+                            .v = hl_blur_box((float)pass->step[1]),
+                            .rows = ALL_ROWS};
       for (int x = 0; x < level->tiles_x; x++) {
         if (!any_near(level, from[i], x, (int)index, 1)) {
           hl_cascade_clear_tile(level, to, x, (int)index);
           continue;
         }
-        to->zeros[index * (size_t)level->tiles_x + (size_t)x] = !pass->functions->blur_add(&job, x, (int)index);
+        to->zeros[index * (size_t)level->tiles_x + (size_t)x] = !pass->functions->blur_add(&job, x,
+                                                                                           (int)index);
       }
     }
   }
 }
 
 /* Taps that look beyond the level's zeros see nothing. Returns how many are left. */
-static int offsets_of(const cascade_level *level, const image_taps *taps, int x, int y, ptrdiff_t *offset, int *kept) {
+static int offsets_of(const cascade_level *level, const image_taps *taps, int x, int y, ptrdiff_t *offset,
+                      int *kept) {
   int count = 0;
   for (int i = 0; i < taps->count; i++) {
     int left = x * TILE + taps->x[i], top = y * TILE + taps->y[i];
-    if (left <= -TILE || top <= -TILE || left >= level->tiles_x * TILE || top >= level->tiles_y * TILE) continue;
+    if (left <= -TILE || top <= -TILE || left >= level->tiles_x * TILE || top >= level->tiles_y * TILE)
+      continue;
     offset[count] = (ptrdiff_t)taps->y[i] * (ptrdiff_t)level->stride + taps->x[i];
     kept[count++] = i;
   }
@@ -117,8 +132,13 @@ static void add_tile(const image_pass *pass, const image_taps *taps, int x, int 
     if (!any_near(level, from, x, y, pass->reach)) continue;
     float weight[IMAGE_TAPS];
     for (int i = 0; i < count; i++) weight[i] = taps->weight[c][kept[i]];
-    field_image_job job = {.from = from->pixels, .thin = thin->pixels, .to = to->pixels, .stride = level->stride,
-                     .count = count, .offset = offset, .weight = weight};
+    field_image_job job = {.from = from->pixels,
+                           .thin = thin->pixels,
+                           .to = to->pixels,
+                           .stride = level->stride,
+                           .count = count,
+                           .offset = offset,
+                           .weight = weight};
     to->zeros[y * level->tiles_x + x] = !pass->functions->image_add(&job, x, y);
   }
 }
@@ -133,17 +153,22 @@ static void add_row(void *data, size_t index, int worker) {
   const read_row read = row_read(cascade, level, index);
   for (int x = 0; x < level->tiles_x; x++) {
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
-    const double slope[2] = {cascade->slope_start[0] + cascade->slope_step[0] * (x + 0.5) * TILE * level->scale,
-                             cascade->slope_start[1] + cascade->slope_step[1] * ((double)index + 0.5) * TILE * level->scale};
-    if (!known || cascade->image->tilted) hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
+    const double slope[2] = {
+        cascade->slope_start[0] + cascade->slope_step[0] * (x + 0.5) * TILE * level->scale,
+        cascade->slope_start[1] + cascade->slope_step[1] * ((double)index + 0.5) * TILE * level->scale};
+    if (!known || cascade->image->tilted)
+      hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
     known = true;
     add_tile(pass, &taps, x, (int)index);
   }
 }
 
-static void add_group(const soft_cascade *cascade, cascade_level *level, const cascade_group *group, double receiver,
-                      const cascade_crew *crew) {
-  image_pass pass = {.cascade = cascade, .level = level, .group = group, .functions = crew->functions,
+static void add_group(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
+                      double receiver, const cascade_crew *crew) {
+  image_pass pass = {.cascade = cascade,
+                     .level = level,
+                     .group = group,
+                     .functions = crew->functions,
                      .width = fmax(receiver - group->omega, 0) / level->scale};
   hl_light_image_steps(cascade->image, pass.width, pass.step);
   pass.averaged = pass.step[0] > 1 || pass.step[1] > 1;

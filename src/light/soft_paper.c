@@ -5,12 +5,12 @@
 
 #include <string.h>
 
-/* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets (section 5.2,
- * (1)), of average size (section 5.2, (3)): a disk of diameter L tilted by t becomes an ellipse with axes L and L cos t.
- * Z is measured along the sheets' normal; for parallel light L / Z then is (L / D) / cos t with L / D = 2 tan(angle / 2)
- * along the ray (derived). */
-void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first, const view *view,
-                         light_image *image) {
+/* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets
+ * (section 5.2, (1)), of average size (section 5.2, (3)): a disk of diameter L tilted by t becomes an ellipse
+ * with axes L and L cos t. Z is measured along the sheets' normal; for parallel light L / Z then is (L / D) /
+ * cos t with L / D = 2 tan(angle / 2) along the ray (derived). */
+void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first,
+                         const view *view, light_image *image) {
   double tilt = fmax(vec3_dot(source->direction, normal), 1e-3);
   soft->parallel = source->parallel;
   soft->size = hl_light_average_size(source, normal);
@@ -23,7 +23,8 @@ void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 norm
   soft->remainder = 0;
 }
 
-/* eq. (5): dx = L dZ / Z; seen from the light's centre at distance 1, dx / (Z + dZ) = L (1/Z - 1/(Z + dZ)). */
+/* eq. (5): dx = L dZ / Z; seen from the light's centre at distance 1, dx / (Z + dZ) = L (1/Z - 1/(Z +
+ * dZ)). */
 double hl_soft_paper_width(const soft_paper *soft, double from, double to) {
   if (soft->parallel) return soft->size * (to - from) / soft->pixel;
   double near = from - soft->light_height, far = to - soft->light_height;
@@ -40,7 +41,8 @@ int hl_soft_paper_reach(soft_paper *soft, double first, double spacing, int shee
   return soft->reach;
 }
 
-/* One convolution: from the buffer to the scratch and back, tile by tile, all channels of a tile in one go. */
+/* One convolution: from the buffer to the scratch and back, tile by tile, all channels of a tile in one
+ * go. */
 typedef struct convolution {
   shadow_buffer *buffer;
   const unsigned char *wanted; /* [tiles] */
@@ -58,7 +60,8 @@ static void blur_rows(void *data, size_t index, int worker) {
   const shadow_buffer *buffer = task->buffer;
   for (int x = 0; x < buffer->tiles_x; x++)
     for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
-      const blur_job job = {buffer->transmittance[c], buffer->second[c], buffer->stride, buffer->stride, task->box};
+      const blur_job job = {buffer->transmittance[c], buffer->second[c], buffer->stride, buffer->stride,
+                            task->box};
       task->blur->rows(&job, x, (int)index);
     }
 }
@@ -70,7 +73,8 @@ static void blur_columns(void *data, size_t index, int worker) {
   for (int x = 0; x < buffer->tiles_x; x++) {
     if (!task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]) continue;
     for (int c = 0; c < buffer->channels; c++) {
-      const blur_job job = {buffer->second[c], buffer->transmittance[c], buffer->stride, buffer->stride, task->box};
+      const blur_job job = {buffer->second[c], buffer->transmittance[c], buffer->stride, buffer->stride,
+                            task->box};
       task->blur->columns(&job, x, (int)index);
     }
     hl_shadow_buffer_find_lit(buffer, x, (int)index, false, task->blur->lit_blocks);
@@ -83,8 +87,12 @@ static void weigh_image(void *data, size_t index, int worker) {
   const shadow_buffer *buffer = task->buffer;
   for (int x = 0; x < buffer->tiles_x; x++)
     for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
-      const image_job job = {.from = buffer->transmittance[c], .to = buffer->second[c], .stride = buffer->stride,
-                             .count = task->count, .offset = task->offset, .weight = task->taps->weight[c]};
+      const image_job job = {.from = buffer->transmittance[c],
+                             .to = buffer->second[c],
+                             .stride = buffer->stride,
+                             .count = task->count,
+                             .offset = task->offset,
+                             .weight = task->taps->weight[c]};
       task->blur->image(&job, x, (int)index);
     }
 }
@@ -109,7 +117,8 @@ static void convolve_with_image(const soft_paper *soft, convolution *task, int w
   ptrdiff_t offset[IMAGE_TAPS];
   const int step[2] = {1, 1};
   hl_light_image_taps(soft->image, width, step, (const double[2]){0, 0}, &taps);
-  for (int i = 0; i < taps.count; i++) offset[i] = (ptrdiff_t)taps.y[i] * (ptrdiff_t)task->buffer->stride + taps.x[i];
+  for (int i = 0; i < taps.count; i++)
+    offset[i] = (ptrdiff_t)taps.y[i] * (ptrdiff_t)task->buffer->stride + taps.x[i];
   task->count = taps.count;
   task->offset = offset;
   task->taps = &taps;
@@ -118,7 +127,8 @@ static void convolve_with_image(const soft_paper *soft, convolution *task, int w
 }
 
 /* Tiles within reach of one that light was taken from. */
-static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const unsigned char *from, unsigned char *to) {
+static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const unsigned char *from,
+                           unsigned char *to) {
   for (int y = 0; y < buffer->tiles_y; y++)
     for (int x = 0; x < buffer->tiles_x; x++) {
       unsigned char found = 0;
@@ -131,7 +141,8 @@ static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const u
 }
 
 /* Only the tiles that can change. Tiles outside hold 1 in the buffer and in the scratch. */
-static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, hl_pool *pool, const blur_functions *blur) {
+static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, hl_pool *pool,
+                     const blur_functions *blur) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
   blur_box box = hl_blur_box((float)width);
@@ -147,12 +158,13 @@ static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, h
   memcpy(touched, spread, tiles);
 }
 
-/* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest. An image has
- * one tap a pixel and no more of them than cells: wider steps are several. */
+/* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest.
+ * An image has one tap a pixel and no more of them than cells: wider steps are several. */
 void hl_soft_paper_convolve(soft_paper *soft, shadow_buffer *buffer, double next, hl_pool *pool,
                             const blur_functions *blur) {
   double width = soft->remainder + hl_soft_paper_width(soft, soft->last, next);
-  double most = soft->image == NULL ? 2 * soft->reach : IMAGE_SIDE; /* no box reads beyond the buffer's margin */
+  double most = soft->image == NULL ? 2 * soft->reach
+                                    : IMAGE_SIDE; /* no box reads beyond the buffer's margin */
   if (width <= 2) return;
   do {
     double whole = fmin(floor(width), most);

@@ -1,8 +1,9 @@
 /* light/soft_paper.h - the paper's soft shadows (sections 5.1 and 5.2), kept faithful as the baseline.
  *
  * One accumulated buffer, convolved again and again with a box of the width that eq. (5) gives for the step
- * from the last convolved sheet to the next one, or with the light's own image at that width. Under convolution variances add, not widths: the penumbra
- * grows as the square root of distance. That is the paper's method, and the error that others improve on. */
+ * from the last convolved sheet to the next one, or with the light's own image at that width. Under
+ * convolution variances add, not widths: the penumbra grows as the square root of distance. That is the
+ * paper's method, and the error that others improve on. */
 #ifndef HL_LIGHT_SOFT_PAPER_H
 #define HL_LIGHT_SOFT_PAPER_H
 
@@ -23,8 +24,8 @@ typedef struct soft_paper {
 } soft_paper;
 
 /* first: height of the first sheet. image: of the light, null where it is even; its cells are placed here. */
-void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first, const view *view,
-                         light_image *image);
+void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first,
+                         const view *view, light_image *image);
 
 /* Width in pixels of eq. (5) between two heights. */
 double hl_soft_paper_width(const soft_paper *soft, double from, double to);

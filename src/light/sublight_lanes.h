@@ -1,9 +1,10 @@
-/* light/sublight_lanes.h - one tile of one part's buffer times the slab, scaled and shifted, a row of sixteen pixels at a time.
+/* light/sublight_lanes.h - one tile of one part's buffer times the slab, scaled and shifted, a row of sixteen
+ * pixels at a time.
  *
- * What a part's pixel gets is the slab's value at the nearest half pixel. Values between pixels are those of cubic
- * convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image processing", 1981): weights -1/8, 5/8,
- * 5/8, -1/8. They are sharper than the samples, by what the bilinear look-up of a buffer blurs (variances: -1/4 at half
- * pixels and 0 at whole ones, against 1/6). */
+ * What a part's pixel gets is the slab's value at the nearest half pixel. Values between pixels are those of
+ * cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image processing", 1981):
+ * weights -1/8, 5/8, 5/8, -1/8. They are sharper than the samples, by what the bilinear look-up of a buffer
+ * blurs (variances: -1/4 at half pixels and 0 at whole ones, against 1/6). */
 #ifndef HL_LIGHT_SUBLIGHT_LANES_H
 #define HL_LIGHT_SUBLIGHT_LANES_H
 
@@ -18,13 +19,14 @@ LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
 }
 
 LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
-  return middle_of_four(lanes_load(at - step), lanes_load(at), lanes_load(at + step), lanes_load(at + 2 * step));
+  return middle_of_four(lanes_load(at - step), lanes_load(at), lanes_load(at + step),
+                        lanes_load(at + 2 * step));
 }
 
 LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
 
-/* The rows of a tile and the next one in which it or its right neighbour's first pixel is below 1. Pixels further out, weighed by
- * less than nothing, bring none in the middle below 1. */
+/* The rows of a tile and the next one in which it or its right neighbour's first pixel is below 1. Pixels
+ * further out, weighed by less than nothing, bring none in the middle below 1. */
 LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
   uint32_t rows = 0;
   for (int row = 0; row <= TILE; row++) {
@@ -43,28 +45,31 @@ static slab_rows half_pixel_tile(const half_pixel_job *job, int tile_x, int tile
     ptrdiff_t at = corner + row * stride;
     const float *from = job->slab + at;
     lanes across = middle_along(from, 1), down = middle_along(from, stride);
-    lanes both = middle_of_four(middle_along(from - stride, 1), across, middle_along(from + stride, 1), middle_along(from + 2 * stride, 1));
+    lanes both = middle_of_four(middle_along(from - stride, 1), across, middle_along(from + stride, 1),
+                                middle_along(from + 2 * stride, 1));
     lanes_store(job->moved[1] + at, across);
     lanes_store(job->moved[2] + at, down);
     lanes_store(job->moved[3] + at, both);
-    rows |= (any_below_one(lanes_load(from)) | any_below_one(across) << TILE | any_below_one(down) << 2 * TILE |
-             any_below_one(both) << 3 * TILE) << row;
+    rows |= (any_below_one(lanes_load(from)) | any_below_one(across) << TILE |
+             any_below_one(down) << 2 * TILE | any_below_one(both) << 3 * TILE)
+            << row;
   }
   return rows;
 }
 
 static const float LANE_PLACES[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* The nearest halves of sixteen coordinates scale * i + start, counted in halves; held between -2 and size + 1. */
+/* The nearest halves of sixteen coordinates scale * i + start, counted in halves; held between -2 and size
+ * + 1. */
 LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
   return lanes_floor(lanes_clamp(lanes_load(LANE_PLACES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
 }
 
 enum { SUBLIGHT_TAPS = 8 };
 
-/* How a row of sixteen pixels reads a row of the slab's images: pixel i is 2 i halves beyond its first pixel's, give or take
- * as many as the two pixels' edges drift apart along the row. Steps are nearly 1, so that those are a few; weight[i] is 1
- * where pixels lie first + i halves from there, else 0. */
+/* How a row of sixteen pixels reads a row of the slab's images: pixel i is 2 i halves beyond its first
+ * pixel's, give or take as many as the two pixels' edges drift apart along the row. Steps are nearly 1, so
+ * that those are a few; weight[i] is 1 where pixels lie first + i halves from there, else 0. */
 typedef struct row_taps {
   int first, count; /* count 0: too many */
   lanes_int half;   /* of each pixel, held inside the slab */
@@ -79,7 +84,8 @@ LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
   int ends[2] = {apart[0], apart[LANES - 1]};
   taps.first = ends[0] < ends[1] ? ends[0] : ends[1];
   taps.count = (ends[0] < ends[1] ? ends[1] : ends[0]) - taps.first + 1;
-  if (taps.count > SUBLIGHT_TAPS || taps.first < -56 || (float)taps.first > 2.0f * job->slab_width + 16.0f) taps.count = 0;
+  if (taps.count > SUBLIGHT_TAPS || taps.first < -56 || (float)taps.first > 2.0f * job->slab_width + 16.0f)
+    taps.count = 0;
   for (int i = 0; i < taps.count; i++) taps.weight[i] = lanes_keep(apart == taps.first + i, lanes_set(1.0f));
   return taps;
 }
@@ -88,7 +94,8 @@ LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
 LANES_INLINE lanes slab_row(const row_taps *taps, const float *const images[2]) {
   if (taps->count == 0) {
     lanes_int column = taps->half >> 1;
-    return lanes_select((taps->half & 1) == 0, lanes_gather(images[0], column), lanes_gather(images[1], column));
+    return lanes_select((taps->half & 1) == 0, lanes_gather(images[0], column),
+                        lanes_gather(images[1], column));
   }
   if (taps->count == 1) return lanes_load(images[taps->first & 1] + (taps->first >> 1));
   lanes sum = lanes_set(0);
@@ -125,7 +132,8 @@ LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[T
   if ((of_tiles[0] | of_tiles[1] | of_tiles[2] | of_tiles[3]) == 0) return 0;
   for (int row = 0; row < TILE; row++) {
     int line = half[row] >> 1, y = line / TILE - y0;
-    if (line >= 0 && y <= y1 - y0) present |= (rows_of_either(of_tiles[y], half[row] & 1) >> line % TILE & 1) << row;
+    if (line >= 0 && y <= y1 - y0)
+      present |= (rows_of_either(of_tiles[y], half[row] & 1) >> line % TILE & 1) << row;
   }
   return present;
 }
@@ -152,7 +160,8 @@ static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, ui
   size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
   uint32_t left = 0;
   for (int row = 0; row < TILE / BLOCK; row++)
-    if ((lit >> 4 * row & 15) != 0) left |= blocks_of_columns(lit_columns(job, corner + (size_t)(row * BLOCK) * job->stride)) << 4 * row;
+    if ((lit >> 4 * row & 15) != 0)
+      left |= blocks_of_columns(lit_columns(job, corner + (size_t)(row * BLOCK) * job->stride)) << 4 * row;
   return lit & left;
 }
 
@@ -167,7 +176,9 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
   size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
   int first, last;
   int32_t halves[TILE];
-  lanes_int half_of_rows = nearest_halves(job->scale[1], job->scale[1] * ((float)(tile_y * TILE) + 0.5f) + job->shift[1] - 0.5f, job->slab_height);
+  lanes_int half_of_rows = nearest_halves(
+      job->scale[1], job->scale[1] * ((float)(tile_y * TILE) + 0.5f) + job->shift[1] - 0.5f,
+      job->slab_height);
   memcpy(halves, &half_of_rows, sizeof halves);
   tiles_of_row(job, &taps, &first, &last);
   for (uint32_t left = present_rows(job, halves, first, last); left != 0; left &= left - 1) {

@@ -25,13 +25,15 @@ static void place_part(const light_source *source, const light_image *image, int
   if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
 }
 
-static void place_parts(sublights *sublights, const light_source *source, const light_image *image, int side, vec3 normal,
-                        const shadow_extent *extent) {
+static void place_parts(sublights *sublights, const light_source *source, const light_image *image, int side,
+                        vec3 normal, const shadow_extent *extent) {
   for (int i = 0; i < sublights->count; i++)
-    place_part(source, image, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x, &sublights->tiles_y);
+    place_part(source, image, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x,
+               &sublights->tiles_y);
 }
 
-/* A margin of a tile on either side, where tiles of the slab reach across the edges; look-ups may read rows beyond the last. */
+/* A margin of a tile on either side, where tiles of the slab reach across the edges; look-ups may read rows
+ * beyond the last. */
 enum { ROWS_BEYOND = 7 };
 static void lay_out_planes(sublights *sublights) {
   sublights->stride = (size_t)(sublights->tiles_x + 3) / 2 * 2 * TILE; /* whole lines of the cache */
@@ -41,26 +43,33 @@ static void lay_out_planes(sublights *sublights) {
 uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
                             const shadow_extent *extent, int channels, const view *slab, int reach) {
   sublights planned = {.channels = channels};
-  uint64_t count = (uint64_t)side * (uint64_t)side, slab_tiles = (uint64_t)hl_tiles(slab->width) * (uint64_t)hl_tiles(slab->height);
+  uint64_t count = (uint64_t)side * (uint64_t)side,
+           slab_tiles = (uint64_t)hl_tiles(slab->width) * (uint64_t)hl_tiles(slab->height);
   view view;
   for (int i = 0; i < side * side; i++)
     place_part(source, image, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
   lay_out_planes(&planned);
   uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
-  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) + count * tiles * (sizeof *planned.flags + 1) + slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
+  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) +
+         count * tiles * (sizeof *planned.flags + 1) +
+         slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
          count * (sizeof *planned.parts + sizeof *planned.lookups) +
-         hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) - hl_shadow_buffer_bytes(slab, 0, false, reach);
+         hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) -
+         hl_shadow_buffer_bytes(slab, 0, false, reach);
 }
 
-static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const shadow_buffer *slab, hl_error *error) {
+static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const shadow_buffer *slab,
+                          hl_error *error) {
   size_t count = (size_t)sublights->count, channels = (size_t)sublights->channels;
   size_t tiles = (size_t)sublights->tiles_x * (size_t)sublights->tiles_y;
   lay_out_planes(sublights);
   size_t pixels = count * channels * sublights->plane, moved = MOVED_IMAGES * channels * slab->plane;
   if ((double)pixels * sizeof(part_pixel) > GREATEST_BYTES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "/render/light_samples: %zu parts of a light need %.1f GB of shadow buffers, more than 4.3: use fewer, or a "
-                   "lower shadow_resolution", count, (double)pixels * sizeof(part_pixel) / 1e9);
+                   "/render/light_samples: %zu parts of a light need %.1f GB of shadow buffers, more than "
+                   "4.3: use fewer, or a "
+                   "lower shadow_resolution",
+                   count, (double)pixels * sizeof(part_pixel) / 1e9);
   hl_context *context = reserve->context;
   sublights->memory = hl_reserve_take(reserve, pixels, sizeof(part_pixel));
   sublights->flags = hl_allocate(context, count * tiles, sizeof *sublights->flags);
@@ -70,8 +79,9 @@ static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *subligh
   size_t slab_tiles = (size_t)slab->tiles_x * (size_t)slab->tiles_y;
   sublights->rows = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->rows);
   sublights->found = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->found);
-  if (sublights->memory == NULL || sublights->flags == NULL || sublights->marks == NULL || sublights->lookups == NULL ||
-      sublights->moved == NULL || sublights->rows == NULL || sublights->found == NULL)
+  if (sublights->memory == NULL || sublights->flags == NULL || sublights->marks == NULL ||
+      sublights->lookups == NULL || sublights->moved == NULL || sublights->rows == NULL ||
+      sublights->found == NULL)
     return hl_fail_memory(error, pixels * sizeof(part_pixel) + moved * sizeof(float), "the parts of a light");
   hl_pool_set(pool, sublights->memory, pixels * sizeof(part_pixel), 0xff); /* PART_ONE */
   hl_pool_fill(pool, sublights->moved, moved, 1);
@@ -86,7 +96,8 @@ static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *subligh
 }
 
 /* The parts of a light with an image send its colours. */
-static hl_status weigh_parts(hl_context *context, sublights *sublights, const light_source *source, int side, hl_error *error) {
+static hl_status weigh_parts(hl_context *context, sublights *sublights, const light_source *source, int side,
+                             hl_error *error) {
   size_t count = (size_t)sublights->count;
   double mean[HL_CHANNELS];
   float(*weights)[HL_CHANNELS] = hl_allocate(context, count, sizeof *weights);
@@ -97,20 +108,22 @@ static hl_status weigh_parts(hl_context *context, sublights *sublights, const li
   return HL_OK;
 }
 
-hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const light_source *source,
-                             const light_image *image, int side, vec3 normal, const shadow_extent *extent,
-                             const shadow_buffer *slab, hl_error *error) {
+hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights,
+                             const light_source *source, const light_image *image, int side, vec3 normal,
+                             const shadow_extent *extent, const shadow_buffer *slab, hl_error *error) {
   hl_context *context = reserve->context;
   size_t count = (size_t)side * (size_t)side;
   sublights->parts = hl_allocate_zeroed(context, count, sizeof *sublights->parts);
-  if (sublights->parts == NULL) return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
+  if (sublights->parts == NULL)
+    return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
   sublights->count = (int)count;
   sublights->channels = slab->channels;
   place_parts(sublights, source, image, side, normal, extent);
   hl_status status = allocate(reserve, pool, sublights, slab, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < count; i++) {
-    sublights->lookups[i] = (part_lookup){.map = hl_map_of_view(&sublights->parts[i].view), .weight = {1, 1, 1}};
+    sublights->lookups[i] = (part_lookup){.map = hl_map_of_view(&sublights->parts[i].view),
+                                          .weight = {1, 1, 1}};
     sublights->lookups[i].map.stride = sublights->stride;
     for (int c = 0; c < sublights->channels; c++)
       sublights->lookups[i].left[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
@@ -119,7 +132,8 @@ hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *subl
 }
 
 void hl_sublights_release(hl_reserve *reserve, sublights *sublights) {
-  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags, sublights->marks, sublights->rows, sublights->found};
+  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags,
+                   sublights->marks, sublights->rows,    sublights->found};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(reserve->context, owned[i]);
   hl_reserve_return(reserve, sublights->memory);
   hl_reserve_return(reserve, sublights->moved);
@@ -134,7 +148,8 @@ static float *moved_image(const sublights *sublights, const shadow_buffer *slab,
 }
 
 /* Where the ray of a part's pixel coordinates meets the sheet, in the slab's; false behind either. */
-static bool slab_place(const sublight *part, const view *slab, vec3 normal, double height, double at, double uv[2]) {
+static bool slab_place(const sublight *part, const view *slab, vec3 normal, double height, double at,
+                       double uv[2]) {
   vec3 start, way;
   hl_view_ray(&part->view, at, at, &start, &way);
   double climb = vec3_dot(way, normal), distance = (height - vec3_dot(start, normal)) / climb;
@@ -145,22 +160,32 @@ static bool slab_place(const sublight *part, const view *slab, vec3 normal, doub
 /* Multiples of the golden ratio, less their whole part, are spread evenly however many there are. */
 static float carry_of_slab(const sublights *sublights, const sublight *part) {
   double turn = sublights->slabs * 0.6180339887498949 + (double)(part - sublights->parts) / sublights->count;
-  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64); /* so far from 0 and 1 that whole numbers stay */
+  return (float)(1.0 / 128 +
+                 (turn - floor(turn)) * 63 / 64); /* so far from 0 and 1 that whole numbers stay */
 }
 
-/* In pixels. Light that grazes the sheets shifts them further; it is clamped where pixels are scaled as well. */
+/* In pixels. Light that grazes the sheets shifts them further; it is clamped where pixels are scaled as
+ * well. */
 static const double FARTHEST_SHIFT = 1 << 20;
 
-/* Both views lie parallel to the sheets with the same axes: from one to the other pixels are scaled and shifted. */
-static void map_part(const sublights *sublights, sublight *part, const shadow_buffer *slab, vec3 normal, double height) {
+/* Both views lie parallel to the sheets with the same axes: from one to the other pixels are scaled and
+ * shifted. */
+static void map_part(const sublights *sublights, sublight *part, const shadow_buffer *slab, vec3 normal,
+                     double height) {
   const double far = 1024;
   double zero[2], other[2];
   part->reaches = slab_place(part, &slab->view, normal, height, 0, zero) &&
                   slab_place(part, &slab->view, normal, height, far, other);
-  part->job = (sublight_job){.slab_stride = slab->stride, .rows = sublights->rows, .slab_tiles_x = slab->tiles_x,
-                             .slab_tiles_y = slab->tiles_y, .slab_width = (float)slab->view.width,
-                             .slab_height = (float)slab->view.height, .stride = sublights->stride, .tiles_x = sublights->tiles_x,
-                             .carry = carry_of_slab(sublights, part), .channels = sublights->channels};
+  part->job = (sublight_job){.slab_stride = slab->stride,
+                             .rows = sublights->rows,
+                             .slab_tiles_x = slab->tiles_x,
+                             .slab_tiles_y = slab->tiles_y,
+                             .slab_width = (float)slab->view.width,
+                             .slab_height = (float)slab->view.height,
+                             .stride = sublights->stride,
+                             .tiles_x = sublights->tiles_x,
+                             .carry = carry_of_slab(sublights, part),
+                             .channels = sublights->channels};
   for (int axis = 0; axis < 2 && part->reaches; axis++) {
     double scale = (other[axis] - zero[axis]) / far;
     if (fabs(scale - 1) < 1e-6) scale = 1;
@@ -169,7 +194,8 @@ static void map_part(const sublights *sublights, sublight *part, const shadow_bu
   }
   part->shifted = part->reaches && part->job.scale[0] == 1 && part->job.scale[1] == 1 &&
                   fmax(fabs(zero[0]), fabs(zero[1])) < FARTHEST_SHIFT;
-  for (int axis = 0; axis < 2 && part->shifted; axis++) part->job.half[axis] = (int)floor(2 * zero[axis] + 0.5);
+  for (int axis = 0; axis < 2 && part->shifted; axis++)
+    part->job.half[axis] = (int)floor(2 * zero[axis] + 0.5);
   for (int c = 0; c < sublights->channels; c++) {
     part->job.slab[c][0] = slab->transmittance[c];
     for (int i = 1; i < SLAB_IMAGES; i++) part->job.slab[c][i] = moved_image(sublights, slab, c, i);
@@ -185,7 +211,8 @@ typedef struct sublight_task {
   bool ends_run;      /* lit blocks are found after it */
 } sublight_task;
 
-/* First and last tile of `to` under pixels from x to x + TILE of one axis, scaled and shifted; a pixel to spare. */
+/* First and last tile of `to` under pixels from x to x + TILE of one axis, scaled and shifted; a pixel to
+ * spare. */
 static void tiles_under(double x, double scale, double shift, int tiles, int *first, int *last) {
   double low = (scale * x + shift - 1) / TILE, high = (scale * (x + TILE) + shift + 1) / TILE;
   *first = low < 0 ? 0 : low > tiles ? tiles : (int)low;
@@ -246,13 +273,16 @@ static void composite_row(const sublight_task *task, sublight *part, int y) {
     return;
   }
   part_tiles(part, 0, task->x0, task->x1, all->tiles_x, &first, &last);
-  tiles_under((double)y * TILE, (double)part->job.scale[1], (double)part->job.shift[1], slab->tiles_y, &y0, &y1);
+  tiles_under((double)y * TILE, (double)part->job.scale[1], (double)part->job.shift[1], slab->tiles_y, &y0,
+              &y1);
   for (int x = first; x <= last; x++) {
     size_t tile = (size_t)y * (size_t)all->tiles_x + (size_t)x;
     int x0, x1;
     if (part->lit[tile] == 0) continue;
-    tiles_under((double)x * TILE, (double)part->job.scale[0], (double)part->job.shift[0], slab->tiles_x, &x0, &x1);
-    if (any_present(&part->job, x0, x1, y0, y1) && task->functions->composite(&part->job, x, y)) part->touched[tile] = 1;
+    tiles_under((double)x * TILE, (double)part->job.scale[0], (double)part->job.shift[0], slab->tiles_x, &x0,
+                &x1);
+    if (any_present(&part->job, x0, x1, y0, y1) && task->functions->composite(&part->job, x, y))
+      part->touched[tile] = 1;
   }
 }
 
@@ -271,7 +301,8 @@ static void advance_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
   const sublights *all = task->sublights;
-  sublight *part = &all->parts[index % (size_t)all->count]; /* parts in turn: what the slab holds under a row stays near */
+  sublight *part =
+      &all->parts[index % (size_t)all->count]; /* parts in turn: what the slab holds under a row stays near */
   int y = (int)(index / (size_t)all->count);
   if (!part->reaches) return;
   if (task->x1 >= 0) composite_row(task, part, y);
@@ -311,10 +342,12 @@ static void clear_row(void *data, size_t index, int worker) {
   const sublights *all = task->sublights;
   shadow_buffer *slab = task->slab;
   for (int x = 0; x < slab->tiles_x; x++) {
-    size_t tile = index * (size_t)slab->tiles_x + (size_t)x, at = index * TILE * slab->stride + (size_t)x * TILE;
+    size_t tile = index * (size_t)slab->tiles_x + (size_t)x,
+           at = index * TILE * slab->stride + (size_t)x * TILE;
     for (int c = 0; c < slab->channels; c++)
       for (int i = 0; i < SLAB_IMAGES; i++)
-        fill_ones((i == 0 ? slab->transmittance[c] : moved_image(all, slab, c, i)) + at, slab->stride, all->rows[tile] >> TILE * i);
+        fill_ones((i == 0 ? slab->transmittance[c] : moved_image(all, slab, c, i)) + at, slab->stride,
+                  all->rows[tile] >> TILE * i);
     all->rows[tile] = 0;
     slab->tile_touched[tile] = 0;
   }
@@ -325,11 +358,13 @@ enum { LIT_SLABS = 4 };
 static int run_of_slab(int slab) { return (slab + LIT_SLABS - 1) / LIT_SLABS + 1; }
 
 static part_place place_of_job(const sublight_job *job) {
-  return (part_place){{1 / (double)job->scale[0], 1 / (double)job->scale[1]}, {(double)job->shift[0], (double)job->shift[1]}};
+  return (part_place){{1 / (double)job->scale[0], 1 / (double)job->scale[1]},
+                      {(double)job->shift[0], (double)job->shift[1]}};
 }
 
 /* Where the parts are over the first and the last of the next slabs, from a height on. */
-static void place_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height, double spacing) {
+static void place_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height,
+                      double spacing) {
   for (int i = 0; i < sublights->count; i++) {
     sublight *part = &sublights->parts[i];
     map_part(sublights, part, slab, normal, height + (LIT_SLABS - 0.5) * spacing);
@@ -341,9 +376,10 @@ static void place_run(sublights *sublights, const shadow_buffer *slab, vec3 norm
   }
 }
 
-void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to, hl_pool *pool,
-                          const sublight_functions *functions) {
-  for (int i = 0; i < sublights->count; i++) map_part(sublights, &sublights->parts[i], slab, normal, (from + to) / 2);
+void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to,
+                          hl_pool *pool, const sublight_functions *functions) {
+  for (int i = 0; i < sublights->count; i++)
+    map_part(sublights, &sublights->parts[i], slab, normal, (from + to) / 2);
   sublight_task task = {.sublights = sublights, .slab = slab, .functions = functions};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
   int run = run_of_slab(sublights->slabs++);
@@ -357,11 +393,14 @@ void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal
 
 /* ---- what light reaches ---- */
 
-/* Pixels of the slab around a block that lie over the same pixels of a part: half pixels are made of two on either side. */
+/* Pixels of the slab around a block that lie over the same pixels of a part: half pixels are made of two on
+ * either side. */
 enum { BLOCK_SPARE = 2 };
 
 /* Rows or columns of a part's blocks under each of the four of a tile of the slab. */
-typedef struct blocks_under { int first[TILE / BLOCK], last[TILE / BLOCK]; } blocks_under;
+typedef struct blocks_under {
+  int first[TILE / BLOCK], last[TILE / BLOCK];
+} blocks_under;
 
 /* Which of `count` lengths of pixels a place lies in; -1 or count beyond the ends. */
 static int place_among(double place, int length, int count) {
@@ -374,8 +413,12 @@ static blocks_under find_under(const sublight *part, int axis, int tile, int til
   blocks_under under;
   for (int i = 0; i < TILE / BLOCK; i++) {
     double from = tile * TILE + i * BLOCK - BLOCK_SPARE, to = from + BLOCK + 2 * BLOCK_SPARE;
-    int first = place_among(fmin(near->scale[axis] * (from - near->shift[axis]), far->scale[axis] * (from - far->shift[axis])), BLOCK, end);
-    int last = place_among(fmax(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])), BLOCK, end);
+    int first = place_among(
+        fmin(near->scale[axis] * (from - near->shift[axis]), far->scale[axis] * (from - far->shift[axis])),
+        BLOCK, end);
+    int last = place_among(
+        fmax(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])), BLOCK,
+        end);
     under.first[i] = first < 0 ? 0 : first;
     under.last[i] = last < end ? last : end - 1;
   }
@@ -393,16 +436,19 @@ static uint64_t lit_in_row(const sublights *all, const sublight *part, int row, 
   return bits;
 }
 
-static uint32_t lit_by_blocks(const sublights *all, const sublight *part, const blocks_under *columns, const blocks_under *rows) {
+static uint32_t lit_by_blocks(const sublights *all, const sublight *part, const blocks_under *columns,
+                              const blocks_under *rows) {
   int first = columns->first[0], last = columns->last[TILE / BLOCK - 1];
   uint32_t lit = 0;
   if (last - first >= 60) return ALL_BLOCKS;
   for (int y = 0; y < TILE / BLOCK; y++) {
     uint64_t bits = 0;
-    for (int row = rows->first[y]; row <= rows->last[y]; row++) bits |= lit_in_row(all, part, row, first, last);
+    for (int row = rows->first[y]; row <= rows->last[y]; row++)
+      bits |= lit_in_row(all, part, row, first, last);
     for (int x = 0; x < TILE / BLOCK && bits != 0; x++) {
       int count = columns->last[x] - columns->first[x] + 1;
-      if (count > 0 && (bits >> (columns->first[x] - first) & (((uint64_t)1 << count) - 1)) != 0) lit |= 1u << (4 * y + x);
+      if (count > 0 && (bits >> (columns->first[x] - first) & (((uint64_t)1 << count) - 1)) != 0)
+        lit |= 1u << (4 * y + x);
     }
   }
   return lit;
@@ -410,8 +456,10 @@ static uint32_t lit_by_blocks(const sublights *all, const sublight *part, const 
 
 /* Most tiles are lit everywhere or nowhere. */
 static uint32_t lit_by_part(const sublights *all, const sublight *part, int tile_x, int tile_y) {
-  blocks_under columns = find_under(part, 0, tile_x, all->tiles_x), rows = find_under(part, 1, tile_y, all->tiles_y);
-  int x0 = columns.first[0] / 4, x1 = columns.last[TILE / BLOCK - 1], y0 = rows.first[0] / 4, y1 = rows.last[TILE / BLOCK - 1];
+  blocks_under columns = find_under(part, 0, tile_x, all->tiles_x),
+               rows = find_under(part, 1, tile_y, all->tiles_y);
+  int x0 = columns.first[0] / 4, x1 = columns.last[TILE / BLOCK - 1], y0 = rows.first[0] / 4,
+      y1 = rows.last[TILE / BLOCK - 1];
   uint32_t any = 0, every = ALL_BLOCKS;
   for (int y = y0; 4 * y <= y1; y++)
     for (int x = x0; 4 * x <= x1; x++) {

@@ -183,8 +183,8 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
   made->smallest_edge = smallest_edge(described);
   made->surface_gradient = surface_gradient(&described->transfer_function, made->smallest_edge);
   made->empty_value = hl_scene_volume_empty_value(described);
-  made->empty_stored =
-      grid->value_scale != 0 ? (made->empty_value - grid->value_offset) / grid->value_scale : 0;
+  made->empty_stored = grid->value_scale != 0 ? (made->empty_value - grid->value_offset) / grid->value_scale
+                                              : 0;
   /* Where no value is transparent the empty value lies below them all, and stands for nothing being there. */
   bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
   made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;

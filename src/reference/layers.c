@@ -9,7 +9,8 @@ void hl_reference_parts_clear(reference_parts *parts, size_t light_count) {
   for (size_t l = 0; l < light_count; l++) lights[l] = (light_part){{0, 0, 0}, {0, 0, 0}};
 }
 
-void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale, size_t light_count) {
+void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale,
+                            size_t light_count) {
   parts->weight += scale * other->weight;
   parts->depth += scale * other->depth;
   parts->normal = vec3_add(parts->normal, vec3_scale(other->normal, scale));
@@ -31,15 +32,18 @@ static void write_light(const light_part *light, double alpha, const hl_light_la
   }
 }
 
-void hl_reference_parts_write(const reference_parts *parts, double depth_first, const hl_layers *layers, size_t pixel) {
+void hl_reference_parts_write(const reference_parts *parts, double depth_first, const hl_layers *layers,
+                              size_t pixel) {
   double alpha = parts->weight;
   const double normal[3] = {parts->normal.x, parts->normal.y, parts->normal.z};
   if (layers->depth_first != NULL) layers->depth_first[pixel] = (float)depth_first;
-  if (layers->depth_mean != NULL) layers->depth_mean[pixel] = alpha > 0 ? (float)(parts->depth / alpha) : INFINITY;
+  if (layers->depth_mean != NULL)
+    layers->depth_mean[pixel] = alpha > 0 ? (float)(parts->depth / alpha) : INFINITY;
   for (size_t c = 0; c < 3; c++) {
     if (layers->ambient != NULL) layers->ambient[3 * pixel + c] = (float)parts->ambient[c];
     if (layers->emission != NULL) layers->emission[3 * pixel + c] = (float)parts->emission[c];
     if (layers->normal != NULL) layers->normal[3 * pixel + c] = alpha > 0 ? (float)(normal[c] / alpha) : 0;
   }
-  for (size_t l = 0; l < layers->light_count; l++) write_light(&parts->lights[l], alpha, &layers->lights[l], pixel);
+  for (size_t l = 0; l < layers->light_count; l++)
+    write_light(&parts->lights[l], alpha, &layers->lights[l], pixel);
 }

@@ -2,8 +2,8 @@
  *
  * A light is shaded as if all its light came from its centre; its extent matters to shadows and to what it
  * projects alone: transmittance and texture are means over a fixed set of points on the light, the same for
- * every sample, so that the picture has no noise. A sphere is the disk of its radius that faces the sample.
- */
+ * every sample, so that the picture has no noise. A sphere is the disk of its radius that faces the
+ * sample. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -13,8 +13,8 @@
 /* Optical depth in every channel beyond which nothing is seen of a light: exp(-18) is 2e-8. */
 static const double DARK_DEPTH = 18;
 
-/* Part of 1 that is left of i steps of `step` from the middle of the first: a golden section spreads any number of
- * them evenly. */
+/* Part of 1 that is left of i steps of `step` from the middle of the first: a golden section spreads any
+ * number of them evenly. */
 static double spread(size_t i, double step) {
   double x = 0.5 + (double)i * step;
   return x - floor(x);
@@ -58,14 +58,15 @@ static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 
   return inside;
 }
 
-/* A sequence spread evenly over the rectangle around the polygon (Roberts's, by the powers of the plastic number),
- * of which those inside are kept. The rectangle has a side along the polygon's longest edge. */
+/* A sequence spread evenly over the rectangle around the polygon (Roberts's, by the powers of the plastic
+ * number), of which those inside are kept. The rectangle has a side along the polygon's longest edge. */
 static void fill_polygon(const hl_light *light, size_t n, vec3 *points) {
   const double plastic = 1.32471795724474602596;
   polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
   vec3 u_axis = {0, 0, 0};
   for (size_t i = 0; i < light->vertex_count; i++) {
-    vec3 edge = vec3_subtract(vec3_of(light->vertices[(i + 1) % light->vertex_count]), vec3_of(light->vertices[i]));
+    vec3 edge = vec3_subtract(vec3_of(light->vertices[(i + 1) % light->vertex_count]),
+                              vec3_of(light->vertices[i]));
     edge = vec3_subtract(edge, vec3_scale(shape.normal, vec3_dot(edge, shape.normal)));
     if (vec3_length(edge) > vec3_length(u_axis)) u_axis = edge;
   }
@@ -103,7 +104,8 @@ static void fill_points(reference_light *light) {
     fill_polygon(described, n, light->points);
   } else if (described->type == HL_LIGHT_DISK) {
     vec3 normal = vec3_normalise(vec3_of(described->normal));
-    for (size_t i = 0; i < n; i++) light->points[i] = point_of_disk(light->centre, normal, described->radius, i, n);
+    for (size_t i = 0; i < n; i++)
+      light->points[i] = point_of_disk(light->centre, normal, described->radius, i, n);
   }
 }
 
@@ -134,7 +136,8 @@ static hl_status find_mean(hl_context *context, reference_light *light, hl_error
   vec3 facing = light->directional ? vec3_scale(light->towards, -1) : (vec3){0, 0, 1};
   dense.point_count = MEAN_POINTS;
   dense.points = hl_allocate(context, MEAN_POINTS, sizeof *dense.points);
-  if (dense.points == NULL) return hl_fail_memory(error, MEAN_POINTS * sizeof *dense.points, "points on a light");
+  if (dense.points == NULL)
+    return hl_fail_memory(error, MEAN_POINTS * sizeof *dense.points, "points on a light");
   fill_points(&dense);
   if (light->described->type == HL_LIGHT_POINT || light->described->type == HL_LIGHT_SPOT)
     for (size_t i = 0; i < MEAN_POINTS; i++)
@@ -155,10 +158,8 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
   for (int c = 0; c < 3; c++) made->color[c] = light->color[c] * light->intensity;
   made->least_distance = HL_LEAST_LIGHT_DISTANCE * hl_scene_frame_space(all->scene).unit;
   if (light->texture.pixels != NULL) made->texture = &light->texture;
-  if (made->directional)
-    made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
-  else
-    made->centre = hl_light_centre(light);
+  if (made->directional) made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
+  else made->centre = hl_light_centre(light);
   if (light->emission.pixels != NULL) {
     made->emission = &light->emission;
     hl_status status = find_mean(all->context, made, error);
@@ -195,7 +196,8 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
     arrived->towards = vec3_normalise(offset);
     if (light->described->falloff == HL_FALLOFF_INVERSE_SQUARE)
       factor = 1 / fmax(vec3_dot(offset, offset), light->least_distance * light->least_distance);
-    if (light->described->type == HL_LIGHT_SPOT) factor *= spot_brightness(light->described, arrived->towards);
+    if (light->described->type == HL_LIGHT_SPOT)
+      factor *= spot_brightness(light->described, arrived->towards);
   }
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
@@ -220,10 +222,10 @@ static void find_transmittance(const reference *all, vec3 point, vec3 direction,
   for (int c = 0; c < 3; c++) passing[c] = exp(-depth[c]);
 }
 
-/* One point's light: image times transmittance, added to sum. light_point is a direction where directional; plane: of
- * the light's own image, where it counts point by point. */
-static void add_point(const reference *all, const reference_light *light, const emission_plane *plane, vec3 light_point,
-                      vec3 point, bool attenuated, crossing *scratch, double sum[3]) {
+/* One point's light: image times transmittance, added to sum. light_point is a direction where directional;
+ * plane: of the light's own image, where it counts point by point. */
+static void add_point(const reference *all, const reference_light *light, const emission_plane *plane,
+                      vec3 light_point, vec3 point, bool attenuated, crossing *scratch, double sum[3]) {
   double distance = INFINITY, pattern[3] = {1, 1, 1}, passing[3] = {1, 1, 1};
   vec3 direction = light_point;
   if (plane != NULL) hl_reference_emission(light->emission, plane, offset_of(light, light_point), pattern);
@@ -256,7 +258,8 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
     vec3 light_point = casts ? light->points[i] : centre;
     if (light->sphere) /* seen from the point: its disk */
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
-    add_point(all, light, extended ? &plane : NULL, light_point, point, casts && attenuated, worker->shadow, sum);
+    add_point(all, light, extended ? &plane : NULL, light_point, point, casts && attenuated, worker->shadow,
+              sum);
   }
   for (int c = 0; c < 3; c++) reach[c] = sum[c] / (double)count;
 }

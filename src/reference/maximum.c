@@ -1,7 +1,8 @@
 /* reference/maximum.c - the greatest value along a ray (maximum projection).
  *
- * Each volume's field is sampled at the march's steps and at the faces of its box. Where the transfer function begins or ceases
- * to show it between two samples, that place is searched for; so is the peak around the greatest sample.
+ * Each volume's field is sampled at the march's steps and at the faces of its box. Where the transfer
+ * function begins or ceases to show it between two samples, that place is searched for; so is the peak around
+ * the greatest sample.
  */
 #include "reference/reference.h"
 
@@ -45,7 +46,8 @@ static void ask_at_end(search *found, double shown, double other) {
   }
 }
 
-/* Golden-section search (Kiefer 1953) of the peak within a step either way; what is not shown counts as it is, and is left out. */
+/* Golden-section search (Kiefer 1953) of the peak within a step either way; what is not shown counts as it
+ * is, and is left out. */
 static void ask_at_peak(search *found, double low, double high) {
   static const double golden = 0.6180339887498949;
   for (int i = 0; i < HALVINGS; i++) {
@@ -59,11 +61,13 @@ static void ask_at_peak(search *found, double low, double high) {
 /* One volume's greatest shown value; -infinity if it shows none. */
 static double greatest_along(const crossing *part, double step) {
   search found = {part, -INFINITY, 0};
-  double steps = fmax(ceil((part->leave - part->enter) / step), 1), length = (part->leave - part->enter) / steps;
+  double steps = fmax(ceil((part->leave - part->enter) / step), 1),
+         length = (part->leave - part->enter) / steps;
   bool before = ask(&found, part->enter);
   for (double next = 1; next <= steps; next++) {
     double at = part->enter + next * length;
-    double clear = hl_reference_clearance(part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)), part->direction);
+    double clear = hl_reference_clearance(
+        part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)), part->direction);
     next += floor(fmax(clear / length - 1e-6, 0)); /* samples within what is empty */
     bool shown = clear <= 0 && ask(&found, at);
     if (shown && !before) ask_at_end(&found, at, at - length);
@@ -75,7 +79,8 @@ static double greatest_along(const crossing *part, double step) {
   return found.greatest;
 }
 
-void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker, float rgba[4]) {
+void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
+                          float rgba[4]) {
   march walk;
   double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0;
   for (int c = 0; c < 4; c++) rgba[c] = 0;

@@ -1,13 +1,15 @@
 /* reference/rays.c - how many rays a pixel has in a small picture of a large volume.
  *
- * In: the scene and where its volumes show something. Out: rays along each side of a pixel. A pixel of the sheets is the mean over
- * it where voxels are smaller than pixels (docs/architecture.md); one ray through its centre would be another picture.
+ * In: the scene and where its volumes show something. Out: rays along each side of a pixel. A pixel of the
+ * sheets is the mean over it where voxels are smaller than pixels (docs/architecture.md); one ray through its
+ * centre would be another picture.
  */
 #include "reference/reference.h"
 
 enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096 };
 
-/* Index space: the bricks, within the volume's box, that show something, and half a voxel around the grid; false: none do. */
+/* Index space: the bricks, within the volume's box, that show something, and half a voxel around the grid;
+ * false: none do. */
 static bool shown_box(const reference_volume *volume, double low[3], double high[3]) {
   const unsigned char *clear = volume->clearance;
   size_t brick[3];
@@ -35,34 +37,43 @@ static bool shown_box(const reference_volume *volume, double low[3], double high
 }
 
 /* World: the corners' mean and the least depth among them. */
-typedef struct content { vec3 sum; double nearest; int corners; } content;
+typedef struct content {
+  vec3 sum;
+  double nearest;
+  int corners;
+} content;
 
 static void add_volume(const reference_volume *volume, vec3 position, vec3 forward, content *all) {
   double low[3], high[3];
   if (!shown_box(volume, low, high)) return;
   affine3 to_world = hl_scene_volume_index_to_world(volume->described);
   for (int corner = 0; corner < 8; corner++) {
-    vec3 at = affine3_apply(to_world, (vec3){corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
+    vec3 at = affine3_apply(to_world, (vec3){corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1],
+                                             corner & 4 ? high[2] : low[2]});
     all->sum = vec3_add(all->sum, at);
     all->nearest = fmin(all->nearest, vec3_dot(forward, vec3_subtract(at, position)));
     all->corners++;
   }
 }
 
-/* The picture's edge at unit depth, or of an orthographic picture, over its pixels: height = 2 tan(fovy / 2) (derived). */
+/* The picture's edge at unit depth, or of an orthographic picture, over its pixels: height = 2 tan(fovy / 2)
+ * (derived). */
 static double pixel_edge(const hl_scene_description *scene) {
   bool orthographic = scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
-  return (orthographic ? scene->camera.height : 2 * tan(scene->camera.fovy_deg * HL_PI / 360)) / scene->height;
+  return (orthographic ? scene->camera.height : 2 * tan(scene->camera.fovy_deg * HL_PI / 360)) /
+         scene->height;
 }
 
 int hl_reference_rays(const reference *all, double edge) {
   const hl_scene_description *scene = all->scene;
-  vec3 position = vec3_of(scene->camera.position), forward = vec3_normalise(vec3_subtract(vec3_of(scene->camera.target), position));
+  vec3 position = vec3_of(scene->camera.position),
+       forward = vec3_normalise(vec3_subtract(vec3_of(scene->camera.target), position));
   content shown = {.nearest = INFINITY};
   for (size_t v = 0; v < scene->volume_count; v++) add_volume(&all->volumes[v], position, forward, &shown);
   if (shown.corners == 0) return 1;
   vec3 middle = vec3_scale(shown.sum, 1.0 / shown.corners);
-  double depth = vec3_dot(forward, vec3_subtract(middle, position)), longer = fmax(scene->width, scene->height);
+  double depth = vec3_dot(forward, vec3_subtract(middle, position)),
+         longer = fmax(scene->width, scene->height);
   if (scene->camera.type == HL_CAMERA_ORTHOGRAPHIC) depth = 1;
   else depth = fmax(depth, shown.nearest);
   double most = fmin(HL_REFERENCE_RAYS, floor(LONGEST_SIDE / longer));

@@ -18,8 +18,8 @@ static const double OPAQUE = 1 - 1e-5;
 /* Alpha from which on a ray has met something (halflight/layers.h). */
 static const double FIRST_OPACITY = 0.01;
 
-/* What one sample may add to a pixel: light that grazes a dense volume fades within a small part of a step. Its error is
- * linear and that of the step quadratic: coarser steps than the usual allow as much more. */
+/* What one sample may add to a pixel: light that grazes a dense volume fades within a small part of a step.
+ * Its error is linear and that of the step quadratic: coarser steps than the usual allow as much more. */
 static const double MOST_OPACITY = 0.02, USUAL_STEP = 0.25, COARSEST_OPACITY = 0.1;
 
 enum { RUN_PIXELS = 16 };
@@ -75,7 +75,8 @@ static double total_extinction(const march *walk) {
 }
 
 /* What all volumes send from one sample, weighted by extinction. */
-static void sample(const reference *all, const march *walk, vec3 point, vec3 to_eye, reference_worker *worker) {
+static void sample(const reference *all, const march *walk, vec3 point, vec3 to_eye,
+                   reference_worker *worker) {
   reference_parts *made = &worker->sample;
   hl_reference_parts_clear(made, all->scene->light_count);
   for (size_t v = 0; v < walk->count; v++) {
@@ -106,7 +107,8 @@ static double composite(const reference *all, const march *walk, double length, 
   return extinction;
 }
 
-/* Where alpha went from `before` past FIRST_OPACITY, in a step from `start` on: (1 - A) exp(-sigma t) = 1 - FIRST_OPACITY. */
+/* Where alpha went from `before` past FIRST_OPACITY, in a step from `start` on: (1 - A) exp(-sigma t) = 1 -
+ * FIRST_OPACITY. */
 static double first_within(double before, double extinction, double start) {
   return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
@@ -120,7 +122,8 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
   double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0, first = INFINITY;
   hl_reference_parts_clear(ray, all->scene->light_count);
   hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, nearest, INFINITY, worker->eye, &walk);
-  while (ray->weight < OPAQUE && !hl_pool_stops(all->pool, worker->number) && hl_reference_march_next(&walk)) {
+  while (ray->weight < OPAQUE && !hl_pool_stops(all->pool, worker->number) &&
+         hl_reference_march_next(&walk)) {
     double at = walk.at - walk.length / 2, end = at + walk.length, extinction = total_extinction(&walk);
     if (extinction <= 0) continue;
     while (at < end && ray->weight < OPAQUE) {
@@ -128,7 +131,8 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
       if (extinction > 0) length = fmin(length, all->most_opacity / (extinction * (1 - before)));
       hl_reference_march_place(&walk, at + length / 2);
       extinction = composite(all, &walk, length, origin, direction, worker);
-      if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY) first = first_within(before, extinction, at);
+      if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY)
+        first = first_within(before, extinction, at);
       at += length;
     }
   }
@@ -214,8 +218,8 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
   double coarser = fmax(options->step / USUAL_STEP, 1);
   all->most_opacity = fmin(MOST_OPACITY * coarser * coarser, COARSEST_OPACITY);
   for (size_t l = 0; l < scene->light_count; l++) {
-    hl_status status =
-        hl_reference_light_create(all, &scene->lights[l], options->light_points, &all->lights[l], error);
+    hl_status status = hl_reference_light_create(all, &scene->lights[l], options->light_points,
+                                                 &all->lights[l], error);
     if (status != HL_OK) return status;
   }
   return HL_OK;
@@ -245,9 +249,13 @@ static reference_worker *workers_create(const reference *all, size_t threads) {
     return NULL;
   }
   for (size_t t = 0; t < threads; t++)
-    workers[t] = (reference_worker){(int)t, crossings + 2 * t * volumes, crossings + (2 * t + 1) * volumes,
-                                    arrivals + t * lights, {.lights = parts + 3 * t * lights},
-                                    {.lights = parts + (3 * t + 1) * lights}, {.lights = parts + (3 * t + 2) * lights}};
+    workers[t] = (reference_worker){(int)t,
+                                    crossings + 2 * t * volumes,
+                                    crossings + (2 * t + 1) * volumes,
+                                    arrivals + t * lights,
+                                    {.lights = parts + 3 * t * lights},
+                                    {.lights = parts + (3 * t + 1) * lights},
+                                    {.lights = parts + (3 * t + 2) * lights}};
   return workers;
 }
 
@@ -277,7 +285,8 @@ static hl_status render(const reference *all, hl_pool *pool, float *pixels, size
 
 void hl_reference_options_defaults(hl_reference_options *options) {
   if (options == NULL) return;
-  *options = (hl_reference_options){.struct_size = sizeof *options, .light_points = 1024, .step = USUAL_STEP, .rays = 1};
+  *options = (hl_reference_options){
+      .struct_size = sizeof *options, .light_points = 1024, .step = USUAL_STEP, .rays = 1};
 }
 
 static hl_status check(const hl_reference_options *options, const hl_scene_description *scene,
@@ -297,8 +306,8 @@ static hl_status check(const hl_reference_options *options, const hl_scene_descr
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: threads is %d, must be 0 or more",
                    options->threads);
   if (options->rays < 0 || options->rays > HL_REFERENCE_RAYS)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: rays is %d, must be from 0 to %d", options->rays,
-                   HL_REFERENCE_RAYS);
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: rays is %d, must be from 0 to %d",
+                   options->rays, HL_REFERENCE_RAYS);
   if (row_stride / 4 < (size_t)scene->width)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_reference_render: row_stride is %zu, a row needs %d x 4 floats", row_stride,
@@ -312,8 +321,9 @@ static bool shadows_wanted(const hl_layers *layers) {
   return false;
 }
 
-hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene, const hl_reference_options *options,
-                                     float *pixels, size_t row_stride, const hl_layers *layers, hl_error *error) {
+hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
+                                     const hl_reference_options *options, float *pixels, size_t row_stride,
+                                     const hl_layers *layers, hl_error *error) {
   if (context == NULL || scene == NULL || pixels == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_reference_render: context, scene and pixels must not be null");
@@ -326,7 +336,8 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   hl_pool *pool = NULL;
   status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  reference all = {.context = context, .pool = pool, .scene = &scene->placed, .all_shadows = shadows_wanted(layers)};
+  reference all = {
+      .context = context, .pool = pool, .scene = &scene->placed, .all_shadows = shadows_wanted(layers)};
   status = prepare(&all, &chosen, pool, error);
   if (status == HL_OK) status = render(&all, pool, pixels, row_stride, layers, error);
   release(&all);

@@ -33,31 +33,31 @@ typedef struct reference_volume {
   const hl_volume *grid;
   hl_kernel kernel;
   affine3 world_to_index;
-  mat3 gradient_to_world;     /* inverse transpose of index-to-world */
-  double low[3], high[3];     /* the box, in index space */
-  double empty_value;         /* data value of voxels that are not finite */
-  double empty_stored;        /* the same as a stored value */
-  double transparent_below;   /* data values below this are no matter at all; -infinity where all may be */
-  double surface_gradient;    /* data value per world unit from which a sample is a surface, not a medium */
-  double smallest_edge;       /* of a voxel, world units */
-  size_t bricks[3];           /* i, j, k */
-  unsigned char *clearance;   /* owned; [k][j][i] of bricks: 0 where something may be seen, else
-                                 the number of bricks (chessboard metric) to the nearest such, at most 255 */
+  mat3 gradient_to_world;   /* inverse transpose of index-to-world */
+  double low[3], high[3];   /* the box, in index space */
+  double empty_value;       /* data value of voxels that are not finite */
+  double empty_stored;      /* the same as a stored value */
+  double transparent_below; /* data values below this are no matter at all; -infinity where all may be */
+  double surface_gradient;  /* data value per world unit from which a sample is a surface, not a medium */
+  double smallest_edge;     /* of a voxel, world units */
+  size_t bricks[3];         /* i, j, k */
+  unsigned char *clearance; /* owned; [k][j][i] of bricks: 0 where something may be seen, else
+                               the number of bricks (chessboard metric) to the nearest such, at most 255 */
 } reference_volume;
 
 /* One light. points is [point_count]: positions in the world, or unit directions to a directional light. */
 typedef struct reference_light {
   const hl_light *described;
   bool directional;
-  bool sphere;                /* points are found anew for every sample */
-  vec3 centre;                /* world; not for directional lights */
-  vec3 towards;               /* directional lights: unit vector to the light */
-  double color[3];            /* color * intensity */
-  double least_distance;      /* world; closer it gets no brighter */
-  const hl_light_texture *texture; /* null: none */
+  bool sphere;                       /* points are found anew for every sample */
+  vec3 centre;                       /* world; not for directional lights */
+  vec3 towards;                      /* directional lights: unit vector to the light */
+  double color[3];                   /* color * intensity */
+  double least_distance;             /* world; closer it gets no brighter */
+  const hl_light_texture *texture;   /* null: none */
   const hl_light_emission *emission; /* the image on the light itself; null: none */
-  double mean[3];             /* of that over the light's surface */
-  vec3 *points;               /* owned; null where the light casts no shadows; not set for spheres */
+  double mean[3];                    /* of that over the light's surface */
+  vec3 *points;                      /* owned; null where the light casts no shadows; not set for spheres */
   size_t point_count;
 } reference_light;
 
@@ -65,61 +65,63 @@ typedef struct reference {
   hl_context *context;
   hl_pool *pool;
   const hl_scene_description *scene;
-  reference_volume *volumes;  /* owned; [scene->volume_count] */
-  reference_light *lights;    /* owned; [scene->light_count] */
-  double step;                /* world units */
-  int rays;                   /* along each side of a pixel, whose mean it is */
-  double most_opacity;        /* that one sample may add to a pixel */
-  bool all_shadows;           /* the transmittance of every light is wanted at every sample */
+  reference_volume *volumes; /* owned; [scene->volume_count] */
+  reference_light *lights;   /* owned; [scene->light_count] */
+  double step;               /* world units */
+  int rays;                  /* along each side of a pixel, whose mean it is */
+  double most_opacity;       /* that one sample may add to a pixel */
+  bool all_shadows;          /* the transmittance of every light is wanted at every sample */
 } reference;
 
 /* A ray inside one volume's box. */
 typedef struct crossing {
   const reference_volume *volume;
-  vec3 origin, direction;     /* index space; the parameter is the world's distance along the ray */
-  double enter, leave;        /* distances; none where enter >= leave */
-  bool active;                /* the ray is inside the box now */
-  bool occupied;              /* active, and something may be seen here */
-  vec3 here;                  /* index space; the point of the present sample, where active */
+  vec3 origin, direction; /* index space; the parameter is the world's distance along the ray */
+  double enter, leave;    /* distances; none where enter >= leave */
+  bool active;            /* the ray is inside the box now */
+  bool occupied;          /* active, and something may be seen here */
+  vec3 here;              /* index space; the point of the present sample, where active */
 } crossing;
 
 /* A march along a ray: a stretch is a part of the ray between two box faces, cut into equal steps. */
 typedef struct march {
-  crossing *crossings;        /* borrowed; [count] */
+  crossing *crossings; /* borrowed; [count] */
   size_t count;
   double longest_step;
-  double start, end;          /* the present stretch */
-  double length;              /* of a step */
-  double next, steps;         /* whole numbers */
-  double at;                  /* distance of the present sample */
+  double start, end;  /* the present stretch */
+  double length;      /* of a step */
+  double next, steps; /* whole numbers */
+  double at;          /* distance of the present sample */
 } march;
 
 /* The light of one source that arrives at a sample. */
 typedef struct arrival {
-  vec3 towards;               /* unit vector to the light's centre */
-  double incoming[3];         /* without texture and without attenuation by volumes; eq. (1) */
-  double pattern[3];          /* the colour of the light's image, mean over its points; 1 without one; eq. (2) */
-  double shadowed[3];         /* mean over the light's points of image times transmittance */
+  vec3 towards;       /* unit vector to the light's centre */
+  double incoming[3]; /* without texture and without attenuation by volumes; eq. (1) */
+  double pattern[3];  /* the colour of the light's image, mean over its points; 1 without one; eq. (2) */
+  double shadowed[3]; /* mean over the light's points of image times transmittance */
   bool pattern_known, shadowed_known;
 } arrival;
 
 /* What one light gives: the light sent to the eye, and the transmittance towards it. */
-typedef struct light_part { double picture[3], shadow[3]; } light_part;
+typedef struct light_part {
+  double picture[3], shadow[3];
+} light_part;
 
 /* What a sample or a whole ray is made of; sums, weighted by extinction (a sample) or by opacity (a ray). */
 typedef struct reference_parts {
-  double weight;              /* of a ray: alpha */
+  double weight; /* of a ray: alpha */
   double ambient[3], emission[3];
   vec3 normal;
   double depth;
-  light_part *lights;         /* [light_count] */
+  light_part *lights; /* [light_count] */
 } reference_parts;
 
 /* What one thread needs; all arrays are owned by hl_reference_render. */
 typedef struct reference_worker {
-  int number;                 /* of the pool */
-  crossing *eye, *shadow;     /* [volume_count] */
-  arrival *arrivals;          /* [light_count] */
+  int number;             /* of the pool */
+  crossing *eye, *shadow; /* [volume_count] */
+  arrival *arrivals;      /* [light_count] */
   reference_parts sample, ray, pixel;
 } reference_worker;
 
@@ -127,7 +129,8 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
                                      reference_volume *made, hl_error *error);
 hl_status hl_reference_bricks_create(hl_context *context, reference_volume *volume, hl_pool *pool,
                                      hl_error *error);
-/* The most rays along a side of a pixel; and how many there are where voxels, `edge` long in world units, are smaller than pixels. */
+/* The most rays along a side of a pixel; and how many there are where voxels, `edge` long in world units, are
+ * smaller than pixels. */
 enum { HL_REFERENCE_RAYS = 8 };
 int hl_reference_rays(const reference *all, double edge);
 /* How far a ray may go from `point` (index space) before it can meet something: 0 where it may be here.
@@ -157,8 +160,8 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
                                     reference_light *made, hl_error *error);
 /* The light at a world point, before any volume. */
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived);
-/* Mean over the light's points of its image (texture or emission; else 1) times transmittance; attenuated: false takes
- * the transmittance as 1. */
+/* Mean over the light's points of its image (texture or emission; else 1) times transmittance; attenuated:
+ * false takes the transmittance as 1. */
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
                               reference_worker *worker, double reach[3]);
 
@@ -166,19 +169,23 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
 void hl_reference_texture(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double color[3]);
 
 /* The colour of a light's own image at an offset of its plane. */
-void hl_reference_emission(const hl_light_emission *emission, const emission_plane *plane, vec3 offset, double color[3]);
+void hl_reference_emission(const hl_light_emission *emission, const emission_plane *plane, vec3 offset,
+                           double color[3]);
 
-/* Adds what a sample of one volume sends along `to_eye`, times its weight, to the worker's sample. `index_point` is the
- * same point as `point`. */
+/* Adds what a sample of one volume sends along `to_eye`, times its weight, to the worker's sample.
+ * `index_point` is the same point as `point`. */
 void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
                         double value, double weight, vec3 to_eye, reference_worker *worker);
 
 /* The pixel of a maximum projection: premultiplied RGBA, alpha 1 where a volume shows something. */
-void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker, float rgba[4]);
+void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
+                          float rgba[4]);
 
 /* layers.c: parts at nothing; another's added, each times `scale`; and the caller's layers of one pixel. */
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count);
-void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale, size_t light_count);
-void hl_reference_parts_write(const reference_parts *parts, double depth_first, const hl_layers *layers, size_t pixel);
+void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale,
+                            size_t light_count);
+void hl_reference_parts_write(const reference_parts *parts, double depth_first, const hl_layers *layers,
+                              size_t pixel);
 
 #endif

@@ -35,8 +35,8 @@ static vec3 find_normal(const reference_volume *volume, vec3 index_point, double
   return vec3_scale(gradient, (value > volume->empty_value ? -1 : 1) / size);
 }
 
-/* The part of the light that the volumes let through, whatever image it projects; of a light with an image of its own
- * the part of each colour. */
+/* The part of the light that the volumes let through, whatever image it projects; of a light with an image of
+ * its own the part of each colour. */
 static void find_shadow(const reference *all, const reference_volume *volume, size_t light, vec3 point,
                         reference_worker *worker, double shadow[3]) {
   reference_light plain = all->lights[light];
@@ -58,8 +58,8 @@ static void find_shadow(const reference *all, const reference_volume *volume, si
 
 /* The light of one source that the sample sends on, for a volume of colour `own`. */
 static void shade_light(const reference *all, const reference_volume *volume, size_t light, vec3 point,
-                        const double own[3], vec3 normal, double surface, vec3 to_eye, reference_worker *worker,
-                        light_part *part) {
+                        const double own[3], vec3 normal, double surface, vec3 to_eye,
+                        reference_worker *worker, light_part *part) {
   const hl_material *material = &volume->described->material;
   const arrival *arrived = &worker->arrivals[light];
   double cosine = vec3_dot(normal, arrived->towards), gloss = 0;

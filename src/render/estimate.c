@@ -1,5 +1,6 @@
-/* render/estimate.c - see estimate.h. Sums of what hl_prepare_volumes, the frame and hl_sweep_begin allocate; slides and the
- * lists of splatted voxels, whose size shows only when they are made, are left to the limit itself. */
+/* render/estimate.c - see estimate.h. Sums of what hl_prepare_volumes, the frame and hl_sweep_begin allocate;
+ * slides and the lists of splatted voxels, whose size shows only when they are made, are left to the limit
+ * itself. */
 #include "render/estimate.h"
 
 #include "core/context.h"
@@ -7,21 +8,23 @@
 
 enum { SMALL_PARTS = 64 << 10 /* descriptions, sweeps, corners, counts */ };
 
-uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared, const grid_functions *functions,
-                          int threads) {
+uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared,
+                          const grid_functions *functions, int threads) {
   uint64_t bytes = SMALL_PARTS;
   uint64_t table = (CLASSIFIER_ENTRIES + 2) * (2 * sizeof(*prepared->classifier.sums) + sizeof(int32_t));
   for (size_t i = 0; i < scene->volume_count; i++) {
     const hl_transfer_function *function = &scene->volumes[i].transfer_function;
     if (prepared[i].volume == scene->volumes[i].volume) continue;
-    bytes += hl_grid_bytes(scene->volumes[i].volume, functions, threads) + table + function->opacity_count * sizeof *function->opacity +
+    bytes += hl_grid_bytes(scene->volumes[i].volume, functions, threads) + table +
+             function->opacity_count * sizeof *function->opacity +
              function->color_count * sizeof *function->color;
   }
   return bytes;
 }
 
 uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *layers) {
-  uint64_t tiles = (uint64_t)hl_tiles(frame->width) * (uint64_t)hl_tiles(frame->height), floats = 4 * (uint64_t)sweep_count;
+  uint64_t tiles = (uint64_t)hl_tiles(frame->width) * (uint64_t)hl_tiles(frame->height),
+           floats = 4 * (uint64_t)sweep_count;
   if (layers != NULL && layers->ambient != NULL) floats += 4;
   if (layers != NULL && layers->emission != NULL) floats += 4;
   if (hl_layers_measure(layers)) floats += MEASURES;
@@ -51,7 +54,8 @@ hl_status hl_check_room(const hl_context *context, uint64_t bytes, uint64_t *est
   if (limit == 0 || held + bytes <= limit) return HL_OK;
   double mega = 1 << 20;
   return hl_fail(error, HL_ERROR_MEMORY,
-                 "this frame needs about %.1f MiB beside the %.1f MiB held already, the memory limit is %.1f MiB: make the "
+                 "this frame needs about %.1f MiB beside the %.1f MiB held already, the memory limit is %.1f "
+                 "MiB: make the "
                  "picture smaller, light_samples fewer or shadow_resolution lower, or raise the limit",
                  (double)bytes / mega, (double)held / mega, (double)limit / mega);
 }

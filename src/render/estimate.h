@@ -1,4 +1,5 @@
-/* render/estimate.h - the memory that a frame will take, so that one that cannot fit is refused before it begins. */
+/* render/estimate.h - the memory that a frame will take, so that one that cannot fit is refused before it
+ * begins. */
 #ifndef HL_RENDER_ESTIMATE_H
 #define HL_RENDER_ESTIMATE_H
 
@@ -7,8 +8,8 @@
 #include "render/sweep.h"
 
 /* What the volumes that are not prepared yet take, bytes. */
-uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared, const grid_functions *functions,
-                          int threads);
+uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared,
+                          const grid_functions *functions, int threads);
 
 /* What the picture and its layers take, for sweeps of the frame. */
 uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *layers);

@@ -24,7 +24,8 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye
   eye->du = vec3_scale(right, 2 * half_width / width);
   eye->dv = vec3_scale(up, -2 * half_height / height);
   if (!hl_view_finish(eye))
-    return hl_fail(error, HL_ERROR_INPUT, "/camera: position, target and up do not span a view: move one of them");
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "/camera: position, target and up do not span a view: move one of them");
   return HL_OK;
 }
 
@@ -32,13 +33,16 @@ void hl_frame_content(const grid *grid, vec3 corners[8]) {
   double low[3], high[3];
   (void)hl_relevant_bounds(grid, 0.5, low, high);
   for (int corner = 0; corner < 8; corner++)
-    corners[corner] = affine3_apply(grid->index_to_frame, (vec3){corner & 1 ? high[0] : low[0],
-                                                                 corner & 2 ? high[1] : low[1],
-                                                                 corner & 4 ? high[2] : low[2]});
+    corners[corner] = affine3_apply(
+        grid->index_to_frame,
+        (vec3){corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
 }
 
 /* A half space: normal . x + offset >= 0. */
-typedef struct half_space { vec3 normal; double offset; } half_space;
+typedef struct half_space {
+  vec3 normal;
+  double offset;
+} half_space;
 
 /* Cuts a segment; false if nothing is left. */
 static bool clip_segment(vec3 *a, vec3 *b, const half_space *planes, int count) {
@@ -48,7 +52,8 @@ static bool clip_segment(vec3 *a, vec3 *b, const half_space *planes, int count) 
     if (da < 0 && db < 0) return false;
     if (da >= 0 && db >= 0) continue;
     vec3 crossing = vec3_add(*a, vec3_scale(vec3_subtract(*b, *a), da / (da - db)));
-    if (da < 0) *a = crossing; else *b = crossing;
+    if (da < 0) *a = crossing;
+    else *b = crossing;
   }
   return true;
 }
@@ -56,7 +61,8 @@ static bool clip_segment(vec3 *a, vec3 *b, const half_space *planes, int count) 
 static half_space through(vec3 a, vec3 b, vec3 c, vec3 inside) {
   vec3 normal = vec3_normalise(vec3_cross(vec3_subtract(b, a), vec3_subtract(c, a)));
   half_space plane = {normal, -vec3_dot(normal, a)};
-  if (vec3_dot(normal, inside) + plane.offset < 0) plane = (half_space){vec3_scale(normal, -1), -plane.offset};
+  if (vec3_dot(normal, inside) + plane.offset < 0)
+    plane = (half_space){vec3_scale(normal, -1), -plane.offset};
   return plane;
 }
 
@@ -66,7 +72,8 @@ static void frustum(const view *eye, double depth, vec3 near[4], vec3 far[4], ha
   hl_view_ray(eye, eye->width / 2.0, eye->height / 2.0, &middle_start, &middle_way);
   for (int corner = 0; corner < 4; corner++) {
     vec3 way;
-    double u = corner == 1 || corner == 2 ? eye->width + 1.0 : -1.0, v = corner >= 2 ? eye->height + 1.0 : -1.0;
+    double u = corner == 1 || corner == 2 ? eye->width + 1.0 : -1.0,
+           v = corner >= 2 ? eye->height + 1.0 : -1.0;
     hl_view_ray(eye, u, v, &near[corner], &way);
     way = vec3_normalise(way);
     if (!eye->perspective) near[corner] = vec3_add(near[corner], vec3_scale(way, -depth));
@@ -83,7 +90,8 @@ static int visible_points_of_box(const frame *frame, const vec3 corner[8], vec3 
   static const int faces[6][3] = {{0, 1, 2}, {4, 5, 6}, {0, 1, 4}, {2, 3, 6}, {0, 2, 4}, {1, 3, 5}};
   vec3 near[4], far[4], middle = vec3_scale(vec3_add(corner[0], corner[7]), 0.5);
   half_space sides[4], walls[6];
-  double depth = vec3_length(vec3_subtract(frame->eye.origin, middle)) + vec3_length(vec3_subtract(corner[7], corner[0]));
+  double depth = vec3_length(vec3_subtract(frame->eye.origin, middle)) +
+                 vec3_length(vec3_subtract(corner[7], corner[0]));
   int count = 0;
   frustum(&frame->eye, depth, near, far, sides);
   for (int face = 0; face < 6; face++)

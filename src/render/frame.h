@@ -1,7 +1,7 @@
 /* render/frame.h - the geometry of one frame: where the eye, the lights and the sheets are.
  *
- * Frame space is the world moved to the middle of the volumes and measured in units of about their smallest voxel edge
- * (framed_scene.h). */
+ * Frame space is the world moved to the middle of the volumes and measured in units of about their smallest
+ * voxel edge (framed_scene.h). */
 #ifndef HL_RENDER_FRAME_H
 #define HL_RENDER_FRAME_H
 
@@ -15,25 +15,25 @@ enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
 typedef struct frame_sweep {
   sheet_stack sheets;
   bool back_to_front;      /* for the eye; light always travels with rising sheets */
-  bool of_sectors;           /* the lights are sectors of lights, and the slicing direction is theirs */
+  bool of_sectors;         /* the lights are sectors of lights, and the slicing direction is theirs */
   int light[FRAME_LIGHTS]; /* indices into frame lights */
   int light_count;
 } frame_sweep;
 
 typedef struct frame {
-  int width, height;       /* pixels: the picture's, times oversampling */
-  int oversampling;        /* pixels a side of which the mean is one of the picture's */
+  int width, height; /* pixels: the picture's, times oversampling */
+  int oversampling;  /* pixels a side of which the mean is one of the picture's */
   view eye;
-  vec3 eye_direction;      /* e: unit, from the eye to the content */
-  vec3 middle;             /* of the content */
-  double pixel;            /* edge of an image pixel where the content is nearest, frame units */
-  double middle_pixel;     /* the same at the content's middle */
-  double voxel;            /* the smallest edge of a voxel, frame units */
-  double spacing;          /* ds, frame units */
-  vec3 *points;            /* corners of the content of all grids; owned by the caller; [8 * grids] */
+  vec3 eye_direction;  /* e: unit, from the eye to the content */
+  vec3 middle;         /* of the content */
+  double pixel;        /* edge of an image pixel where the content is nearest, frame units */
+  double middle_pixel; /* the same at the content's middle */
+  double voxel;        /* the smallest edge of a voxel, frame units */
+  double spacing;      /* ds, frame units */
+  vec3 *points;        /* corners of the content of all grids; owned by the caller; [8 * grids] */
   int point_count;
-  light_sectors sectors;   /* of lights within the content */
-  light_source *lights;    /* [light_count]; owned by the caller; sectors of a light follow each other */
+  light_sectors sectors; /* of lights within the content */
+  light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
 } frame;
 
@@ -43,17 +43,19 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye
 /* Corners of the box around a grid's relevant bricks, of which there is one at least. */
 void hl_frame_content(const grid *grid, vec3 corners[8]);
 
-/* Groups lights into sweeps and slices each (section 3.1 and fig. 3); sweeps: room for light_count + 1. Returns
- * how many there are: at least one. */
+/* Groups lights into sweeps and slices each (section 3.1 and fig. 3); sweeps: room for light_count + 1.
+ * Returns how many there are: at least one. */
 int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, frame_sweep *sweeps);
 
 /* One more sweep, without lights, image-aligned: front to back for the eye. */
 void hl_frame_add_eye_sweep(const frame *frame, frame_sweep *sweeps, int *count);
 
-/* False where the light's rays do not cross the sheets that would serve it and the eye: it must be cut into sectors. */
+/* False where the light's rays do not cross the sheets that would serve it and the eye: it must be cut into
+ * sectors. */
 bool hl_frame_serves(const frame *frame, const hl_render_settings *settings, const light_source *source);
 
-/* Refuses a sweep of too many sheets, or whose sheets some ray of the eye or a shadowing light does not cross. */
+/* Refuses a sweep of too many sheets, or whose sheets some ray of the eye or a shadowing light does not
+ * cross. */
 hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error);
 
 /* Corners of the part of the content that the eye sees: what a shadow buffer must cover. points: room for

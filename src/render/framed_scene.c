@@ -44,7 +44,8 @@ static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
   volume->transfer_function.unit_distance /= space->unit;
 }
 
-static hl_status copy_arrays(hl_context *context, const hl_scene_description *scene, framed_scene *framed, hl_error *error) {
+static hl_status copy_arrays(hl_context *context, const hl_scene_description *scene, framed_scene *framed,
+                             hl_error *error) {
   size_t vertices = 0;
   for (size_t i = 0; i < scene->light_count; i++) vertices += scene->lights[i].vertex_count;
   framed->volumes = hl_allocate(context, scene->volume_count, sizeof *framed->volumes);
@@ -53,7 +54,8 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   if (framed->volumes == NULL || framed->lights == NULL || framed->vertices == NULL)
     return hl_fail_memory(error, scene->volume_count * sizeof *framed->volumes, "the scene in frame space");
   memcpy(framed->volumes, scene->volumes, scene->volume_count * sizeof *framed->volumes);
-  if (scene->light_count > 0) memcpy(framed->lights, scene->lights, scene->light_count * sizeof *framed->lights);
+  if (scene->light_count > 0)
+    memcpy(framed->lights, scene->lights, scene->light_count * sizeof *framed->lights);
   framed->scene.volumes = framed->volumes;
   framed->scene.lights = framed->lights;
   return HL_OK;

@@ -1,7 +1,8 @@
-/* render/framed_scene.h - a scene in frame space: moved to the middle of its volumes, measured in its smallest voxels.
+/* render/framed_scene.h - a scene in frame space: moved to the middle of its volumes, measured in its
+ * smallest voxels.
  *
- * Floats then hold what a picture needs wherever the scene lies and whatever its unit of length is. The unit is a power of
- * two, so that scaling rounds nothing: a scene 2^k times as large gives the same bytes. */
+ * Floats then hold what a picture needs wherever the scene lies and whatever its unit of length is. The unit
+ * is a power of two, so that scaling rounds nothing: a scene 2^k times as large gives the same bytes. */
 #ifndef HL_RENDER_FRAMED_SCENE_H
 #define HL_RENDER_FRAMED_SCENE_H
 
@@ -9,11 +10,12 @@
 #include "scene/scene.h"
 
 typedef struct framed_scene {
-  hl_scene_description scene; /* camera, lights and volumes in frame space; volumes, textures and texts are the world's */
-  hl_scene_volume *volumes;   /* owned; [volume_count] */
-  hl_light *lights;           /* owned; [light_count] */
-  double (*vertices)[3];      /* owned; of all polygons */
-  double unit;                /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
+  hl_scene_description
+      scene; /* camera, lights and volumes in frame space; volumes, textures and texts are the world's */
+  hl_scene_volume *volumes; /* owned; [volume_count] */
+  hl_light *lights;         /* owned; [light_count] */
+  double (*vertices)[3];    /* owned; of all polygons */
+  double unit;              /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
 } framed_scene;
 
 hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene, framed_scene *framed,

@@ -1,8 +1,9 @@
-/* render/hidden.c - what opaque matter hides from the eye, found before a sweep that goes from back to front: it would shade all
- * of that first, to cover it later.
+/* render/hidden.c - what opaque matter hides from the eye, found before a sweep that goes from back to front:
+ * it would shade all of that first, to cover it later.
  *
- * The same sheets are gone through the other way, opacity alone, until blocks of pixels are opaque. What lies behind is left
- * out, as it is where sheets go from front to back. A few tiles are tried first: where little is hidden, all is shaded. */
+ * The same sheets are gone through the other way, opacity alone, until blocks of pixels are opaque. What lies
+ * behind is left out, as it is where sheets go from front to back. A few tiles are tried first: where little
+ * is hidden, all is shaded. */
 #include "core/memory.h"
 #include "render/sweep.h"
 
@@ -15,7 +16,8 @@ static frame_sweep turned_round(const frame_sweep *geometry) {
   return turned;
 }
 
-/* Derived: what is opaque after slab k from the eye, of the n - 1 between n sheets, hides those before slab n - k from the light. */
+/* Derived: what is opaque after slab k from the eye, of the n - 1 between n sheets, hides those before slab n
+ * - k from the light. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
 uint32_t hl_shown_blocks(const int32_t shown_from[TILE_BLOCKS], int slab) {
@@ -24,14 +26,15 @@ uint32_t hl_shown_blocks(const int32_t shown_from[TILE_BLOCKS], int slab) {
   return shown;
 }
 
-uint32_t hl_sweep_cover(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks, int worker,
-                        void *scratch) {
+uint32_t hl_sweep_cover(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile,
+                        uint32_t blocks, int worker, void *scratch) {
   sweep_counts *counts = &sweep->counts[worker];
   int32_t *shown_from = sweep->covering + tile * TILE_BLOCKS;
   uint32_t seen = blocks & hl_shown_blocks(shown_from, 0); /* 0: not covered yet */
   counts->pixels_covered += hl_pixels_of_blocks(blocks & ~seen);
   counts->pixels_seen += hl_pixels_of_blocks(seen);
-  uint32_t open = sweep->hot->cover_tile(&sweep->shade, patches, patch_count, (int)(tile % (size_t)sweep->tiles_x),
+  uint32_t open = sweep->hot->cover_tile(&sweep->shade, patches, patch_count,
+                                         (int)(tile % (size_t)sweep->tiles_x),
                                          (int)(tile / (size_t)sweep->tiles_x), seen, scratch,
                                          sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
   for (uint32_t closed = seen & ~open; closed != 0; closed &= closed - 1)
@@ -44,8 +47,8 @@ static bool is_tried(const sweep *sweep, size_t tile) {
   return (tile % (size_t)sweep->tiles_x + tile / (size_t)sweep->tiles_x * 11) % 32 == 0;
 }
 
-/* To find what covers a pixel takes about half of what it takes to fill and to light one that is covered (measured); and some more,
- * as few tiles tell. */
+/* To find what covers a pixel takes about half of what it takes to fill and to light one that is covered
+ * (measured); and some more, as few tiles tell. */
 static const double COVERED_PER_SEEN = 0.75;
 
 static bool is_worth_while(const sweep *front) {
@@ -70,7 +73,8 @@ hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, h
   frame_sweep turned = turned_round(sweep->geometry);
   struct sweep front = *sweep;
   sweep->shown_from = hl_allocate_zeroed(sweep->context, tiles * TILE_BLOCKS, sizeof *sweep->shown_from);
-  if (sweep->shown_from == NULL) return hl_fail_memory(error, tiles * TILE_BLOCKS * sizeof *sweep->shown_from, "what is hidden");
+  if (sweep->shown_from == NULL)
+    return hl_fail_memory(error, tiles * TILE_BLOCKS * sizeof *sweep->shown_from, "what is hidden");
   front.geometry = &turned;
   front.layer_pixels = NULL;
   front.first = front.measures = false;

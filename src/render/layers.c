@@ -9,7 +9,8 @@
 enum { COLORS = 4 }; /* R G B A */
 
 bool hl_layers_measure(const hl_layers *wanted) {
-  return wanted != NULL && (wanted->depth_first != NULL || wanted->depth_mean != NULL || wanted->normal != NULL);
+  return wanted != NULL &&
+         (wanted->depth_first != NULL || wanted->depth_mean != NULL || wanted->normal != NULL);
 }
 
 /* ---- pixels ---- */
@@ -23,7 +24,8 @@ typedef struct pixel_room {
 static float *allocate_pixels(const pixel_room *room, size_t floats, hl_status *status, hl_error *error) {
   if (*status != HL_OK) return NULL;
   float *pixels = hl_allocate(room->context, room->tiles * TILE_PIXELS, floats * sizeof *pixels);
-  if (pixels == NULL) *status = hl_fail_memory(error, room->tiles * TILE_PIXELS * floats * sizeof *pixels, "a layer");
+  if (pixels == NULL)
+    *status = hl_fail_memory(error, room->tiles * TILE_PIXELS * floats * sizeof *pixels, "a layer");
   else hl_pool_clear(room->pool, pixels, room->tiles * TILE_PIXELS * floats * sizeof *pixels);
   return pixels;
 }
@@ -35,8 +37,8 @@ static void clear_first_depth(float *measures, size_t tiles) {
       measures[(block * MEASURES + MEASURE_DEPTH_FIRST) * BLOCK_PIXELS + (size_t)lane] = INFINITY;
 }
 
-hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted, const frame *frame,
-                                 size_t tiles, layer_pixels *pixels, hl_error *error) {
+hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted,
+                                 const frame *frame, size_t tiles, layer_pixels *pixels, hl_error *error) {
   *pixels = (layer_pixels){.wanted = wanted, .light_count = (size_t)frame->light_count};
   if (wanted == NULL) return HL_OK;
   hl_status status = HL_OK;
@@ -73,7 +75,8 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
 /* Volumes of white without surfaces, whose samples send on what arrives. */
 static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
-  for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++) layers->ones[i][0] = layers->ones[i][1] = layers->ones[i][2] = 1;
+  for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
+    layers->ones[i][0] = layers->ones[i][1] = layers->ones[i][2] = 1;
   for (int g = 0; g < sweep->volume_count; g++) {
     layers->white[g] = sweep->volumes[g].classifier;
     layers->white[g].color = layers->ones;
@@ -99,7 +102,8 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
   layers->passes = hl_allocate_zeroed(context, 2 * lights + 3, sizeof *layers->passes);
   layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
   layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
-  layers->white_patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->pool), sizeof *layers->white_patches);
+  layers->white_patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->pool),
+                                      sizeof *layers->white_patches);
   layers->white = hl_allocate_zeroed(context, volumes, sizeof *layers->white);
   layers->ones = hl_allocate(context, CLASSIFIER_ENTRIES + 2, sizeof *layers->ones);
   if (layers->passes == NULL || layers->white_lights == NULL || layers->white_volumes == NULL ||
@@ -108,7 +112,8 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
-/* The sweep's shading of given lights, without ambient light and emission. Null where the layer is not wanted. */
+/* The sweep's shading of given lights, without ambient light and emission. Null where the layer is not
+ * wanted. */
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
   layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
@@ -148,8 +153,8 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
 
 void hl_sweep_layers_end(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
-  void *owned[] = {layers->passes, layers->white_lights, layers->white_volumes, layers->white_patches, layers->white,
-                   layers->ones};
+  void *owned[] = {layers->passes,        layers->white_lights, layers->white_volumes,
+                   layers->white_patches, layers->white,        layers->ones};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
 }
 
@@ -162,7 +167,8 @@ void hl_sweep_layers_sheet(sweep *sweep) {
 }
 
 /* The tile's patches, of the white volumes. */
-static const shade_patch *white_patches(const sweep *sweep, const shade_patch *patches, int patch_count, int worker) {
+static const shade_patch *white_patches(const sweep *sweep, const shade_patch *patches, int patch_count,
+                                        int worker) {
   shade_patch *white = sweep->layers.white_patches + (size_t)worker * (size_t)sweep->volume_count;
   for (int i = 0; i < patch_count; i++) {
     white[i] = patches[i];
@@ -171,8 +177,8 @@ static const shade_patch *white_patches(const sweep *sweep, const shade_patch *p
   return white;
 }
 
-void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile, uint32_t blocks,
-                          int worker, void *scratch) {
+void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile,
+                          uint32_t blocks, int worker, void *scratch) {
   int tile_x = (int)(tile % (size_t)sweep->tiles_x), tile_y = (int)(tile / (size_t)sweep->tiles_x);
   if (sweep->layers.pass_count == 0) return;
   const shade_patch *white = white_patches(sweep, patches, patch_count, worker);
@@ -187,16 +193,18 @@ void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int pa
 /* ---- the caller's buffers ---- */
 
 /* Where one value of a pixel of the frame is. */
-static const float *value_at(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value) {
+static const float *value_at(const layer_grid *grid, const float *pixels, int floats, int column, int row,
+                             int value) {
   size_t tile = (size_t)(row / TILE) * grid->tiles_x + (size_t)(column / TILE);
   size_t block = (size_t)(row % TILE / BLOCK * 4 + column % TILE / BLOCK);
   size_t lane = (size_t)(row % BLOCK * 4 + column % BLOCK);
   return pixels + ((tile * TILE_BLOCKS + block) * (size_t)floats + (size_t)value) * BLOCK_PIXELS + lane;
 }
 
-/* One of the picture's pixels: sum of a value over its pixels in the frame, those where it is infinite left out; how many
- * were added, if asked. */
-static float sum_of(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value, int *count) {
+/* One of the picture's pixels: sum of a value over its pixels in the frame, those where it is infinite left
+ * out; how many were added, if asked. */
+static float sum_of(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value,
+                    int *count) {
   int side = grid->oversampling;
   float sum = 0;
   for (int y = row * side; y < (row + 1) * side; y++)
@@ -209,8 +217,10 @@ static float sum_of(const layer_grid *grid, const float *pixels, int floats, int
   return sum;
 }
 
-/* Three channels, premultiplied as they are; or divided by alpha, 0 where that is 0. add: to what is there. */
-static void write_colors(const layer_grid *grid, int row, const float *pixels, bool divide, bool add, float *to) {
+/* Three channels, premultiplied as they are; or divided by alpha, 0 where that is 0. add: to what is
+ * there. */
+static void write_colors(const layer_grid *grid, int row, const float *pixels, bool divide, bool add,
+                         float *to) {
   float area = (float)(grid->oversampling * grid->oversampling);
   to += 3 * (size_t)row * (size_t)grid->width;
   for (int column = 0; column < grid->width; column++) {

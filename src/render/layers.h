@@ -1,9 +1,9 @@
 /* render/layers.h - layers: the sweep's own shading, asked once more for each of them.
  *
- * A light's picture is what the sweep would show with this light alone, no ambient light and no emission; its shadow is the picture
- * of white volumes without surfaces under that light in white. Both are made by the same function from the same
- * sheets, tile by tile after the picture's own; without layers nothing of this runs. Depth and normals are measured
- * from a sweep that goes front to back for the eye. */
+ * A light's picture is what the sweep would show with this light alone, no ambient light and no emission; its
+ * shadow is the picture of white volumes without surfaces under that light in white. Both are made by the
+ * same function from the same sheets, tile by tile after the picture's own; without layers nothing of this
+ * runs. Depth and normals are measured from a sweep that goes front to back for the eye. */
 #ifndef HL_RENDER_LAYERS_H
 #define HL_RENDER_LAYERS_H
 
@@ -13,31 +13,32 @@
 #include "render/frame.h"
 #include "simd/hot.h"
 
-/* Pixels of the frame's layers, in blocks as the picture's: [tiles][16][floats a pixel][16]. Null: not wanted. */
+/* Pixels of the frame's layers, in blocks as the picture's: [tiles][16][floats a pixel][16]. Null: not
+ * wanted. */
 typedef struct light_pixels {
   float *picture, *shadow; /* R G B A */
   size_t light_index;      /* in the scene: one light or its sectors */
 } light_pixels;
 
 typedef struct layer_pixels {
-  const hl_layers *wanted; /* the caller's; null: none */
+  const hl_layers *wanted;   /* the caller's; null: none */
   float *ambient, *emission; /* R G B A */
-  float *measures;         /* MEASURES */
-  light_pixels *lights;    /* owned; [light_count] */
-  size_t light_count;      /* of the frame */
+  float *measures;           /* MEASURES */
+  light_pixels *lights;      /* owned; [light_count] */
+  size_t light_count;        /* of the frame */
 } layer_pixels;
 
 /* One more shading of the sweep's tiles. */
 typedef struct layer_pass {
   shade_tile_function *shade;
-  shade_job job;           /* the sweep's, but for lights, ambient light and emission */
-  bool white;              /* of white volumes */
+  shade_job job; /* the sweep's, but for lights, ambient light and emission */
+  bool white;    /* of white volumes */
   float *pixels;
   size_t tile_floats;
 } layer_pass;
 
 typedef struct sweep_layers {
-  layer_pass *passes;          /* owned; [pass_count] */
+  layer_pass *passes; /* owned; [pass_count] */
   int pass_count;
   shade_light *white_lights;   /* owned; [light_count of the sweep] */
   shade_volume *white_volumes; /* owned; [volume_count] */
@@ -47,8 +48,8 @@ typedef struct sweep_layers {
 } sweep_layers;
 
 /* Allocates what is wanted of a frame of so many tiles. */
-hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted, const frame *frame,
-                                 size_t tiles, layer_pixels *pixels, hl_error *error);
+hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted,
+                                 const frame *frame, size_t tiles, layer_pixels *pixels, hl_error *error);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
 /* True where depth or normals are wanted: some sweep must then go front to back. */
@@ -56,10 +57,10 @@ bool hl_layers_measure(const hl_layers *wanted);
 
 /* Which pixels of the frame are averaged for one of the picture's. */
 typedef struct layer_grid {
-  int width, height;   /* of the picture */
+  int width, height; /* of the picture */
   int oversampling;
   size_t tiles_x;
-  float unit;          /* world length of 1 in frame space */
+  float unit; /* world length of 1 in frame space */
 } layer_grid;
 
 /* Fills the caller's buffers. */

@@ -1,22 +1,29 @@
-/* render/light_depth_lanes.h - what a slab's own matter takes of the light that shines on it (step 15, derived).
+/* render/light_depth_lanes.h - what a slab's own matter takes of the light that shines on it (step 15,
+ * derived).
  *
- * The shadow buffer tells what light reaches the slab's first sheet; from there on a sample's own surroundings tell how the light
- * goes on. Matter near a surface is taken to be a plane's: its density f falls by k entries of the transfer function's table per
- * frame unit towards the light, and light that comes to where it is f has passed the optical depth P(f) / k of it, P the
- * integral of extinction over entries. Wherever two places lie in the plane, their depths differ by (P(f1) - P(f2)) / k. */
+ * The shadow buffer tells what light reaches the slab's first sheet; from there on a sample's own
+ * surroundings tell how the light goes on. Matter near a surface is taken to be a plane's: its density f
+ * falls by k entries of the transfer function's table per frame unit towards the light, and light that comes
+ * to where it is f has passed the optical depth P(f) / k of it, P the integral of extinction over entries.
+ * Wherever two places lie in the plane, their depths differ by (P(f1) - P(f2)) / k. */
 #ifndef HL_RENDER_LIGHT_DEPTH_LANES_H
 #define HL_RENDER_LIGHT_DEPTH_LANES_H
 
 #include "light/shadow_lookup_lanes.h"
 #include "render/pack_lanes.h"
 
-typedef struct color_lanes { lanes c[3]; } color_lanes;
+typedef struct color_lanes {
+  lanes c[3];
+} color_lanes;
 
 /* exp(-x), also of negative x: those below -40 are as -40. */
 LANES_INLINE lanes exp_of_depth(lanes x) { return lanes_exp_negative(lanes_max(x, lanes_set(-40.0f))); }
 
-/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1], as what is to be divided by what. left: exp(-x). */
-typedef struct mean_transmittance { lanes over, under; } mean_transmittance;
+/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1], as what is to be divided by what. left:
+ * exp(-x). */
+typedef struct mean_transmittance {
+  lanes over, under;
+} mean_transmittance;
 
 LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
   lanes near = lanes_fma(-x, lanes_line(x, -1.0f / 6, 0.5f), lanes_set(1.0f));
@@ -24,21 +31,26 @@ LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
   return (mean_transmittance){lanes_select(thin, near, 1.0f - left), lanes_select(thin, lanes_set(1.0f), x)};
 }
 
-/* Light left within the slab, averaged as the eye sees it. e: the slab's optical depth for the eye; left: exp(-e). enter: the
- * light's depth where the eye's ray enters the matter; more: by how much more it is where the ray leaves (derived; exact for
- * extinction that varies along one direction only):
- *     int e exp(-e s) exp(-enter - more s) ds / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), phi(-x) = exp(x) phi(x). */
+/* Light left within the slab, averaged as the eye sees it. e: the slab's optical depth for the eye; left:
+ * exp(-e). enter: the light's depth where the eye's ray enters the matter; more: by how much more it is where
+ * the ray leaves (derived; exact for extinction that varies along one direction only): int e exp(-e s)
+ * exp(-enter - more s) ds / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), phi(-x) = exp(x) phi(x). */
 LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes more) {
   lanes sum = e + more, both = lanes_abs(sum);
-  mean_transmittance of_both = transmittance_within(both, lanes_exp_negative(both)), of_eye = transmittance_within(e, left);
+  mean_transmittance of_both = transmittance_within(both, lanes_exp_negative(both)),
+                     of_eye = transmittance_within(e, left);
   lanes seen = of_both.over * of_eye.under / (of_both.under * of_eye.over);
   return seen * exp_of_depth(enter + lanes_min(sum, lanes_set(0)));
 }
 
-/* How far light has come within the box of a volume when it reaches the ends of a way, of the given lengths of its way. */
-typedef struct ways_in_box { lanes first, last; } ways_in_box;
+/* How far light has come within the box of a volume when it reaches the ends of a way, of the given lengths
+ * of its way. */
+typedef struct ways_in_box {
+  lanes first, last;
+} ways_in_box;
 
-LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start, lanes3 way, lanes3 towards, ways_in_box path) {
+LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start, lanes3 way, lanes3 towards,
+                                       ways_in_box path) {
   ways_in_box leave = {lanes_set(1e30f), lanes_set(1e30f)}, enter = {lanes_set(0), lanes_set(0)};
   for (int axis = 0; axis < 3; axis++) {
     const float *row = volume->to_index[axis];
@@ -46,7 +58,8 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
     speed = lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
     lanes slowness = 1.0f / speed, low = lanes_set(volume->low[axis]), high = lanes_set(volume->high[axis]);
     lanes_int rising = speed > 0.0f;
-    lanes far = (lanes_select(rising, high, low) - at) * slowness, near = (lanes_select(rising, low, high) - at) * slowness;
+    lanes far = (lanes_select(rising, high, low) - at) * slowness,
+          near = (lanes_select(rising, low, high) - at) * slowness;
     leave.first = lanes_min(leave.first, lanes_max(far, lanes_set(0)));
     leave.last = lanes_min(leave.last, lanes_max(lanes_fma(-step, slowness, far), lanes_set(0)));
     enter.first = lanes_max(enter.first, near);
@@ -57,12 +70,15 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
 }
 
 /* Where in the table a volume is seen. */
-LANES_INLINE lanes coordinate_seen(const block_density *d) { return lanes_fma(d->after - d->before, d->seen, d->before); }
+LANES_INLINE lanes coordinate_seen(const block_density *d) {
+  return lanes_fma(d->after - d->before, d->seen, d->before);
+}
 
-/* Even extinction of the light's way through the slab that has the right optical depth down to what is seen of a volume
- * (derived). The eye's ray may run along a surface that the light's crosses: a way s before the point seen, the
- * density is f - s g.l to first order, g the gradient, which gives the mean extinction up to there; and where
- * extinction were even, the eye would see another place of the slab: the depths there must agree. */
+/* Even extinction of the light's way through the slab that has the right optical depth down to what is seen
+ * of a volume (derived). The eye's ray may run along a surface that the light's crosses: a way s before the
+ * point seen, the density is f - s g.l to first order, g the gradient, which gives the mean extinction up to
+ * there; and where extinction were even, the eye would see another place of the slab: the depths there must
+ * agree. */
 LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   if (lanes_bits(d->sloped) == 0) return d->sums.extinction;
@@ -74,12 +90,16 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
-/* The light's ways through all volumes to where the slab's covered part starts and ends: of several that share a slab, each takes
- * light on what of its way lies in the slab and in its own box, on whichever side of them the eye's ray passes. */
-LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densities, int count, lanes3 towards, lanes path) {
+/* The light's ways through all volumes to where the slab's covered part starts and ends: of several that
+ * share a slab, each takes light on what of its way lies in the slab and in its own box, on whichever side of
+ * them the eye's ray passes. */
+LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densities, int count,
+                                   lanes3 towards, lanes path) {
   const block_geometry *g = &slab->geometry;
-  ways_in_box all = {slab->part.begin * path, (slab->part.begin + slab->part.length) * path}, sum = {lanes_set(0), lanes_set(0)};
-  lanes3 start = add_scaled3(g->start, g->step_sheet, slab->part.begin), way = scale3(g->step_sheet, slab->part.length);
+  ways_in_box all = {slab->part.begin * path, (slab->part.begin + slab->part.length) * path},
+              sum = {lanes_set(0), lanes_set(0)};
+  lanes3 start = add_scaled3(g->start, g->step_sheet, slab->part.begin),
+         way = scale3(g->step_sheet, slab->part.length);
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
     if (!d->there) continue;
@@ -93,28 +113,34 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
   return (ways_in_box){lanes_min(sum.first, all.first), lanes_min(sum.last, all.last)};
 }
 
-/* The pixels of a buffer whose light stands for a place's: the four around it, and steps to them in pixels. Of the mean over many
- * parts of a light, four that are as far from the place as the parts' pixels are on average. */
+/* The pixels of a buffer whose light stands for a place's: the four around it, and steps to them in pixels.
+ * Of the mean over many parts of a light, four that are as far from the place as the parts' pixels are on
+ * average. */
 enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the place */
   lanes3 along_u, along_v;              /* a pixel along u and v, on the sheet; frame space */
 } near_pixels;
 
-/* Root of 1/6: bilinear look-ups at places of every phase weigh by a tent, whose variance that is (derived). */
+/* Root of 1/6: bilinear look-ups at places of every phase weigh by a tent, whose variance that is
+ * (derived). */
 static const float PART_SPREAD = 0.408248f;
 
 LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
   return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/* Derived: u = (row 1 . x) / (row 0 . x) has the gradient (row 1 - u row 0) / (row 0 . x), v likewise; the step on the sheet along
- * which u rises by one and v stays is (grad v x h) / (grad u . (grad v x h)), and likewise with u and v exchanged. */
-LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal, lanes3 position, near_pixels *near) {
+/* Derived: u = (row 1 . x) / (row 0 . x) has the gradient (row 1 - u row 0) / (row 0 . x), v likewise; the
+ * step on the sheet along which u rises by one and v stays is (grad v x h) / (grad u . (grad v x h)), and
+ * likewise with u and v exchanged. */
+LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal, lanes3 position,
+                             near_pixels *near) {
   lanes3 gradient_u = set3(map->rows[1]), gradient_v = set3(map->rows[2]);
   if (!parallel) {
-    lanes ahead = row_of_point(map->rows[0], position), inverse = 1.0f / lanes_select(ahead > 0.0f, ahead, lanes_set(1.0f));
-    lanes u = row_of_point(map->rows[1], position) * inverse, v = row_of_point(map->rows[2], position) * inverse;
+    lanes ahead = row_of_point(map->rows[0], position),
+          inverse = 1.0f / lanes_select(ahead > 0.0f, ahead, lanes_set(1.0f));
+    lanes u = row_of_point(map->rows[1], position) * inverse,
+          v = row_of_point(map->rows[2], position) * inverse;
     gradient_u = scale3(add_scaled3(gradient_u, set3(map->rows[0]), -u), inverse);
     gradient_v = scale3(add_scaled3(gradient_v, set3(map->rows[0]), -v), inverse);
   }
@@ -145,13 +171,17 @@ LANES_INLINE near_pixels pixels_of_parts(void) {
 
 /* Optical depths of the slab for one light, from its first sheet on. */
 typedef struct light_depths {
-  lanes enter[HL_CHANNELS], more[HL_CHANNELS]; /* where the eye's rays enter the matter, and by how much more where they leave it */
-  lanes near[HL_CHANNELS][NEAR_PIXELS];        /* on the first sheet at the near pixels, less that below the place lit */
-  lanes_int plane;                             /* where a plane tells them; elsewhere near is 0 */
+  lanes enter[HL_CHANNELS],
+      more[HL_CHANNELS]; /* where the eye's rays enter the matter, and by how much more where they leave it */
+  lanes near[HL_CHANNELS]
+            [NEAR_PIXELS]; /* on the first sheet at the near pixels, less that below the place lit */
+  lanes_int plane;         /* where a plane tells them; elsewhere near is 0 */
 } light_depths;
 
 /* A place in the table of integrals. */
-typedef struct table_origin { lanes x, extinction, integral; } table_origin;
+typedef struct table_origin {
+  lanes x, extinction, integral;
+} table_origin;
 
 LANES_INLINE table_origin origin_at(const classifier *classifier, lanes x) {
   table_place place = place_of_coordinate(lanes_clamp(x, 0, CLASSIFIER_ENTRIES));
@@ -170,14 +200,15 @@ LANES_INLINE lanes integral_between(const table_origin *from, const table_origin
 /* A plane's matter at the place lit. likely: 1 where it is one, 0 where not, and between. */
 typedef struct plane_matter {
   lanes likely;
-  lanes3 slope;         /* entries per frame unit */
-  lanes fall, inverse;  /* k, entries per frame unit, and 1 / k */
-  table_origin below;   /* where the light to the place lit enters the slab, or the box */
+  lanes3 slope;        /* entries per frame unit */
+  lanes fall, inverse; /* k, entries per frame unit, and 1 / k */
+  table_origin below;  /* where the light to the place lit enters the slab, or the box */
 } plane_matter;
 
-/* How deep below a surface matter counts as a plane's, in voxels: depth is measured by the gradient, from where the transfer function's
- * visible values begin. Down to this depth it counts fully, at twice the depth no more. Where light grazes the surface (cosine of 0.2
- * and less) it counts less, too, and from 0.1 on not at all. */
+/* How deep below a surface matter counts as a plane's, in voxels: depth is measured by the gradient, from
+ * where the transfer function's visible values begin. Down to this depth it counts fully, at twice the depth
+ * no more. Where light grazes the surface (cosine of 0.2 and less) it counts less, too, and from 0.1 on not
+ * at all. */
 static const float SKIN_VOXELS = 2;
 
 LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes way) {
@@ -189,9 +220,12 @@ LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes
   lanes seen = coordinate_seen(d), sense = lanes_set(1.0f);
   plane.slope = scale3(d->slope, lanes_set(classifier->scale));
   plane.fall = -dot3(plane.slope, towards);
-  lanes a_voxel = lanes_sqrt(dot3(plane.slope, plane.slope)) * volume->voxel, least = lanes_abs(plane.fall) * volume->voxel;
-  plane.inverse = lanes_select(plane.fall > 0.0f, sense, -sense) * volume->voxel / lanes_max(least, lanes_set(1e-4f));
-  lanes edge = lanes_select(plane.fall > 0.0f, lanes_set(classifier->first_visible), lanes_set(classifier->last_visible));
+  lanes a_voxel = lanes_sqrt(dot3(plane.slope, plane.slope)) * volume->voxel,
+        least = lanes_abs(plane.fall) * volume->voxel;
+  plane.inverse = lanes_select(plane.fall > 0.0f, sense, -sense) * volume->voxel /
+                  lanes_max(least, lanes_set(1e-4f));
+  lanes edge = lanes_select(plane.fall > 0.0f, lanes_set(classifier->first_visible),
+                            lanes_set(classifier->last_visible));
   lanes deep = lanes_abs(seen - edge) / lanes_max(a_voxel, lanes_set(1e-6f));
   plane.likely = lanes_keep(facing, lanes_clamp(lanes_line(deep, -1.0f / SKIN_VOXELS, 2.0f), 0, 1));
   plane.likely = plane.likely * lanes_clamp((dot3(d->normal, towards) - 0.1f) * (1.0f / (0.2f - 0.1f)), 0, 1);
@@ -199,25 +233,31 @@ LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes
   return plane;
 }
 
-/* How far the light has come where it reaches the ends of the eye's way, of the whole way and of the volume's own. cut: where some
- * box's face makes it shorter than through the slab. */
-typedef struct light_ways { ways_in_box all; lanes_int cut; } light_ways;
+/* How far the light has come where it reaches the ends of the eye's way, of the whole way and of the volume's
+ * own. cut: where some box's face makes it shorter than through the slab. */
+typedef struct light_ways {
+  ways_in_box all;
+  lanes_int cut;
+} light_ways;
 
-/* Adds a plane's depths: where a face cuts the way, from there on; elsewhere from the slab's first sheet. share: of a volume that
- * has a part of the matter. */
-LANES_INLINE void add_plane(const block_density *d, const plane_matter *plane, const light_ways *ways, int back_to_front, lanes share,
-                            const near_pixels *near, int channels, light_depths *depths) {
+/* Adds a plane's depths: where a face cuts the way, from there on; elsewhere from the slab's first sheet.
+ * share: of a volume that has a part of the matter. */
+LANES_INLINE void add_plane(const block_density *d, const plane_matter *plane, const light_ways *ways,
+                            int back_to_front, lanes share, const near_pixels *near, int channels,
+                            light_depths *depths) {
   const shade_volume *volume = d->patch->volume;
   const classifier *classifier = volume->classifier;
   lanes depth = plane->inverse * plane->likely * share;
   const lanes end[2] = {back_to_front ? d->after : d->before, back_to_front ? d->before : d->after};
-  const lanes way[2] = {back_to_front ? ways->all.last : ways->all.first, back_to_front ? ways->all.first : ways->all.last};
+  const lanes way[2] = {back_to_front ? ways->all.last : ways->all.first,
+                        back_to_front ? ways->all.first : ways->all.last};
   lanes at[2];
   for (int i = 0; i < 2; i++) {
     table_origin from = plane->below, to = origin_at(classifier, end[i]);
     if (lanes_bits(ways->cut) != 0) {
       table_origin face = origin_at(classifier, lanes_fma(-plane->fall, way[i], end[i]));
-      from = (table_origin){lanes_select(ways->cut, face.x, from.x), lanes_select(ways->cut, face.extinction, from.extinction),
+      from = (table_origin){lanes_select(ways->cut, face.x, from.x),
+                            lanes_select(ways->cut, face.extinction, from.extinction),
                             lanes_select(ways->cut, face.integral, from.integral)};
     }
     at[i] = integral_between(&from, &to) * depth;
@@ -225,7 +265,8 @@ LANES_INLINE void add_plane(const block_density *d, const plane_matter *plane, c
   lanes rise_u = dot3(plane->slope, near->along_u), rise_v = dot3(plane->slope, near->along_v);
   lanes there[NEAR_PIXELS];
   for (int i = 0; i < NEAR_PIXELS; i++) {
-    table_origin pixel = origin_at(classifier, lanes_fma(rise_u, near->u[i], lanes_fma(rise_v, near->v[i], plane->below.x)));
+    table_origin pixel = origin_at(
+        classifier, lanes_fma(rise_u, near->u[i], lanes_fma(rise_v, near->v[i], plane->below.x)));
     there[i] = lanes_keep(~ways->cut, integral_between(&plane->below, &pixel) * depth);
   }
   for (int c = 0; c < channels; c++) {
@@ -240,7 +281,8 @@ LANES_INLINE void add_plane(const block_density *d, const plane_matter *plane, c
 static const float WHOLE_WAY = 0.999f;
 
 /* Where the light's way through all boxes is shorter than through the slab. */
-LANES_INLINE light_ways find_light_ways(const block_slab *slab, block_density *densities, int count, lanes3 towards, lanes path) {
+LANES_INLINE light_ways find_light_ways(const block_slab *slab, block_density *densities, int count,
+                                        lanes3 towards, lanes path) {
   light_ways ways = {.all = find_ways(slab, densities, count, towards, path)};
   lanes first = slab->part.begin * path, last = (slab->part.begin + slab->part.length) * path;
   lanes_int shorter = (ways.all.first < first * WHOLE_WAY) | (ways.all.last < last * WHOLE_WAY);
@@ -249,8 +291,9 @@ LANES_INLINE light_ways find_light_ways(const block_slab *slab, block_density *d
 }
 
 /* near: null where a buffer is read at its nearest pixel. */
-LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab, block_density *densities, int count,
-                                          lanes3 towards, lanes path, const near_pixels *near) {
+LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab,
+                                          block_density *densities, int count, lanes3 towards, lanes path,
+                                          const near_pixels *near) {
   light_depths depths = {.plane = lanes_set_int(0)};
   light_ways ways = find_light_ways(slab, densities, count, towards, path);
   lanes length = lanes_max(ways.all.last, ways.all.first) - ways.all.first;
@@ -268,8 +311,10 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab
     lanes_int likely = plane.likely > 0.0f;
     if (lanes_bits(likely) != 0) {
       lanes share = count == 1 ? lanes_set(1.0f)
-                               : (d->light_first + d->light_last) / lanes_max(ways.all.first + ways.all.last, lanes_set(1e-30f));
-      add_plane(d, &plane, &ways, job->back_to_front, lanes_min(share, lanes_set(1.0f)), near, job->channels, &depths);
+                               : (d->light_first + d->light_last) /
+                                     lanes_max(ways.all.first + ways.all.last, lanes_set(1e-30f));
+      add_plane(d, &plane, &ways, job->back_to_front, lanes_min(share, lanes_set(1.0f)), near, job->channels,
+                &depths);
       depths.plane |= likely;
       extinction = extinction * (1.0f - plane.likely);
     }

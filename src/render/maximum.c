@@ -1,4 +1,5 @@
-/* render/maximum.c - see maximum.h: which values a transfer function shows, and the colours of the greatest. */
+/* render/maximum.c - see maximum.h: which values a transfer function shows, and the colours of the
+ * greatest. */
 #include "render/maximum.h"
 
 #include <float.h>
@@ -7,8 +8,9 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-/* Coordinates come from sums of floats: ends of what is shown are moved by a few roundings of the greatest voxel, so that a value
- * at an end is on the side of it that the transfer function says. Entries, at least. */
+/* Coordinates come from sums of floats: ends of what is shown are moved by a few roundings of the greatest
+ * voxel, so that a value at an end is on the side of it that the transfer function says. Entries, at
+ * least. */
 static const double LEAST_END = 1e-3, ROUNDINGS = 8;
 
 enum { BISECTIONS = 30 };
@@ -19,24 +21,28 @@ static size_t visible_count(const hl_scene_description *scene) {
   return count;
 }
 
-static size_t floats_of_tile(const maximum_values *maximum) { return maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS; }
+static size_t floats_of_tile(const maximum_values *maximum) {
+  return maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS;
+}
 
 uint64_t hl_maximum_bytes(const hl_scene_description *scene, uint64_t tiles) {
   if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return 0;
-  uint64_t a_volume = tiles * MAXIMUM_ROWS * TILE_PIXELS * sizeof(float) + (CLASSIFIER_ENTRIES + 2) * 4 * sizeof(float);
+  uint64_t a_volume = tiles * MAXIMUM_ROWS * TILE_PIXELS * sizeof(float) +
+                      (CLASSIFIER_ENTRIES + 2) * 4 * sizeof(float);
   return visible_count(scene) * a_volume;
 }
 
 /* A transfer function over the coordinates of its table. */
 typedef struct shown_values {
   const hl_transfer_function *function;
-  double low, step;  /* data values: of coordinate 0, and from one to the next */
-  double nothing;    /* data values below this are no matter */
-  double end;        /* entries by which ends are moved */
+  double low, step; /* data values: of coordinate 0, and from one to the next */
+  double nothing;   /* data values below this are no matter */
+  double end;       /* entries by which ends are moved */
 } shown_values;
 
 static bool shows(const shown_values *values, double from, double to) {
-  double low = fmax(values->low + from * values->step, values->nothing), high = values->low + to * values->step;
+  double low = fmax(values->low + from * values->step, values->nothing),
+         high = values->low + to * values->step;
   return low <= high && hl_transfer_function_visible(values->function, low, high);
 }
 
@@ -54,8 +60,10 @@ static double end_of_step(const shown_values *values, int entry, bool greatest) 
 
 /* Whether opacity rises from 0 there, so that the end itself is not shown; after a step it is. */
 static bool rises_from(const shown_values *values, double from) {
-  double near = values->low + (from + values->end) * values->step, far = values->low + (from + 2 * values->end) * values->step;
-  return hl_transfer_function_opacity(values->function, near) < 0.75 * hl_transfer_function_opacity(values->function, far);
+  double near = values->low + (from + values->end) * values->step,
+         far = values->low + (from + 2 * values->end) * values->step;
+  return hl_transfer_function_opacity(values->function, near) <
+         0.75 * hl_transfer_function_opacity(values->function, far);
 }
 
 static void fill_step(const shown_values *values, int entry, double below, float row[4]) {
@@ -83,8 +91,9 @@ static void fill_shown(const prepared_volume *prepared, float (*rows)[4]) {
   const classifier *classifier = &prepared->classifier;
   const grid *grid = &prepared->grid;
   double empty = prepared->empty, step = grid->value_scale / (double)classifier->scale;
-  const shown_values values = {&prepared->scene->transfer_function, empty - (double)classifier->offset * step, step,
-                               hl_transparent_below(prepared->scene, empty), end_of(prepared, fabs(step))};
+  const shown_values values = {&prepared->scene->transfer_function, empty - (double)classifier->offset * step,
+                               step, hl_transparent_below(prepared->scene, empty),
+                               end_of(prepared, fabs(step))};
   double below = -1;
   for (int entry = 0; entry < CLASSIFIER_ENTRIES + 2; entry++) {
     fill_step(&values, entry < CLASSIFIER_ENTRIES ? entry : CLASSIFIER_ENTRIES, below, rows[entry]);
@@ -100,7 +109,8 @@ static void clear_tile(void *data, size_t tile, int worker) {
 }
 
 hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
-                            const prepared_volume *prepared, size_t tiles, maximum_values *maximum, hl_error *error) {
+                            const prepared_volume *prepared, size_t tiles, maximum_values *maximum,
+                            hl_error *error) {
   *maximum = (maximum_values){.volume_count = visible_count(scene), .tiles = tiles};
   if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return HL_OK;
   size_t floats = floats_of_tile(maximum), rows = CLASSIFIER_ENTRIES + 2, rank = 0;
@@ -156,8 +166,8 @@ static void color_tile(void *data, size_t tile, int worker) {
   }
 }
 
-void hl_maximum_color(const maximum_values *maximum, const hl_scene_description *scene, const prepared_volume *prepared,
-                      hl_pool *pool, float *pixels) {
+void hl_maximum_color(const maximum_values *maximum, const hl_scene_description *scene,
+                      const prepared_volume *prepared, hl_pool *pool, float *pixels) {
   color_job job = {maximum, scene, prepared, pixels};
   hl_pool_run(pool, maximum->tiles, color_tile, &job);
 }

@@ -1,28 +1,30 @@
-/* render/maximum.h - maximum projection: a picture of the greatest value along each ray, in place of lit matter.
+/* render/maximum.h - maximum projection: a picture of the greatest value along each ray, in place of lit
+ * matter.
  *
- * One sweep without lights, sheets parallel to the picture, keeps for each pixel and visible volume the greatest value that the
- * volume's transfer function shows; colours are looked up when it has ended. */
+ * One sweep without lights, sheets parallel to the picture, keeps for each pixel and visible volume the
+ * greatest value that the volume's transfer function shows; colours are looked up when it has ended. */
 #ifndef HL_RENDER_MAXIMUM_H
 #define HL_RENDER_MAXIMUM_H
 
 #include "render/sweep.h"
 
-/* Sheets of a maximum projection are no farther apart, in voxels: the peak of three differs from the ray's by 0.2 % (root mean
- * square, measured on noise with a B-spline: tests/analytic/sheets_maximum.c). */
+/* Sheets of a maximum projection are no farther apart, in voxels: the peak of three differs from the ray's by
+ * 0.2 % (root mean square, measured on noise with a B-spline: tests/analytic/sheets_maximum.c). */
 #define MAXIMUM_SPACING 0.5
 
-/* The projection's pixels and tables, for a frame of so many tiles of prepared volumes. values stays null where the scene's
- * compositing is another. Released in any case. */
+/* The projection's pixels and tables, for a frame of so many tiles of prepared volumes. values stays null
+ * where the scene's compositing is another. Released in any case. */
 hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
-                            const prepared_volume *prepared, size_t tiles, maximum_values *maximum, hl_error *error);
+                            const prepared_volume *prepared, size_t tiles, maximum_values *maximum,
+                            hl_error *error);
 void hl_maximum_release(hl_context *context, maximum_values *maximum);
 
 /* What hl_maximum_create() would hold, bytes. */
 uint64_t hl_maximum_bytes(const hl_scene_description *scene, uint64_t tiles);
 
-/* The picture's pixels, [tiles][16][R G B A][16]: of each channel the greatest among the volumes' colours; alpha 1 where any
- * volume shows something. */
-void hl_maximum_color(const maximum_values *maximum, const hl_scene_description *scene, const prepared_volume *prepared,
-                      hl_pool *pool, float *pixels);
+/* The picture's pixels, [tiles][16][R G B A][16]: of each channel the greatest among the volumes' colours;
+ * alpha 1 where any volume shows something. */
+void hl_maximum_color(const maximum_values *maximum, const hl_scene_description *scene,
+                      const prepared_volume *prepared, hl_pool *pool, float *pixels);
 
 #endif

@@ -1,10 +1,12 @@
-/* render/maximum_lanes.h - the greatest value of each volume along each ray (maximum projection), a 4x4 block at a time. */
+/* render/maximum_lanes.h - the greatest value of each volume along each ray (maximum projection), a 4x4 block
+ * at a time. */
 #ifndef HL_RENDER_MAXIMUM_LANES_H
 #define HL_RENDER_MAXIMUM_LANES_H
 
 #include "render/slab_lanes.h"
 
-/* The greatest value from low to high, as coordinates, that the transfer function shows; below 0: there is none. */
+/* The greatest value from low to high, as coordinates, that the transfer function shows; below 0: there is
+ * none. */
 LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high) {
   lanes of_entry[3], of_next[3];
   lanes_gather_row_pairs(&shown[0][0], place_of_coordinate(high).entry, of_entry, of_next);
@@ -13,8 +15,9 @@ LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high
   return lanes_select(value >= low, value, lanes_set(-1.0f));
 }
 
-/* Where the middle one of three sheets has the greatest value of the three, the peak of the parabola through them (derived): of
- * a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2, t in sheets, it is a + (b - p)^2 / (8 (2 a - p - b)). */
+/* Where the middle one of three sheets has the greatest value of the three, the peak of the parabola through
+ * them (derived): of a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2, t in sheets, it is a + (b - p)^2 / (8 (2 a -
+ * p - b)). */
 LANES_INLINE lanes peak_of_three(lanes p, lanes a, lanes b) {
   lanes bend = lanes_fma(a, lanes_set(2.0f), -(p + b)), slope = b - p;
   lanes rise = slope * slope / lanes_max(bend * 8.0f, lanes_set(1e-20f));
@@ -22,10 +25,12 @@ LANES_INLINE lanes peak_of_three(lanes p, lanes a, lanes b) {
   return lanes_clamp(a + lanes_keep(peaks, rise), 0, CLASSIFIER_ENTRIES);
 }
 
-LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *patch, int block, lanes path, float *values) {
+LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *patch, int block, lanes path,
+                                    float *values) {
   const shade_volume *volume = patch->volume;
   block_way way = way_of_block(job, patch, block);
-  table_place a = classify_place(volume->classifier, way.first), b = classify_place(volume->classifier, way.last);
+  table_place a = classify_place(volume->classifier, way.first),
+              b = classify_place(volume->classifier, way.last);
   if (patch->enter != NULL) cut_way(way.part, &a, &b);
   float *greatest = values + block * BLOCK_PIXELS, *before = greatest + MAXIMUM_BEFORE * TILE_PIXELS;
   float *sheet = greatest + MAXIMUM_SHEET * TILE_PIXELS;
@@ -41,8 +46,8 @@ LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *pat
 }
 
 /* Light does not matter: all blocks stay open. */
-static uint32_t maximum_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
-                             uint32_t blocks, void *scratch, float *values, uint64_t *samples) {
+static uint32_t maximum_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
+                             int tile_y, uint32_t blocks, void *scratch, float *values, uint64_t *samples) {
   (void)scratch;
   for (uint32_t left = blocks; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
@@ -50,7 +55,9 @@ static uint32_t maximum_tile(const shade_job *job, const shade_patch *patches, i
     lanes path = geometry_of_block(job, u, v).path;
     for (int i = 0; i < patch_count; i++) {
       const shade_patch *patch = &patches[i];
-      if ((patch->blocks >> block & 1) == 0 || !patch->volume->visible || lanes_bits(visible_in_patch(patch, block)) == 0) continue;
+      if ((patch->blocks >> block & 1) == 0 || !patch->volume->visible ||
+          lanes_bits(visible_in_patch(patch, block)) == 0)
+        continue;
       float *of_volume = values + (size_t)patch->volume->rank * MAXIMUM_ROWS * TILE_PIXELS;
       *samples += (uint64_t)__builtin_popcount(maximum_block(job, patch, block, path, of_volume));
     }

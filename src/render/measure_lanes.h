@@ -25,10 +25,10 @@ LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3
   return -dot3(way, slab->geometry.towards_eye);
 }
 
-/* Where alpha reaches FIRST_OPACITY, in the lanes in which it does so in this slab (derived): the part u of the slab's
- * optical depth e at which (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
-LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities, int count, lanes before,
-                             lanes after, float *first) {
+/* Where alpha reaches FIRST_OPACITY, in the lanes in which it does so in this slab (derived): the part u of
+ * the slab's optical depth e at which (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
+LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities,
+                             int count, lanes before, lanes after, float *first) {
   lanes_int crossed = (before < FIRST_OPACITY) & (after >= FIRST_OPACITY);
   if (lanes_bits(crossed) == 0) return;
   lanes missing = lanes_log2((1.0f - before) * (1.0f / (1.0f - FIRST_OPACITY))) * 0.69314718056f;
@@ -38,8 +38,8 @@ LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block
   lanes_store(first, lanes_select(crossed, depth_of(job, slab, position), lanes_load(first)));
 }
 
-static void measure_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
-                          int block, block_density *densities, float *pixels) {
+static void measure_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
+                          int tile_y, int block, block_density *densities, float *pixels) {
   block_slab slab;
   float *alpha = pixels + MEASURE_ALPHA * BLOCK_PIXELS;
   uint32_t bits = visible_in_block(job, patches, patch_count, block, alpha);
@@ -57,12 +57,13 @@ static void measure_block(const shade_job *job, const shade_patch *patches, int 
   mark_first(job, &slab, densities, patch_count, before, after, pixels + MEASURE_DEPTH_FIRST * BLOCK_PIXELS);
 }
 
-static uint32_t measure_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
-                             uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
+static uint32_t measure_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
+                             int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
   (void)samples;
   for (uint32_t left = blocks; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
-    measure_block(job, patches, patch_count, tile_x, tile_y, block, scratch, pixels + block * MEASURES * BLOCK_PIXELS);
+    measure_block(job, patches, patch_count, tile_x, tile_y, block, scratch,
+                  pixels + block * MEASURES * BLOCK_PIXELS);
   }
   return blocks;
 }

@@ -1,23 +1,28 @@
-/* render/pack_lanes.h - a tile's samples moved together before they are lit: where something may be seen in only some of a
- * block's pixels, those of several blocks share sixteen lanes. */
+/* render/pack_lanes.h - a tile's samples moved together before they are lit: where something may be seen in
+ * only some of a block's pixels, those of several blocks share sixteen lanes. */
 #ifndef HL_RENDER_PACK_LANES_H
 #define HL_RENDER_PACK_LANES_H
 
 #include "render/slab_lanes.h"
 #include "simd/packing.h"
 
-/* Where a block's pixels went. whole: to a slab of their own, all sixteen where they were; there is no packing then. */
-typedef struct packed_block { lanes_packing packing; int slab, whole; } packed_block;
+/* Where a block's pixels went. whole: to a slab of their own, all sixteen where they were; there is no
+ * packing then. */
+typedef struct packed_block {
+  lanes_packing packing;
+  int slab, whole;
+} packed_block;
 
 typedef struct packed_tile {
   block_slab slabs[TILE_BLOCKS];
-  int filled[TILE_BLOCKS];    /* lanes of them in use */
+  int filled[TILE_BLOCKS]; /* lanes of them in use */
   int slab_count;
   packed_block blocks[TILE_BLOCKS];
 } packed_tile;
 
 /* A block's volumes before they are packed, and those of the slabs: [1 + TILE_BLOCKS][patches]. */
-_Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES, "a volume's scratch holds its slabs");
+_Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES,
+               "a volume's scratch holds its slabs");
 
 /* A new slab; there is nothing in any lane. */
 LANES_INLINE int add_slab(packed_tile *tile, int patch_count, block_density *densities) {
@@ -30,7 +35,8 @@ LANES_INLINE int add_slab(packed_tile *tile, int patch_count, block_density *den
 }
 
 /* The first slab with so many lanes left. */
-LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_count, block_density *densities) {
+LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_count,
+                                block_density *densities) {
   for (int s = 0; s < tile->slab_count; s++)
     if (tile->filled[s] + lanes_wanted <= LANES) return s;
   return add_slab(tile, patch_count, densities);
@@ -42,14 +48,15 @@ enum { WAY_LANES = sizeof(block_way) / sizeof(lanes) };
 LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *from, block_density *into) {
   const lanes *source = (const lanes *)&from->way;
   lanes *way = (lanes *)&into->way;
-  for (int i = 0; i < WAY_LANES; i++) way[i] = lanes_pack(packing, into->there ? way[i] : lanes_set(0), source[i]);
+  for (int i = 0; i < WAY_LANES; i++)
+    way[i] = lanes_pack(packing, into->there ? way[i] : lanes_set(0), source[i]);
   into->patch = from->patch;
   into->there = 1;
 }
 
 /* A block of which all pixels have a bit. */
-LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const block_density *ways, int patch_count,
-                             block_density *densities, packed_block *packed) {
+LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const block_density *ways,
+                             int patch_count, block_density *densities, packed_block *packed) {
   int s = add_slab(tile, patch_count, densities);
   tile->slabs[s].u = block->u;
   tile->slabs[s].v = block->v;
@@ -68,9 +75,10 @@ LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const b
 }
 
 /* Moves the pixels of a block with a bit to a slab. densities: of all slabs. */
-LANES_INLINE void pack_block(packed_tile *tile, const block_slab *block, const block_density *ways, int patch_count, uint32_t bits,
-                             block_density *densities, packed_block *packed) {
-  int count = __builtin_popcount(bits), s = slab_with_room(tile, count, patch_count, densities), at = tile->filled[s];
+LANES_INLINE void pack_block(packed_tile *tile, const block_slab *block, const block_density *ways,
+                             int patch_count, uint32_t bits, block_density *densities, packed_block *packed) {
+  int count = __builtin_popcount(bits), s = slab_with_room(tile, count, patch_count, densities),
+      at = tile->filled[s];
   block_slab *slab = &tile->slabs[s];
   lanes_packing packing = lanes_packing_of(bits, at);
   slab->u = lanes_pack(&packing, slab->u, block->u);

@@ -1,4 +1,5 @@
-/* render/prepare.c - bricks are rebuilt when a volume changes, tables and relevance when its transfer function does. */
+/* render/prepare.c - bricks are rebuilt when a volume changes, tables and relevance when its transfer
+ * function does. */
 #include "render/prepare.h"
 
 #include <string.h>
@@ -8,7 +9,8 @@
 static bool same_function(const hl_transfer_function *a, const hl_transfer_function *b) {
   return a->unit_distance == b->unit_distance && a->opacity_count == b->opacity_count &&
          a->color_count == b->color_count &&
-         (a->opacity_count == 0 || memcmp(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) == 0) &&
+         (a->opacity_count == 0 ||
+          memcmp(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) == 0) &&
          (a->color_count == 0 || memcmp(a->color, b->color, a->color_count * sizeof *a->color) == 0);
 }
 
@@ -24,10 +26,12 @@ static void *copy(hl_context *context, const void *from, size_t count, size_t si
   return to;
 }
 
-static hl_status keep_key(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene, hl_error *error) {
+static hl_status keep_key(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene,
+                          hl_error *error) {
   const hl_transfer_function *function = &scene->transfer_function;
   prepared->function = *function;
-  prepared->function.opacity = copy(context, function->opacity, function->opacity_count, sizeof *function->opacity);
+  prepared->function.opacity = copy(context, function->opacity, function->opacity_count,
+                                    sizeof *function->opacity);
   prepared->function.color = copy(context, function->color, function->color_count, sizeof *function->color);
   prepared->clipped = scene->clipped;
   memcpy(prepared->clip, scene->clip_min, sizeof scene->clip_min);
@@ -56,13 +60,15 @@ static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_fu
                                 prepared_volume *prepared, hl_error *error) {
   hl_status status = HL_OK;
   double empty = hl_scene_volume_empty_value(scene);
-  bool same_voxels = prepared->volume == scene->volume && prepared->kernel == kernel && prepared->empty == empty && same_clip(prepared, scene);
+  bool same_voxels = prepared->volume == scene->volume && prepared->kernel == kernel &&
+                     prepared->empty == empty && same_clip(prepared, scene);
   bool same = same_voxels && same_function(&prepared->function, &scene->transfer_function);
   if (!same_voxels) {
     hl_prepared_release(context, prepared);
     status = hl_grid_create(context, pool, &hot->grid, hl_kernel_get(kernel), scene, index_to_frame, empty,
                             &prepared->grid, error);
-    if (status == HL_OK && hl_pool_cancelled(pool)) status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
+    if (status == HL_OK && hl_pool_cancelled(pool))
+      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
     if (status != HL_OK) return status;
     hl_volume_retain(scene->volume);
     prepared->volume = scene->volume;
@@ -86,7 +92,8 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
                              const hl_scene_description *scene, prepared_volume *prepared, hl_error *error) {
   for (size_t i = 0; i < scene->volume_count; i++) {
     affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
-    hl_status status = prepare_volume(context, pool, hot, &scene->volumes[i], scene->render.kernel, placement, &prepared[i], error);
+    hl_status status = prepare_volume(context, pool, hot, &scene->volumes[i], scene->render.kernel, placement,
+                                      &prepared[i], error);
     if (status != HL_OK) {
       hl_prepared_release(context, &prepared[i]);
       return status;

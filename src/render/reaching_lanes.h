@@ -1,4 +1,5 @@
-/* render/reaching_lanes.h - the light that reaches a slab: shadow buffers read where samples are (step 14). */
+/* render/reaching_lanes.h - the light that reaches a slab: shadow buffers read where samples are (step
+ * 14). */
 #ifndef HL_RENDER_REACHING_LANES_H
 #define HL_RENDER_REACHING_LANES_H
 
@@ -7,10 +8,12 @@
 LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow_map *map, lanes3 position) {
   lanes place[3];
   for (int row = 0; row < 3; row++) place[row] = row_of_point(map->rows[row], position);
-  if (light->parallel) return taps_of_place(map, light->nearest, place[1], place[2]); /* place[0] is 1 everywhere */
+  if (light->parallel)
+    return taps_of_place(map, light->nearest, place[1], place[2]); /* place[0] is 1 everywhere */
   lanes_int ahead = place[0] > 0.0f;
   lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
-  return taps_of_place(map, light->nearest, lanes_select(ahead, place[1] / safe, outside), lanes_select(ahead, place[2] / safe, outside));
+  return taps_of_place(map, light->nearest, lanes_select(ahead, place[1] / safe, outside),
+                       lanes_select(ahead, place[2] / safe, outside));
 }
 
 LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position, uint32_t active) {
@@ -19,9 +22,11 @@ LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position
     const part_lookup *part = &light->parts[i];
     shadow_taps taps = taps_of_position(light, &part->map, position);
     for (int c = 0; c < light->channels; c++)
-      sum.c[c] = lanes_add_scaled(sum.c[c], look_up_part(&part->map, &taps, part->left[c], active), part->weight[c]);
+      sum.c[c] = lanes_add_scaled(sum.c[c], look_up_part(&part->map, &taps, part->left[c], active),
+                                  part->weight[c]);
   }
-  for (int c = 0; c < light->channels; c++) sum.c[c] = sum.c[c] / ((float)PART_ONE * (float)light->part_count);
+  for (int c = 0; c < light->channels; c++)
+    sum.c[c] = sum.c[c] / ((float)PART_ONE * (float)light->part_count);
   return sum;
 }
 
@@ -31,7 +36,8 @@ LANES_INLINE lanes between_chunks(const shadow_lookup *lookup, lanes older, lane
 }
 
 /* As the buffer is interpolated. */
-LANES_INLINE lanes interpolated(const shadow_lookup *lookup, const shadow_taps *taps, int cubic, int channel) {
+LANES_INLINE lanes interpolated(const shadow_lookup *lookup, const shadow_taps *taps, int cubic,
+                                int channel) {
   const float *younger = lookup->transmittance[channel], *older = lookup->older[channel];
   if (cubic) {
     lanes light = look_up_cubic(&lookup->map, taps, younger);
@@ -41,16 +47,18 @@ LANES_INLINE lanes interpolated(const shadow_lookup *lookup, const shadow_taps *
   return older == NULL ? light : between_chunks(lookup, look_up(&lookup->map, taps, older), light);
 }
 
-LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *taps, const float *buffer, lanes light[NEAR_PIXELS]) {
+LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *taps, const float *buffer,
+                             lanes light[NEAR_PIXELS]) {
   lanes_int at = taps->first.row * (int32_t)lookup->map.stride + taps->first.column;
   lanes_gather_pairs(buffer, at, &light[0], &light[1]);
   lanes_gather_pairs(buffer + lookup->map.stride, at, &light[2], &light[3]);
 }
 
-/* What reaches a plane, whose own matter makes the buffer's light vary from pixel to pixel (derived): with T = O E at each pixel, O
- * what others leave and E = exp(-depth) what the plane does, the mean of T by the pixels' weights is O times that of E.
- * No more than the brightest of the pixels has. */
-LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps *taps, const light_depths *depths, int channel) {
+/* What reaches a plane, whose own matter makes the buffer's light vary from pixel to pixel (derived): with T
+ * = O E at each pixel, O what others leave and E = exp(-depth) what the plane does, the mean of T by the
+ * pixels' weights is O times that of E. No more than the brightest of the pixels has. */
+LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps *taps,
+                                  const light_depths *depths, int channel) {
   lanes light[NEAR_PIXELS], own[NEAR_PIXELS], greatest = lanes_set(0);
   near_light(lookup, taps, lookup->transmittance[channel], light);
   if (lookup->older[channel] != NULL) {
@@ -73,13 +81,14 @@ LANES_INLINE void correct_parts(const light_depths *depths, int channels, color_
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);
     for (int i = 0; i < NEAR_PIXELS; i++) own = own + exp_of_depth(depths->near[c][i]);
-    reached->c[c] = lanes_min(reached->c[c] / lanes_max(own * (1.0f / NEAR_PIXELS), lanes_set(1e-6f)), lanes_set(1.0f));
+    reached->c[c] = lanes_min(reached->c[c] / lanes_max(own * (1.0f / NEAR_PIXELS), lanes_set(1e-6f)),
+                              lanes_set(1.0f));
   }
 }
 
 /* The light that reaches the slab's first sheet below a place, in the active lanes. */
-LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *taps, lanes3 position, const light_depths *depths,
-                                  uint32_t active) {
+LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *taps, lanes3 position,
+                                  const light_depths *depths, uint32_t active) {
   uint32_t planes = lanes_bits(depths->plane) & active;
   color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   if (light->part_count > 0) {
@@ -96,8 +105,8 @@ LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *t
   return reached;
 }
 
-/* What of one light passes everything between it and a slab's samples, and the slab's own matter, averaged as the eye sees it.
- * path: of the light through the slab. */
+/* What of one light passes everything between it and a slab's samples, and the slab's own matter, averaged as
+ * the eye sees it. path: of the light through the slab. */
 LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *light, const block_slab *slab,
                                        block_density *densities, int count, lanes3 towards, lanes path) {
   lanes3 position = slab->geometry.position;
@@ -105,7 +114,8 @@ LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *
   shadow_taps taps = taps_of_position(light, map, position);
   near_pixels near = light->part_count > 0 ? pixels_of_parts() : pixels_around(&taps);
   find_steps(map, light->parallel, set3(job->normal), position, &near);
-  light_depths depths = depths_of_light(job, slab, densities, count, towards, path, light->nearest ? NULL : &near);
+  light_depths depths = depths_of_light(job, slab, densities, count, towards, path,
+                                        light->nearest ? NULL : &near);
   color_lanes passing = reaching(light, &taps, position, &depths, lanes_bits(slab->seen));
   for (int c = 0; c < light->channels; c++) {
     lanes own = own_transmittance(slab->depth, slab->left, depths.enter[c], depths.more[c]);

@@ -15,14 +15,15 @@
 struct hl_renderer {
   hl_context *context;
   hl_pool *pool;
-  int threads;                 /* as asked for: 0 is one per processor */
-  prepared_volume *prepared;   /* owned; [prepared_count] */
+  int threads;               /* as asked for: 0 is one per processor */
+  prepared_volume *prepared; /* owned; [prepared_count] */
   size_t prepared_count;
-  shadow_buffer *buffers;      /* owned; [buffer_count]; one per light of a frame, of which a scene's light is some */
+  shadow_buffer
+      *buffers; /* owned; [buffer_count]; one per light of a frame, of which a scene's light is some */
   size_t buffer_count;
   cascade_memory cascades[FRAME_LIGHTS]; /* owned; of a sweep's lights */
-  hl_reserve reserve;          /* owned; what frames and sweeps give back */
-  uint64_t estimate;           /* bytes; see render/estimate.h */
+  hl_reserve reserve;                    /* owned; what frames and sweeps give back */
+  uint64_t estimate;                     /* bytes; see render/estimate.h */
 };
 
 uint64_t hl_renderer_estimate(const hl_renderer *renderer) { return renderer->estimate; }
@@ -37,7 +38,8 @@ hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_err
 }
 
 static void release_volumes(hl_renderer *renderer) {
-  for (size_t i = 0; i < renderer->prepared_count; i++) hl_prepared_release(renderer->context, &renderer->prepared[i]);
+  for (size_t i = 0; i < renderer->prepared_count; i++)
+    hl_prepared_release(renderer->context, &renderer->prepared[i]);
   hl_release(renderer->context, renderer->prepared);
   renderer->prepared = NULL;
   renderer->prepared_count = 0;
@@ -67,7 +69,8 @@ void hl_renderer_destroy(hl_renderer *renderer) {
 /* Threads, and room for the scene's volumes and lights. */
 static hl_status make_room(hl_renderer *renderer, const hl_scene_description *scene, hl_error *error) {
   hl_context *context = renderer->context;
-  if (renderer->pool == NULL || renderer->threads != scene->render.threads || !hl_pool_is_own(renderer->pool)) {
+  if (renderer->pool == NULL || renderer->threads != scene->render.threads ||
+      !hl_pool_is_own(renderer->pool)) {
     hl_pool_destroy(renderer->pool);
     renderer->pool = NULL;
     hl_status status = hl_pool_create(context, scene->render.threads, &renderer->pool, error);
@@ -82,7 +85,8 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
   }
   if (renderer->buffer_count != LIGHT_SECTORS * scene->light_count) {
     release_buffers(renderer);
-    renderer->buffers = hl_allocate_zeroed(context, LIGHT_SECTORS * scene->light_count, sizeof *renderer->buffers);
+    renderer->buffers = hl_allocate_zeroed(context, LIGHT_SECTORS * scene->light_count,
+                                           sizeof *renderer->buffers);
     if (renderer->buffers == NULL) return hl_fail_memory(error, sizeof *renderer->buffers, "the lights");
     renderer->buffer_count = LIGHT_SECTORS * scene->light_count;
   }
@@ -92,7 +96,8 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
 /* Nothing is kept for later where this frame would not fit beside it. */
 static hl_status check_room(hl_renderer *renderer, uint64_t bytes, hl_error *error) {
   uint64_t limit = renderer->context->options.memory_limit;
-  if (limit != 0 && hl_context_memory_held(renderer->context) + bytes > limit) hl_reserve_drop_idle(&renderer->reserve);
+  if (limit != 0 && hl_context_memory_held(renderer->context) + bytes > limit)
+    hl_reserve_drop_idle(&renderer->reserve);
   return hl_check_room(renderer->context, bytes, &renderer->estimate, error);
 }
 
@@ -107,16 +112,16 @@ static double smallest_edge(const hl_renderer *renderer) {
 typedef struct frame_work {
   framed_scene framed;
   frame frame;
-  grid *grids;            /* [volumes] */
-  frame_sweep *sweeps;    /* [LIGHT_SECTORS * lights + 1] */
+  grid *grids;         /* [volumes] */
+  frame_sweep *sweeps; /* [LIGHT_SECTORS * lights + 1] */
   int sweep_count;
-  float *pixels;          /* [sweeps][tiles][16][4][16]; owned, or the caller's (in_place) */
+  float *pixels; /* [sweeps][tiles][16][4][16]; owned, or the caller's (in_place) */
   bool in_place;
-  float *tile_rows;       /* in_place: [threads][tiles_x][16][4][16] */
+  float *tile_rows; /* in_place: [threads][tiles_x][16][4][16] */
   size_t tiles_x, tiles;
   layer_pixels layers;
   maximum_values maximum;
-  int measuring_sweep;    /* the one that carries depth and normals */
+  int measuring_sweep; /* the one that carries depth and normals */
 } frame_work;
 
 static void release_work(hl_renderer *renderer, frame_work *work) {
@@ -132,8 +137,8 @@ static void release_work(hl_renderer *renderer, frame_work *work) {
   hl_maximum_release(context, &work->maximum);
 }
 
-/* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to its
- * middle: what is closer is magnified beyond what its voxels hold. */
+/* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to
+ * its middle: what is closer is magnified beyond what its voxels hold. */
 static double pixel_at_content(const frame *frame, double middle_depth) {
   const view *eye = &frame->eye;
   double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
@@ -168,7 +173,8 @@ static void look(frame *frame) {
   }
   double middle_depth = frame->eye.perspective ? vec3_dot(forward, way) : 1;
   frame->pixel = pixel_at_content(frame, middle_depth);
-  frame->middle_pixel = fmax(frame->pixel, fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
+  frame->middle_pixel = fmax(frame->pixel,
+                             fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
 }
 
 /* Rays of the eye, or of a light, then start within the box. */
@@ -184,17 +190,19 @@ static bool rays_start_inside(const frame *frame, const grid *grid) {
   bool inside = frame->eye.perspective && inside_box(grid, frame->eye.origin);
   for (int i = 0; i < frame->light_count; i++) {
     const light_source *light = &frame->lights[i];
-    inside = inside || (light->shadows != HL_SHADOWS_OFF && !light->parallel && inside_box(grid, light->position));
+    inside = inside ||
+             (light->shadows != HL_SHADOWS_OFF && !light->parallel && inside_box(grid, light->position));
   }
   return inside;
 }
 
-/* Where voxels are smaller than pixels, their footprints must not fall between pixels: the frame is made of as many more
- * pixels as it takes for voxels to be no smaller, and averaged. */
+/* Where voxels are smaller than pixels, their footprints must not fall between pixels: the frame is made of
+ * as many more pixels as it takes for voxels to be no smaller, and averaged. */
 enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
 
 static int oversampling(const frame *frame, const hl_scene_description *scene, double voxel) {
-  int longer = scene->width > scene->height ? scene->width : scene->height, most = GREATEST_OVERSAMPLED_SIDE / longer;
+  int longer = scene->width > scene->height ? scene->width : scene->height,
+      most = GREATEST_OVERSAMPLED_SIDE / longer;
   if (most > GREATEST_OVERSAMPLING) most = GREATEST_OVERSAMPLING;
   double wanted = floor(frame->middle_pixel / voxel + 0.5);
   return wanted > most ? (most < 1 ? 1 : most) : wanted < 1 ? 1 : (int)wanted;
@@ -209,7 +217,9 @@ static hl_status set_up_eye(const hl_renderer *renderer, const hl_scene_descript
     hl_status status = hl_frame_eye(&scene->camera, frame->width, frame->height, &frame->eye, error);
     if (status != HL_OK) return status;
     look(frame);
-    int wanted = frame->oversampling > 1 || frame->point_count == 0 ? 1 : oversampling(frame, scene, smallest_edge(renderer));
+    int wanted = frame->oversampling > 1 || frame->point_count == 0
+                     ? 1
+                     : oversampling(frame, scene, smallest_edge(renderer));
     if (wanted == 1) return HL_OK;
     frame->oversampling = wanted;
   }
@@ -219,7 +229,8 @@ static hl_status set_up_eye(const hl_renderer *renderer, const hl_scene_descript
 static void choose_measuring_sweep(frame_work *work) {
   while (work->measuring_sweep < work->sweep_count && work->sweeps[work->measuring_sweep].back_to_front)
     work->measuring_sweep++;
-  if (work->measuring_sweep == work->sweep_count) hl_frame_add_eye_sweep(&work->frame, work->sweeps, &work->sweep_count);
+  if (work->measuring_sweep == work->sweep_count)
+    hl_frame_add_eye_sweep(&work->frame, work->sweeps, &work->sweep_count);
 }
 
 /* The angle of the eye's outermost ray to its direction. */
@@ -227,13 +238,16 @@ static double widest_ray(const frame *frame) {
   double least = 1;
   for (int corner = 0; corner < 4; corner++) {
     vec3 start, way;
-    hl_view_ray(&frame->eye, corner & 1 ? frame->eye.width : 0, corner & 2 ? frame->eye.height : 0, &start, &way);
+    hl_view_ray(&frame->eye, corner & 1 ? frame->eye.width : 0, corner & 2 ? frame->eye.height : 0, &start,
+                &way);
     least = fmin(least, vec3_dot(vec3_normalise(way), frame->eye_direction));
   }
   return acos(fmax(least, -1));
 }
 
-static bool is_maximum(const hl_scene_description *scene) { return scene->render.compositing == HL_COMPOSITING_MAXIMUM; }
+static bool is_maximum(const hl_scene_description *scene) {
+  return scene->render.compositing == HL_COMPOSITING_MAXIMUM;
+}
 
 /* Neither flat colours nor a maximum projection ask a light how much of it arrives. */
 static bool is_lit(const hl_scene_description *scene) {
@@ -242,7 +256,8 @@ static bool is_lit(const hl_scene_description *scene) {
   return false;
 }
 
-/* Lights in frame space; those that no sheets serve in sectors. A narrow spot light and a screen leave one direction. */
+/* Lights in frame space; those that no sheets serve in sectors. A narrow spot light and a screen leave one
+ * direction. */
 static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
   frame->light_count = 0;
@@ -251,25 +266,33 @@ static void set_up_lights(const hl_scene_description *scene, frame *frame) {
     light_source source = hl_light_source(light, &scene->render, frame->middle);
     source.light_index = (int)i;
     if (!is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
-    bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) || light->texture.pixels != NULL;
-    bool whole = source.shadows == HL_SHADOWS_OFF || narrow || hl_frame_serves(frame, &scene->render, &source);
+    bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) ||
+                  light->texture.pixels != NULL;
+    bool whole = source.shadows == HL_SHADOWS_OFF || narrow ||
+                 hl_frame_serves(frame, &scene->render, &source);
     for (int sector = 0; sector < (whole ? 1 : LIGHT_SECTORS); sector++)
-      frame->lights[frame->light_count++] = whole ? source : hl_light_in_sector(&source, &frame->sectors, sector);
+      frame->lights[frame->light_count++] = whole ? source
+                                                  : hl_light_in_sector(&source, &frame->sectors, sector);
   }
 }
 
-/* Where tiles are made: in the caller's pixels if one sweep's fill those, a row of tiles exactly as many rows. */
-static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers, float *pixels,
-                              size_t row_stride, frame_work *work, hl_error *error) {
+/* Where tiles are made: in the caller's pixels if one sweep's fill those, a row of tiles exactly as many
+ * rows. */
+static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description *scene,
+                              const hl_layers *layers, float *pixels, size_t row_stride, frame_work *work,
+                              hl_error *error) {
   hl_context *context = renderer->context;
   size_t threads = (size_t)hl_pool_threads(renderer->pool), tile_row = work->tiles_x * TILE_PIXELS * 4;
   size_t floats = (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4;
-  bool whole = scene->width % TILE == 0 && scene->height % TILE == 0 && row_stride == 4 * (size_t)scene->width;
-  work->in_place = whole && work->sweep_count == 1 && work->frame.oversampling == 1 && (uintptr_t)pixels % 64 == 0;
+  bool whole = scene->width % TILE == 0 && scene->height % TILE == 0 &&
+               row_stride == 4 * (size_t)scene->width;
+  work->in_place = whole && work->sweep_count == 1 && work->frame.oversampling == 1 &&
+                   (uintptr_t)pixels % 64 == 0;
   uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, layers);
   bytes += hl_maximum_bytes(scene, work->tiles);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
-  renderer->reserve.keeps = work->sweep_count == 1; /* several would leave one another blocks that do not fit */
+  renderer->reserve.keeps = work->sweep_count ==
+                            1; /* several would leave one another blocks that do not fit */
   if (!renderer->reserve.keeps) hl_reserve_release(&renderer->reserve);
   hl_status status = check_room(renderer, bytes, error);
   if (status != HL_OK) return status;
@@ -282,11 +305,13 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
   if (work->pixels == NULL || (work->in_place && work->tile_rows == NULL))
     return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
   hl_pool_clear(renderer->pool, work->pixels, floats * sizeof *work->pixels);
-  return hl_layer_pixels_create(context, renderer->pool, layers, &work->frame, work->tiles, &work->layers, error);
+  return hl_layer_pixels_create(context, renderer->pool, layers, &work->frame, work->tiles, &work->layers,
+                                error);
 }
 
-static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene, const hl_layers *layers, float *pixels,
-                              size_t row_stride, frame_work *work, hl_error *error) {
+static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
+                              const hl_layers *layers, float *pixels, size_t row_stride, frame_work *work,
+                              hl_error *error) {
   hl_context *context = renderer->context;
   frame *frame = &work->frame;
   frame->points = hl_allocate(context, scene->volume_count * 8 + 1, sizeof(vec3));
@@ -305,7 +330,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   hl_status status = set_up_eye(renderer, scene, frame, error);
   if (status != HL_OK) return status;
   frame->voxel = smallest_edge(renderer);
-  frame->spacing = fmin(scene->render.sheet_spacing, is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) * frame->voxel; /* volumes go on as far beyond their faces */
+  frame->spacing = fmin(scene->render.sheet_spacing, is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
+                   frame->voxel; /* volumes go on as far beyond their faces */
   set_up_lights(scene, frame);
   for (size_t i = 0; i < scene->volume_count; i++)
     if (rays_start_inside(frame, &work->grids[i])) work->grids[i].cut = true;
@@ -317,7 +343,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
   status = place_pixels(renderer, scene, layers, pixels, row_stride, work, error);
   if (status != HL_OK) return status;
-  return hl_maximum_create(context, renderer->pool, scene, renderer->prepared, work->tiles, &work->maximum, error);
+  return hl_maximum_create(context, renderer->pool, scene, renderer->prepared, work->tiles, &work->maximum,
+                           error);
 }
 
 /* Three where matter takes colours apart, or light comes in several from several places. */
@@ -331,13 +358,24 @@ static int attenuation_channels(const hl_scene_description *scene) {
   return 1;
 }
 
-static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work, int index) {
-  return (sweep){.context = renderer->context, .pool = renderer->pool, .reserve = &renderer->reserve, .scene = scene, .frame = &work->frame,
+static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work,
+                      int index) {
+  return (sweep){.context = renderer->context,
+                 .pool = renderer->pool,
+                 .reserve = &renderer->reserve,
+                 .scene = scene,
+                 .frame = &work->frame,
                  .hot = hl_hot_functions(renderer->context->options.instruction_set),
-                 .geometry = &work->sweeps[index], .volumes = renderer->prepared, .grids = work->grids,
-                 .volume_count = (int)scene->volume_count, .kernel = hl_kernel_get(scene->render.kernel),
-                 .splat = scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT, .first = index == 0,
-                 .layer_pixels = &work->layers, .maximum = &work->maximum, .measures = index == work->measuring_sweep,
+                 .geometry = &work->sweeps[index],
+                 .volumes = renderer->prepared,
+                 .grids = work->grids,
+                 .volume_count = (int)scene->volume_count,
+                 .kernel = hl_kernel_get(scene->render.kernel),
+                 .splat = scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT,
+                 .first = index == 0,
+                 .layer_pixels = &work->layers,
+                 .maximum = &work->maximum,
+                 .measures = index == work->measuring_sweep,
                  .channels = attenuation_channels(scene),
                  .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};
 }
@@ -352,8 +390,8 @@ static uint64_t kept_buffers(const hl_renderer *renderer) {
 }
 
 /* Refuses what cannot fit before the first sheet; its picture is allocated already. */
-static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work,
-                                   hl_error *error) {
+static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_description *scene,
+                                   const frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   if (work->frame.point_count == 0) return HL_OK;
   vec3 *points = hl_allocate(context, scene->volume_count * CONTENT_POINTS + 1, sizeof *points);
@@ -365,7 +403,8 @@ static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_descrip
     sweep planned = sweep_of(renderer, scene, work, s);
     bytes[s] = hl_sweep_bytes(&planned, points, hl_pool_threads(renderer->pool));
   }
-  uint64_t needed = status == HL_OK ? hl_sweeps_bytes(bytes, work->sweep_count, work->layers.wanted != NULL) : 0;
+  uint64_t needed = status == HL_OK ? hl_sweeps_bytes(bytes, work->sweep_count, work->layers.wanted != NULL)
+                                    : 0;
   uint64_t kept = kept_buffers(renderer);
   hl_release(context, points);
   hl_release(context, bytes);
@@ -373,8 +412,8 @@ static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_descrip
   return check_room(renderer, needed > kept ? needed - kept : 0, error);
 }
 
-static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work, int index,
-                           hl_render_statistics *statistics, hl_error *error) {
+static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
+                           int index, hl_render_statistics *statistics, hl_error *error) {
   sweep sweep = sweep_of(renderer, scene, work, index);
   hl_status status = sweep.geometry->back_to_front ? hl_sweep_find_hidden(&sweep, statistics, error) : HL_OK;
   if (status == HL_OK) status = hl_sweep_begin(&sweep, renderer->buffers, renderer->cascades, error);
@@ -394,16 +433,18 @@ static const float *pixel_of_tiles(const float *tiles, int column, int row) {
 
 /* One pixel of the frame, all sweeps: contributions of lights add, opacity is the same in every sweep. */
 static void add_pixel(const frame_work *work, int column, int row, float sum[4]) {
-  const float *from = pixel_of_tiles(work->pixels + (size_t)(row / TILE) * work->tiles_x * TILE_PIXELS * 4, column, row);
+  const float *from = pixel_of_tiles(work->pixels + (size_t)(row / TILE) * work->tiles_x * TILE_PIXELS * 4,
+                                     column, row);
   for (int c = 0; c < 4; c++) sum[c] += from[c * BLOCK_PIXELS];
   for (int s = 1; s < work->sweep_count; s++)
-    for (int c = 0; c < 3; c++) sum[c] += from[(size_t)s * work->tiles * TILE_PIXELS * 4 + (size_t)(c * BLOCK_PIXELS)];
+    for (int c = 0; c < 3; c++)
+      sum[c] += from[(size_t)s * work->tiles * TILE_PIXELS * 4 + (size_t)(c * BLOCK_PIXELS)];
 }
 
 typedef struct write_job {
   const frame_work *work;
-  float *pixels;          /* the caller's */
-  size_t row_stride;      /* floats */
+  float *pixels;     /* the caller's */
+  size_t row_stride; /* floats */
   int width;
 } write_job;
 
@@ -430,18 +471,20 @@ static void write_in_place(void *data, size_t index, int worker) {
     for (int column = 0; column < job->width; column += BLOCK, to += 4 * BLOCK) {
       const float *from = pixel_of_tiles(tiles, column, row);
       for (int pixel = 0; pixel < BLOCK; pixel++)
-        for (int c = 0; c < 4; c++) to[4 * pixel + c] = 0 + from[c * BLOCK_PIXELS + pixel]; /* as a sum: never -0 */
+        for (int c = 0; c < 4; c++)
+          to[4 * pixel + c] = 0 + from[c * BLOCK_PIXELS + pixel]; /* as a sum: never -0 */
     }
 }
 
 static void write_layers(const frame_work *work, const hl_scene_description *scene, hl_pool *pool) {
-  const layer_grid grid = {scene->width, scene->height, work->frame.oversampling, work->tiles_x, (float)work->framed.unit};
+  const layer_grid grid = {scene->width, scene->height, work->frame.oversampling, work->tiles_x,
+                           (float)work->framed.unit};
   hl_layer_pixels_write(&work->layers, &grid, pool);
 }
 
-static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *world, const hl_layers *layers,
-                              frame_work *work, float *pixels, size_t row_stride, hl_render_statistics *statistics,
-                              hl_error *error) {
+static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *world,
+                              const hl_layers *layers, frame_work *work, float *pixels, size_t row_stride,
+                              hl_render_statistics *statistics, hl_error *error) {
   double start = hl_clock_seconds();
   const hl_scene_description *scene = &work->framed.scene;
   hl_status status = hl_framed_scene_create(renderer->context, world, &work->framed, error);
@@ -450,10 +493,11 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   renderer->estimate = 0;
   const hot_functions *hot = hl_hot_functions(renderer->context->options.instruction_set);
   if (status == HL_OK)
-    status = check_room(renderer, hl_prepare_bytes(scene, renderer->prepared, &hot->grid, hl_pool_threads(renderer->pool)), error);
+    status = check_room(
+        renderer, hl_prepare_bytes(scene, renderer->prepared, &hot->grid, hl_pool_threads(renderer->pool)),
+        error);
   if (status == HL_OK)
-    status = hl_prepare_volumes(renderer->context, renderer->pool, hot, scene, renderer->prepared,
-                                error);
+    status = hl_prepare_volumes(renderer->context, renderer->pool, hot, scene, renderer->prepared, error);
   if (status == HL_OK) status = set_up_frame(renderer, scene, layers, pixels, row_stride, work, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
@@ -461,12 +505,14 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   for (int s = 0; s < work->sweep_count && status == HL_OK && work->frame.point_count > 0; s++)
     status = run_sweep(renderer, scene, work, s, statistics, error);
   if (status != HL_OK) return status;
-  if (work->maximum.values != NULL) hl_maximum_color(&work->maximum, scene, renderer->prepared, renderer->pool, work->pixels);
+  if (work->maximum.values != NULL)
+    hl_maximum_color(&work->maximum, scene, renderer->prepared, renderer->pool, work->pixels);
   write_job job = {work, pixels, row_stride, scene->width};
   if (work->in_place) hl_pool_run(renderer->pool, (size_t)scene->height / TILE, write_in_place, &job);
   else hl_pool_run(renderer->pool, (size_t)scene->height, write_row, &job);
   write_layers(work, scene, renderer->pool);
-  if (hl_pool_cancelled(renderer->pool)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
+  if (hl_pool_cancelled(renderer->pool))
+    return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   statistics->seconds_render = hl_clock_seconds() - start;
   statistics->sweeps = work->sweep_count;
   statistics->threads = hl_pool_threads(renderer->pool);
@@ -479,22 +525,26 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   return HL_OK;
 }
 
-static hl_status check_request(const hl_renderer *renderer, const hl_scene *scene, const float *pixels, size_t row_stride,
-                               const hl_layers *layers, const hl_render_statistics *statistics, hl_error *error) {
+static hl_status check_request(const hl_renderer *renderer, const hl_scene *scene, const float *pixels,
+                               size_t row_stride, const hl_layers *layers,
+                               const hl_render_statistics *statistics, hl_error *error) {
   if (renderer == NULL || scene == NULL || pixels == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: renderer, scene or pixels is null");
   const hl_scene_description *description = hl_scene_describe(scene);
   if (row_stride < 4 * (size_t)description->width)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: row_stride is %zu, a row of %d pixels has %zu floats",
-                   row_stride, description->width, 4 * (size_t)description->width);
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_renderer_render: row_stride is %zu, a row of %d pixels has %zu floats", row_stride,
+                   description->width, 4 * (size_t)description->width);
   if (statistics != NULL && statistics->struct_size != sizeof *statistics)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_render: statistics->struct_size is %zu, expected %zu",
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_renderer_render: statistics->struct_size is %zu, expected %zu",
                    statistics->struct_size, sizeof *statistics);
   return hl_layers_check(layers, description, error);
 }
 
-hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene, float *pixels, size_t row_stride,
-                                    const hl_layers *layers, hl_render_statistics *statistics, hl_error *error) {
+hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene, float *pixels,
+                                    size_t row_stride, const hl_layers *layers,
+                                    hl_render_statistics *statistics, hl_error *error) {
   hl_status status = check_request(renderer, scene, pixels, row_stride, layers, statistics, error);
   if (status != HL_OK) return status;
   hl_render_statistics counted = {.struct_size = sizeof counted};

@@ -1,15 +1,15 @@
 /* render/shade.h - steps 12 to 16: gradient, classification, shadow lookup, illumination, compositing.
  *
- * What is shaded is the slab between two sheets: density runs linearly from one to the other along each ray, the
- * gradient is the kernel's where the slab's matter is seen, and the shadow buffer holds the light that reaches the
- * first sheet. */
+ * What is shaded is the slab between two sheets: density runs linearly from one to the other along each ray,
+ * the gradient is the kernel's where the slab's matter is seen, and the shadow buffer holds the light that
+ * reaches the first sheet. */
 #ifndef HL_RENDER_SHADE_H
 #define HL_RENDER_SHADE_H
 
 #include "light/attenuate.h"
 #include "light/light_cone.h"
-#include "light/light_sector.h"
 #include "light/light_screen.h"
+#include "light/light_sector.h"
 #include "light/shadow_lookup.h"
 
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
@@ -19,10 +19,10 @@ typedef struct shade_volume {
   const grid *grid;
   const kernel *kernel;
   int phong, visible, receives_shadow;
-  int lit;                               /* 0: shaded flat, no light changes it */
-  float voxel;                           /* its smallest edge; frame units */
+  int lit;                                     /* 0: shaded flat, no light changes it */
+  float voxel;                                 /* its smallest edge; frame units */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
-  float emission;                        /* ke; of a volume shaded flat 1 */
+  float emission;                              /* ke; of a volume shaded flat 1 */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
   const float (*shown)[4];               /* of a maximum projection, see SHOWN_FROM; null otherwise */
@@ -32,72 +32,75 @@ typedef struct shade_volume {
 /* One volume's part in a tile. On lines of the cache of its own: threads write theirs side by side. */
 typedef struct shade_patch {
   _Alignas(64) const shade_volume *volume;
-  const float *before, *current;         /* [256], block-major; on sheets k-1 and k */
-  uint32_t blocks;                       /* those with density on either */
-  const float *enter, *leave;            /* [256], block-major; null: the box does not cut anything visible */
-  int whole;                             /* it cuts neither the slab here nor the ways of light through it */
+  const float *before, *current; /* [256], block-major; on sheets k-1 and k */
+  uint32_t blocks;               /* those with density on either */
+  const float *enter, *leave;    /* [256], block-major; null: the box does not cut anything visible */
+  int whole;                     /* it cuts neither the slab here nor the ways of light through it */
 } shade_patch;
 
 typedef struct shade_light {
   int parallel;
-  float towards[3];               /* parallel: unit direction to the light; frame space */
-  float position[3];              /* else: the light's centre; frame space */
-  float color[3];                 /* color * intensity */
+  float towards[3];  /* parallel: unit direction to the light; frame space */
+  float position[3]; /* else: the light's centre; frame space */
+  float color[3];    /* color * intensity */
   int inverse_square;
   int shadowed;
-  float path;                     /* parallel: sheet spacing / |l.h|; else sheet spacing */
-  const shadow_lookup *lookup;    /* where shadowed: the light that reaches a sample */
-  const part_lookup *parts;       /* [part_count]; where there are any, it is their mean instead */
+  float path;                  /* parallel: sheet spacing / |l.h|; else sheet spacing */
+  const shadow_lookup *lookup; /* where shadowed: the light that reaches a sample */
+  const part_lookup *parts;    /* [part_count]; where there are any, it is their mean instead */
   int part_count, channels;
-  light_screen screen;            /* the image that the light projects */
-  light_cone cone;                /* of a spot light */
-  light_share share;              /* of a light within the content */
-  int nearest, cubic;             /* lookup: nearest pixel, or between four by four, instead of bilinear; parts never cubic */
+  light_screen screen; /* the image that the light projects */
+  light_cone cone;     /* of a spot light */
+  light_share share;   /* of a light within the content */
+  int nearest,
+      cubic; /* lookup: nearest pixel, or between four by four, instead of bilinear; parts never cubic */
 } shade_light;
 
 typedef struct shade_job {
-  sheet_rays rays;                /* image pixels -> frame space, in the middle between the two sheets */
-  float through[3];               /* parallel: from one sheet to the next along the eye's rays */
-  float towards_eye[3];           /* parallel: unit direction to the eye */
-  float eye[3];                   /* frame space; parallel: where depth is 0 */
-  float normal[3];                /* h */
-  float path;                     /* parallel: sheet spacing / |w.h|; perspective: sheet spacing */
-  int sheet;                      /* k: the slab lies between sheets k-1 and k */
-  float height, spacing;          /* of sheet k above the first, and to sheet k-1; frame units */
+  sheet_rays rays;       /* image pixels -> frame space, in the middle between the two sheets */
+  float through[3];      /* parallel: from one sheet to the next along the eye's rays */
+  float towards_eye[3];  /* parallel: unit direction to the eye */
+  float eye[3];          /* frame space; parallel: where depth is 0 */
+  float normal[3];       /* h */
+  float path;            /* parallel: sheet spacing / |w.h|; perspective: sheet spacing */
+  int sheet;             /* k: the slab lies between sheets k-1 and k */
+  float height, spacing; /* of sheet k above the first, and to sheet k-1; frame units */
   int back_to_front;
   const shade_light *lights;
   int light_count;
-  float ambient[3];               /* Ia; zero in all sweeps but the first */
-  float emission;                 /* what emission counts: 1 in the first sweep, zero in others */
-  int channels;                   /* of light attenuation: 1 or 3 */
+  float ambient[3]; /* Ia; zero in all sweeps but the first */
+  float emission;   /* what emission counts: 1 in the first sweep, zero in others */
+  int channels;     /* of light attenuation: 1 or 3 */
 } shade_job;
 
-/* Shades the tile's blocks that are open and have density. patches: of the volumes with density in the tile. pixels:
- * [16 blocks][R G B A][16]. Returns the blocks that are still open: some pixel not yet opaque. samples is raised by
- * the pixels composited. scratch: SHADE_SCRATCH_BYTES a patch, aligned to 64: its part in one block and in the sixteen
- * at most that the tile's samples are moved to (pack_lanes.h). */
+/* Shades the tile's blocks that are open and have density. patches: of the volumes with density in the tile.
+ * pixels: [16 blocks][R G B A][16]. Returns the blocks that are still open: some pixel not yet opaque.
+ * samples is raised by the pixels composited. scratch: SHADE_SCRATCH_BYTES a patch, aligned to 64: its part
+ * in one block and in the sixteen at most that the tile's samples are moved to (pack_lanes.h). */
 enum { SHADE_SCRATCH_BYTES = 17 * 1472 };
-typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
-                                     int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples);
+typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *patches, int patch_count,
+                                     int tile_x, int tile_y, uint32_t blocks, void *scratch, float *pixels,
+                                     uint64_t *samples);
 
 /* What is measured instead of lit, for sheets that go front to back: alpha; depth where alpha first reaches
  * 0.01, infinite before; and, weighted by what a sample adds to alpha, sums of depth and normal. pixels:
  * [16 blocks][MEASURES][16]. */
 enum { MEASURE_ALPHA, MEASURE_DEPTH_FIRST, MEASURE_DEPTH, MEASURE_NORMAL, MEASURES = MEASURE_NORMAL + 3 };
 
-/* A maximum projection keeps for each pixel and visible volume, as coordinates in the volume's table: the greatest value so far
- * that is shown, -1 where none is; the value on the sheet before the last; and the last sheet's number, -1 where the slab before
- * it is not all within the box. [volumes][MAXIMUM_ROWS][16 blocks][16] for a tile. */
+/* A maximum projection keeps for each pixel and visible volume, as coordinates in the volume's table: the
+ * greatest value so far that is shown, -1 where none is; the value on the sheet before the last; and the last
+ * sheet's number, -1 where the slab before it is not all within the box. [volumes][MAXIMUM_ROWS][16
+ * blocks][16] for a tile. */
 enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
 
-/* What a transfer function shows at coordinates from an entry to the next, one row of four an entry: values above SHOWN_FROM, up
- * to SHOWN_TO; and the greatest that it shows below the entry, -1 if there is none. */
+/* What a transfer function shows at coordinates from an entry to the next, one row of four an entry: values
+ * above SHOWN_FROM, up to SHOWN_TO; and the greatest that it shows below the entry, -1 if there is none. */
 enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
 
 typedef struct maximum_values {
-  float *values;            /* owned; [tiles][volumes][MAXIMUM_ROWS][256]; null: no maximum projection */
-  float (*shown)[4];        /* owned; [volumes][CLASSIFIER_ENTRIES + 2] */
-  size_t volume_count;      /* visible ones */
+  float *values;       /* owned; [tiles][volumes][MAXIMUM_ROWS][256]; null: no maximum projection */
+  float (*shown)[4];   /* owned; [volumes][CLASSIFIER_ENTRIES + 2] */
+  size_t volume_count; /* visible ones */
   size_t tiles;
 } maximum_values;
 

@@ -9,8 +9,8 @@ static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
 /* Steps 14 and 15's first half: what arrives of one light (eqs. 1 and 2), and from where. */
 typedef struct arriving_light {
-  int dark;       /* it lights nothing; the rest is not filled */
-  lanes3 towards; /* unit */
+  int dark;                   /* it lights nothing; the rest is not filled */
+  lanes3 towards;             /* unit */
   color_lanes full, shadowed; /* without and with attenuation */
 } arriving_light;
 
@@ -89,8 +89,8 @@ LANES_INLINE lanes power(lanes base, float exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Step 15: eqs. (3) and (4) at the light's centre; a medium where there is no surface (algorithm, optical model). What
- * shines by itself is added; flat colours are nothing else. */
+/* Step 15: eqs. (3) and (4) at the light's centre; a medium where there is no surface (algorithm, optical
+ * model). What shines by itself is added; flat colours are nothing else. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color) {
   const shade_volume *volume = d->patch->volume;
@@ -101,11 +101,13 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
     if (lights[i].dark) continue;
     const color_lanes *intensity = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full;
     lanes facing = dot3(d->normal, lights[i].towards);
-    lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface, 1.0f - d->surface);
+    lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface,
+                              1.0f - d->surface);
     lanes3 mirrored = add_scaled3(scale3(lights[i].towards, lanes_set(-1.0f)), d->normal, facing * 2.0f);
     lanes glint = power(dot3(g->towards_eye, mirrored), volume->shininess) * volume->specular * d->surface;
     glint = lanes_keep(facing > 0.0f, glint);
-    for (int c = 0; c < 3; c++) lit.c[c] = lanes_fma(intensity->c[c], lanes_fma(color.c[c], diffuse, glint), lit.c[c]);
+    for (int c = 0; c < 3; c++)
+      lit.c[c] = lanes_fma(intensity->c[c], lanes_fma(color.c[c], diffuse, glint), lit.c[c]);
   }
   return lit;
 }
@@ -125,8 +127,9 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
 }
 
 /* Colours of the volumes, lit and averaged weighted by extinction. */
-LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geometry *g, const arriving_light *lights,
-                                  const block_density *densities, int count, lanes total) {
+LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geometry *g,
+                                        const arriving_light *lights, const block_density *densities,
+                                        int count, lanes total) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
   for (int i = 0; i < count; i++) {
@@ -143,10 +146,10 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geomet
   return sum;
 }
 
-/* A tile's slabs, one step for all of them at a time: their sums are long chains of few numbers each, and the processor
- * works on one slab's while another's wait. lit: 0 where nothing is seen. */
-LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_density *densities, int patch_count,
-                              color_lanes *lit, uint64_t *samples) {
+/* A tile's slabs, one step for all of them at a time: their sums are long chains of few numbers each, and the
+ * processor works on one slab's while another's wait. lit: 0 where nothing is seen. */
+LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_density *densities,
+                              int patch_count, color_lanes *lit, uint64_t *samples) {
   arriving_light lights[TILE_BLOCKS][MAXIMUM_SWEEP_LIGHTS];
   block_density *of[TILE_BLOCKS];
   int seen[TILE_BLOCKS], count = 0;
@@ -169,7 +172,8 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
       lights[k][i] = light_at(job, &job->lights[i], &tile->slabs[seen[k]], of[seen[k]], patch_count);
   for (int k = 0; k < count; k++) {
     const block_slab *slab = &tile->slabs[seen[k]];
-    color_lanes color = color_of_block(job, &slab->geometry, lights[k], of[seen[k]], patch_count, slab->total);
+    color_lanes color = color_of_block(job, &slab->geometry, lights[k], of[seen[k]], patch_count,
+                                       slab->total);
     for (int c = 0; c < 3; c++) lit[seen[k]].c[c] = lanes_keep(slab->seen, color.c[c]);
   }
 }
@@ -188,39 +192,45 @@ LANES_INLINE int composite_packed(const shade_job *job, const packed_block *bloc
 }
 
 /* A tile's blocks, so that those that share a slab lie side by side: gradients then share voxels. */
-static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0, 1, 4, 5, 2, 3, 6, 7, 10, 11, 14, 15, 8, 9, 12, 13};
+static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0,  1,  4,  5,  2, 3, 6,  7,
+                                                           10, 11, 14, 15, 8, 9, 12, 13};
 /* The place of each block in that order. */
-static const unsigned char PLACE_OF_BLOCK[TILE_BLOCKS] = {0, 1, 4, 5, 2, 3, 6, 7, 12, 13, 8, 9, 14, 15, 10, 11};
+static const unsigned char PLACE_OF_BLOCK[TILE_BLOCKS] = {0,  1,  4, 5, 2,  3,  6,  7,
+                                                          12, 13, 8, 9, 14, 15, 10, 11};
 
-/* Of the given blocks, those in which something may be seen, one bit each at their places in that order; bits: in which
- * of their pixels. All blocks are asked before the first is gone into: half of them hold nothing, which no processor
- * foresees, and loads would wait for one another's answers. */
-LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *patches, int patch_count, uint32_t blocks,
-                                     const float *pixels, uint16_t bits[TILE_BLOCKS]) {
+/* Of the given blocks, those in which something may be seen, one bit each at their places in that order;
+ * bits: in which of their pixels. All blocks are asked before the first is gone into: half of them hold
+ * nothing, which no processor foresees, and loads would wait for one another's answers. */
+LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *patches, int patch_count,
+                                     uint32_t blocks, const float *pixels, uint16_t bits[TILE_BLOCKS]) {
   uint32_t places = 0;
   for (; blocks != 0; blocks &= blocks - 1) {
     int block = __builtin_ctz(blocks);
-    uint32_t visible = visible_in_block(job, patches, patch_count, block, pixels + (block * 4 + 3) * BLOCK_PIXELS);
+    uint32_t visible = visible_in_block(job, patches, patch_count, block,
+                                        pixels + (block * 4 + 3) * BLOCK_PIXELS);
     bits[block] = (uint16_t)visible;
     places |= (uint32_t)(visible != 0) << PLACE_OF_BLOCK[block];
   }
   return places;
 }
 
-LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
-                                    uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
+LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *patches, int patch_count,
+                                    int tile_x, int tile_y, uint32_t blocks, void *scratch, float *pixels,
+                                    uint64_t *samples) {
   block_density *ways = scratch, *densities = ways + patch_count;
   packed_tile tile;
   color_lanes lit[TILE_BLOCKS];
   uint16_t bits[TILE_BLOCKS];
   uint32_t seen = 0;
   tile.slab_count = 0;
-  for (uint32_t left = visible_blocks(job, patches, patch_count, blocks, pixels, bits); left != 0; left &= left - 1) {
+  for (uint32_t left = visible_blocks(job, patches, patch_count, blocks, pixels, bits); left != 0;
+       left &= left - 1) {
     int block = NEAR_EACH_OTHER[__builtin_ctz(left)];
     block_slab slab;
     slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits[block], ways, &slab);
     seen |= 1u << block;
-    for (int c = 0; c < 3; c++) __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
+    for (int c = 0; c < 3; c++)
+      __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
     if (bits[block] == 0xffff) keep_block(&tile, &slab, ways, patch_count, densities, &tile.blocks[block]);
     else pack_block(&tile, &slab, ways, patch_count, bits[block], densities, &tile.blocks[block]);
   }
@@ -229,16 +239,18 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *pat
   for (; seen != 0; seen &= seen - 1) {
     int block = __builtin_ctz(seen);
     const packed_block *packed = &tile.blocks[block];
-    if (composite_packed(job, packed, &tile.slabs[packed->slab], &lit[packed->slab], pixels + block * 4 * BLOCK_PIXELS))
+    if (composite_packed(job, packed, &tile.slabs[packed->slab], &lit[packed->slab],
+                         pixels + block * 4 * BLOCK_PIXELS))
       open |= 1u << block;
   }
   return open;
 }
 
 /* Most often there is one volume, which needs no loops over volumes. */
-static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
-                           uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
-  if (patch_count == 1) return shade_patches(job, patches, 1, tile_x, tile_y, blocks, scratch, pixels, samples);
+static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
+                           int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
+  if (patch_count == 1)
+    return shade_patches(job, patches, 1, tile_x, tile_y, blocks, scratch, pixels, samples);
   return shade_patches(job, patches, patch_count, tile_x, tile_y, blocks, scratch, pixels, samples);
 }
 

@@ -13,9 +13,9 @@
  *            (soft: convolve for the next sheet)             hl_sweep_soften
  *   18. end
  *
- * What is lit, classified and composited is the slab between a sheet and the one before, so that nothing of a sharp
- * transfer function falls between sheets. A slab is lit by what passed the slabs before it. The first and last sheets
- * lie outside the content. */
+ * What is lit, classified and composited is the slab between a sheet and the one before, so that nothing of a
+ * sharp transfer function falls between sheets. A slab is lit by what passed the slabs before it. The first
+ * and last sheets lie outside the content. */
 #include "core/context.h"
 #include "render/sweep.h"
 
@@ -25,8 +25,10 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     hl_sweep_shade(sweep, sheet);
     hl_sweep_attenuate(sweep, sheet);
     hl_sweep_soften(sweep, sheet);
-    if ((sheet & 7) == 0 && sweep->covering == NULL) hl_progress(sweep->context, "render", (double)sheet / sheets);
-    if (hl_pool_cancelled(sweep->pool)) return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
+    if ((sheet & 7) == 0 && sweep->covering == NULL)
+      hl_progress(sweep->context, "render", (double)sheet / sheets);
+    if (hl_pool_cancelled(sweep->pool))
+      return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   }
   return HL_OK;
 }

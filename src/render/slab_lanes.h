@@ -1,7 +1,8 @@
-/* render/slab_lanes.h - the slab between two sheets before it is lit (steps 12 and 13): what of the volumes lies on
- * sixteen rays through it, where it is seen, and its gradient there.
+/* render/slab_lanes.h - the slab between two sheets before it is lit (steps 12 and 13): what of the volumes
+ * lies on sixteen rays through it, where it is seen, and its gradient there.
  *
- * The sixteen are a 4x4 block of pixels, or those of several blocks in which something is seen (pack_lanes.h). */
+ * The sixteen are a 4x4 block of pixels, or those of several blocks in which something is seen
+ * (pack_lanes.h). */
 #ifndef HL_RENDER_SLAB_LANES_H
 #define HL_RENDER_SLAB_LANES_H
 
@@ -14,11 +15,11 @@ static const float OPAQUE = 1.0f - 1.0f / 2048;
 
 /* What the volumes share: where the pixels' rays are and how they look. */
 typedef struct block_geometry {
-  lanes3 position;       /* frame space, in the slab: where it is lit */
-  lanes3 start;          /* where the ray enters the slab */
-  lanes3 step_sheet;     /* to the next sheet along the ray */
-  lanes3 towards_eye;    /* unit */
-  lanes path;            /* of the eye's ray through the sheet; 0 behind the eye */
+  lanes3 position;    /* frame space, in the slab: where it is lit */
+  lanes3 start;       /* where the ray enters the slab */
+  lanes3 step_sheet;  /* to the next sheet along the ray */
+  lanes3 towards_eye; /* unit */
+  lanes path;         /* of the eye's ray through the sheet; 0 behind the eye */
 } block_geometry;
 
 /* Derived: on the ray E + s W with s = step / H, H = h.W, moving one sheet gives W ds / H. */
@@ -49,7 +50,8 @@ LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t 
   return add_scaled3(add_scaled3(scale3(set3(m[2]), slope.z), set3(m[1]), slope.y), set3(m[0]), slope.x);
 }
 
-/* One volume's way through the slab: its densities on the two sheets, and the part of the way that is in its box. */
+/* One volume's way through the slab: its densities on the two sheets, and the part of the way that is in its
+ * box. */
 typedef struct block_way {
   lanes first, last;
   covered_part part;
@@ -57,7 +59,7 @@ typedef struct block_way {
 
 typedef struct block_density {
   const shade_patch *patch;
-  int there;           /* whether the volume may be visible in any of the pixels */
+  int there; /* whether the volume may be visible in any of the pixels */
   block_way way;
   lanes before, after; /* coordinates in the tables: where the slab's covered part starts and ends */
   way_sums sums;       /* between the two */
@@ -68,7 +70,8 @@ typedef struct block_density {
   lanes3 slope;        /* where the matter is seen; elsewhere 0 */
   lanes3 normal;       /* unit, away from the matter */
   lanes surface;       /* 1 for a surface, falling to 0 for a medium, which has no normal */
-  lanes light_first, light_last; /* how far a light has come within its box where the slab's covered part starts and ends */
+  lanes light_first,
+      light_last; /* how far a light has come within its box where the slab's covered part starts and ends */
 } block_density;
 
 /* In thinner slabs the gradient makes no difference to the light lost within. */
@@ -77,7 +80,8 @@ static const float THIN_DEPTH = 1.0f / 64;
 /* A block's pixels in which any of a volume may be visible. */
 LANES_INLINE lanes_int visible_in_patch(const shade_patch *patch, int block) {
   const classifier *classifier = patch->volume->classifier;
-  return may_be_visible(classifier, classify_place(classifier, lanes_load(patch->before + block * BLOCK_PIXELS)),
+  return may_be_visible(classifier,
+                        classify_place(classifier, lanes_load(patch->before + block * BLOCK_PIXELS)),
                         classify_place(classifier, lanes_load(patch->current + block * BLOCK_PIXELS)));
 }
 
@@ -111,13 +115,14 @@ LANES_INLINE lanes power_of_part(lanes base, lanes exponent) {
   return lanes_exp2(lanes_max(lanes_log2(lanes_max(base, lanes_set(1e-6f))) * exponent, lanes_set(-100.0f)));
 }
 
-/* Where in its optical depth a slab is seen on average, 0 (first) to 1: int e s exp(-e s) ds / (1 - exp(-e)) =
- * 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1 - exp(-e))) (derived); 1/2 - e / 12 for small e.
- * left: exp(-e), which is held above 0: nothing of it is left for e > 100. */
+/* Where in its optical depth a slab is seen on average, 0 (first) to 1: int e s exp(-e s) ds / (1 - exp(-e))
+ * = 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1 - exp(-e))) (derived); 1/2 - e / 12
+ * for small e. left: exp(-e), which is held above 0: nothing of it is left for e > 100. */
 LANES_INLINE lanes seen_part(lanes e, lanes left) {
   lanes_int thin = e < 0.05f;
   lanes lost = lanes_select(thin, lanes_set(1.0f), 1.0f - left);
-  lanes part = lanes_fma(-lanes_min(e, lanes_set(100.0f)), left, lost) / (lanes_max(e, lanes_set(0.05f)) * lost);
+  lanes part = lanes_fma(-lanes_min(e, lanes_set(100.0f)), left, lost) /
+               (lanes_max(e, lanes_set(0.05f)) * lost);
   return lanes_select(thin, lanes_line(e, -1.0f / 12, 0.5f), part);
 }
 
@@ -136,17 +141,19 @@ typedef struct block_slab {
   lanes_int seen;
 } block_slab;
 
-/* u^(b / a), the part of the way at which a part u of the depth is reached; from_a, from_b: how far from the way's ends its extinction
- * lies on average. */
+/* u^(b / a), the part of the way at which a part u of the depth is reached; from_a, from_b: how far from the
+ * way's ends its extinction lies on average. */
 LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   lanes_int rising = from_a >= from_b;
-  lanes t = power_of_part(lanes_select(rising, u, 1.0f - u), lanes_min(from_a, from_b) / lanes_max(from_a, from_b));
+  lanes t = power_of_part(lanes_select(rising, u, 1.0f - u),
+                          lanes_min(from_a, from_b) / lanes_max(from_a, from_b));
   return lanes_select(rising, t, 1.0f - t);
 }
 
-/* Where boxes share a slab, it is seen where one volume that held all of it would be: centres of parts have the whole's as
- * their mean, weighted by extinction. */
-LANES_INLINE lanes place_of_joined(block_density *densities, int count, const block_slab *slab, lanes u, lanes place) {
+/* Where boxes share a slab, it is seen where one volume that held all of it would be: centres of parts have
+ * the whole's as their mean, weighted by extinction. */
+LANES_INLINE lanes place_of_joined(block_density *densities, int count, const block_slab *slab, lanes u,
+                                   lanes place) {
   lanes length = lanes_max(slab->part.length, lanes_set(1e-6f));
   lanes centre = lanes_clamp((slab->centre - slab->part.begin) / length, 0, 1);
   lanes t = way_of_depth(centre, 1.0f - centre, u);
@@ -155,10 +162,10 @@ LANES_INLINE lanes place_of_joined(block_density *densities, int count, const bl
   return lanes_select(slab->joined, lanes_fma(slab->part.length, t, slab->part.begin), place);
 }
 
-/* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q along the way
- * with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is reached at
- * t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes' mean, in slabs. One volume's
- * extinction is the total. */
+/* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q
+ * along the way with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is
+ * reached at t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes'
+ * mean, in slabs. One volume's extinction is the total. */
 LANES_INLINE lanes place_of_part(block_density *densities, int count, const block_slab *slab, lanes u) {
   lanes sum = lanes_set(0);
   for (int i = 0; i < count; i++) {
@@ -183,8 +190,10 @@ LANES_INLINE lanes3 slope_of_block(const block_density *d) {
   return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
 }
 
-/* Step 12 where shading asks for it: surfaces, and dense slabs whose light must be told from the eye's way. */
-LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, block_density *densities, int count) {
+/* Step 12 where shading asks for it: surfaces, and dense slabs whose light must be told from the eye's
+ * way. */
+LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, block_density *densities,
+                              int count) {
   const block_geometry *g = &slab->geometry;
   int shadowed = 0;
   for (int i = 0; i < job->light_count; i++) shadowed |= job->lights[i].shadowed;
@@ -195,22 +204,29 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
     d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
     d->sloped = slab->seen & (d->sums.extinction > 0.0f);
     if (!volume->phong) d->sloped &= d->sums.extinction * slab->part.length * g->path > THIN_DEPTH;
-    uint32_t active = volume->visible && (volume->phong || (volume->lit && shadowed)) ? lanes_bits(d->sloped) : 0;
+    uint32_t active = volume->visible && (volume->phong || (volume->lit && shadowed)) ? lanes_bits(d->sloped)
+                                                                                      : 0;
     if (active == 0) d->sloped = lanes_set_int(0);
     else
-      d->slope = gradient(volume, add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin)),
-                          active, slab->starts);
+      d->slope = gradient(
+          volume,
+          add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin)),
+          active, slab->starts);
   }
 }
 
-/* Its normal there. The slope is taken in steps of the transfer function's table: squares of data in units of 1e-27 or
- * 1e30 are no floats. Where even those vanish, components are below 1e-19: the normal stays short. */
+/* Its normal there. The slope is taken in steps of the transfer function's table: squares of data in units of
+ * 1e-27 or 1e30 are no floats. Where even those vanish, components are below 1e-19: the normal stays
+ * short. */
 LANES_INLINE void find_normal(block_density *d) {
   const shade_volume *volume = d->patch->volume;
   lanes3 slope = scale3(slope_of_block(d), lanes_set(fabsf(volume->classifier->scale)));
   lanes steepness = lanes_sqrt(dot3(slope, slope)), density = d->way.first + d->way.last;
-  d->surface = volume->phong ? lanes_min(steepness * (1.0f / volume->classifier->normal_edge), lanes_set(1.0f)) : lanes_set(0);
-  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) / lanes_max(steepness, lanes_set(1e-18f));
+  d->surface = volume->phong
+                   ? lanes_min(steepness * (1.0f / volume->classifier->normal_edge), lanes_set(1.0f))
+                   : lanes_set(0);
+  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) /
+                  lanes_max(steepness, lanes_set(1e-18f));
   d->normal = scale3(slope, outward);
 }
 
@@ -220,17 +236,21 @@ LANES_INLINE void find_normals(block_density *densities, int count) {
 }
 
 /* A block's pixels in which something may be seen, one bit each. alpha: of the pixels so far. */
-LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *patches, int patch_count, int block,
-                                       const float *alpha) {
-  lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < OPAQUE, visible = lanes_set_int(0);
+LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *patches, int patch_count,
+                                       int block, const float *alpha) {
+  lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < OPAQUE,
+            visible = lanes_set_int(0);
   for (int i = 0; i < patch_count; i++)
-    if (patches[i].blocks >> block & 1 && patches[i].volume->visible) visible |= visible_in_patch(&patches[i], block);
+    if (patches[i].blocks >> block & 1 && patches[i].volume->visible)
+      visible |= visible_in_patch(&patches[i], block);
   return lanes_bits(visible & open);
 }
 
-/* A block's ways and pixels; bits: of those in which something may be seen, of which there is one at least. */
-LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x, int tile_y,
-                                int block, uint32_t bits, block_density *densities, block_slab *slab) {
+/* A block's ways and pixels; bits: of those in which something may be seen, of which there is one at
+ * least. */
+LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
+                                int tile_y, int block, uint32_t bits, block_density *densities,
+                                block_slab *slab) {
   for (int i = 0; i < patch_count; i++) {
     block_density *d = &densities[i];
     d->patch = &patches[i];
@@ -263,8 +283,8 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
       slab->joined |= densities[i].way.part.length < slab->part.length;
 }
 
-/* Of several volumes each takes what lies in its own box; how it looks and what it takes of the light is found over what all cover:
- * one volume cut into boxes is then what it was before. */
+/* Of several volumes each takes what lies in its own box; how it looks and what it takes of the light is
+ * found over what all cover: one volume cut into boxes is then what it was before. */
 LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
   join_parts(densities, count, slab);
   int joined = lanes_bits(slab->joined) != 0;
@@ -276,7 +296,8 @@ LANES_INLINE void classify_joined(block_density *densities, int count, block_sla
     d->extinction = d->sums.extinction * d->way.part.length;
     if (!joined) continue;
     if (d->patch->volume->visible)
-      slab->centre = lanes_fma(d->extinction, lanes_fma(d->way.part.length, centre_of_way(d), d->way.part.begin), slab->centre);
+      slab->centre = lanes_fma(
+          d->extinction, lanes_fma(d->way.part.length, centre_of_way(d), d->way.part.begin), slab->centre);
     classify_way(d, slab->part);
   }
 }
@@ -293,7 +314,8 @@ LANES_INLINE void classify_slab(block_density *densities, int count, block_slab 
     classify_joined(densities, count, slab);
   }
   for (int i = 0; i < count; i++)
-    if (densities[i].there && densities[i].patch->volume->visible) slab->total = slab->total + densities[i].extinction;
+    if (densities[i].there && densities[i].patch->volume->visible)
+      slab->total = slab->total + densities[i].extinction;
   slab->centre = slab->centre / lanes_max(slab->total, lanes_set(1e-30f));
   slab->seen = slab->open & (slab->total > 0.0f);
   slab->opacity = lanes_set(0);
@@ -303,7 +325,8 @@ LANES_INLINE void classify_slab(block_density *densities, int count, block_slab 
 LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   block_geometry *g = &slab->geometry;
   *g = geometry_of_block(job, slab->u, slab->v);
-  slab->depth = lanes_keep(slab->seen, slab->total * g->path); /* lanes without a pixel have a path of their own */
+  slab->depth = lanes_keep(slab->seen,
+                           slab->total * g->path); /* lanes without a pixel have a path of their own */
   slab->left = lanes_exp_negative(slab->depth);
   slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
   lanes u = seen_part(slab->depth, slab->left);
@@ -313,8 +336,8 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   g->position = add_scaled3(g->start, g->step_sheet, seen_at);
 }
 
-/* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which something is
- * seen, one bit each; if there are none, only the opacity is filled. */
+/* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which
+ * something is seen, one bit each; if there are none, only the opacity is filled. */
 LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   classify_slab(densities, count, slab);
   uint32_t bits = lanes_bits(slab->seen);

@@ -1,13 +1,15 @@
 /* render/slicing.c - the slicing axis of section 3.1, and which lights share it. */
 #include "render/frame.h"
 
-/* cos 60 degrees: the steepest crossing of a sheet by an eye or light ray that one axis may ask of several lights. */
+/* cos 60 degrees: the steepest crossing of a sheet by an eye or light ray that one axis may ask of several
+ * lights. */
 static const double STEEPEST = 0.5;
 
 /* Flatter crossings are refused: of the picture's outermost rays (87 degrees), and of a light's direction. */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
-/* Least |cos| between the eye's rays through the picture's corners and h, all crossing in the same sense; 0 if not. */
+/* Least |cos| between the eye's rays through the picture's corners and h, all crossing in the same sense; 0
+ * if not. */
 static double flattest_eye_ray(const view *eye, vec3 h) {
   double least = INFINITY, sense = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -21,9 +23,11 @@ static double flattest_eye_ray(const view *eye, vec3 h) {
   return least;
 }
 
-/* h = normalise(e + l) for e.l >= 0, normalise(l - e) else (fig. 3); for several lights the sum of their directions.
- * A wide picture's corner rays may run along such sheets: then h leans towards the eye until they cross. */
-static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings, vec3 light, bool *back_to_front) {
+/* h = normalise(e + l) for e.l >= 0, normalise(l - e) else (fig. 3); for several lights the sum of their
+ * directions. A wide picture's corner rays may run along such sheets: then h leans towards the eye until they
+ * cross. */
+static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings, vec3 light,
+                         bool *back_to_front) {
   *back_to_front = vec3_dot(frame->eye_direction, light) < 0;
   vec3 e = *back_to_front ? vec3_scale(frame->eye_direction, -1) : frame->eye_direction;
   if (settings->slicing == HL_SLICING_IMAGE_ALIGNED) return e;
@@ -111,7 +115,8 @@ static void add_sector(const frame *frame, int light, frame_sweep *sweeps, int *
                          frame->lights[sweeps[s].light[0]].sector == frame->lights[light].sector))
     s++;
   if (s == *count)
-    sweeps[(*count)++] = (frame_sweep){.sheets = {.normal = axis}, .of_sectors = true,
+    sweeps[(*count)++] = (frame_sweep){.sheets = {.normal = axis},
+                                       .of_sectors = true,
                                        .back_to_front = vec3_dot(frame->eye_direction, axis) < 0};
   sweeps[s].light[sweeps[s].light_count++] = light;
 }
@@ -146,7 +151,8 @@ static void add_plain_light(const frame *frame, int light, frame_sweep *sweeps, 
 int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, frame_sweep *sweeps) {
   int count = 0;
   for (int light = 0; light < frame->light_count; light++)
-    if (frame->lights[light].shadows != HL_SHADOWS_OFF) add_shadowing_light(frame, settings, light, sweeps, &count);
+    if (frame->lights[light].shadows != HL_SHADOWS_OFF)
+      add_shadowing_light(frame, settings, light, sweeps, &count);
   for (int light = 0; light < frame->light_count; light++)
     if (frame->lights[light].shadows == HL_SHADOWS_OFF) add_plain_light(frame, light, sweeps, &count);
   if (count == 0) add_plain_light(frame, -1, sweeps, &count);
@@ -158,20 +164,25 @@ hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, i
   for (int s = 0; s < count; s++) {
     if (sweeps[s].sheets.count > GREATEST_SHEETS)
       return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "/render/sheet_spacing: makes more than %d sheets of the volumes, whose smallest voxel edge is small beside "
-                     "their size: raise it", GREATEST_SHEETS);
+                     "/render/sheet_spacing: makes more than %d sheets of the volumes, whose smallest voxel "
+                     "edge is small beside "
+                     "their size: raise it",
+                     GREATEST_SHEETS);
     if (flattest_eye_ray(&frame->eye, sweeps[s].sheets.normal) < FLATTEST_EYE_RAY)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "/camera/fovy_deg: no sheets are crossed by every ray of so wide a view%s: use a smaller angle%s",
-                     sweeps[s].light_count > 0 ? " and by the light" : "",
-                     sweeps[s].light_count > 0 ? ", or lights from ahead or behind" : "");
+      return hl_fail(
+          error, HL_ERROR_UNSUPPORTED,
+          "/camera/fovy_deg: no sheets are crossed by every ray of so wide a view%s: use a smaller angle%s",
+          sweeps[s].light_count > 0 ? " and by the light" : "",
+          sweeps[s].light_count > 0 ? ", or lights from ahead or behind" : "");
     for (int i = 0; i < sweeps[s].light_count; i++) {
       int light = sweeps[s].light[i];
       if (frame->lights[light].shadows == HL_SHADOWS_OFF) continue;
       if (vec3_dot(frame->lights[light].direction, sweeps[s].sheets.normal) < FLATTEST_LIGHT)
         return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                       "/render/slicing: image-aligned sheets cannot carry the shadows of /lights/%d, which comes from the "
-                       "side: use half-vector", frame->lights[light].light_index);
+                       "/render/slicing: image-aligned sheets cannot carry the shadows of /lights/%d, which "
+                       "comes from the "
+                       "side: use half-vector",
+                       frame->lights[light].light_index);
     }
   }
   return HL_OK;

@@ -15,27 +15,33 @@ static int list_tiles(const occupancy *occupancy, int sheet, uint32_t *list) {
   return count;
 }
 
-/* The clock is read at one tile in 32, others on each sheet: that is enough to tell the shares of a stage apart. */
-static bool is_timed(size_t tile, int sheet) { return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0; }
+/* The clock is read at one tile in 32, others on each sheet: that is enough to tell the shares of a stage
+ * apart. */
+static bool is_timed(size_t tile, int sheet) {
+  return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0;
+}
 static double read_clock(bool timed) { return timed ? hl_clock_seconds() : 0; }
 
 /* ---- the image ---- */
 
 /* Opacities are asked for before densities are found: they come from farther than the nearest cache. */
 static void fetch_opacities(const float *pixels, uint32_t blocks) {
-  for (; blocks != 0; blocks &= blocks - 1) __builtin_prefetch(pixels + (__builtin_ctz(blocks) * 4 + 3) * BLOCK_PIXELS, 1);
+  for (; blocks != 0; blocks &= blocks - 1)
+    __builtin_prefetch(pixels + (__builtin_ctz(blocks) * 4 + 3) * BLOCK_PIXELS, 1);
 }
 
 /* The blocks of a tile in which a slab is not hidden. */
 static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
-  return sweep->shown_from == NULL ? ALL_BLOCKS : hl_shown_blocks(sweep->shown_from + tile * TILE_BLOCKS, slab);
+  return sweep->shown_from == NULL ? ALL_BLOCKS
+                                   : hl_shown_blocks(sweep->shown_from + tile * TILE_BLOCKS, slab);
 }
 
 /* Sheets are filled for a run of slabs at a time. */
 static int last_of_run(int slab) { return (slab - 1) / RUN_SLABS * RUN_SLABS + RUN_SLABS; }
 
 /* Steps 6 and 8 to 11 for one tile: its patches with density in the needed blocks. */
-static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker, shade_patch *patches, uint32_t *blocks) {
+static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker, shade_patch *patches,
+                           uint32_t *blocks) {
   view_sheets *sheets = &sweep->image;
   sweep_counts *counts = &sweep->counts[worker];
   int count = 0;
@@ -47,24 +53,26 @@ static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker,
     patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, &counts->pixels_image);
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
-    patches[count++] = (shade_patch){&sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter,
-                                     slab.leave, slab.whole};
+    patches[count++] = (shade_patch){
+        &sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter, slab.leave, slab.whole};
   }
   return count;
 }
 
 /* Steps 12 to 16 for one tile. Returns the blocks that stay open. */
-static uint32_t shade_blocks(const sweep *sweep, const shade_patch *patches, int count, size_t tile, uint32_t blocks, int worker,
-                             void *scratch) {
+static uint32_t shade_blocks(const sweep *sweep, const shade_patch *patches, int count, size_t tile,
+                             uint32_t blocks, int worker, void *scratch) {
   uint32_t open = sweep->hot->shade_tile(&sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
                                          (int)(tile / (size_t)sweep->tiles_x), blocks, scratch,
-                                         sweep->pixels + tile * 4 * TILE_PIXELS, &sweep->counts[worker].samples);
+                                         sweep->pixels + tile * 4 * TILE_PIXELS,
+                                         &sweep->counts[worker].samples);
   hl_sweep_layers_tile(sweep, patches, count, tile, blocks, worker, scratch);
   return open;
 }
 
 /* Instead of steps 12 to 16, in a maximum projection. */
-static uint32_t find_maximum(const sweep *sweep, const shade_patch *patches, int count, size_t tile, uint32_t blocks, int worker) {
+static uint32_t find_maximum(const sweep *sweep, const shade_patch *patches, int count, size_t tile,
+                             uint32_t blocks, int worker) {
   const maximum_values *maximum = sweep->maximum;
   return sweep->hot->maximum_tile(&sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
                                   (int)(tile / (size_t)sweep->tiles_x), blocks, NULL,
@@ -92,15 +100,17 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   if (blocks == 0) return;
   void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * SHADE_SCRATCH_BYTES;
   uint32_t open = sweep->maximum->values != NULL ? find_maximum(sweep, patches, count, tile, blocks, worker)
-                  : sweep->covering != NULL      ? hl_sweep_cover(sweep, patches, count, tile, blocks, worker, scratch)
-                                                 : shade_blocks(sweep, patches, count, tile, blocks, worker, scratch);
+                  : sweep->covering != NULL
+                      ? hl_sweep_cover(sweep, patches, count, tile, blocks, worker, scratch)
+                      : shade_blocks(sweep, patches, count, tile, blocks, worker, scratch);
   sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);
   counts->seconds_shade += read_clock(timed) - filled;
 }
 
 static void shade_task(void *data, size_t index, int worker) {
   sweep *sweep = data;
-  int end = (int)(index + 1) * TILES_A_TASK < sweep->task_start[1] ? (int)(index + 1) * TILES_A_TASK : sweep->task_start[1];
+  int end = (int)(index + 1) * TILES_A_TASK < sweep->task_start[1] ? (int)(index + 1) * TILES_A_TASK
+                                                                   : sweep->task_start[1];
   for (int task = (int)index * TILES_A_TASK; task < end; task++) shade_one(sweep, sweep->tasks[task], worker);
 }
 
@@ -110,15 +120,17 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
   sweep->sheet = sheet;
   sweep->task_start[1] = list_tiles(&sweep->image.occupancy, sheet, sweep->tasks);
   hl_view_sheets_reach(sweep, &sweep->frame->eye, sheet, &sweep->image);
-  hl_view_sheet_rays(&sweep->frame->eye, sheets->normal, hl_sheet_height(sheets, sheet) - 0.5 * sheets->spacing,
-                     affine3_identity(), &sweep->shade.rays);
+  hl_view_sheet_rays(&sweep->frame->eye, sheets->normal,
+                     hl_sheet_height(sheets, sheet) - 0.5 * sheets->spacing, affine3_identity(),
+                     &sweep->shade.rays);
   sweep->shade.height = (float)(sheet * sheets->spacing);
   sweep->shade.sheet = sheet;
   for (int i = 0; i < sweep->geometry->light_count; i++)
     if (sweep->lights[i].cascade.level_count > 0)
       sweep->lights[i].lookup.young = hl_soft_cascade_age(&sweep->lights[i].cascade, sheets, sheet);
   hl_sweep_layers_sheet(sweep);
-  hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task, sweep);
+  hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task,
+              sweep);
   sweep->seconds_image += hl_clock_seconds() - start;
 }
 
@@ -137,9 +149,13 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
     if (hl_patch_near(sweep, sheets, tile, p, sweep->sheet, need) == 0) continue;
     patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, pixels);
     if (slab.blocks == 0) continue;
-    volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier, .blocks = slab.blocks,
-                                        .before = slab.before, .density = slab.current,
-                                        .enter = slab.enter, .leave = slab.leave, .whole = slab.whole};
+    volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier,
+                                        .blocks = slab.blocks,
+                                        .before = slab.before,
+                                        .density = slab.current,
+                                        .enter = slab.enter,
+                                        .leave = slab.leave,
+                                        .whole = slab.whole};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
     count++;
   }
@@ -156,7 +172,8 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   job.volumes = volumes;
   job.volume_count = count;
   for (int c = 0; c < job.channels; c++)
-    job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
+    job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride +
+                           (size_t)tile_x * TILE;
   bool cascade = light->cascade.level_count > 0;
   for (int c = 0; c < job.channels && cascade; c++)
     job.older[c] = buffer->second[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
@@ -218,7 +235,8 @@ static void reach_sheet(sweep *sweep, int light_index, int sheet) {
   attenuate_job *job = &sweep->attenuate[light_index];
   const sheet_stack *sheets = &sweep->geometry->sheets;
   hl_view_sheets_reach(sweep, &light->buffer->view, sheet, &light->sheets);
-  hl_view_sheet_rays(&light->buffer->view, sheets->normal, hl_sheet_height(sheets, sheet), affine3_identity(), &job->rays);
+  hl_view_sheet_rays(&light->buffer->view, sheets->normal, hl_sheet_height(sheets, sheet), affine3_identity(),
+                     &job->rays);
   job->height = (float)(sheet * sheets->spacing);
   if (light->cascade.level_count > 0) hl_soft_cascade_reach(&light->cascade, sheets, sheet);
 }
@@ -244,24 +262,27 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
 void hl_sweep_soften(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
   const hot_functions *hot = sweep->hot;
-  const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile, hot->image_tile};
-  const cascade_functions cascade = {hot->lit_blocks_tile, hot->field_blur_tile, hot->add_tile,
-                                     hot->add_half_tile, hot->add_double_tile, hot->left_tile, hot->absorbed_tile, hot->part_tile,
-                                     hot->double_tile, hot->field_image_tile};
-  const sublight_functions parts = {hot->sublight_tile, hot->sublight_row, hot->sublight_lit, hot->half_pixel_tile};
+  const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile,
+                               hot->image_tile};
+  const cascade_functions cascade = {
+      hot->lit_blocks_tile, hot->field_blur_tile, hot->add_tile,  hot->add_half_tile, hot->add_double_tile,
+      hot->left_tile,       hot->absorbed_tile,   hot->part_tile, hot->double_tile,   hot->field_image_tile};
+  const sublight_functions parts = {hot->sublight_tile, hot->sublight_row, hot->sublight_lit,
+                                    hot->half_pixel_tile};
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
     if (!is_beyond(sweep, light->source, sheet)) continue;
     if (light->source->soft_method == HL_SOFT_PAPER)
-      hl_soft_paper_convolve(&light->paper, light->buffer, hl_sheet_height(&sweep->geometry->sheets, sheet + 1), sweep->pool, &blur);
+      hl_soft_paper_convolve(&light->paper, light->buffer,
+                             hl_sheet_height(&sweep->geometry->sheets, sheet + 1), sweep->pool, &blur);
     else if (sheet > 0 && light->source->soft_method == HL_SOFT_SUBLIGHTS)
       hl_sublights_advance(&light->sublights, light->buffer, sweep->geometry->sheets.normal,
                            hl_sheet_height(&sweep->geometry->sheets, sheet - 1),
                            hl_sheet_height(&sweep->geometry->sheets, sheet), sweep->pool, &parts);
     else if (sheet > 0)
-      hl_soft_cascade_advance(&light->cascade, light->buffer, &light->sheets.occupancy, &sweep->geometry->sheets, sheet,
-                              sweep->pool, &cascade);
+      hl_soft_cascade_advance(&light->cascade, light->buffer, &light->sheets.occupancy,
+                              &sweep->geometry->sheets, sheet, sweep->pool, &cascade);
   }
   sweep->seconds_soften += hl_clock_seconds() - start;
 }

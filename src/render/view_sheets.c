@@ -1,12 +1,13 @@
-/* render/view_sheets.c - what one view, the eye's or a light's, sees of the last sheets: where, in what order, and the
- * densities of patches, filled when they are asked for and kept for the next slab. */
+/* render/view_sheets.c - what one view, the eye's or a light's, sees of the last sheets: where, in what
+ * order, and the densities of patches, filled when they are asked for and kept for the next slab. */
 #include "core/memory.h"
 #include "render/sweep.h"
 #include "splat/voxel_sort.h"
 
 enum { ENTRY_FLOATS = 2 * TILE_PIXELS };
 
-/* Rays against the boxes that cut something visible: where they enter and leave is found when it is asked for. */
+/* Rays against the boxes that cut something visible: where they enter and leave is found when it is asked
+ * for. */
 static hl_status set_up_entries(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
   const sheet_stack *stack = &sweep->geometry->sheets;
   size_t patches = sheets->occupancy.patch_count;
@@ -21,7 +22,8 @@ static hl_status set_up_entries(const sweep *sweep, const view *view, view_sheet
   for (size_t i = 0; i < patches; i++) sheets->entry_of[i] = NO_ENTRY;
   for (int g = 0; g < sweep->volume_count; g++) {
     const grid *grid = &sweep->grids[g];
-    hl_box_rays(view, stack->normal, stack->first, grid->frame_to_index, grid->box_low, grid->box_high, &sheets->box_rays[g]);
+    hl_box_rays(view, stack->normal, stack->first, grid->frame_to_index, grid->box_low, grid->box_high,
+                &sheets->box_rays[g]);
   }
   return HL_OK;
 }
@@ -33,8 +35,8 @@ static const float *entries_of(const sweep *sweep, view_sheets *sheets, size_t t
   *entry = __atomic_fetch_add(&sheets->entry_count, 1, __ATOMIC_RELAXED);
   float *enter = sheets->entries + *entry * (size_t)ENTRY_FLOATS;
   size_t tiles_x = (size_t)sheets->occupancy.tiles_x;
-  sweep->hot->coverage_tile(&sheets->box_rays[sheets->occupancy.patch_grid[patch]], (int)(tile % tiles_x), (int)(tile / tiles_x),
-                            enter, enter + TILE_PIXELS);
+  sweep->hot->coverage_tile(&sheets->box_rays[sheets->occupancy.patch_grid[patch]], (int)(tile % tiles_x),
+                            (int)(tile / tiles_x), enter, enter + TILE_PIXELS);
   return enter;
 }
 
@@ -49,13 +51,14 @@ static hl_status sort_voxels(const sweep *sweep, const view *view, view_sheets *
   return status;
 }
 
-/* Sheets are filled a few in one go, tile by tile, while their voxels are at hand: as many as a run has slabs, fewer where they
- * would take more memory than this. */
+/* Sheets are filled a few in one go, tile by tile, while their voxels are at hand: as many as a run has
+ * slabs, fewer where they would take more memory than this. */
 enum { BUNDLE_BYTES = 1 << 24, LARGE_BUNDLE = RUN_SLABS, SMALL_BUNDLE = 2 };
 _Static_assert(RUN_SLABS % SMALL_BUNDLE == 0, "a bundle lies within a run");
 
 static int bundle_of_patches(size_t patches) {
-  return patches * (LARGE_BUNDLE + 1) * TILE_PIXELS * sizeof(float) <= BUNDLE_BYTES ? LARGE_BUNDLE : SMALL_BUNDLE;
+  return patches * (LARGE_BUNDLE + 1) * TILE_PIXELS * sizeof(float) <= BUNDLE_BYTES ? LARGE_BUNDLE
+                                                                                    : SMALL_BUNDLE;
 }
 
 static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error *error) {
@@ -64,10 +67,12 @@ static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error 
   size_t count = sheets->occupancy.patch_count * (size_t)sheets->ring;
   sheets->density = hl_reserve_take(sweep->reserve, count * TILE_PIXELS, sizeof(float));
   sheets->kept = hl_allocate(sweep->context, count, sizeof *sheets->kept);
-  sheets->sources = hl_allocate(sweep->context, (size_t)sheets->ring * (size_t)sweep->volume_count, sizeof *sheets->sources);
+  sheets->sources = hl_allocate(sweep->context, (size_t)sheets->ring * (size_t)sweep->volume_count,
+                                sizeof *sheets->sources);
   sheets->runs = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->runs);
   sheets->patch_runs = hl_allocate(sweep->context, sheets->occupancy.patch_count, sizeof *sheets->patch_runs);
-  if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL || sheets->runs == NULL || sheets->patch_runs == NULL)
+  if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL || sheets->runs == NULL ||
+      sheets->patch_runs == NULL)
     return hl_fail_memory(error, count * TILE_PIXELS * sizeof(float), "the last sheets");
   for (size_t i = 0; i < count; i++) sheets->kept[i] = (kept_patch){.sheet = -1};
   for (size_t i = 0; i < sheets->occupancy.patch_count; i++) sheets->patch_runs[i] = (patch_run){.first = -1};
@@ -78,9 +83,11 @@ uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view, double spare
   size_t patches;
   bool cut = false;
   for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
-  uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, spare, &patches);
+  uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets,
+                                      spare, &patches);
   size_t ring = (size_t)bundle_of_patches(patches) + 1;
-  uint64_t a_patch = ring * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(patch_run) + (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
+  uint64_t a_patch = ring * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(patch_run) +
+                     (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
   return bytes + patches * a_patch;
 }
 
@@ -100,15 +107,18 @@ static void reach_run(const sweep *sweep, const view *view, int first, view_shee
       run->high[axis] = (float)(grid->box_high[axis] - reach);
     }
     for (int i = 0; i <= RUN_SLABS; i++)
-      hl_view_sheet_rays(view, sweep->geometry->sheets.normal, hl_sheet_height(&sweep->geometry->sheets, first + i),
-                         grid->frame_to_index, &run->rays[i]);
+      hl_view_sheet_rays(view, sweep->geometry->sheets.normal,
+                         hl_sheet_height(&sweep->geometry->sheets, first + i), grid->frame_to_index,
+                         &run->rays[i]);
   }
 }
 
 static void reach_sheet(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
   for (int g = 0; g < sweep->volume_count; g++) {
     fill_source *source = &sheets->sources[sheet % sheets->ring * sweep->volume_count + g];
-    *source = (fill_source){.grid = &sweep->grids[g], .kernel = sweep->kernel, .sheet = sheet,
+    *source = (fill_source){.grid = &sweep->grids[g],
+                            .kernel = sweep->kernel,
+                            .sheet = sheet,
                             .classifier = &sweep->volumes[g].classifier,
                             .lists = sheets->lists == NULL ? NULL : &sheets->lists[g]};
     hl_view_sheet_rays(view, sweep->geometry->sheets.normal, hl_sheet_height(&sweep->geometry->sheets, sheet),
@@ -126,18 +136,21 @@ void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_
   if (sheet == 1) reach_sheet(sweep, view, 0, sheets);
   if (first_of_run(sheet) == sheet - 1) reach_run(sweep, view, sheet - 1, sheets);
   if ((sheet - 1) % sheets->bundle != 0) return;
-  for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++) reach_sheet(sweep, view, ahead, sheets);
+  for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++)
+    reach_sheet(sweep, view, ahead, sheets);
 }
 
-hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spare, view_sheets *sheets, hl_error *error) {
+hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spare, view_sheets *sheets,
+                               hl_error *error) {
   hl_status status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, view,
-                                        &sweep->geometry->sheets, spare, sweep->hot->brick_ranges, &sheets->occupancy,
-                                        error);
+                                        &sweep->geometry->sheets, spare, sweep->hot->brick_ranges,
+                                        &sheets->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sweep, view, sheets, error);
   if (status == HL_OK) status = set_up_entries(sweep, view, sheets, error);
   if (status == HL_OK) status = keep_patches(sweep, sheets, error);
   if (status != HL_OK) return status;
-  return hl_pool_cancelled(sweep->pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
+  return hl_pool_cancelled(sweep->pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing")
+                                        : HL_OK;
 }
 
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
@@ -145,7 +158,8 @@ void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
     hl_voxel_lists_release(sweep->context, &sheets->lists[g]);
   hl_reserve_return(sweep->reserve, sheets->entries);
   hl_reserve_return(sweep->reserve, sheets->density);
-  void *owned[] = {sheets->lists, sheets->sources, sheets->runs, sheets->patch_runs, sheets->entry_of, sheets->box_rays, sheets->kept};
+  void *owned[] = {sheets->lists,    sheets->sources,  sheets->runs, sheets->patch_runs,
+                   sheets->entry_of, sheets->box_rays, sheets->kept};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
   hl_occupancy_release(sweep->context, &sheets->occupancy);
 }
@@ -157,18 +171,23 @@ static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int s
   return kept;
 }
 
-static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets *sheets, size_t patch, int sheet) {
-  return &sheets->sources[sheet % sheets->ring * sweep->volume_count + (int)sheets->occupancy.patch_grid[patch]];
+static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets *sheets, size_t patch,
+                                          int sheet) {
+  return &sheets->sources[sheet % sheets->ring * sweep->volume_count +
+                          (int)sheets->occupancy.patch_grid[patch]];
 }
 
-/* Where the slabs of a run may hold something of a patch in the needed blocks, found for all of them at once. Soft light may
- * ask for more blocks later. */
-static void look_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, uint32_t need, patch_run *run) {
+/* Where the slabs of a run may hold something of a patch in the needed blocks, found for all of them at once.
+ * Soft light may ask for more blocks later. */
+static void look_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, uint32_t need,
+                      patch_run *run) {
   const occupancy *o = &sheets->occupancy;
   uint32_t more = need & ~(uint32_t)run->asked, slabs = 0;
   if (more == 0) return;
   for (int i = 0; i < RUN_SLABS && run->first + i + 1 < o->sheets; i++)
-    slabs |= (uint32_t)(hl_occupancy_has(o, patch, run->first + i) | hl_occupancy_has(o, patch, run->first + i + 1)) << i;
+    slabs |= (uint32_t)(hl_occupancy_has(o, patch, run->first + i) |
+                        hl_occupancy_has(o, patch, run->first + i + 1))
+             << i;
   relevant_blocks near = {0};
   sweep->hot->relevant_blocks_tile(&sheets->runs[o->patch_grid[patch]], (int)(tile % (size_t)o->tiles_x),
                                    (int)(tile / (size_t)o->tiles_x), slabs, more, &near);
@@ -186,9 +205,9 @@ typedef struct patch_bundle {
   const sweep *sweep;
   const view_sheets *sheets;
   size_t tile, patch;
-  int first, slabs;            /* the sheet before it; how many it has */
-  uint32_t near[RUN_SLABS];    /* where it may hold something, slab by slab */
-  uint64_t pixels;             /* filled */
+  int first, slabs;         /* the sheet before it; how many it has */
+  uint32_t near[RUN_SLABS]; /* where it may hold something, slab by slab */
+  uint64_t pixels;          /* filled */
 } patch_bundle;
 
 /* The blocks of a sheet that show something, of those that are filled. */
@@ -196,14 +215,18 @@ static uint32_t showing_on(const patch_bundle *b, int i) {
   return i < 0 || i > b->slabs ? 0 : patch_on_sheet(b->sheets, b->patch, b->first + i)->blocks;
 }
 
-/* The blocks of a sheet in which a slab beside it may hold something, and those in which that slab's other sheet shows it. */
-static uint32_t near_slab(const patch_bundle *b, int slab) { return slab < 0 || slab >= b->slabs ? 0 : b->near[slab]; }
+/* The blocks of a sheet in which a slab beside it may hold something, and those in which that slab's other
+ * sheet shows it. */
+static uint32_t near_slab(const patch_bundle *b, int slab) {
+  return slab < 0 || slab >= b->slabs ? 0 : b->near[slab];
+}
 static uint32_t near_sheet(const patch_bundle *b, int i) { return near_slab(b, i - 1) | near_slab(b, i); }
 static uint32_t beside_showing(const patch_bundle *b, int i) {
   return (near_slab(b, i - 1) & showing_on(b, i - 1)) | (near_slab(b, i) & showing_on(b, i + 1));
 }
 
-/* Fills what of the wanted blocks is missing on a sheet: those, and of the others those that may show something. */
+/* Fills what of the wanted blocks is missing on a sheet: those, and of the others those that may show
+ * something. */
 static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others) {
   const occupancy *o = &b->sheets->occupancy;
   kept_patch *kept = patch_on_sheet(b->sheets, b->patch, b->first + i);
@@ -211,17 +234,17 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
   others &= ~(wanted | kept->need);
   if ((wanted | others) == 0) return;
   fill_tile_function *fill = b->sweep->splat ? b->sweep->hot->splat_tile : b->sweep->hot->gather_tile;
-  filled_blocks blocks = fill(source_on_sheet(b->sweep, b->sheets, b->patch, b->first + i), (int)(b->tile % (size_t)o->tiles_x),
-                              (int)(b->tile / (size_t)o->tiles_x), wanted, others,
-                              density_on_sheet(b->sheets, b->patch, b->first + i));
+  filled_blocks blocks = fill(source_on_sheet(b->sweep, b->sheets, b->patch, b->first + i),
+                              (int)(b->tile % (size_t)o->tiles_x), (int)(b->tile / (size_t)o->tiles_x),
+                              wanted, others, density_on_sheet(b->sheets, b->patch, b->first + i));
   kept->need = (uint16_t)(kept->need | blocks.filled);
   kept->blocks = (uint16_t)(kept->blocks | blocks.showing);
   b->pixels += hl_pixels_of_blocks(blocks.filled);
 }
 
-/* A slab shows something where one of its sheets does, and then both are wanted. Every second sheet is filled where its cells may
- * show something; those between them where that was true, and where their own cells may; then the first ones where they
- * turn out to be wanted. */
+/* A slab shows something where one of its sheets does, and then both are wanted. Every second sheet is filled
+ * where its cells may show something; those between them where that was true, and where their own cells may;
+ * then the first ones where they turn out to be wanted. */
 static void fill_sheets(patch_bundle *b) {
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, 0, near_sheet(b, i));
   for (int i = 0; i <= b->slabs; i += 2) fill_sheet(b, i, beside_showing(b, i), near_sheet(b, i));
@@ -229,10 +252,15 @@ static void fill_sheets(patch_bundle *b) {
 }
 
 /* Fills a bundle for some more blocks. Returns the pixels filled. */
-static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t more,
-                            patch_run *run) {
+static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch,
+                            int sheet, uint32_t more, patch_run *run) {
   int slab = sheet - 1 - run->first;
-  patch_bundle b = {.sweep = sweep, .sheets = sheets, .tile = tile, .patch = patch, .first = sheet - 1, .slabs = run->end - sheet};
+  patch_bundle b = {.sweep = sweep,
+                    .sheets = sheets,
+                    .tile = tile,
+                    .patch = patch,
+                    .first = sheet - 1,
+                    .slabs = run->end - sheet};
   for (int i = 0; i < b.slabs; i++) b.near[i] = more & run->near.blocks[slab + i];
   fill_sheets(&b);
   for (int i = 0; i < b.slabs; i++)
@@ -241,7 +269,8 @@ static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_
   return b.pixels;
 }
 
-uint32_t hl_patch_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need) {
+uint32_t hl_patch_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet,
+                       uint32_t need) {
   patch_run *run = &sheets->patch_runs[patch];
   int first = first_of_run(sheet), slab = sheet - 1 - first, end = end_of_bundle(sheets, sheet);
   if (run->first != first) *run = (patch_run){.first = first};
@@ -252,8 +281,8 @@ uint32_t hl_patch_near(const sweep *sweep, const view_sheets *sheets, size_t til
   return need & (filled ? run->shows[slab] : run->near.blocks[slab]);
 }
 
-patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet, uint32_t need,
-                         uint64_t *pixels) {
+patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet,
+                         uint32_t need, uint64_t *pixels) {
   patch_run *run = &sheets->patch_runs[patch];
   int slab = sheet - 1 - run->first;
   uint32_t more = need & ~(uint32_t)run->filled;
@@ -261,6 +290,10 @@ patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, s
   bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
   bool whole = run->near.whole >> slab & 1;
   const float *enter = !cut ? NULL : whole ? sheets->entries : entries_of(sweep, sheets, tile, patch);
-  return (patch_slab){.before = density_on_sheet(sheets, patch, sheet - 1), .current = density_on_sheet(sheets, patch, sheet),
-                      .enter = enter, .leave = cut ? enter + TILE_PIXELS : NULL, .whole = whole, .blocks = run->shows[slab] & need};
+  return (patch_slab){.before = density_on_sheet(sheets, patch, sheet - 1),
+                      .current = density_on_sheet(sheets, patch, sheet),
+                      .enter = enter,
+                      .leave = cut ? enter + TILE_PIXELS : NULL,
+                      .whole = whole,
+                      .blocks = run->shows[slab] & need};
 }

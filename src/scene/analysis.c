@@ -16,15 +16,15 @@
 #include "scene/labels.h"
 #include "scene/sample.h"
 
-#define BINS 32             /* of the histogram whose shape is looked at */
-#define ROUGH 0.65          /* between simulations and turbulence or noise */
-#define SMOOTH 0.18         /* smoother than any scanner's pictures */
-#define NOISY 1.2           /* rougher than a simulation's turbulence; white noise has 1.7 */
-#define TAIL 0.005          /* part of the voxels beyond a flow's ends */
-#define FLOOR 0.002         /* least mean of the background, as a part of top */
+#define BINS   32    /* of the histogram whose shape is looked at */
+#define ROUGH  0.65  /* between simulations and turbulence or noise */
+#define SMOOTH 0.18  /* smoother than any scanner's pictures */
+#define NOISY  1.2   /* rougher than a simulation's turbulence; white noise has 1.7 */
+#define TAIL   0.005 /* part of the voxels beyond a flow's ends */
+#define FLOOR  0.002 /* least mean of the background, as a part of top */
 
 typedef struct distances {
-  float *values;   /* owned; ascending; [count]; relative */
+  float *values; /* owned; ascending; [count]; relative */
   size_t count;
 } distances;
 
@@ -112,7 +112,8 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
 /* Much of the border is not the background: the grid lies within its matter. */
 static bool fills_grid(const hl_sample *sample, double background, double range) {
   size_t near = 0;
-  for (size_t n = 0; n < sample->border_count; n++) near += fabs((double)sample->border[n] - background) < 0.05 * range;
+  for (size_t n = 0; n < sample->border_count; n++)
+    near += fabs((double)sample->border[n] - background) < 0.05 * range;
   return sample->border_count > 0 && (double)near < 0.7 * (double)sample->border_count;
 }
 
@@ -122,9 +123,9 @@ static bool is_floating(const hl_volume *volume) {
 
 /* What a volume's values are, relative as the sample's. */
 typedef struct spread {
-  double low, high;   /* hardly any voxel is beyond */
-  double zero;        /* the data value 0 */
-  bool fills, signs;  /* no air around; clearly on both sides of the data value 0 */
+  double low, high;  /* hardly any voxel is beyond */
+  double zero;       /* the data value 0 */
+  bool fills, signs; /* no air around; clearly on both sides of the data value 0 */
 } spread;
 
 static spread spread_of(const hl_sample *sample, double background) {
@@ -138,8 +139,10 @@ static spread spread_of(const hl_sample *sample, double background) {
   return s;
 }
 
-/* A scanner's values have noise and peaks; a flow's are smooth, or rough with one peak. distance has room for the sample. */
-static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode, float *distance) {
+/* A scanner's values have noise and peaks; a flow's are smooth, or rough with one peak. distance has room for
+ * the sample. */
+static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode,
+                    float *distance) {
   if (!s->fills || !is_floating(volume) || !is_continuous(sample)) return false;
   double roughness = hl_roughness(volume, sample, mode, 0);
   if (roughness < ROUGH) return true;
@@ -168,8 +171,8 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-/* Lobes that thin out to both sides of the background; else the mode is a material, and air is low. Lobes about the data
- * value 0 need not thin out. */
+/* Lobes that thin out to both sides of the background; else the mode is a material, and air is low. Lobes
+ * about the data value 0 need not thin out. */
 static bool has_lobes(const hl_sample *sample, const spread *s, double background, float *distance) {
   double above = s->high - background, below = background - s->low;
   if (!(fmin(above, below) > 0.25 * fmax(above, below))) return false;
@@ -192,7 +195,8 @@ static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
 
 /* Distances to both sides. */
 static hl_status find_two_sided(const hl_sample *sample, distances *d, hl_data_analysis *a, hl_error *error) {
-  for (size_t n = 0; n < sample->count; n++) d->values[n] = (float)fabs((double)sample->values[n] - a->background);
+  for (size_t n = 0; n < sample->count; n++)
+    d->values[n] = (float)fabs((double)sample->values[n] - a->background);
   if (!hl_sort(sample->context, d->values, d->count))
     return hl_fail_memory(error, d->count * sizeof(float), "a volume's sample");
   find_thresholds(d, NULL, 0, a);
@@ -212,12 +216,12 @@ static void find_middle(const hl_sample *sample, double mode, hl_data_analysis *
 }
 
 /* memory: room for the sample and its border. */
-static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample, float *memory, hl_data_analysis *a,
-                                hl_error *error) {
+static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample, float *memory,
+                                hl_data_analysis *a, hl_error *error) {
   distances d = {memory, sample->count};
   bool bordered = sample->border_count > 0; /* else NaNs are the air, and the commonest value has to do */
-  a->background =
-      bordered ? hl_mode(sample->border, sample->border_count) : hl_mode(sample->values, sample->count);
+  a->background = bordered ? hl_mode(sample->border, sample->border_count)
+                           : hl_mode(sample->values, sample->count);
   spread s = spread_of(sample, a->background);
   double mode = hl_mode(sample->values, sample->count);
   bool flow = is_flow(volume, sample, &s, mode, memory);

@@ -1,8 +1,9 @@
-/* scene/automatic.c - from an analysis of the data to a transfer function that shows it: one writer for each look.
+/* scene/automatic.c - from an analysis of the data to a transfer function that shows it: one writer for each
+ * look.
  *
- * In: measurements of a volume. Out: opacities and colours. Opacities are per smallest voxel edge. Surfaces become solid within the ramp between where things begin and
- * where they surely are; fields and media get an optical depth across the whole object, so that large and
- * small grids look alike.
+ * In: measurements of a volume. Out: opacities and colours. Opacities are per smallest voxel edge. Surfaces
+ * become solid within the ramp between where things begin and where they surely are; fields and media get an
+ * optical depth across the whole object, so that large and small grids look alike.
  */
 #include "scene/automatic.h"
 
@@ -13,11 +14,14 @@
 #include "scene/looks.h"
 #include "scene/scene.h"
 
-#define FLOW_DEPTH 2.0   /* of a flow whose values are all seen */
+#define FLOW_DEPTH   2.0 /* of a flow whose values are all seen */
 #define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */
 
-/* Four colours in linear RGB: at the rim of things, on their surface, in their denser matter, and at the top. */
-typedef struct palette { double rim[3], surface[3], dense[3], top[3]; } palette;
+/* Four colours in linear RGB: at the rim of things, on their surface, in their denser matter, and at the
+ * top. */
+typedef struct palette {
+  double rim[3], surface[3], dense[3], top[3];
+} palette;
 
 static void write_solid(hl_function_writer *w, const palette *colors) {
   const hl_data_analysis *a = w->analysis;
@@ -36,17 +40,20 @@ static void write_solid(hl_function_writer *w, const palette *colors) {
 }
 
 void hl_write_matter(hl_function_writer *w) {
-  static const palette ivory = {{0.60, 0.53, 0.41}, {0.76, 0.69, 0.56}, {0.78, 0.78, 0.75}, {0.74, 0.83, 0.92}};
+  static const palette ivory = {
+      {0.60, 0.53, 0.41}, {0.76, 0.69, 0.56}, {0.78, 0.78, 0.75}, {0.74, 0.83, 0.92}};
   write_solid(w, &ivory);
 }
 
 void hl_write_body(hl_function_writer *w) {
-  static const palette skin = {{0.62, 0.36, 0.25}, {0.76, 0.50, 0.37}, {0.86, 0.72, 0.54}, {0.93, 0.91, 0.86}};
+  static const palette skin = {
+      {0.62, 0.36, 0.25}, {0.76, 0.50, 0.37}, {0.86, 0.72, 0.54}, {0.93, 0.91, 0.86}};
   write_solid(w, &skin);
 }
 
 void hl_write_brain(hl_function_writer *w) {
-  static const palette brain = {{0.60, 0.40, 0.35}, {0.72, 0.53, 0.46}, {0.86, 0.78, 0.70}, {0.92, 0.88, 0.82}};
+  static const palette brain = {
+      {0.60, 0.40, 0.35}, {0.72, 0.53, 0.46}, {0.86, 0.78, 0.70}, {0.92, 0.88, 0.82}};
   write_solid(w, &brain);
 }
 
@@ -62,7 +69,8 @@ void hl_write_field(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * (top - a->solid), 0.25, 0.92);
 }
 
-/* One side of a flow: what is common is clear, what is rare is dense; part of the way to the end, optical depth. */
+/* One side of a flow: what is common is clear, what is rare is dense; part of the way to the end, optical
+ * depth. */
 static void add_rare(hl_function_writer *w, double reach, int side) {
   static const double rarity[][2] = {{0.4, 0}, {0.6, 0.5}, {0.8, 3}, {1, 20}};
   enum { STEPS = sizeof rarity / sizeof *rarity };
@@ -88,8 +96,9 @@ void hl_write_flow(hl_function_writer *w) {
 
 /* Kelly's colours of greatest contrast (1965) without greys and the darkest, then the same lighter. */
 static void label_color(size_t label, double linear[3]) {
-  static const unsigned int kelly[] = {0xf3c300, 0x875692, 0xf38400, 0xa1caf1, 0xbe0032, 0xc2b280, 0x008856, 0xe68fac, 0x0067a5,
-                                       0xf99379, 0x604e97, 0xf6a600, 0xb3446c, 0xdcd300, 0x8db600, 0xe25822};
+  static const unsigned int kelly[] = {0xf3c300, 0x875692, 0xf38400, 0xa1caf1, 0xbe0032, 0xc2b280,
+                                       0x008856, 0xe68fac, 0x0067a5, 0xf99379, 0x604e97, 0xf6a600,
+                                       0xb3446c, 0xdcd300, 0x8db600, 0xe25822};
   enum { COLORS = sizeof kelly / sizeof *kelly };
   double lighter = fmin((double)(label / COLORS) * 0.3, 0.6);
   for (int c = 0; c < 3; c++) {
@@ -98,11 +107,13 @@ static void label_color(size_t label, double linear[3]) {
   }
 }
 
-/* A label's band: opaque close to its own number alone. What the kernel passes on its way to another number is no region's. */
+/* A label's band: opaque close to its own number alone. What the kernel passes on its way to another number
+ * is no region's. */
 static void add_label(hl_function_writer *w, double label, double before, double after, double narrowest) {
   static const double part = 0.03; /* of the way to the next number */
   double down = fmin(fmax(part * (label - before), narrowest), 0.45 * (label - before)),
-         up = fmin(fmax(part * (after - label), narrowest), 0.45 * (after - label)), at = label - w->analysis->background;
+         up = fmin(fmax(part * (after - label), narrowest), 0.45 * (after - label)),
+         at = label - w->analysis->background;
   hl_add_opacity(w, at - down, 0);
   hl_add_opacity(w, at - 0.5 * down, 0.97);
   hl_add_opacity(w, at + 0.5 * up, 0.97);
@@ -112,10 +123,12 @@ static void add_label(hl_function_writer *w, double label, double before, double
 void hl_write_labels(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   size_t last = a->label_count - 1;
-  double narrowest = (a->labels[last] - fmin(a->labels[0], 0)) / 2000; /* two steps of the renderer's tables */
+  double narrowest = (a->labels[last] - fmin(a->labels[0], 0)) /
+                     2000; /* two steps of the renderer's tables */
   w->direction = 1;
   for (size_t n = 0; n <= last; n++) {
-    double label = a->labels[n], before = n > 0 ? a->labels[n - 1] : label - 1, after = n < last ? a->labels[n + 1] : label + 1;
+    double label = a->labels[n], before = n > 0 ? a->labels[n - 1] : label - 1,
+           after = n < last ? a->labels[n + 1] : label + 1;
     if (before < 0 && label > 0) before = 0; /* no label, but a number that is there */
     if (label < 0 && after > 0) after = 0;
     double color[3];

@@ -23,19 +23,19 @@ typedef enum hl_data_kind {
 typedef struct hl_data_analysis {
   hl_data_kind kind;
   double background;
-  double direction;      /* +1: things are above the background; -1: below */
-  double faint;          /* distance at which things begin */
-  double solid;          /* distance at which things surely are */
-  double dense;          /* distance that parts the things into two materials */
-  double dense_share;    /* part of the sure things that is beyond dense, 0 to 1 */
-  double top;            /* distance that almost nothing exceeds */
-  double mean;           /* mean distance of things beyond faint */
-  double depth;          /* voxel edges across the things: cube root of their number */
-  double common;         /* part of the voxels within two fifths of the way from the middle to those, 0 to 1 */
-  double zeroed;         /* part of the voxels that have exactly the background's value, 0 to 1 */
-  double filled;         /* part of the voxels that surely are things, 0 to 1 */
-  double middle;         /* the commonest data value of all */
-  double lower, upper;   /* distances from the middle down and up that hardly any voxel exceeds */
+  double direction;    /* +1: things are above the background; -1: below */
+  double faint;        /* distance at which things begin */
+  double solid;        /* distance at which things surely are */
+  double dense;        /* distance that parts the things into two materials */
+  double dense_share;  /* part of the sure things that is beyond dense, 0 to 1 */
+  double top;          /* distance that almost nothing exceeds */
+  double mean;         /* mean distance of things beyond faint */
+  double depth;        /* voxel edges across the things: cube root of their number */
+  double common;       /* part of the voxels within two fifths of the way from the middle to those, 0 to 1 */
+  double zeroed;       /* part of the voxels that have exactly the background's value, 0 to 1 */
+  double filled;       /* part of the voxels that surely are things, 0 to 1 */
+  double middle;       /* the commonest data value of all */
+  double lower, upper; /* distances from the middle down and up that hardly any voxel exceeds */
   double labels[HL_MOST_LABELS]; /* ascending data values, without the background */
   size_t label_count;
 } hl_data_analysis;

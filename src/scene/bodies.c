@@ -1,4 +1,5 @@
-/* scene/bodies.c - which marked places of a lattice hang together: a flood from each place that is not yet reached. */
+/* scene/bodies.c - which marked places of a lattice hang together: a flood from each place that is not yet
+ * reached. */
 #include "scene/bodies.h"
 
 #include <stdbool.h>
@@ -32,12 +33,12 @@ static void flood_from(flood *f, size_t start, uint32_t body) {
     if (z > 0) reach(f, p - nx * ny, body, &end);
     if (z + 1 < nz) reach(f, p + nx * ny, body, &end);
   }
-
 }
 
 static hl_status count_places(hl_context *context, size_t places, hl_bodies *bodies, hl_error *error) {
   bodies->places = hl_allocate_zeroed(context, (size_t)bodies->count + 1, sizeof *bodies->places);
-  if (bodies->places == NULL) return hl_fail_memory(error, ((size_t)bodies->count + 1) * sizeof *bodies->places, "a volume's bodies");
+  if (bodies->places == NULL)
+    return hl_fail_memory(error, ((size_t)bodies->count + 1) * sizeof *bodies->places, "a volume's bodies");
   for (size_t p = 0; p < places; p++) bodies->places[bodies->body[p]]++;
   bodies->places[0] = 0;
   for (uint32_t b = 1; b <= bodies->count; b++)
@@ -45,8 +46,8 @@ static hl_status count_places(hl_context *context, size_t places, hl_bodies *bod
   return HL_OK;
 }
 
-hl_status hl_bodies_find(hl_context *context, const unsigned char *marked, const int size[3], hl_bodies *bodies,
-                         hl_error *error) {
+hl_status hl_bodies_find(hl_context *context, const unsigned char *marked, const int size[3],
+                         hl_bodies *bodies, hl_error *error) {
   const size_t places = (size_t)size[0] * (size_t)size[1] * (size_t)size[2];
   *bodies = (hl_bodies){.body = hl_allocate_zeroed(context, places, sizeof *bodies->body)};
   flood f = {marked, size, bodies->body, hl_allocate(context, places, sizeof *f.waiting)};

@@ -1,10 +1,13 @@
-/* scene/camera.c - the camera's axes, views and the camera turned to them, and lights placed as seen by it. */
+/* scene/camera.c - the camera's axes, views and the camera turned to them, and lights placed as seen by
+ * it. */
 #include <string.h>
 
 #include "scene/view.h"
 
-#define STEEP 89.5       /* degrees: from here on the view's up is too near the line of sight to be the camera's */
-#define LEVEL 1e-6       /* sine of what a horizon may be out by */
+#define STEEP                                                                                  \
+  89.5 /* degrees: from here on the view's up is too near the line of sight to be the camera's \
+        * \ */
+#define LEVEL       1e-6 /* sine of what a horizon may be out by */
 #define ANGLE_STEPS 1e9  /* to a degree: what a camera's places, rounded, say of its angles */
 
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward) {
@@ -46,7 +49,9 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
 }
 
 /* Right of the view's front, for who looks at it. */
-static vec3 right_of_front(const hl_view *view) { return vec3_cross(vec3_of(view->up), vec3_of(view->front)); }
+static vec3 right_of_front(const hl_view *view) {
+  return vec3_cross(vec3_of(view->up), vec3_of(view->front));
+}
 
 /* At elevation 90 the picture's up is where forward pointed on the horizon, so that up never jumps. */
 void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward) {
@@ -77,8 +82,9 @@ static double distance_of(const hl_camera *camera) {
 
 bool hl_view_is_possible(const hl_view *view) {
   vec3 up = vec3_of(view->up), front = vec3_of(view->front);
-  return fabs(vec3_length(up) - 1) < LEVEL && fabs(vec3_length(front) - 1) < LEVEL && fabs(vec3_dot(up, front)) < LEVEL &&
-         isfinite(view->azimuth_deg) && isfinite(view->elevation_deg) && isfinite(view->roll_deg);
+  return fabs(vec3_length(up) - 1) < LEVEL && fabs(vec3_length(front) - 1) < LEVEL &&
+         fabs(vec3_dot(up, front)) < LEVEL && isfinite(view->azimuth_deg) && isfinite(view->elevation_deg) &&
+         isfinite(view->roll_deg);
 }
 
 hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
@@ -89,13 +95,14 @@ hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
   return HL_OK;
 }
 
-/* Which way is up for a camera: along its up vector, unless that was made perpendicular to the sight from an axis of the world:
- * of those with which the picture is level the first of z, y, x and their opposites. */
+/* Which way is up for a camera: along its up vector, unless that was made perpendicular to the sight from an
+ * axis of the world: of those with which the picture is level the first of z, y, x and their opposites. */
 static vec3 upright_of(const hl_camera *camera) {
   static const vec3 axes[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
   vec3 right, up, forward, given = vec3_normalise(vec3_of(camera->up));
   if (!hl_camera_basis(camera, &right, &up, &forward)) given = up;
-  if (fabs(given.x) + fabs(given.y) + fabs(given.z) == 1 || fabs(vec3_dot(given, forward)) > LEVEL) return given;
+  if (fabs(given.x) + fabs(given.y) + fabs(given.z) == 1 || fabs(vec3_dot(given, forward)) > LEVEL)
+    return given;
   for (int a = 0; a < 6; a++)
     if (fabs(vec3_dot(axes[a], right)) < LEVEL && vec3_dot(axes[a], up) > 0.01) return axes[a];
   return given;
@@ -107,7 +114,8 @@ hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *vi
   if (description == NULL || view == NULL) return HL_ERROR_ARGUMENT;
   const hl_camera *camera = &description->camera;
   double distance = distance_of(camera);
-  if (!(distance > 0 && isfinite(distance) && isfinite(vec3_length(vec3_of(camera->up))))) return HL_ERROR_ARGUMENT;
+  if (!(distance > 0 && isfinite(distance) && isfinite(vec3_length(vec3_of(camera->up)))))
+    return HL_ERROR_ARGUMENT;
   hl_view_about(description, upright_of(camera), view);
   vec3 eye = vec3_subtract(vec3_of(camera->position), vec3_of(camera->target));
   double across = vec3_dot(eye, right_of_front(view)), near = vec3_dot(eye, vec3_of(view->front));

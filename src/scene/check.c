@@ -80,7 +80,8 @@ static hl_status check_image(const hl_scene_description *d, hl_error *error) {
   const char *mend = "give a number of pixels from 1 to 32768";
   if ((status = check_range(&check, "width", d->width, 1, HL_LIMIT_PIXELS, mend)) != HL_OK) return status;
   if ((status = check_range(&check, "height", d->height, 1, HL_LIMIT_PIXELS, mend)) != HL_OK) return status;
-  if ((status = check_vector(&check, "background", d->background, 0, 1, "give linear RGB, each from 0 to 1")) != HL_OK)
+  if ((status = check_vector(&check, "background", d->background, 0, 1,
+                             "give linear RGB, each from 0 to 1")) != HL_OK)
     return status;
   return check_range(&check, "exposure", d->exposure, -HL_LIMIT_EXPOSURE, HL_LIMIT_EXPOSURE,
                      "give stops from -32 to 32: each doubles the light");
@@ -163,11 +164,13 @@ static hl_status check_polygon(const checker *check, const hl_light *light) {
   }
   polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
   if (!(shape.area > THIN * shape.diameter * shape.diameter))
-    return refuse(check, "vertices", "span no area: move one off the line, or use a rect light with an edge of no length");
+    return refuse(check, "vertices",
+                  "span no area: move one off the line, or use a rect light with an edge of no length");
   if (hl_polygon_unevenness(&shape, light->vertices, light->vertex_count) > FLAT * shape.diameter)
     return refuse(check, "vertices", "do not lie in one plane: move them, or use several lights");
   if (hl_polygon_crosses_itself(&shape, light->vertices, light->vertex_count))
-    return refuse(check, "vertices", "go around an outline that crosses itself: give them in order around it");
+    return refuse(check, "vertices",
+                  "go around an outline that crosses itself: give them in order around it");
   return HL_OK;
 }
 
@@ -178,8 +181,9 @@ static hl_status check_spot(const checker *check, const hl_light *light) {
     status = check_range(check, "opening_angle_deg", light->opening_angle_deg, 0.01, 179,
                          "give the cone's full angle in degrees, from 0.01 to 179");
   if (status == HL_OK)
-    status = check_range(check, "falloff_angle_deg", light->falloff_angle_deg, 0, light->opening_angle_deg / 2,
-                         "give the width of the cone's smooth edge in degrees, from 0 to half the opening angle");
+    status = check_range(
+        check, "falloff_angle_deg", light->falloff_angle_deg, 0, light->opening_angle_deg / 2,
+        "give the width of the cone's smooth edge in degrees, from 0 to half the opening angle");
   return status == HL_OK ? check_radius(check, light) : status;
 }
 
@@ -204,7 +208,8 @@ static hl_status check_pixels(const checker *check, const float *pixels, int wid
   if ((status = check_range(check, "height", height, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK) return status;
   size_t count = (size_t)width * (size_t)height;
   if (count > HL_LIMIT_TEXTURE_PIXELS)
-    return hl_fail(check->error, HL_ERROR_INPUT, "%s: has %d x %d pixels: %s", check->place, width, height, size);
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s: has %d x %d pixels: %s", check->place, width, height,
+                   size);
   for (size_t i = 0; i < 3 * count; i++)
     if (!(pixels[i] >= 0 && (double)pixels[i] <= HL_LIMIT_TEXTURE_VALUE))
       return hl_fail(check->error, HL_ERROR_INPUT,
@@ -220,11 +225,13 @@ static hl_status check_texture(const checker *parent, const hl_light *light) {
   hl_status status;
   if (texture->pixels == NULL) return HL_OK;
   snprintf(check.place, sizeof check.place, "%s/texture", parent->place);
-  if ((status = check_pixels(&check, texture->pixels, texture->width, texture->height)) != HL_OK) return status;
+  if ((status = check_pixels(&check, texture->pixels, texture->width, texture->height)) != HL_OK)
+    return status;
   if ((status = check_point(&check, "screen/center", texture->screen_center)) != HL_OK) return status;
   if ((status = check_direction(&check, "screen/right", texture->screen_right)) != HL_OK) return status;
   if ((status = check_direction(&check, "screen/up", texture->screen_up)) != HL_OK) return status;
-  vec3 right = vec3_normalise(vec3_of(texture->screen_right)), up = vec3_normalise(vec3_of(texture->screen_up));
+  vec3 right = vec3_normalise(vec3_of(texture->screen_right)),
+       up = vec3_normalise(vec3_of(texture->screen_up));
   vec3 normal = vec3_cross(right, up), center = vec3_of(texture->screen_center);
   if (!(vec3_length(normal) > 1e-4))
     return refuse(&check, "screen/up", "lies along right: give two directions that span the screen");
@@ -243,17 +250,21 @@ static hl_status check_emission(const checker *parent, const hl_light *light) {
   hl_status status;
   if (emission->pixels == NULL) return HL_OK;
   snprintf(check.place, sizeof check.place, "%s/emission", parent->place);
-  if ((status = check_pixels(&check, emission->pixels, emission->width, emission->height)) != HL_OK) return status;
+  if ((status = check_pixels(&check, emission->pixels, emission->width, emission->height)) != HL_OK)
+    return status;
   if ((status = check_direction(&check, "up", emission->up)) != HL_OK) return status;
   if (light->texture.pixels != NULL)
-    return refuse(parent, "emission", "is beside a texture: a light has an image of its own or projects one, use two lights");
+    return refuse(parent, "emission",
+                  "is beside a texture: a light has an image of its own or projects one, use two lights");
   bool flat = light->type == HL_LIGHT_DIRECTIONAL ? !(light->angular_diameter_deg > 0) : !(light->radius > 0);
   if (light->type == HL_LIGHT_POLYGON) flat = false;
   if (light->type == HL_LIGHT_RECT) {
     vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
     flat = !(vec3_length(vec3_cross(edge1, edge2)) > THIN * vec3_length(edge1) * vec3_length(edge2));
   }
-  if (flat) return refuse(parent, "emission", "is on a light without a surface: give it a radius, an angle or two edges");
+  if (flat)
+    return refuse(parent, "emission",
+                  "is on a light without a surface: give it a radius, an angle or two edges");
   return HL_OK;
 }
 
@@ -262,17 +273,20 @@ static hl_status check_light(const hl_light *light, size_t index, hl_error *erro
   snprintf(check.place, sizeof check.place, "/lights/%zu", index);
   hl_status status;
   if ((status = check_choice(&check, "type", (int)light->type, 0, HL_LIGHT_POLYGON)) != HL_OK) return status;
-  if ((status = check_choice(&check, "frame", (int)light->frame, 0, HL_LIGHT_FRAME_CAMERA)) != HL_OK) return status;
+  if ((status = check_choice(&check, "frame", (int)light->frame, 0, HL_LIGHT_FRAME_CAMERA)) != HL_OK)
+    return status;
   if ((status = check_choice(&check, "falloff", (int)light->falloff, 0, HL_FALLOFF_INVERSE_SQUARE)) != HL_OK)
     return status;
   if ((status = check_choice(&check, "shadows", (int)light->shadows, 0, HL_SHADOWS_SOFT)) != HL_OK)
     return status;
   if ((status = check_light_place(&check, light)) != HL_OK) return status;
   if ((status = check_vector(&check, "color", light->color, 0, HL_LIMIT_LENGTH,
-                             "give linear RGB, none below 0")) != HL_OK) return status;
+                             "give linear RGB, none below 0")) != HL_OK)
+    return status;
   if ((status = check_texture(&check, light)) != HL_OK) return status;
   if ((status = check_emission(&check, light)) != HL_OK) return status;
-  return check_range(&check, "intensity", light->intensity, 0, HL_LIMIT_INTENSITY, "give a factor, 0 or more");
+  return check_range(&check, "intensity", light->intensity, 0, HL_LIMIT_INTENSITY,
+                     "give a factor, 0 or more");
 }
 
 /* Sorted, and at most two points at one value: two make a step. */
@@ -297,8 +311,8 @@ static hl_status check_value(const checker *check, const char *key, size_t index
 }
 
 static hl_status check_opacity_points(const checker *check, const hl_transfer_function *function) {
-  hl_status status =
-      check_count(check, "opacity", function->opacity, function->opacity_count, HL_LIMIT_POINTS);
+  hl_status status = check_count(check, "opacity", function->opacity, function->opacity_count,
+                                 HL_LIMIT_POINTS);
   for (size_t p = 0; status == HL_OK && p < function->opacity_count; p++) {
     const hl_opacity_point *point = &function->opacity[p];
     char element[48];
@@ -357,9 +371,11 @@ static hl_status check_transform(const hl_scene_volume *volume, const char *pare
   hl_status status = check_scale(&check, volume);
   if (status != HL_OK) return status;
   if (volume->rotate_angle_deg != 0 &&
-      (status = check_direction(&check, "rotate/axis", volume->rotate_axis)) != HL_OK) return status;
+      (status = check_direction(&check, "rotate/axis", volume->rotate_axis)) != HL_OK)
+    return status;
   if ((status = check_range(&check, "rotate/angle_deg", volume->rotate_angle_deg, -1e6, 1e6,
-                            "give an angle in degrees")) != HL_OK) return status;
+                            "give an angle in degrees")) != HL_OK)
+    return status;
   return check_point(&check, "translate", volume->translate);
 }
 
@@ -372,7 +388,8 @@ static hl_status check_material(const hl_material *material, const char *parent,
   if ((status = check_range(&check, "diffuse", material->diffuse, 0, 1000, mend)) != HL_OK) return status;
   if ((status = check_range(&check, "specular", material->specular, 0, 1000, mend)) != HL_OK) return status;
   if ((status = check_range(&check, "shininess", material->shininess, 0, HL_LIMIT_SHININESS,
-                            "give an exponent from 0 to 10000")) != HL_OK) return status;
+                            "give an exponent from 0 to 10000")) != HL_OK)
+    return status;
   return check_range(&check, "emission", material->emission, 0, HL_LIMIT_EMISSION,
                      "give the part of the colour that shines by itself, from 0 to 1e6");
 }
@@ -413,10 +430,13 @@ static hl_status check_placement(const checker *check, const hl_scene_volume *vo
     const double *by_axis = volume->axis_scale;
     if (volume->scale != 1 || by_axis[0] != 1 || by_axis[1] != 1 || by_axis[2] != 1)
       return hl_fail(check->error, HL_ERROR_INPUT,
-                     "%s/transform: makes the edges of voxels %.9g long: give a scale with which they are from 1e-15 to 1e15",
+                     "%s/transform: makes the edges of voxels %.9g long: give a scale with which they are "
+                     "from 1e-15 to 1e15",
                      check->place, edge);
-    return hl_fail(check->error, HL_ERROR_INPUT, "%s/file: its voxels are %.9g long, and can be from 1e-15 to 1e15: correct the "
-                   "file's spacing, or give a transform.scale", check->place, edge);
+    return hl_fail(check->error, HL_ERROR_INPUT,
+                   "%s/file: its voxels are %.9g long, and can be from 1e-15 to 1e15: correct the "
+                   "file's spacing, or give a transform.scale",
+                   check->place, edge);
   }
   if (!(vec3_length(placement.offset) <= 1e3 * HL_LIMIT_LENGTH))
     return refuse(check, "transform",
@@ -424,8 +444,10 @@ static hl_status check_placement(const checker *check, const hl_scene_volume *vo
   double reach = farthest_corner(volume, placement);
   if (!(reach <= HL_LIMIT_CORNER))
     return hl_fail(check->error, HL_ERROR_INPUT,
-                   "%s/file: reaches %.3g from the origin, and can reach as far as 1e14, so that a camera may stand off: correct its "
-                   "spacing and origin, or give a smaller transform.scale", check->place, reach);
+                   "%s/file: reaches %.3g from the origin, and can reach as far as 1e14, so that a camera "
+                   "may stand off: correct its "
+                   "spacing and origin, or give a smaller transform.scale",
+                   check->place, reach);
   if (!affine3_invert(placement, &inverse))
     return refuse(check, "file", "the volume's axes lie in one plane: mend its spacing or direction");
   return HL_OK;
@@ -434,11 +456,14 @@ static hl_status check_placement(const checker *check, const hl_scene_volume *vo
 /* Data values and, where they are kept as floats, stored ones. */
 static hl_status check_values(const checker *check, const hl_volume *volume) {
   double greatest = fmax(fabs(volume->minimum), fabs(volume->maximum)), stored = 0;
-  if (volume->storage == HL_STORAGE_F32) stored = (greatest + fabs(volume->value_offset)) / fabs(volume->value_scale);
+  if (volume->storage == HL_STORAGE_F32)
+    stored = (greatest + fabs(volume->value_offset)) / fabs(volume->value_scale);
   if (greatest <= HL_LIMIT_VOXEL_VALUE && stored <= HL_LIMIT_VOXEL_VALUE) return HL_OK;
   return hl_fail(check->error, HL_ERROR_INPUT,
-                 "%s/file: its voxels reach %.3g, more than the 1e36 that pictures can be computed with: scale them, and mark "
-                 "missing ones by NaN", check->place, fmax(greatest, stored));
+                 "%s/file: its voxels reach %.3g, more than the 1e36 that pictures can be computed with: "
+                 "scale them, and mark "
+                 "missing ones by NaN",
+                 check->place, fmax(greatest, stored));
 }
 
 hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_error *error) {
@@ -468,14 +493,17 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
 /* ---- what must fit together ---- */
 
 /* A length or a distance that floats must hold beside voxels. */
-static hl_status check_reach(const checker *check, const char *key, double length, const hl_frame_space *space) {
+static hl_status check_reach(const checker *check, const char *key, double length,
+                             const hl_frame_space *space) {
   if (length <= HL_LIMIT_REACH * space->unit) return HL_OK;
-  return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: reaches %.3g from the volumes, whose smallest voxel edge is %.3g: "
-                 "use at most 1e12 times that, or a directional light or orthographic camera", check->place, key, length,
-                 space->unit);
+  return hl_fail(check->error, HL_ERROR_INPUT,
+                 "%s/%s: reaches %.3g from the volumes, whose smallest voxel edge is %.3g: "
+                 "use at most 1e12 times that, or a directional light or orthographic camera",
+                 check->place, key, length, space->unit);
 }
 
-static hl_status check_distance(const checker *check, const char *key, const double point[3], const hl_frame_space *space) {
+static hl_status check_distance(const checker *check, const char *key, const double point[3],
+                                const hl_frame_space *space) {
   return check_reach(check, key, vec3_length(vec3_subtract(vec3_of(point), space->centre)), space);
 }
 
@@ -484,14 +512,18 @@ static hl_status check_brightness(const checker *check, const hl_light *light, c
   double brightness = fmax(fmax(light->color[0], light->color[1]), light->color[2]) * light->intensity;
   if (light->falloff == HL_FALLOFF_INVERSE_SQUARE) brightness /= space->unit * space->unit;
   if (brightness <= HL_LIMIT_BRIGHTNESS) return HL_OK;
-  return hl_fail(check->error, HL_ERROR_INPUT, "%s/intensity: makes the light's color %.3g%s: use an intensity with which it is "
-                 "at most 1e20", check->place, brightness,
+  return hl_fail(check->error, HL_ERROR_INPUT,
+                 "%s/intensity: makes the light's color %.3g%s: use an intensity with which it is "
+                 "at most 1e20",
+                 check->place, brightness,
                  light->falloff == HL_FALLOFF_INVERSE_SQUARE ? " at the distance of a voxel's edge" : "");
 }
 
 /* In camera axes places are measured from the camera's target, which is within reach itself. */
-static hl_status check_light_reach(const hl_light *light, size_t index, const hl_frame_space *world, hl_error *error) {
-  const hl_frame_space beside = {{0, 0, 0}, world->unit}, *space = light->frame == HL_LIGHT_FRAME_CAMERA ? &beside : world;
+static hl_status check_light_reach(const hl_light *light, size_t index, const hl_frame_space *world,
+                                   hl_error *error) {
+  const hl_frame_space beside = {{0, 0, 0}, world->unit},
+                       *space = light->frame == HL_LIGHT_FRAME_CAMERA ? &beside : world;
   checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "/lights/%zu", index);
   hl_status status = check_brightness(&check, light, space);
@@ -499,14 +531,17 @@ static hl_status check_light_reach(const hl_light *light, size_t index, const hl
   if (status == HL_OK && placed && light->type != HL_LIGHT_POLYGON)
     status = check_distance(&check, "position", light->position, space);
   if (status == HL_OK && placed) status = check_reach(&check, "radius", light->radius, space);
-  if (status == HL_OK && rect) status = check_reach(&check, "edge1", vec3_length(vec3_of(light->edge1)), space);
-  if (status == HL_OK && rect) status = check_reach(&check, "edge2", vec3_length(vec3_of(light->edge2)), space);
+  if (status == HL_OK && rect)
+    status = check_reach(&check, "edge1", vec3_length(vec3_of(light->edge1)), space);
+  if (status == HL_OK && rect)
+    status = check_reach(&check, "edge2", vec3_length(vec3_of(light->edge2)), space);
   for (size_t v = 0; status == HL_OK && v < light->vertex_count && light->type == HL_LIGHT_POLYGON; v++)
     status = check_distance(&check, "vertices", light->vertices[v], space);
   if (status != HL_OK || light->texture.pixels == NULL) return status;
   status = check_distance(&check, "texture/screen/center", light->texture.screen_center, space);
   if (status == HL_OK)
-    status = check_reach(&check, "texture/screen/right", vec3_length(vec3_of(light->texture.screen_right)), space);
+    status = check_reach(&check, "texture/screen/right", vec3_length(vec3_of(light->texture.screen_right)),
+                         space);
   if (status == HL_OK)
     status = check_reach(&check, "texture/screen/up", vec3_length(vec3_of(light->texture.screen_up)), space);
   return status;
@@ -517,7 +552,8 @@ static hl_status check_scales(const hl_scene_description *d, hl_error *error) {
   checker camera = {error, "/camera"};
   hl_status status = check_distance(&camera, "position", d->camera.position, &space);
   for (size_t l = 0; status == HL_OK && l < d->light_count; l++)
-    if (d->lights[l].frame == HL_LIGHT_FRAME_CAMERA) status = check_distance(&camera, "target", d->camera.target, &space);
+    if (d->lights[l].frame == HL_LIGHT_FRAME_CAMERA)
+      status = check_distance(&camera, "target", d->camera.target, &space);
   if (status == HL_OK && d->camera.type == HL_CAMERA_ORTHOGRAPHIC)
     status = check_reach(&camera, "height", d->camera.height, &space);
   for (size_t l = 0; status == HL_OK && l < d->light_count; l++)
@@ -534,7 +570,8 @@ static hl_status check_render(const hl_render_settings *render, hl_error *error)
   if ((status = check_choice(&check, "soft_method", (int)render->soft_method, 0, HL_SOFT_SUBLIGHTS)) != HL_OK)
     return status;
   if ((status = check_range(&check, "light_samples", render->light_samples, 1, HL_LIMIT_LIGHT_SAMPLES,
-                            "give M from 1 to 64, for M x M parts of the light")) != HL_OK) return status;
+                            "give M from 1 to 64, for M x M parts of the light")) != HL_OK)
+    return status;
   if ((status = check_range(&check, "sheet_spacing", render->sheet_spacing, HL_LIMIT_SHEET_SPACING_LOW,
                             HL_LIMIT_SHEET_SPACING_HIGH, "give voxels between sheets, from 0.01 to 100")) !=
       HL_OK)
@@ -549,7 +586,8 @@ static hl_status check_render(const hl_render_settings *render, hl_error *error)
   if ((status = check_choice(&check, "shadow_lookup", (int)render->shadow_lookup, 0, HL_LOOKUP_AUTO)) !=
       HL_OK)
     return status;
-  if ((status = check_choice(&check, "compositing", (int)render->compositing, 0, HL_COMPOSITING_MAXIMUM)) != HL_OK)
+  if ((status = check_choice(&check, "compositing", (int)render->compositing, 0, HL_COMPOSITING_MAXIMUM)) !=
+      HL_OK)
     return status;
   if ((status = check_range(&check, "shadow_resolution", render->shadow_resolution, 0,
                             HL_LIMIT_SHADOW_RESOLUTION, "give pixels from 1 to 16384, or auto")) != HL_OK)

@@ -73,7 +73,9 @@ static void mix_hsv(const double a[3], const double b[3], double t, double mixed
 
 /* Msh: magnitude, saturation angle and hue of a CIELAB colour (Moreland 2009, "Diverging color maps for
  * scientific visualization", whose constants these are). */
-typedef struct msh { double m, s, h; } msh;
+typedef struct msh {
+  double m, s, h;
+} msh;
 
 static msh msh_of(const double srgb[3]) {
   double lab[3];

@@ -1,8 +1,8 @@
 /* scene/exposure.c - the brightness of a picture, estimated by a few thousand rays on the voxels' lattice.
  *
- * In: a scene with its camera, lights and first volume. Out: a factor for the lights. Steps are the shortest voxel edge long;
- * a sample is the B-spline at the nearest voxel's centre, lit as by the renderer (docs/scene.md, "Brightness and colour") but
- * for shadows, of which the caller says what they leave.
+ * In: a scene with its camera, lights and first volume. Out: a factor for the lights. Steps are the shortest
+ * voxel edge long; a sample is the B-spline at the nearest voxel's centre, lit as by the renderer
+ * (docs/scene.md, "Brightness and colour") but for shadows, of which the caller says what they leave.
  */
 #include "scene/exposure.h"
 
@@ -12,9 +12,9 @@
 #include "scene/sample.h"
 #include "scene/scene.h"
 
-#define TARGET 0.871   /* linear light of 240 of 255, IEC 61966-2-1 */
-#define BRIGHTEST 0.99 /* part of the picture that is darker */
-#define OPAQUE 0.98
+#define TARGET    0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
+#define BRIGHTEST 0.99  /* part of the picture that is darker */
+#define OPAQUE    0.98
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
 
@@ -25,12 +25,14 @@ typedef struct exposure {
   vec3 right, up, forward;   /* of the camera; half the picture's width and height long, and 1 */
   vec3 towards[MOST_LIGHTS]; /* the lights */
   double intensity[MOST_LIGHTS];
-  double step, empty, flat;  /* world units; a value; a gradient in values per world unit that is no surface's */
+  double step, empty,
+      flat; /* world units; a value; a gradient in values per world unit that is no surface's */
   double opacity[TABLE], color[TABLE][3]; /* over the volume's range */
 } exposure;
 
-/* Uniform cubic B-spline at a voxel's centre: weights 1/6, 2/3, 1/6, of its slope -1/2, 0, 1/2 (derived: the spline at whole
- * numbers). Beyond the grid its outermost voxels go on. *gradient: per voxel. NaN where a voxel is not finite. */
+/* Uniform cubic B-spline at a voxel's centre: weights 1/6, 2/3, 1/6, of its slope -1/2, 0, 1/2 (derived: the
+ * spline at whole numbers). Beyond the grid its outermost voxels go on. *gradient: per voxel. NaN where a
+ * voxel is not finite. */
 static double smooth_value(const hl_volume *volume, const long at[3], double gradient[3]) {
   static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6}, slope[3] = {-0.5, 0, 0.5};
   double value = 0;
@@ -59,7 +61,8 @@ static int entry_of(const exposure *e, double value) {
 }
 
 /* The light that a sample sends to the eye, eqs. (3) and (4). */
-static void shade(const exposure *e, int entry, double value, const double slope[3], vec3 to_eye, double sent[3]) {
+static void shade(const exposure *e, int entry, double value, const double slope[3], vec3 to_eye,
+                  double sent[3]) {
   const hl_material *material = &e->volume->material;
   vec3 gradient = mat3_apply(mat3_transpose(e->world_to_index.linear), vec3_of(slope));
   bool surface = e->volume->shading == HL_SHADING_PHONG && vec3_length(gradient) > e->flat;
@@ -73,7 +76,8 @@ static void shade(const exposure *e, int entry, double value, const double slope
     for (int c = 0; c < 3; c++)
       matt[c] += e->intensity[l] * light->color[c] * (surface ? material->diffuse * fmax(cosine, 0) : 1);
     if (surface && cosine > 0)
-      gloss += e->intensity[l] * material->specular * pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
+      gloss += e->intensity[l] * material->specular *
+               pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
   }
   for (int c = 0; c < 3; c++) sent[c] = e->color[entry][c] * matt[c] + gloss;
 }
@@ -95,7 +99,8 @@ static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, dou
 /* The brightest channel of a pixel; negative where it is mostly background. */
 static double brightness_along(const exposure *e, vec3 origin, vec3 direction) {
   const hl_volume *volume = e->volume->volume;
-  vec3 from = affine3_apply(e->world_to_index, origin), along = mat3_apply(e->world_to_index.linear, direction);
+  vec3 from = affine3_apply(e->world_to_index, origin),
+       along = mat3_apply(e->world_to_index.linear, direction);
   vec3 to_eye = vec3_scale(direction, -1);
   double part[2], alpha = 0, seen[3] = {0, 0, 0};
   if (!cross_grid(e->volume, from, along, part)) return -1;
@@ -123,7 +128,8 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
   double range = volume->volume->maximum - volume->volume->minimum;
   affine3 index_to_world = hl_scene_volume_index_to_world(volume);
   if (!(range > 0) || scene->light_count > MOST_LIGHTS || camera->type != HL_CAMERA_PERSPECTIVE ||
-      !affine3_invert(index_to_world, &e->world_to_index) || !hl_camera_basis(camera, &e->right, &e->up, &e->forward))
+      !affine3_invert(index_to_world, &e->world_to_index) ||
+      !hl_camera_basis(camera, &e->right, &e->up, &e->forward))
     return false;
   double half = tan(camera->fovy_deg * HL_PI / 360);
   e->right = vec3_scale(e->right, half * scene->width / scene->height);
@@ -136,7 +142,8 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
   e->flat = 1e-3 * range / e->step;
   for (int n = 0; n < TABLE; n++) {
     double value = volume->volume->minimum + range * n / (TABLE - 1);
-    e->opacity[n] = 1 - pow(1 - hl_transfer_function_opacity(function, value), e->step / function->unit_distance);
+    e->opacity[n] = 1 -
+                    pow(1 - hl_transfer_function_opacity(function, value), e->step / function->unit_distance);
     hl_transfer_function_color(function, value, e->color[n]);
   }
   return true;
@@ -146,23 +153,29 @@ static size_t look(const exposure *e, float *brightness) {
   size_t count = 0;
   for (int y = 0; y < SIDE; y++)
     for (int x = 0; x < SIDE; x++) {
-      vec3 aside = vec3_add(vec3_scale(e->right, (2 * x + 1.0) / SIDE - 1), vec3_scale(e->up, 1 - (2 * y + 1.0) / SIDE));
-      double b = brightness_along(e, vec3_of(e->scene->camera.position), vec3_normalise(vec3_add(e->forward, aside)));
+      vec3 aside = vec3_add(vec3_scale(e->right, (2 * x + 1.0) / SIDE - 1),
+                            vec3_scale(e->up, 1 - (2 * y + 1.0) / SIDE));
+      double b = brightness_along(e, vec3_of(e->scene->camera.position),
+                                  vec3_normalise(vec3_add(e->forward, aside)));
       if (b >= 0) brightness[count++] = (float)b;
     }
   return count;
 }
 
-hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, double left, double *factor, hl_error *error) {
+hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, double left, double *factor,
+                            hl_error *error) {
   hl_context *context = scene->volumes[0].volume->context;
   exposure *e = hl_allocate(context, 1, sizeof *e);
   float *brightness = hl_allocate(context, SIDE * SIDE, sizeof *brightness);
-  hl_status status = e != NULL && brightness != NULL ? HL_OK : hl_fail_memory(error, sizeof *e, "an exposure");
+  hl_status status = e != NULL && brightness != NULL ? HL_OK
+                                                     : hl_fail_memory(error, sizeof *e, "an exposure");
   *factor = 1;
   size_t count = status == HL_OK && begin(scene, empty, left, e) ? look(e, brightness) : 0;
-  if (count > 0 && !hl_sort(context, brightness, count)) status = hl_fail_memory(error, count * sizeof *brightness, "an exposure");
+  if (count > 0 && !hl_sort(context, brightness, count))
+    status = hl_fail_memory(error, count * sizeof *brightness, "an exposure");
   else if (count > 0)
-    *factor = round(100 * fmin(fmax(TARGET / fmax(hl_quantile(brightness, count, BRIGHTEST), 1e-9), 0.5), 2)) / 100;
+    *factor =
+        round(100 * fmin(fmax(TARGET / fmax(hl_quantile(brightness, count, BRIGHTEST), 1e-9), 0.5), 2)) / 100;
   hl_release(context, brightness);
   hl_release(context, e);
   return status;

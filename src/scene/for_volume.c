@@ -9,11 +9,11 @@
 #include "scene/scene.h"
 #include "scene/view.h"
 
-#define LIGHT_AZIMUTH -40 /* key light from the upper left, degrees from the line of sight */
+#define LIGHT_AZIMUTH   -40 /* key light from the upper left, degrees from the line of sight */
 #define LIGHT_ELEVATION 45
-#define FILL_AZIMUTH 0     /* fill light from where the eye is: it sides with no key light that is asked for */
-#define FILL_ELEVATION 0
-#define SHEETS 540        /* across the grid's diagonal */
+#define FILL_AZIMUTH    0 /* fill light from where the eye is: it sides with no key light that is asked for */
+#define FILL_ELEVATION  0
+#define SHEETS          540 /* across the grid's diagonal */
 
 void hl_scene_key_light(hl_light *light) {
   hl_light_defaults(light);

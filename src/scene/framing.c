@@ -1,19 +1,23 @@
 /* scene/framing.c - a camera so placed that what is seen fills the picture and is in its middle.
  *
- * In: the outline of what is seen, and a direction of view. Each side of the picture is a plane through the eye, so the nearest
- * eye that has all of it inside follows from the greatest reach to each side. With room for turning the eye goes farther away,
- * about a target that stays. */
+ * In: the outline of what is seen, and a direction of view. Each side of the picture is a plane through the
+ * eye, so the nearest eye that has all of it inside follows from the greatest reach to each side. With room
+ * for turning the eye goes farther away, about a target that stays. */
 #include <string.h>
 
 #include "core/error.h"
 #include "scene/outline.h"
 #include "scene/view.h"
 
-#define FILLED 0.92      /* of the picture's half width or height, by what is seen along a fixed direction */
+#define FILLED       0.92 /* of the picture's half width or height, by what is seen along a fixed direction */
 #define FILLED_LEAST 0.82 /* the same, less room for turning */
-#define OVER 1.04         /* so much less room is enough at the narrowest place of a turn: less than the rims of what is seen */
-#define WIDER 1.04        /* so much more has a view to show to be taken instead of an earlier one */
-#define ASIDE 0.012        /* of the picture's sides: so far beside the middle what is seen may be, for a turn that needs less room */
+#define OVER                                                                                               \
+  1.04 /* so much less room is enough at the narrowest place of a turn: less than the rims of what is seen \
+        * \ */
+#define WIDER 1.04 /* so much more has a view to show to be taken instead of an earlier one */
+#define ASIDE                                                                                               \
+  0.012 /* of the picture's sides: so far beside the middle what is seen may be, for a turn that needs less \
+           room */
 
 enum { TURNS = 36, HALVINGS = 48, SECTIONS = 12 };
 
@@ -24,21 +28,24 @@ typedef struct frame_job {
   double aspect, tangent_x, tangent_y;
 } frame_job;
 
-/* Where the eye is along right, up and forward; for parallel projections half the picture's height instead of `forward`. */
-typedef struct frame_place { double right, up, forward, half_height; } frame_place;
+/* Where the eye is along right, up and forward; for parallel projections half the picture's height instead of
+ * `forward`. */
+typedef struct frame_place {
+  double right, up, forward, half_height;
+} frame_place;
 
 static double reach(const frame_job *job, vec3 along, double tangent) {
   return hl_outline_reach(job->outline, along, job->forward, tangent);
 }
 
-/* Derived: the plane x = ex + t (z - ez) and its mirror hold every point, so ex - t ez >= l and -ex - t ez >= r, the reaches to
- * the two sides; together ez <= -(l + r) / (2 t), with ex = (l - r) / 2. */
+/* Derived: the plane x = ex + t (z - ez) and its mirror hold every point, so ex - t ez >= l and -ex - t ez >=
+ * r, the reaches to the two sides; together ez <= -(l + r) / (2 t), with ex = (l - r) / 2. */
 static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
   return -(reach(job, along, tangent) + reach(job, vec3_scale(along, -1), tangent)) / 2 / tangent;
 }
 
-/* Where the eye is along `along` if it is at this depth and what is seen is to be in the middle. Derived: then both sides are at
- * the same tangent t, for which that depth is the nearest; the depth grows with t. */
+/* Where the eye is along `along` if it is at this depth and what is seen is to be in the middle. Derived:
+ * then both sides are at the same tangent t, for which that depth is the nearest; the depth grows with t. */
 static double middle_from(const frame_job *job, vec3 along, double greatest, double depth) {
   double low = 0, high = greatest;
   for (int n = 0; n < HALVINGS && greatest > 0; n++) {
@@ -53,7 +60,8 @@ static double middle_from(const frame_job *job, vec3 along, double greatest, dou
 static frame_place fit(const frame_job *job, double filled) {
   frame_place place = {0};
   if (job->tangent_y > 0) {
-    double by_width = nearest_eye(job, job->right, filled * job->tangent_x), by_height = nearest_eye(job, job->up, filled * job->tangent_y);
+    double by_width = nearest_eye(job, job->right, filled * job->tangent_x),
+           by_height = nearest_eye(job, job->up, filled * job->tangent_y);
     place.forward = fmin(by_width, by_height);
   } else {
     double width = reach(job, job->right, 0) + reach(job, vec3_scale(job->right, -1), 0);
@@ -69,25 +77,29 @@ static void centre(const frame_job *job, frame_place *place) {
 }
 
 static vec3 point_at(const frame_job *job, const frame_place *place, double depth) {
-  return vec3_add(vec3_add(vec3_scale(job->right, place->right), vec3_scale(job->up, place->up)), vec3_scale(job->forward, depth));
+  return vec3_add(vec3_add(vec3_scale(job->right, place->right), vec3_scale(job->up, place->up)),
+                  vec3_scale(job->forward, depth));
 }
 
 /* ---- room for turning ---- */
 
-/* The least distance from the target, or half height, with which nothing leaves the picture. Derived: for a plane at tangent t a
- * point at x and z from the target needs x <= t (distance + z). */
+/* The least distance from the target, or half height, with which nothing leaves the picture. Derived: for a
+ * plane at tangent t a point at x and z from the target needs x <= t (distance + z). */
 static double needed(const frame_job *job, vec3 target) {
   const vec3 along[4] = {job->right, vec3_scale(job->right, -1), job->up, vec3_scale(job->up, -1)};
   double most = 0;
   for (int side = 0; side < 4; side++) {
     double tangent = side < 2 ? job->tangent_x : job->tangent_y;
-    double beyond = reach(job, along[side], tangent) - vec3_dot(target, along[side]) + tangent * vec3_dot(target, job->forward);
+    double beyond = reach(job, along[side], tangent) - vec3_dot(target, along[side]) +
+                    tangent * vec3_dot(target, job->forward);
     most = fmax(most, tangent > 0 ? beyond / tangent : beyond / (side < 2 ? job->aspect : 1));
   }
   return most;
 }
 
-static void look(frame_job *job, const hl_view *view) { hl_view_axes(view, &job->right, &job->up, &job->forward); }
+static void look(frame_job *job, const hl_view *view) {
+  hl_view_axes(view, &job->right, &job->up, &job->forward);
+}
 
 /* The same whatever the azimuth. */
 static double needed_in_a_turn(const frame_job *job, const hl_view *view, vec3 target) {
@@ -112,7 +124,8 @@ static double radius_about(const hl_outline *outline, vec3 target) {
 /* The same whatever the direction. */
 static double needed_at_all(const frame_job *job, vec3 target) {
   double radius = radius_about(job->outline, target), tangent = fmin(job->tangent_x, job->tangent_y);
-  return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* over the sine */ : radius / fmin(1, job->aspect);
+  return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* over the sine */
+                     : radius / fmin(1, job->aspect);
 }
 
 /* The distance from the target, at this depth, or half the height: one number for both projections. */
@@ -120,8 +133,10 @@ static double room_of(const frame_job *job, const frame_place *place, double dep
   return job->tangent_y > 0 ? depth - place->forward : place->half_height;
 }
 
-/* Lowers what a turn needs along one coordinate of the target (golden section; it is convex, as a maximum of linear functions). */
-static void improve(const frame_job *job, const hl_view *view, vec3 along, double reach_each_way, vec3 *target) {
+/* Lowers what a turn needs along one coordinate of the target (golden section; it is convex, as a maximum of
+ * linear functions). */
+static void improve(const frame_job *job, const hl_view *view, vec3 along, double reach_each_way,
+                    vec3 *target) {
   const double ratio = (sqrt(5) - 1) / 2;
   double low = -reach_each_way, high = reach_each_way;
   for (int n = 0; n < SECTIONS; n++) {
@@ -134,14 +149,15 @@ static void improve(const frame_job *job, const hl_view *view, vec3 along, doubl
   *target = vec3_add(*target, vec3_scale(along, (low + high) / 2));
 }
 
-/* Moves the eye back for a turn about a target as good as can be: at any depth, and a little beside the middle. few: some of the
- * outline, for the turn. Returns the target's depth. */
+/* Moves the eye back for a turn about a target as good as can be: at any depth, and a little beside the
+ * middle. few: some of the outline, for the turn. Returns the target's depth. */
 static double make_room(const frame_job *job, const frame_job *few, const hl_view *view, frame_place *place) {
   const frame_place tight = *place, loose = fit(job, FILLED_LEAST);
   double depth = (reach(job, job->forward, 0) - reach(job, vec3_scale(job->forward, -1), 0)) / 2;
   for (int round = 0; round < 3; round++) { /* what is in the middle depends on the distance a little */
     centre(job, place);
-    double room = room_of(job, place, depth), height = 2 * (job->tangent_y > 0 ? room * job->tangent_y : room);
+    double room = room_of(job, place, depth),
+           height = 2 * (job->tangent_y > 0 ? room * job->tangent_y : room);
     vec3 target = point_at(job, place, depth);
     improve(few, view, job->forward, radius_about(job->outline, target), &target);
     improve(few, view, job->right, ASIDE * height * job->aspect, &target);
@@ -157,13 +173,17 @@ static double make_room(const frame_job *job, const frame_job *few, const hl_vie
 
 /* ---- cameras ---- */
 
-static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera, hl_outline *outline,
-                       frame_job *job, hl_error *error) {
+static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera,
+                       hl_outline *outline, frame_job *job, hl_error *error) {
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE, possible = zoom >= 1e-6 && zoom <= 1e6;
   possible = possible && description->volume_count > 0 && description->width > 0 && description->height > 0;
   possible = possible && (!perspective || (camera->fovy_deg > 0 && camera->fovy_deg < 180));
-  for (size_t n = 0; n < description->volume_count; n++) possible = possible && description->volumes[n].volume != NULL;
-  if (!possible) return hl_fail(error, HL_ERROR_ARGUMENT, "a camera cannot be framed without a volume, or with such a zoom, picture or field of view");
+  for (size_t n = 0; n < description->volume_count; n++)
+    possible = possible && description->volumes[n].volume != NULL;
+  if (!possible)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "a camera cannot be framed without a volume, or with such a zoom, picture or field of view");
   job->outline = outline;
   job->aspect = (double)description->width / description->height;
   job->tangent_y = perspective ? tan(camera->fovy_deg * HL_PI / 360) : 0;
@@ -172,15 +192,17 @@ static hl_status begin(const hl_scene_description *description, double zoom, con
 }
 
 /* Parallel projection does not depend on the eye's place: it is well before all that is seen. */
-static double distance_to(const frame_job *job, const frame_place *place, double depth, double extent, double zoom) {
+static double distance_to(const frame_job *job, const frame_place *place, double depth, double extent,
+                          double zoom) {
   double wide = fmax(place->half_height, place->half_height * job->aspect);
   return job->tangent_y > 0 ? fmax(depth - place->forward, 1e-6 * extent) / zoom : extent / 2 + 2 * wide;
 }
 
-hl_status hl_camera_frame_view(const hl_scene_description *description, const hl_view *view, double zoom, hl_camera *camera,
-                               hl_error *error) {
+hl_status hl_camera_frame_view(const hl_scene_description *description, const hl_view *view, double zoom,
+                               hl_camera *camera, hl_error *error) {
   if (description == NULL || view == NULL || camera == NULL || !hl_view_is_possible(view))
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_camera_frame_view: null description or camera, or an impossible view");
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_camera_frame_view: null description or camera, or an impossible view");
   hl_outline outline = {0}, thinned = {0};
   frame_job job;
   hl_status status = begin(description, zoom, camera, &outline, &job, error);
@@ -193,7 +215,8 @@ hl_status hl_camera_frame_view(const hl_scene_description *description, const hl
     double depth = make_room(&job, &few, view, &place);
     vec3 target = point_at(&job, &place, depth);
     if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height = 2 * place.half_height / zoom;
-    hl_camera_place(view, target, distance_to(&job, &place, depth, 2 * radius_about(&outline, target), zoom), camera);
+    hl_camera_place(view, target, distance_to(&job, &place, depth, 2 * radius_about(&outline, target), zoom),
+                    camera);
   }
   hl_outline_release(&outline);
   hl_outline_release(&thinned);
@@ -201,7 +224,8 @@ hl_status hl_camera_frame_view(const hl_scene_description *description, const hl
 }
 
 hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, hl_error *error) {
-  static const double turns[] = {0, -2, 4, 2, 1, -3, 5, 3}; /* of HL_VIEW_AZIMUTH: the four three-quarter views, and their mirrors */
+  static const double turns[] = {
+      0, -2, 4, 2, 1, -3, 5, 3}; /* of HL_VIEW_AZIMUTH: the four three-quarter views, and their mirrors */
   const hl_camera usual = {.type = HL_CAMERA_PERSPECTIVE, .fovy_deg = 30};
   hl_scene_description square = *description;
   square.width = square.height = 1;
@@ -215,7 +239,8 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, 
     at.azimuth_deg += turns[n] * HL_VIEW_AZIMUTH;
     look(&job, &at);
     frame_place place = fit(&job, FILLED);
-    double wide = (reach(&job, job.forward, 0) - reach(&job, vec3_scale(job.forward, -1), 0)) / 2 - place.forward;
+    double wide = (reach(&job, job.forward, 0) - reach(&job, vec3_scale(job.forward, -1), 0)) / 2 -
+                  place.forward;
     if (wide <= WIDER * most) continue;
     most = wide;
     view->azimuth_deg = at.azimuth_deg;
@@ -226,11 +251,13 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, 
 
 /* Tight along axes that are already in *job. */
 static void place_tightly(const frame_job *job, double zoom, hl_camera *camera) {
-  double near = -reach(job, vec3_scale(job->forward, -1), 0), far = reach(job, job->forward, 0), depth = (near + far) / 2;
+  double near = -reach(job, vec3_scale(job->forward, -1), 0), far = reach(job, job->forward, 0),
+         depth = (near + far) / 2;
   frame_place place = fit(job, FILLED);
   centre(job, &place);
   vec3 target = point_at(job, &place, depth);
-  vec3 position = vec3_subtract(target, vec3_scale(job->forward, distance_to(job, &place, depth, far - near, zoom)));
+  vec3 position = vec3_subtract(target,
+                                vec3_scale(job->forward, distance_to(job, &place, depth, far - near, zoom)));
   if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height = 2 * place.half_height / zoom;
   memcpy(camera->target, &target, sizeof camera->target);
   memcpy(camera->position, &position, sizeof camera->position);

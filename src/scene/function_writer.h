@@ -6,7 +6,7 @@
 
 typedef struct hl_function_writer {
   const hl_data_analysis *analysis;
-  double direction;               /* of rising distance: +1 or -1 in data values */
+  double direction; /* of rising distance: +1 or -1 in data values */
   hl_opacity_point opacity[4 * HL_MOST_LABELS];
   hl_color_point color[4 * HL_MOST_LABELS];
   size_t opacity_count, color_count;

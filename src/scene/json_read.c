@@ -22,14 +22,17 @@ const char *const hl_shadow_lookup_names[] = {"bilinear", "nearest", "cubic", "a
 
 json_t *hl_json_copy(const json_t *value) {
   json_t *copy = json_copy((json_t *)value);
-  if (json_object_size(copy) == json_object_size(value)) return copy; /* members that it had no room for are left out */
+  if (json_object_size(copy) == json_object_size(value))
+    return copy; /* members that it had no room for are left out */
   json_decref(copy);
   return NULL;
 }
 
 /* What JSON does not have, and what is often written nevertheless. */
 static const char *mend_of_fault(const char *fault) {
-  static const struct { const char *near, *mend; } mends[] = {
+  static const struct {
+    const char *near, *mend;
+  } mends[] = {
       {"near '/'", ": JSON has no comments, remove them"},
       {"near '//", ": JSON has no comments, remove them"},
       {"near 'NaN'", ": JSON has no NaN, give a number"},
@@ -42,7 +45,8 @@ static const char *mend_of_fault(const char *fault) {
   return "";
 }
 
-/* Windows programs begin UTF-8 with a byte-order mark, which says nothing; in other encodings it says what they are. */
+/* Windows programs begin UTF-8 with a byte-order mark, which says nothing; in other encodings it says what
+ * they are. */
 static hl_status pass_byte_order_mark(const char **text, size_t *length, const char *name, hl_error *error) {
   if (*length >= 2 && (memcmp(*text, "\xff\xfe", 2) == 0 || memcmp(*text, "\xfe\xff", 2) == 0))
     return hl_fail_at(error, HL_ERROR_INPUT, 1, 1, "%s:1:1: UTF-16 text: save it as UTF-8", name);
@@ -62,7 +66,8 @@ hl_status hl_json_parse(const char *text, size_t length, const char *name, json_
   *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
   /* without memory for its first buffer the parser gives no reason, and no line */
-  if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1) return hl_fail_memory(error, length, name);
+  if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1)
+    return hl_fail_memory(error, length, name);
   return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line,
                     fault.column, fault.text, mend_of_fault(fault.text));
 }
@@ -125,7 +130,8 @@ static bool listed(const char *const *names, const char *name) {
 
 hl_status hl_json_object(hl_json_reader *reader, const json_t *value, const char *const *keys) {
   if (!json_is_object(value))
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "is %s: give an object, { ... }", hl_json_type_name(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "is %s: give an object, { ... }",
+                        hl_json_type_name(value));
   const char *key;
   json_t *member;
   json_object_foreach((json_t *)value, key, member) {
@@ -140,7 +146,8 @@ hl_status hl_json_object(hl_json_reader *reader, const json_t *value, const char
 
 hl_status hl_json_array(hl_json_reader *reader, const json_t *value, size_t least, size_t most) {
   if (!json_is_array(value))
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "is %s: give an array, [ ... ]", hl_json_type_name(value));
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "is %s: give an array, [ ... ]",
+                        hl_json_type_name(value));
   size_t count = json_array_size(value);
   if (count >= least && count <= most) return HL_OK;
   if (least == most)
@@ -203,7 +210,8 @@ hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const cha
   return hl_json_fail(reader, HL_ERROR_INPUT, key, "\"%.80s\" is no known choice: %s", name, mend);
 }
 
-hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *key, size_t count, double *numbers) {
+hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *key, size_t count,
+                      double *numbers) {
   size_t mark = hl_json_enter(reader, key);
   hl_status status = hl_json_array(reader, value, count, count);
   for (size_t n = 0; status == HL_OK && n < count; n++) {
@@ -211,7 +219,9 @@ hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *k
     char index[24];
     snprintf(index, sizeof index, "%zu", n);
     if (json_is_number(element)) numbers[n] = json_number_value(element);
-    else status = hl_json_fail(reader, HL_ERROR_INPUT, index, "is %s: give a number", hl_json_type_name(element));
+    else
+      status = hl_json_fail(reader, HL_ERROR_INPUT, index, "is %s: give a number",
+                            hl_json_type_name(element));
   }
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;

@@ -1,8 +1,8 @@
 /* scene/json_read.h - tools for strict readers of JSON: typed values, places for errors, no unknown keys.
  *
  * A reader knows where it is as a JSON pointer. Getters leave their target alone where the key is absent, so
- * that targets start as their defaults. The first fault stops everything: every getter returns a status.
- */
+ * that targets start as their defaults. The first fault stops everything: every getter returns a
+ * status. */
 #ifndef HL_SCENE_JSON_READ_H
 #define HL_SCENE_JSON_READ_H
 
@@ -17,10 +17,10 @@
 
 typedef struct hl_json_reader {
   hl_context *context;
-  const char *name;    /* what errors call the text */
-  const char *folder;  /* where relative paths start; may be null */
+  const char *name;   /* what errors call the text */
+  const char *folder; /* where relative paths start; may be null */
   hl_error *error;
-  char place[400];     /* JSON pointer of the value being read */
+  char place[400]; /* JSON pointer of the value being read */
 } hl_json_reader;
 
 /* Text to a tree (json_decref by the caller); a syntax error gives NAME:LINE:COLUMN. */
@@ -56,15 +56,23 @@ hl_status hl_json_text(hl_json_reader *reader, const json_t *object, const char 
 hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const char *key,
                          const char *const *names, int first, int *choice);
 /* The value, called key in errors, must be an array of exactly count numbers. */
-hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *key, size_t count, double *numbers);
+hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *key, size_t count,
+                      double *numbers);
 /* The same for a member, which may be absent. */
 hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count,
                           double *numbers);
 
 /* The names that JSON has for enumerators, in their order; null-terminated. */
-extern const char *const hl_camera_type_names[], *const hl_light_type_names[], *const hl_shadows_names[],
-    *const hl_light_frame_names[], *const hl_falloff_names[], *const hl_shading_names[], *const hl_soft_method_names[], *const hl_kernel_names[],
-    *const hl_reconstruction_names[], *const hl_slicing_names[], *const hl_shadow_lookup_names[],
-    *const hl_compositing_names[];
+extern const char *const hl_camera_type_names[],
+    *const hl_light_type_names[], *const hl_shadows_names[],
+                                      *const hl_light_frame_names[],
+                                          *const hl_falloff_names[],
+                                              *const hl_shading_names[],
+                                                  *const hl_soft_method_names[],
+                                                      *const hl_kernel_names[],
+                                                          *const hl_reconstruction_names[],
+                                                              *const hl_slicing_names[],
+                                                                  *const hl_shadow_lookup_names[],
+                                                                      *const hl_compositing_names[];
 
 #endif

@@ -1,7 +1,7 @@
 /* scene/json_shapes.c - shapes from JSON: their keys, their groups, the volume they make.
  *
- * A list may hold groups: by name, as the scene's "groups" say, or with their shapes in place. A group is read where
- * it is placed, its errors point to where it is written.
+ * A list may hold groups: by name, as the scene's "groups" say, or with their shapes in place. A group is
+ * read where it is placed, its errors point to where it is written.
  */
 #include "scene/json_shapes.h"
 
@@ -21,7 +21,7 @@ static const char *const operation_names[] = {"add", "subtract", "intersect", NU
 static const char *const pattern_names[] = {"noise", "turbulence", NULL}; /* from HL_PATTERN_NOISE on */
 
 #define PLACEMENT_KEYS "type", "name", "position", "rotate", "scale"
-#define COMMON_KEYS PLACEMENT_KEYS, "operation", "blend", "hypertexture"
+#define COMMON_KEYS    PLACEMENT_KEYS, "operation", "blend", "hypertexture"
 
 static const char *const keys_of_type[][16] = {
     [HL_SHAPE_BOX] = {COMMON_KEYS, "size", "rounding"},
@@ -42,7 +42,7 @@ typedef struct reading {
   hl_shape_list *list;
   const char *open[HL_SHAPES_DEEPEST];
   size_t depth;
-  int seed;              /* added to every texture's */
+  int seed; /* added to every texture's */
 } reading;
 
 static hl_status check_between(hl_json_reader *reader, const char *key, double value, double low, double high,
@@ -84,7 +84,8 @@ static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_sha
   if (status == HL_OK) status = read_point(reader, value, "axis", shape->rotate_axis);
   if (status == HL_OK) status = hl_json_number(reader, value, "angle_deg", &shape->rotate_angle_deg);
   if (status == HL_OK)
-    status = check_between(reader, "angle_deg", shape->rotate_angle_deg, -1e6, 1e6, "give an angle in degrees");
+    status = check_between(reader, "angle_deg", shape->rotate_angle_deg, -1e6, 1e6,
+                           "give an angle in degrees");
   if (status == HL_OK && vec3_length(vec3_of(shape->rotate_axis)) < 1e-100)
     status = hl_json_fail(reader, HL_ERROR_INPUT, "axis", "has no length: give three numbers, not all 0");
   if (status == HL_OK) hl_json_leave(reader, mark);
@@ -95,16 +96,19 @@ static hl_status read_placement(hl_json_reader *reader, const json_t *value, hl_
   hl_status status = read_point(reader, value, "position", shape->position);
   if (status == HL_OK) status = read_rotate(reader, json_object_get(value, "rotate"), shape);
   if (status == HL_OK) status = hl_json_number(reader, value, "scale", &shape->scale);
-  return status == HL_OK ? check_between(reader, "scale", shape->scale, 1e-6, 1e6, "give a factor above 0") : status;
+  return status == HL_OK ? check_between(reader, "scale", shape->scale, 1e-6, 1e6, "give a factor above 0")
+                         : status;
 }
 
 static hl_status read_texture_numbers(hl_json_reader *reader, const json_t *value, hl_hypertexture *texture) {
   static const char share[] = "give a number above 0 and below 1, 0.5 changes nothing";
   hl_status status = hl_json_number(reader, value, "frequency", &texture->frequency);
   if (status == HL_OK)
-    status = check_between(reader, "frequency", texture->frequency, 1e-9, 1e9, "give cells per world unit, above 0");
+    status = check_between(reader, "frequency", texture->frequency, 1e-9, 1e9,
+                           "give cells per world unit, above 0");
   if (status == HL_OK) status = hl_json_integer(reader, value, "octaves", &texture->octaves);
-  if (status == HL_OK) status = check_between(reader, "octaves", texture->octaves, 1, MOST_OCTAVES, "give 1 to 16");
+  if (status == HL_OK)
+    status = check_between(reader, "octaves", texture->octaves, 1, MOST_OCTAVES, "give 1 to 16");
   if (status == HL_OK) status = hl_json_number(reader, value, "bias", &texture->bias);
   if (status == HL_OK) status = check_between(reader, "bias", texture->bias, 1e-6, 1 - 1e-6, share);
   if (status == HL_OK) status = hl_json_number(reader, value, "gain", &texture->gain);
@@ -142,10 +146,13 @@ static hl_status read_texture(reading *r, const json_t *value, hl_hypertexture *
 static hl_status read_box(hl_json_reader *reader, const json_t *value, hl_shape *shape) {
   bool plane = shape->type == HL_SHAPE_PLANE;
   size_t count = plane ? 2 : 3;
-  hl_status status = require(reader, value, "size", plane ? "give the plane's [x, y]" : "give the edges, [x, y, z]");
+  hl_status status = require(reader, value, "size",
+                             plane ? "give the plane's [x, y]" : "give the edges, [x, y, z]");
   if (status == HL_OK) status = hl_json_numbers(reader, value, "size", count, shape->size);
-  for (size_t a = 0; status == HL_OK && a < count; a++) status = check_positive(reader, "size", shape->size[a]);
-  if (status == HL_OK && plane) status = require(reader, value, "thickness", "give the slab's, below its upper face");
+  for (size_t a = 0; status == HL_OK && a < count; a++)
+    status = check_positive(reader, "size", shape->size[a]);
+  if (status == HL_OK && plane)
+    status = require(reader, value, "thickness", "give the slab's, below its upper face");
   if (status == HL_OK && plane) status = read_length(reader, value, "thickness", &shape->size[2]);
   return status;
 }
@@ -157,7 +164,8 @@ static hl_status read_axis(hl_json_reader *reader, const json_t *value, hl_shape
   if (status == HL_OK) status = read_point(reader, value, "to", shape->to);
   if (status != HL_OK) return status;
   vec3 axis = vec3_subtract(vec3_of(shape->to), vec3_of(shape->from));
-  return vec3_length(axis) > 1e-9 * vec3_length(vec3_of(shape->from)) ? HL_OK
+  return vec3_length(axis) > 1e-9 * vec3_length(vec3_of(shape->from))
+             ? HL_OK
              : hl_json_fail(reader, HL_ERROR_INPUT, "to", "is where from is: the axis needs a length");
 }
 
@@ -169,7 +177,8 @@ static hl_status read_radius(hl_json_reader *reader, const json_t *value, hl_sha
   if (status == HL_OK) status = hl_json_number(reader, value, "radius", &shape->radius);
   if (status == HL_OK) status = check_between(reader, "radius", shape->radius, 0, HL_LIMIT_LENGTH, mend);
   if (status == HL_OK) status = hl_json_number(reader, value, "end_radius", &shape->end_radius);
-  if (status == HL_OK) status = check_between(reader, "end_radius", shape->end_radius, 0, HL_LIMIT_LENGTH, mend);
+  if (status == HL_OK)
+    status = check_between(reader, "end_radius", shape->end_radius, 0, HL_LIMIT_LENGTH, mend);
   if (status == HL_OK && shape->radius == 0 && shape->end_radius == 0)
     status = hl_json_fail(reader, HL_ERROR_INPUT, "radius", "and end_radius are both 0: nothing is left");
   return status;
@@ -182,16 +191,17 @@ static hl_status read_rounding(hl_json_reader *reader, const json_t *value, hl_s
   if (shape->type == HL_SHAPE_CYLINDER)
     most = fmin(shape->radius, vec3_length(vec3_subtract(vec3_of(shape->to), vec3_of(shape->from))) / 2);
   if (shape->rounding >= 0 && shape->rounding <= most) return HL_OK;
-  return hl_json_fail(reader, HL_ERROR_INPUT, "rounding", "%.9g is out of range: at most %.9g fits this shape",
-                      shape->rounding, most);
+  return hl_json_fail(reader, HL_ERROR_INPUT, "rounding",
+                      "%.9g is out of range: at most %.9g fits this shape", shape->rounding, most);
 }
 
-static hl_status read_quantum_number(hl_json_reader *reader, const json_t *value, const char *key, int low, int high,
-                                     int *number) {
+static hl_status read_quantum_number(hl_json_reader *reader, const json_t *value, const char *key, int low,
+                                     int high, int *number) {
   hl_status status = require(reader, value, key, "an orbital has the quantum numbers n, l and m");
   if (status == HL_OK) status = hl_json_integer(reader, value, key, number);
   if (status != HL_OK || (*number >= low && *number <= high)) return status;
-  return hl_json_fail(reader, HL_ERROR_INPUT, key, "%d is no quantum number here: give %d to %d", *number, low, high);
+  return hl_json_fail(reader, HL_ERROR_INPUT, key, "%d is no quantum number here: give %d to %d", *number,
+                      low, high);
 }
 
 static hl_status read_orbital(hl_json_reader *reader, const json_t *value, hl_shape *shape) {
@@ -239,7 +249,8 @@ static hl_status read_named_group(reading *r, const char *name) {
   }
   for (size_t d = 0; d < r->depth; d++)
     if (r->open[d] != NULL && strcmp(r->open[d], name) == 0)
-      return hl_json_fail(reader, HL_ERROR_INPUT, "name", "\"%.80s\" would hold itself: break the circle", name);
+      return hl_json_fail(reader, HL_ERROR_INPUT, "name", "\"%.80s\" would hold itself: break the circle",
+                          name);
   r->open[r->depth - 1] = name;
   memcpy(place, reader->place, sizeof place);
   snprintf(reader->place, sizeof reader->place, "/groups/%.200s", name);
@@ -255,9 +266,11 @@ static hl_status read_members(reading *r, const json_t *value) {
   hl_status status = hl_json_text(reader, value, "name", &name);
   if (status != HL_OK) return status;
   if (members == NULL && name == NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "name", "is missing: name a group of \"groups\", or give its shapes");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "name",
+                        "is missing: name a group of \"groups\", or give its shapes");
   if (r->depth == HL_SHAPES_DEEPEST)
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "groups within groups are deeper than %d: flatten them", HL_SHAPES_DEEPEST);
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "groups within groups are deeper than %d: flatten them",
+                        HL_SHAPES_DEEPEST);
   r->open[r->depth++] = NULL;
   if (members == NULL) {
     status = read_named_group(r, name);
@@ -273,9 +286,10 @@ static hl_status read_members(reading *r, const json_t *value) {
 static hl_status append(reading *r, hl_shape **shape) {
   hl_shape_list *list = r->list;
   if (list->count == HL_SHAPE_COUNT)
-    return hl_json_fail(r->reader, HL_ERROR_INPUT, NULL,
-                        "is one shape too many: a volume holds %d, those of groups counted where they are placed",
-                        HL_SHAPE_COUNT);
+    return hl_json_fail(
+        r->reader, HL_ERROR_INPUT, NULL,
+        "is one shape too many: a volume holds %d, those of groups counted where they are placed",
+        HL_SHAPE_COUNT);
   if (list->count == list->capacity) {
     size_t capacity = 2 * list->capacity + 16;
     hl_shape *grown = hl_reallocate(r->reader->context, list->shapes, capacity, sizeof *grown);
@@ -289,8 +303,9 @@ static hl_status append(reading *r, hl_shape **shape) {
 }
 
 static hl_status read_head(reading *r, const json_t *value, bool first, hl_shape *shape) {
-  static const char *const all[] = {COMMON_KEYS, "size",        "radius", "from", "to", "end_radius", "tube_radius",
-                                    "thickness", "rounding", "n",      "l",    "m",  "shapes",     NULL};
+  static const char *const all[] = {COMMON_KEYS,  "size",        "radius",    "from",     "to",
+                                    "end_radius", "tube_radius", "thickness", "rounding", "n",
+                                    "l",          "m",           "shapes",    NULL};
   hl_json_reader *reader = r->reader;
   int type = -1, operation = HL_SHAPE_ADD;
   hl_status status = hl_json_object(reader, value, all);
@@ -302,10 +317,12 @@ static hl_status read_head(reading *r, const json_t *value, bool first, hl_shape
   shape->type = (hl_shape_type)type;
   shape->operation = (hl_shape_operation)operation;
   if (first && operation != HL_SHAPE_ADD)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "operation", "%s from nothing: put it after the shapes that it changes",
+    return hl_json_fail(reader, HL_ERROR_INPUT, "operation",
+                        "%s from nothing: put it after the shapes that it changes",
                         operation_names[operation]);
   if (type == HL_SHAPE_ORBITAL && r->depth > 0)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "type", "an orbital in a group: put it into the volume's own list");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "type",
+                        "an orbital in a group: put it into the volume's own list");
   if (r->depth == 0 && (type == HL_SHAPE_ORBITAL) != (r->list->shapes[0].type == HL_SHAPE_ORBITAL))
     return hl_json_fail(reader, HL_ERROR_INPUT, "type",
                         "orbitals and solids in one volume: their values mean different things, make two");
@@ -322,7 +339,8 @@ static hl_status read_shape(reading *r, const json_t *value, bool first) {
   if (status == HL_OK) status = hl_json_text(reader, value, "name", &name);
   if (status == HL_OK) status = hl_json_number(reader, value, "blend", &shape->blend);
   if (status == HL_OK)
-    status = check_between(reader, "blend", shape->blend, 0, HL_LIMIT_LENGTH, "give a length in world units, or 0");
+    status = check_between(reader, "blend", shape->blend, 0, HL_LIMIT_LENGTH,
+                           "give a length in world units, or 0");
   if (status == HL_OK) status = read_placement(reader, value, shape);
   if (status == HL_OK) status = read_texture(r, json_object_get(value, "hypertexture"), &shape->texture);
   if (status == HL_OK) status = read_form(reader, value, shape);
@@ -361,11 +379,12 @@ hl_status hl_json_check_groups(hl_json_reader *reader, const json_t *groups) {
 }
 
 /* By the size asked for, by the text, or by DEFAULT_SIZE. */
-static hl_status choose_voxel_size(hl_json_reader *reader, const json_t *object, const hl_shape_list *list, int size,
-                                   double *voxel_size) {
+static hl_status choose_voxel_size(hl_json_reader *reader, const json_t *object, const hl_shape_list *list,
+                                   int size, double *voxel_size) {
   double extent = hl_shapes_extent(list), margin = HL_SHAPE_EDGE + 2 * HL_SHAPE_MARGIN;
   if (!(extent > 0 && extent <= 4 * HL_LIMIT_LENGTH))
-    return hl_json_fail(reader, HL_ERROR_INPUT, "shapes", "leave nothing: what is subtracted or intersected takes all");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "shapes",
+                        "leave nothing: what is subtracted or intersected takes all");
   *voxel_size = extent / ((size > 0 ? size : DEFAULT_SIZE) - margin - 3);
   if (size > 0) return HL_OK;
   hl_status status = hl_json_number(reader, object, "voxel_size", voxel_size);
@@ -377,9 +396,10 @@ static hl_status make_volume(hl_json_reader *reader, hl_shape_list *list, double
   hl_shape_grid grid;
   hl_shapes_place(list, voxel_size);
   if (!hl_shapes_grid(list, voxel_size, &grid))
-    return hl_json_fail(reader, HL_ERROR_INPUT, "voxel_size",
-                        "%.9g is too small for shapes %.9g long: at most %zu voxels are made, use a larger one",
-                        voxel_size, hl_shapes_extent(list), HL_SHAPE_VOXELS);
+    return hl_json_fail(
+        reader, HL_ERROR_INPUT, "voxel_size",
+        "%.9g is too small for shapes %.9g long: at most %zu voxels are made, use a larger one", voxel_size,
+        hl_shapes_extent(list), HL_SHAPE_VOXELS);
   char subject[600];
   snprintf(subject, sizeof subject, "%s: %s/shapes", reader->name, reader->place);
   return hl_shapes_sample(reader->context, list, &grid, threads, subject, volume, reader->error);

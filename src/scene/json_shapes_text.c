@@ -14,7 +14,9 @@ static json_t *expand_list(const json_t *shapes, const json_t *groups, int depth
     json_t *copy = hl_json_copy(shape);
     if (json_is_string(type) && strcmp(json_string_value(type), "group") == 0) {
       if (members == NULL && json_is_string(name)) members = json_object_get(groups, json_string_value(name));
-      json_t *inner = depth < HL_SHAPES_DEEPEST && members != NULL ? expand_list(members, groups, depth + 1, left) : NULL;
+      json_t *inner = depth < HL_SHAPES_DEEPEST && members != NULL
+                          ? expand_list(members, groups, depth + 1, left)
+                          : NULL;
       if (json_object_set_new(copy, "shapes", inner) != 0) json_decref(copy), copy = NULL;
     }
     bool too_many = (*left)-- == 0;
@@ -39,8 +41,10 @@ static bool says(const char *text, const json_t *root) {
   return same;
 }
 
-char *hl_json_shapes_text(hl_context *context, const json_t *shapes, const json_t *groups, double voxel_size) {
-  json_t *root = json_pack("{s:o, s:f}", "shapes", hl_json_expand_shapes(shapes, groups), "voxel_size", voxel_size);
+char *hl_json_shapes_text(hl_context *context, const json_t *shapes, const json_t *groups,
+                          double voxel_size) {
+  json_t *root = json_pack("{s:o, s:f}", "shapes", hl_json_expand_shapes(shapes, groups), "voxel_size",
+                           voxel_size);
   char *dumped = root != NULL ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
   char *text = says(dumped, root) ? hl_copy_text(context, dumped) : NULL;
   json_decref(root);

@@ -1,4 +1,5 @@
-/* scene/json_texture.c - images of lights, from JSON: what one projects, and the screen it stands on; what one shows itself. */
+/* scene/json_texture.c - images of lights, from JSON: what one projects, and the screen it stands on; what
+ * one shows itself. */
 #include <string.h>
 
 #include <halflight/image.h>
@@ -12,8 +13,9 @@ static hl_status read_screen(hl_json_reader *reader, const json_t *value, hl_lig
   static const char *const keys[] = {"center", "right", "up", NULL};
   double *const parts[] = {texture->screen_center, texture->screen_right, texture->screen_up};
   if (value == NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "screen",
-                        "is missing: say where the image stands, { \"center\": ..., \"right\": ..., \"up\": ... }");
+    return hl_json_fail(
+        reader, HL_ERROR_INPUT, "screen",
+        "is missing: say where the image stands, { \"center\": ..., \"right\": ..., \"up\": ... }");
   size_t mark = hl_json_enter(reader, "screen");
   hl_status status = hl_json_object(reader, value, keys);
   for (int k = 0; status == HL_OK && keys[k] != NULL; k++)
@@ -33,7 +35,8 @@ typedef struct light_image {
 } light_image;
 
 /* Premultiplied colours are those over black: alpha is left out. */
-static hl_status take_pixels(hl_context *context, const hl_image *image, const light_image *to, hl_error *error) {
+static hl_status take_pixels(hl_context *context, const hl_image *image, const light_image *to,
+                             hl_error *error) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *from = hl_image_pixels_const(image);
   float *pixels = hl_allocate(context, count, 3 * sizeof *pixels);
@@ -52,7 +55,8 @@ static hl_status load(hl_json_reader *reader, const json_t *value, const light_i
   hl_status status = hl_json_text(reader, value, "file", &file);
   if (status != HL_OK) return status;
   if (file == NULL || file[0] == 0)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "%s: name the image's file", file == NULL ? "is missing" : "is empty");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "%s: name the image's file",
+                        file == NULL ? "is missing" : "is empty");
   char *path = hl_path_join(reader->context, reader->folder, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
   *to->file = path;
@@ -77,7 +81,8 @@ hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_l
   return status;
 }
 
-hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_light_type type, hl_light_emission *emission) {
+hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_light_type type,
+                                hl_light_emission *emission) {
   static const char *const keys[] = {"file", "up", NULL}, *const rect_keys[] = {"file", NULL};
   const light_image image = {&emission->file, &emission->pixels, &emission->width, &emission->height};
   if (value == NULL) return HL_OK;

@@ -1,8 +1,8 @@
 /* scene/json_transfer.c - a transfer function from JSON: explicit points, a colormap, a preset or another
  * file.
  *
- * A preset, a file or, without opacity points, the automatic function (for shapes: the solid one) is the ground;
- * points, colormap and unit_distance given beside it take the place of its own.
+ * A preset, a file or, without opacity points, the automatic function (for shapes: the solid one) is the
+ * ground; points, colormap and unit_distance given beside it take the place of its own.
  */
 #include <string.h>
 
@@ -58,7 +58,8 @@ static const double solid_begins = 0.375, solid_is_full = 0.625, solid_opacity =
 /* function->opacity = nothing outside, this opacity inside. */
 static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_transfer_function *function) {
   hl_opacity_point *points = hl_allocate(reader->context, SOLID_POINTS, sizeof *points);
-  if (points == NULL) return hl_fail_memory(reader->error, SOLID_POINTS * sizeof *points, "a transfer function");
+  if (points == NULL)
+    return hl_fail_memory(reader->error, SOLID_POINTS * sizeof *points, "a transfer function");
   points[0] = (hl_opacity_point){solid_begins, 0};
   points[1] = (hl_opacity_point){solid_is_full, opacity};
   hl_release(reader->context, (void *)function->opacity);
@@ -68,7 +69,8 @@ static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_tr
 }
 
 /* One colour for all values. */
-static hl_status read_plain_color(hl_json_reader *reader, const json_t *value, hl_transfer_function *function) {
+static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
+                                  hl_transfer_function *function) {
   hl_color_point *point = hl_allocate_zeroed(reader->context, 1, sizeof *point);
   if (point == NULL) return hl_fail_memory(reader->error, sizeof *point, "a transfer function");
   hl_release(reader->context, (void *)function->color);
@@ -92,7 +94,8 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
   if (is_solid && json_is_number(opacity)) {
     double inside = json_number_value(opacity);
     if (!(inside >= 0 && inside <= 1))
-      return hl_json_fail(reader, HL_ERROR_INPUT, "opacity", "%.9g is out of range: give an opacity from 0 to 1", inside);
+      return hl_json_fail(reader, HL_ERROR_INPUT, "opacity",
+                          "%.9g is out of range: give an opacity from 0 to 1", inside);
     if ((status = set_solid_opacity(reader, inside, function)) != HL_OK) return status;
   } else if (opacity != NULL) {
     if ((status = read_rows(reader, value, "opacity", 2, &rows, &count)) != HL_OK) return status;
@@ -199,19 +202,21 @@ static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_fu
   return status == HL_OK ? read_colormap(reader, value, subject.volume, function) : status;
 }
 
-hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
-                                         hl_transfer_function *function) {
+hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value,
+                                         hl_function_subject subject, hl_transfer_function *function) {
   *function = (hl_transfer_function){.unit_distance = 1};
-  if (value == NULL && subject.is_solid && !subject.projected) return read_solid(reader, subject.volume, function);
+  if (value == NULL && subject.is_solid && !subject.projected)
+    return read_solid(reader, subject.volume, function);
   if (value == NULL) {
-    hl_status status = subject.projected
-                           ? hl_transfer_function_preset(reader->context, "mip", subject.volume, function, reader->error)
-                           : hl_transfer_function_automatic(reader->context, subject.volume, function, reader->error);
+    hl_status status = subject.projected ? hl_transfer_function_preset(reader->context, "mip", subject.volume,
+                                                                       function, reader->error)
+                                         : hl_transfer_function_automatic(reader->context, subject.volume,
+                                                                          function, reader->error);
     if (status != HL_OK) hl_json_prefix(reader, reader->place);
     return status;
   }
-  size_t mark =
-      subject.volume != NULL ? hl_json_enter(reader, "transfer_function") : 0; /* a file of its own is the root */
+  size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function")
+                                       : 0; /* a file of its own is the root */
   hl_status status = read_members(reader, value, subject, function);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;

@@ -40,8 +40,8 @@ static hl_status read_camera_members(hl_json_reader *reader, const json_t *value
                         "is for perspective cameras: give height, or \"type\": \"perspective\"");
   if (status == HL_OK && !has(value, "position"))
     for (int k = 2; status == HL_OK && k < 4; k++)
-      status =
-          refuse_key(reader, value, keys[k], "needs a position: give both, or neither to frame the volumes");
+      status = refuse_key(reader, value, keys[k],
+                          "needs a position: give both, or neither to frame the volumes");
   if (status == HL_OK) status = hl_json_number(reader, value, "fovy_deg", &camera->fovy_deg);
   if (status == HL_OK) status = frame(reader, d, camera);
   if (status == HL_OK && has(value, "position")) memcpy(camera->up, (double[3]){0, 0, 1}, sizeof camera->up);
@@ -62,19 +62,20 @@ hl_status hl_json_read_camera(hl_json_reader *reader, const json_t *value, hl_sc
 #define COMMON_KEYS "frame", "color", "intensity", "falloff", "shadows", "texture", "emission", NULL
 static const char *const directional_keys[] = {"type", "direction", "angular_diameter_deg", COMMON_KEYS};
 static const char *const point_keys[] = {"type", "position", "radius", COMMON_KEYS};
-static const char *const spot_keys[] = {"type",   "position", "direction", "opening_angle_deg", "falloff_angle_deg",
-                                        "radius", COMMON_KEYS};
+static const char *const spot_keys[] = {
+    "type", "position", "direction", "opening_angle_deg", "falloff_angle_deg", "radius", COMMON_KEYS};
 static const char *const rect_keys[] = {"type", "position", "edge1", "edge2", COMMON_KEYS};
 static const char *const disk_keys[] = {"type", "position", "normal", "radius", COMMON_KEYS};
 static const char *const polygon_keys[] = {"type", "vertices", COMMON_KEYS};
 static const char *const *const light_keys[] = {directional_keys, point_keys, spot_keys,
-                                                    rect_keys,        disk_keys,  polygon_keys};
+                                                rect_keys,        disk_keys,  polygon_keys};
 
 /* The vertices in memory of the light's own. */
 static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_light *light) {
   const json_t *value = json_object_get(object, "vertices");
   if (value == NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "vertices", "is missing: give three points or more, [ [x,y,z], ... ]");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "vertices",
+                        "is missing: give three points or more, [ [x,y,z], ... ]");
   size_t mark = hl_json_enter(reader, "vertices");
   hl_status status = hl_json_array(reader, value, 3, HL_LIMIT_VERTICES);
   if (status != HL_OK) return status;
@@ -86,7 +87,8 @@ static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_
   for (size_t v = 0; v < count; v++) {
     char index[24];
     snprintf(index, sizeof index, "%zu", v);
-    if ((status = hl_json_row(reader, json_array_get(value, v), index, 3, vertices[v])) != HL_OK) return status;
+    if ((status = hl_json_row(reader, json_array_get(value, v), index, 3, vertices[v])) != HL_OK)
+      return status;
   }
   hl_json_leave(reader, mark);
   return HL_OK;
@@ -95,8 +97,10 @@ static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_
 /* Without a word on it the edge is as wide as a narrow cone allows. */
 static hl_status read_cone(hl_json_reader *reader, const json_t *value, hl_light *light) {
   hl_status status = hl_json_number(reader, value, "opening_angle_deg", &light->opening_angle_deg);
-  if (light->falloff_angle_deg > light->opening_angle_deg / 2) light->falloff_angle_deg = light->opening_angle_deg / 2;
-  return status == HL_OK ? hl_json_number(reader, value, "falloff_angle_deg", &light->falloff_angle_deg) : status;
+  if (light->falloff_angle_deg > light->opening_angle_deg / 2)
+    light->falloff_angle_deg = light->opening_angle_deg / 2;
+  return status == HL_OK ? hl_json_number(reader, value, "falloff_angle_deg", &light->falloff_angle_deg)
+                         : status;
 }
 
 static hl_status read_light_place(hl_json_reader *reader, const json_t *value, hl_light *light) {
@@ -113,12 +117,28 @@ static hl_status read_light_place(hl_json_reader *reader, const json_t *value, h
 }
 
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light) {
-  static const char *const all[] = {
-      "type", "direction", "angular_diameter_deg", "position", "radius", "normal", "edge1", "edge2",
-      "opening_angle_deg", "falloff_angle_deg", "vertices", "frame", "color", "intensity", "falloff", "shadows", "texture",
-      "emission", NULL};
+  static const char *const all[] = {"type",
+                                    "direction",
+                                    "angular_diameter_deg",
+                                    "position",
+                                    "radius",
+                                    "normal",
+                                    "edge1",
+                                    "edge2",
+                                    "opening_angle_deg",
+                                    "falloff_angle_deg",
+                                    "vertices",
+                                    "frame",
+                                    "color",
+                                    "intensity",
+                                    "falloff",
+                                    "shadows",
+                                    "texture",
+                                    "emission",
+                                    NULL};
   hl_light_defaults(light);
-  int type = (int)light->type, frame = (int)light->frame, falloff = (int)light->falloff, shadows = (int)light->shadows;
+  int type = (int)light->type, frame = (int)light->frame, falloff = (int)light->falloff,
+      shadows = (int)light->shadows;
   hl_status status = hl_json_object(reader, value, all);
   if (status == HL_OK) status = hl_json_choice(reader, value, "type", hl_light_type_names, 0, &type);
   if (status != HL_OK) return status;
@@ -134,7 +154,8 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
     status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
   light->falloff = (hl_falloff)falloff;
   light->shadows = (hl_shadows)shadows;
-  if (status == HL_OK) status = hl_json_read_texture(reader, json_object_get(value, "texture"), &light->texture);
+  if (status == HL_OK)
+    status = hl_json_read_texture(reader, json_object_get(value, "texture"), &light->texture);
   if (status == HL_OK)
     status = hl_json_read_emission(reader, json_object_get(value, "emission"), light->type, &light->emission);
   return status;
@@ -158,7 +179,7 @@ static hl_status read_shadow_resolution(hl_json_reader *reader, const json_t *va
 
 hl_status hl_json_read_render(hl_json_reader *reader, const json_t *value, hl_render_settings *render) {
   static const char *const keys[] = {
-      "shadows", "soft_method",   "light_samples",     "sheet_spacing", "kernel", "reconstruction",
+      "shadows", "soft_method",   "light_samples",     "sheet_spacing", "kernel",      "reconstruction",
       "slicing", "shadow_lookup", "shadow_resolution", "threads",       "compositing", NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "render");

@@ -38,7 +38,8 @@ static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_scen
   const json_t *scale = json_object_get(value, "scale");
   if (json_is_array(scale)) return hl_json_numbers(reader, value, "scale", 3, volume->axis_scale);
   if (scale != NULL && !json_is_number(scale))
-    return hl_json_fail(reader, HL_ERROR_INPUT, "scale", "is %s: give a number or three, [x, y, z]", hl_json_type_name(scale));
+    return hl_json_fail(reader, HL_ERROR_INPUT, "scale", "is %s: give a number or three, [x, y, z]",
+                        hl_json_type_name(scale));
   return hl_json_number(reader, value, "scale", &volume->scale);
 }
 
@@ -100,8 +101,8 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
 }
 
 /* Takes over source and volume. */
-static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source, const hl_volume_load_options *options,
-                                            hl_volume *volume) {
+static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source,
+                                            const hl_volume_load_options *options, hl_volume *volume) {
   hl_loaded_volume *place = &shelf->loaded[shelf->count++];
   *place = (hl_loaded_volume){.source = source, .volume = volume};
   if (options == NULL) return place;
@@ -120,22 +121,26 @@ static hl_status read_component(hl_json_reader *reader, const json_t *value, int
   }
   if (given == NULL) return HL_OK;
   if (json_is_integer(given) && json_integer_value(given) < 0)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "component", "is below 0: give a number from 0 on, or \"magnitude\"");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "component",
+                        "is below 0: give a number from 0 on, or \"magnitude\"");
   if (!json_is_integer(given))
-    return hl_json_fail(reader, HL_ERROR_INPUT, "component", "is %s: give a number from 0 on, or \"magnitude\"",
+    return hl_json_fail(reader, HL_ERROR_INPUT, "component",
+                        "is %s: give a number from 0 on, or \"magnitude\"",
                         json_is_string(given) ? "another word" : hl_json_type_name(given));
   return hl_json_integer(reader, value, "component", component);
 }
 
 /* How the volume's file is read. */
-static hl_status read_load_options(hl_json_reader *reader, const json_t *value, hl_volume_load_options *options) {
+static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
+                                   hl_volume_load_options *options) {
   hl_volume_load_options_defaults(options);
   hl_status status = hl_json_text(reader, value, "array", &options->array);
   if (status == HL_OK) status = read_component(reader, value, &options->component);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "spacing", 3, options->spacing);
   for (int axis = 0; status == HL_OK && axis < 3; axis++)
     if (json_object_get(value, "spacing") != NULL && !(options->spacing[axis] > 0))
-      status = hl_json_fail(reader, HL_ERROR_INPUT, "spacing", "has a number that is not above 0: give the distance of voxels");
+      status = hl_json_fail(reader, HL_ERROR_INPUT, "spacing",
+                            "has a number that is not above 0: give the distance of voxels");
   return status;
 }
 
@@ -152,7 +157,8 @@ static char *path_of(const hl_json_reader *reader, const char *file) {
 static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
                       hl_volume_shelf *shelf, hl_scene_volume *volume) {
   if (is_data(file) && reader->context->options.data_folder == NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "\"%.200s\": no data folder is known: name one", file);
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "\"%.200s\": no data folder is known: name one",
+                        file);
   char *path = path_of(reader, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
   const hl_loaded_volume *loaded = find_loaded(shelf, path, options);
@@ -255,7 +261,8 @@ static bool is_there(const hl_json_reader *reader, const char *file) {
   return there;
 }
 
-/* Where the volume's file is absent, *value becomes the volume with the keys of its stand-in, kept on the shelf. */
+/* Where the volume's file is absent, *value becomes the volume with the keys of its stand-in, kept on the
+ * shelf. */
 static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
   const json_t *stand_in = json_object_get(*value, "stand_in");
   const char *file = NULL;
@@ -266,7 +273,8 @@ static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, h
   hl_json_leave(reader, mark);
   if ((status = hl_json_text(reader, *value, "file", &file)) != HL_OK) return status;
   if (file == NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "stand_in", "is for a file that may be absent: name one, or remove it");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "stand_in",
+                        "is for a file that may be absent: name one, or remove it");
   if (is_there(reader, file)) return HL_OK;
   json_t *merged = hl_json_copy(*value);
   json_object_del(merged, "stand_in");
@@ -277,8 +285,9 @@ static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, h
   if (json_array_append_new(shelf->stood_in, merged) != 0 || failed)
     return hl_fail_memory(reader->error, 1000, "a stand-in");
   const char *folder = reader->context->options.data_folder;
-  hl_log(reader->context, HL_LOG_WARNING, "%s: %s/file: %s is not there%s%s: its stand-in is shown", reader->name,
-         reader->place, file, folder != NULL ? ", the data folder is " : "", folder != NULL ? folder : "");
+  hl_log(reader->context, HL_LOG_WARNING, "%s: %s/file: %s is not there%s%s: its stand-in is shown",
+         reader->name, reader->place, file, folder != NULL ? ", the data folder is " : "",
+         folder != NULL ? folder : "");
   *value = merged;
   return HL_OK;
 }

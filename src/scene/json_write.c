@@ -22,7 +22,7 @@ typedef struct writer {
   char *text;
   size_t length, capacity;
   int depth;
-  bool first;   /* no member or element yet at this depth */
+  bool first; /* no member or element yet at this depth */
   bool failed;
 } writer;
 
@@ -229,8 +229,11 @@ static void write_transform(writer *w, const hl_scene_volume *volume) {
   open_bracket(w, "transform", "{");
   const double *axis = volume->axis_scale;
   if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) write_number(w, "scale", volume->scale);
-  else write_row(w, "scale", (double[3]){hl_scene_volume_scale(volume, 0), hl_scene_volume_scale(volume, 1),
-                                         hl_scene_volume_scale(volume, 2)}, 3);
+  else
+    write_row(w, "scale",
+              (double[3]){hl_scene_volume_scale(volume, 0), hl_scene_volume_scale(volume, 1),
+                          hl_scene_volume_scale(volume, 2)},
+              3);
   open_bracket(w, "rotate", "{");
   write_row(w, "axis", volume->rotate_axis, 3);
   write_number(w, "angle_deg", volume->rotate_angle_deg);
@@ -332,7 +335,8 @@ static void write_render(writer *w, const hl_render_settings *render) {
   if (render->shadow_resolution == 0) write_name(w, "shadow_resolution", "auto");
   else write_number(w, "shadow_resolution", render->shadow_resolution);
   write_number(w, "threads", render->threads);
-  if (render->compositing != HL_COMPOSITING_LIGHT) write_name(w, "compositing", hl_compositing_names[render->compositing]);
+  if (render->compositing != HL_COMPOSITING_LIGHT)
+    write_name(w, "compositing", hl_compositing_names[render->compositing]);
   close_bracket(w, "}");
 }
 
@@ -371,25 +375,30 @@ static bool is_text_of_shapes(const char *text) {
 
 static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_error *error) {
   if (volume->file == NULL && volume->shapes == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "/volumes/%zu/file: the volume came from memory: write it to a file and name that in the scene",
-                   index);
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "/volumes/%zu/file: the volume came from memory: write it to a file and name that in the scene",
+        index);
   if (volume->shapes != NULL && !is_text_of_shapes(volume->shapes))
     return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "/volumes/%zu/shapes: is no text that hl_volume_from_shapes() reads: give that, or null", index);
+                   "/volumes/%zu/shapes: is no text that hl_volume_from_shapes() reads: give that, or null",
+                   index);
   if (is_utf8(volume->file) && is_utf8(volume->name) && is_utf8(volume->array)) return HL_OK;
   return hl_fail(error, HL_ERROR_ARGUMENT,
                  "/volumes/%zu: name, file or array is not UTF-8, as JSON texts must be: rename it", index);
 }
 
-static hl_status check_light_image(const float *pixels, const char *file, const char *key, size_t light, hl_error *error) {
+static hl_status check_light_image(const float *pixels, const char *file, const char *key, size_t light,
+                                   hl_error *error) {
   if (pixels == NULL) return HL_OK;
   if (file == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "/lights/%zu/%s/file: the image came from memory: write it to a file and name that in the scene",
-                   light, key);
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "/lights/%zu/%s/file: the image came from memory: write it to a file and name that in the scene",
+        light, key);
   if (is_utf8(file)) return HL_OK;
-  return hl_fail(error, HL_ERROR_ARGUMENT, "/lights/%zu/%s/file: is not UTF-8, as JSON texts must be: rename it", light, key);
+  return hl_fail(error, HL_ERROR_ARGUMENT,
+                 "/lights/%zu/%s/file: is not UTF-8, as JSON texts must be: rename it", light, key);
 }
 
 /* What a text cannot say: voxels and pixels without a file, names that are not UTF-8. */
@@ -397,7 +406,8 @@ static hl_status check_writable(const hl_scene_description *d, hl_error *error) 
   for (size_t l = 0; l < d->light_count; l++) {
     const hl_light *light = &d->lights[l];
     hl_status status = check_light_image(light->texture.pixels, light->texture.file, "texture", l, error);
-    if (status == HL_OK) status = check_light_image(light->emission.pixels, light->emission.file, "emission", l, error);
+    if (status == HL_OK)
+      status = check_light_image(light->emission.pixels, light->emission.file, "emission", l, error);
     if (status != HL_OK) return status;
   }
   for (size_t v = 0; v < d->volume_count; v++) {

@@ -1,7 +1,7 @@
 /* scene/labels.c - tells label maps from amounts: few whole numbers, each in blocks.
  *
- * In: a volume and its background. Out: the labels. Edges of smooth shapes and noise have numbers too, but no two voxels
- * side by side share them.
+ * In: a volume and its background. Out: the labels. Edges of smooth shapes and noise have numbers too, but no
+ * two voxels side by side share them.
  */
 #include "scene/labels.h"
 
@@ -10,9 +10,9 @@
 #include "core/memory.h"
 #include "scene/sample.h"
 
-#define PLACES 5e5     /* looked at, about */
-#define IN_BLOCKS 0.5  /* least part of a label's neighbours that share it */
-#define WIDEST 65535   /* between the least label and the greatest */
+#define PLACES    5e5   /* looked at, about */
+#define IN_BLOCKS 0.5   /* least part of a label's neighbours that share it */
+#define WIDEST    65535 /* between the least label and the greatest */
 
 typedef struct tally {
   unsigned int seen, shared; /* neighbours looked at of voxels with this value; those that have it too */
@@ -59,7 +59,8 @@ hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysi
   size_t count = (size_t)range + 1;
   tally *tallies = hl_allocate_zeroed(volume->context, count, sizeof *tallies);
   if (tallies == NULL) return hl_fail_memory(error, count * sizeof *tallies, "a count of labels");
-  if (count_neighbours(volume, least, tallies) && list(tallies, count, least, analysis)) analysis->kind = HL_DATA_LABELS;
+  if (count_neighbours(volume, least, tallies) && list(tallies, count, least, analysis))
+    analysis->kind = HL_DATA_LABELS;
   else analysis->label_count = 0;
   hl_release(volume->context, tallies);
   return HL_OK;

@@ -1,14 +1,16 @@
 /* scene/light_frame.c - lights that are fixed to the camera, placed in the world.
  *
- * In: a description whose lights may be in camera axes (right, up, towards the viewer; origin at the target). Out: the
- * same with every light in the world, which is what is rendered. */
+ * In: a description whose lights may be in camera axes (right, up, towards the viewer; origin at the target).
+ * Out: the same with every light in the world, which is what is rendered. */
 #include "scene/light_frame.h"
 
 #include <string.h>
 
 #include "core/memory.h"
 
-typedef struct camera_axes { vec3 right, up, towards, origin; } camera_axes;
+typedef struct camera_axes {
+  vec3 right, up, towards, origin;
+} camera_axes;
 
 static camera_axes axes_of(const hl_camera *camera) {
   camera_axes axes = {.origin = vec3_of(camera->target)};
@@ -19,7 +21,8 @@ static camera_axes axes_of(const hl_camera *camera) {
 }
 
 static void turn(const camera_axes *axes, double v[3]) {
-  vec3 world = vec3_add(vec3_add(vec3_scale(axes->right, v[0]), vec3_scale(axes->up, v[1])), vec3_scale(axes->towards, v[2]));
+  vec3 world = vec3_add(vec3_add(vec3_scale(axes->right, v[0]), vec3_scale(axes->up, v[1])),
+                        vec3_scale(axes->towards, v[2]));
   v[0] = world.x, v[1] = world.y, v[2] = world.z;
 }
 
@@ -50,17 +53,20 @@ static void place_light(const camera_axes *axes, hl_light *light, double (*verti
   light->frame = HL_LIGHT_FRAME_WORLD;
 }
 
-hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, hl_scene_description *to, hl_error *error) {
+hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, hl_scene_description *to,
+                          hl_error *error) {
   *to = *from;
   to->light_count = 0;
   to->lights = hl_allocate_zeroed(context, from->light_count, sizeof *to->lights);
-  if (to->lights == NULL) return hl_fail_memory(error, from->light_count * sizeof *to->lights, "a scene's lights");
+  if (to->lights == NULL)
+    return hl_fail_memory(error, from->light_count * sizeof *to->lights, "a scene's lights");
   camera_axes axes = axes_of(&from->camera);
   for (; to->light_count < from->light_count; to->light_count++) {
     const hl_light *given = &from->lights[to->light_count];
     hl_light *light = (hl_light *)&to->lights[to->light_count];
     double(*vertices)[3] = hl_allocate(context, given->vertex_count, sizeof *vertices);
-    if (vertices == NULL) return hl_fail_memory(error, given->vertex_count * sizeof *vertices, "a light's vertices");
+    if (vertices == NULL)
+      return hl_fail_memory(error, given->vertex_count * sizeof *vertices, "a light's vertices");
     if (given->vertex_count > 0) memcpy(vertices, given->vertices, given->vertex_count * sizeof *vertices);
     *light = *given;
     light->vertices = (const double(*)[3])vertices;

@@ -2,7 +2,9 @@
 #include "scene/light_shape.h"
 
 /* a b' */
-static mat3 outer(vec3 a, vec3 b) { return (mat3){{vec3_scale(b, a.x), vec3_scale(b, a.y), vec3_scale(b, a.z)}}; }
+static mat3 outer(vec3 a, vec3 b) {
+  return (mat3){{vec3_scale(b, a.x), vec3_scale(b, a.y), vec3_scale(b, a.z)}};
+}
 
 static mat3 add(mat3 a, mat3 b, double scale) {
   for (int row = 0; row < 3; row++) a.row[row] = vec3_add(a.row[row], vec3_scale(b.row[row], scale));
@@ -22,9 +24,9 @@ static double greatest_side(const double (*vertices)[3], size_t count) {
   return side;
 }
 
-/* A fan of triangles from the first vertex, each with a signed area: what lies outside the polygon cancels. Over a
- * triangle a, b, c the mean of x is s / 3 and that of x x' is (a a' + b b' + c c' + s s') / 12, s = a + b + c, since
- * barycentric coordinates have the mean products 1/6 (squares) and 1/12 (derived). */
+/* A fan of triangles from the first vertex, each with a signed area: what lies outside the polygon cancels.
+ * Over a triangle a, b, c the mean of x is s / 3 and that of x x' is (a a' + b b' + c c' + s s') / 12, s = a
+ * + b + c, since barycentric coordinates have the mean products 1/6 (squares) and 1/12 (derived). */
 polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
   polygon_shape shape = {.diameter = greatest_side(vertices, count)};
   vec3 first = vec3_of(vertices[0]), twice_area = {0, 0, 0}, sum = {0, 0, 0};
@@ -54,7 +56,8 @@ polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
 double hl_polygon_unevenness(const polygon_shape *shape, const double (*vertices)[3], size_t count) {
   double greatest = 0;
   for (size_t i = 0; i < count; i++)
-    greatest = fmax(greatest, fabs(vec3_dot(shape->normal, vec3_subtract(vec3_of(vertices[i]), shape->centre))));
+    greatest = fmax(greatest,
+                    fabs(vec3_dot(shape->normal, vec3_subtract(vec3_of(vertices[i]), shape->centre))));
   return greatest;
 }
 
@@ -80,7 +83,8 @@ vec3 hl_light_centre(const hl_light *light) {
   return vec3_of(light->position);
 }
 
-/* Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12; the mean of x^2 over a disk of radius r is r^2/4. */
+/* Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12; the mean of x^2 over a disk of radius r is
+ * r^2/4. */
 mat3 hl_light_spread(const hl_light *light, vec3 facing) {
   mat3 spread = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   if (light->type == HL_LIGHT_POLYGON) return hl_polygon_shape(light->vertices, light->vertex_count).spread;
@@ -115,8 +119,9 @@ static emission_plane plane_of_polygon(const hl_light *light) {
       low[a] = fmin(low[a], at);
       high[a] = fmax(high[a], at);
     }
-  return (emission_plane){vec3_add(vec3_scale(axis[0], (low[0] + high[0]) / 2), vec3_scale(axis[1], (low[1] + high[1]) / 2)),
-                          vec3_scale(axis[0], (high[0] - low[0]) / 2), vec3_scale(axis[1], (high[1] - low[1]) / 2)};
+  return (emission_plane){
+      vec3_add(vec3_scale(axis[0], (low[0] + high[0]) / 2), vec3_scale(axis[1], (low[1] + high[1]) / 2)),
+      vec3_scale(axis[0], (high[0] - low[0]) / 2), vec3_scale(axis[1], (high[1] - low[1]) / 2)};
 }
 
 emission_plane hl_emission_plane(const hl_light *light, vec3 facing) {
@@ -127,7 +132,8 @@ emission_plane hl_emission_plane(const hl_light *light, vec3 facing) {
     plane.up = vec3_scale(vec3_of(light->edge2), 0.5);
     return plane;
   }
-  double radius = light->type == HL_LIGHT_DIRECTIONAL ? tan(light->angular_diameter_deg * HL_PI / 360) : light->radius;
+  double radius = light->type == HL_LIGHT_DIRECTIONAL ? tan(light->angular_diameter_deg * HL_PI / 360)
+                                                      : light->radius;
   vec3 normal = light->type == HL_LIGHT_DISK ? vec3_normalise(vec3_of(light->normal)) : facing;
   upright(normal, vec3_of(light->emission.up), &plane.right, &plane.up);
   plane.right = vec3_scale(plane.right, radius);
@@ -135,7 +141,8 @@ emission_plane hl_emission_plane(const hl_light *light, vec3 facing) {
   return plane;
 }
 
-/* offset = middle + s right + t up: right and up need not be perpendicular (derived, by their cross products). */
+/* offset = middle + s right + t up: right and up need not be perpendicular (derived, by their cross
+ * products). */
 void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t) {
   vec3 on_plane = vec3_subtract(offset, plane->middle), normal = vec3_cross(plane->right, plane->up);
   double area = vec3_dot(normal, normal);

@@ -7,7 +7,7 @@
 #include "core/vector.h"
 
 typedef struct polygon_shape {
-  vec3 normal;     /* unit; zero where there is no area */
+  vec3 normal; /* unit; zero where there is no area */
   double area;
   double diameter; /* of the vertices' bounds: the greatest side */
   vec3 centre;     /* of area */
@@ -26,12 +26,13 @@ bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertic
 /* The light's centre, world; not for directional lights. */
 vec3 hl_light_centre(const hl_light *light);
 
-/* Mean of (x - centre)(x - centre)' over the light: a rect has (e1 e1' + e2 e2') / 12, a disk r^2/4 (1 - n n'). Spheres,
- * and the directions of parallel light at distance 1, count as the disk perpendicular to `facing` (unit). */
+/* Mean of (x - centre)(x - centre)' over the light: a rect has (e1 e1' + e2 e2') / 12, a disk r^2/4 (1 - n
+ * n'). Spheres, and the directions of parallel light at distance 1, count as the disk perpendicular to
+ * `facing` (unit). */
 mat3 hl_light_spread(const hl_light *light, vec3 facing);
 
-/* Where a light's own image lies: offsets from the light's centre, or for parallel light from its direction towards the
- * light, at distance 1. */
+/* Where a light's own image lies: offsets from the light's centre, or for parallel light from its direction
+ * towards the light, at distance 1. */
 typedef struct emission_plane {
   vec3 middle;    /* of the image */
   vec3 right, up; /* from there to the middles of its right and top edges */

@@ -1,7 +1,7 @@
 /* scene/looks.c - from what is measured of a volume to what it is taken for, and the table of looks.
  *
- * In: a volume's analysis (analysis.c, labels.c). Out: a row of the table: transfer function, shading and lights. The colour
- * of skin is for what can be a body; all other scanned things are ivory.
+ * In: a volume's analysis (analysis.c, labels.c). Out: a row of the table: transfer function, shading and
+ * lights. The colour of skin is for what can be a body; all other scanned things are ivory.
  */
 #define _GNU_SOURCE /* strcasecmp */
 #include "scene/looks.h"
@@ -12,11 +12,13 @@
 
 typedef enum subject { BODY, BRAIN, MATTER, LABELS, FIELD, FLOW, SIGNED, MEDIUM, CONSTANT } subject;
 
-/* Lights are so strong that the brightest hundredth of the picture is about 235 of 255 in sRGB, and shadows stay readable. */
+/* Lights are so strong that the brightest hundredth of the picture is about 235 of 255 in sRGB, and shadows
+ * stay readable. */
 static const hl_look looks[] = {
     [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.75},
     [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.7},
-    [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.65, 0.35, 0.15, 0.7},
+    [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.65, 0.35, 0.15,
+                0.7},
     [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.30, 0.22, 0},
     [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.70, 0.45, 0.35, 0.65},
     [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.50, 0.45, 0.40, 0.9},
@@ -37,7 +39,8 @@ static bool ends_with(const char *text, const char *end) {
 /* The file tells where a patient's left and right are. */
 static bool is_anatomical(const char *file) { return ends_with(file, ".nii") || ends_with(file, ".nii.gz"); }
 
-/* What is denser than air is mostly tissue: -200 to 200 Hounsfield units, where metal, stone and wood have hardly anything. */
+/* What is denser than air is mostly tissue: -200 to 200 Hounsfield units, where metal, stone and wood have
+ * hardly anything. */
 static bool is_mostly_tissue(const hl_volume *volume) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS, tissue = 0, matter = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
@@ -59,7 +62,8 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   subject is = MATTER;
   switch (analysis->kind) {
     case HL_DATA_SURFACES:
-      if (is_body(volume, file, analysis)) is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* cut out by a program */
+      if (is_body(volume, file, analysis))
+        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* cut out by a program */
       break;
     case HL_DATA_FIELD: is = FIELD; break;
     case HL_DATA_SIGNED: is = SIGNED; break;
@@ -71,8 +75,8 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   return &looks[is];
 }
 
-hl_status hl_look_write(const hl_look *look, hl_context *context, const hl_volume *volume, const hl_data_analysis *analysis,
-                        hl_transfer_function *function, hl_error *error) {
+hl_status hl_look_write(const hl_look *look, hl_context *context, const hl_volume *volume,
+                        const hl_data_analysis *analysis, hl_transfer_function *function, hl_error *error) {
   hl_function_writer w;
   hl_begin_function(&w, analysis);
   look->write(&w);
@@ -91,7 +95,8 @@ hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *v
 }
 
 hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind, hl_error *error) {
-  if (volume == NULL || kind == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_guess: null volume or kind");
+  if (volume == NULL || kind == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_guess: null volume or kind");
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);
   *kind = status == HL_OK ? hl_look_for(volume, file, &analysis)->name : NULL;

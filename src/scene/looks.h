@@ -6,12 +6,13 @@
 #include "scene/function_writer.h"
 
 typedef struct hl_look {
-  const char *name;                      /* of the kind of data, in words */
-  void (*write)(hl_function_writer *w);  /* the transfer function */
+  const char *name;                     /* of the kind of data, in words */
+  void (*write)(hl_function_writer *w); /* the transfer function */
   hl_shading shading;
   hl_kernel kernel;
-  double key, fill, ambient;             /* intensities: the light with shadows, the one without, the light from everywhere */
-  double left;                           /* for exposure.h; 0: the lights stay as they are */
+  double key, fill,
+      ambient; /* intensities: the light with shadows, the one without, the light from everywhere */
+  double left; /* for exposure.h; 0: the lights stay as they are */
 } hl_look;
 
 /* The look of a volume that was analysed; file as in hl_scene_volume. */
@@ -21,7 +22,7 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
 bool hl_is_hounsfield(const hl_volume *volume);
 
 /* The transfer function of a look. */
-hl_status hl_look_write(const hl_look *look, hl_context *context, const hl_volume *volume, const hl_data_analysis *analysis,
-                        hl_transfer_function *function, hl_error *error);
+hl_status hl_look_write(const hl_look *look, hl_context *context, const hl_volume *volume,
+                        const hl_data_analysis *analysis, hl_transfer_function *function, hl_error *error);
 
 #endif

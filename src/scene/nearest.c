@@ -9,8 +9,8 @@
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* Optimal string alignment distance (Damerau 1964, each part edited once): three rows of the table suffice.
- */
+/* Optimal string alignment distance (Damerau 1964, each part edited once): three rows of the table
+ * suffice. */
 int hl_edit_distance(const char *a, const char *b) {
   int rows[3][LONGEST + 1];
   int length_a = (int)strnlen(a, LONGEST), length_b = (int)strnlen(b, LONGEST);

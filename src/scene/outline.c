@@ -1,7 +1,7 @@
 /* scene/outline.c - the outermost points of what is seen of a scene.
  *
- * Of each row of voxels only the first and the last that are seen can be extreme, and of these only the corners of each
- * slice's convex hull. */
+ * Of each row of voxels only the first and the last that are seen can be extreme, and of these only the
+ * corners of each slice's convex hull. */
 #include "scene/outline.h"
 
 #include <string.h>
@@ -18,7 +18,8 @@ static hl_status add(hl_outline *outline, vec3 point, double radius, hl_error *e
     if (points != NULL) outline->point = points;
     double *radii = hl_reallocate(outline->context, outline->radius, capacity, sizeof *radii);
     if (radii != NULL) outline->radius = radii;
-    if (points == NULL || radii == NULL) return hl_fail_memory(error, capacity * sizeof *points, "a scene's outline");
+    if (points == NULL || radii == NULL)
+      return hl_fail_memory(error, capacity * sizeof *points, "a scene's outline");
     outline->capacity = capacity;
   }
   outline->point[outline->count] = point;
@@ -33,26 +34,31 @@ typedef struct chain {
   int side; /* 1: the last voxels of rows; -1: the first */
 } chain;
 
-/* Derived: the corner before the new one is none if the three turn to the inside or not at all (monotone chain; Andrew 1979). */
+/* Derived: the corner before the new one is none if the three turn to the inside or not at all (monotone
+ * chain; Andrew 1979). */
 static void chain_add(chain *c, ptrdiff_t i, ptrdiff_t j) {
   for (; c->count >= 2; c->count--) {
-    ptrdiff_t i0 = c->i[c->count - 2], j0 = c->j[c->count - 2], i1 = c->i[c->count - 1], j1 = c->j[c->count - 1];
+    ptrdiff_t i0 = c->i[c->count - 2], j0 = c->j[c->count - 2], i1 = c->i[c->count - 1],
+              j1 = c->j[c->count - 1];
     if (c->side * ((i1 - i0) * (j - j0) - (i - i0) * (j1 - j0)) > 0) break;
   }
   c->i[c->count] = i;
   c->j[c->count++] = j;
 }
 
-static hl_status add_chain(hl_outline *outline, const chain *c, ptrdiff_t k, affine3 placement, hl_error *error) {
+static hl_status add_chain(hl_outline *outline, const chain *c, ptrdiff_t k, affine3 placement,
+                           hl_error *error) {
   vec3 edges = {vec3_length(mat3_column(placement.linear, 0)), vec3_length(mat3_column(placement.linear, 1)),
                 vec3_length(mat3_column(placement.linear, 2))};
   hl_status status = HL_OK;
   for (int n = 0; status == HL_OK && n < c->count; n++)
-    status = add(outline, affine3_apply(placement, (vec3){(double)c->i[n], (double)c->j[n], (double)k}), vec3_length(edges) / 2, error);
+    status = add(outline, affine3_apply(placement, (vec3){(double)c->i[n], (double)c->j[n], (double)k}),
+                 vec3_length(edges) / 2, error);
   return status;
 }
 
-static hl_status add_slices(hl_outline *outline, const hl_seen *seen, affine3 placement, chain chains[2], hl_error *error) {
+static hl_status add_slices(hl_outline *outline, const hl_seen *seen, affine3 placement, chain chains[2],
+                            hl_error *error) {
   hl_status status = HL_OK;
   ptrdiff_t stride = (ptrdiff_t)seen->stride, first, last;
   for (ptrdiff_t k = seen->first[2]; status == HL_OK && k < seen->end[2]; k += stride) {
@@ -62,7 +68,8 @@ static hl_status add_slices(hl_outline *outline, const hl_seen *seen, affine3 pl
       chain_add(&chains[0], first, j);
       chain_add(&chains[1], last, j);
     }
-    for (int side = 0; status == HL_OK && side < 2; side++) status = add_chain(outline, &chains[side], k, placement, error);
+    for (int side = 0; status == HL_OK && side < 2; side++)
+      status = add_chain(outline, &chains[side], k, placement, error);
   }
   return status;
 }
@@ -89,7 +96,10 @@ static hl_status add_box(hl_outline *outline, const hl_scene_volume *volume, hl_
   hl_status status = HL_OK;
   hl_scene_volume_box(volume, box[0], box[1]);
   for (int corner = 0; status == HL_OK && corner < 8; corner++)
-    status = add(outline, affine3_apply(placement, (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]}), 0, error);
+    status = add(
+        outline,
+        affine3_apply(placement, (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]}), 0,
+        error);
   return status;
 }
 

@@ -2,14 +2,17 @@
  * it. */
 #include "scene/scene.h"
 
-double hl_scene_volume_scale(const hl_scene_volume *volume, int axis) { return volume->scale * volume->axis_scale[axis]; }
+double hl_scene_volume_scale(const hl_scene_volume *volume, int axis) {
+  return volume->scale * volume->axis_scale[axis];
+}
 
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
   mat3 turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   if (volume->rotate_angle_deg != 0)
-    turn =
-        mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), volume->rotate_angle_deg * HL_PI / 180);
-  const double x = hl_scene_volume_scale(volume, 0), y = hl_scene_volume_scale(volume, 1), z = hl_scene_volume_scale(volume, 2);
+    turn = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)),
+                         volume->rotate_angle_deg * HL_PI / 180);
+  const double x = hl_scene_volume_scale(volume, 0), y = hl_scene_volume_scale(volume, 1),
+               z = hl_scene_volume_scale(volume, 2);
   for (int r = 0; r < 3; r++) turn.row[r] = (vec3){turn.row[r].x * x, turn.row[r].y * y, turn.row[r].z * z};
   return affine3_multiply((affine3){turn, vec3_of(volume->translate)}, volume->volume->index_to_world);
 }
@@ -88,7 +91,8 @@ static vec3 middle_of_volumes(const hl_scene_description *scene) {
     double box[2][3];
     hl_scene_volume_box(&scene->volumes[i], box[0], box[1]);
     for (int corner = 0; corner < 8; corner++) {
-      vec3 p = affine3_apply(placement, (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]});
+      vec3 p = affine3_apply(placement,
+                             (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]});
       low = (vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
       high = (vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
     }

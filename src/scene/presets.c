@@ -17,17 +17,23 @@
 #include "scene/scene.h"
 
 /* A row of a CT preset: Hounsfield units, opacity per voxel edge, sRGB colour. */
-typedef struct hounsfield_row { double hounsfield, opacity, srgb[3]; } hounsfield_row;
+typedef struct hounsfield_row {
+  double hounsfield, opacity, srgb[3];
+} hounsfield_row;
 
-static const hounsfield_row bone[] = {
-    {150, 0, {0.60, 0.33, 0.22}},      {220, 0.10, {0.80, 0.56, 0.40}}, {350, 0.65, {0.92, 0.80, 0.64}},
-    {700, 0.92, {0.97, 0.92, 0.82}}, {2000, 0.97, {1.00, 0.98, 0.94}}};
-static const hounsfield_row skin[] = {
-    {-650, 0, {0.72, 0.45, 0.35}},     {-500, 0.10, {0.82, 0.56, 0.44}}, {-350, 0.60, {0.88, 0.64, 0.52}},
-    {-150, 0.92, {0.90, 0.68, 0.56}}, {300, 0.95, {0.94, 0.84, 0.74}}};
+static const hounsfield_row bone[] = {{150, 0, {0.60, 0.33, 0.22}},
+                                      {220, 0.10, {0.80, 0.56, 0.40}},
+                                      {350, 0.65, {0.92, 0.80, 0.64}},
+                                      {700, 0.92, {0.97, 0.92, 0.82}},
+                                      {2000, 0.97, {1.00, 0.98, 0.94}}};
+static const hounsfield_row skin[] = {{-650, 0, {0.72, 0.45, 0.35}},
+                                      {-500, 0.10, {0.82, 0.56, 0.44}},
+                                      {-350, 0.60, {0.88, 0.64, 0.52}},
+                                      {-150, 0.92, {0.90, 0.68, 0.56}},
+                                      {300, 0.95, {0.94, 0.84, 0.74}}};
 static const hounsfield_row soft_tissue[] = {
     {-180, 0, {0.90, 0.76, 0.50}},   {-100, 0.006, {0.90, 0.74, 0.48}}, {-10, 0.012, {0.84, 0.48, 0.36}},
-    {60, 0.07, {0.78, 0.30, 0.24}},  {150, 0.12, {0.82, 0.36, 0.26}},  {250, 0.35, {0.92, 0.76, 0.60}},
+    {60, 0.07, {0.78, 0.30, 0.24}},  {150, 0.12, {0.82, 0.36, 0.26}},   {250, 0.35, {0.92, 0.76, 0.60}},
     {500, 0.90, {0.97, 0.92, 0.84}}, {2000, 0.97, {1.00, 0.98, 0.95}}};
 
 /* The distance from the background of a value given in Hounsfield units. */
@@ -108,18 +114,20 @@ static void write_electron_density(hl_function_writer *w, const hl_volume *volum
   hl_add_colormap(w, "plasma", 0.6 * a->faint, core, 0.25, 0.95);
 }
 
-/* The value that all but one voxel in a hundred thousand stay below: a single bright one does not darken the rest. */
+/* The value that all but one voxel in a hundred thousand stay below: a single bright one does not darken the
+ * rest. */
 static double almost_greatest(const hl_volume *volume) {
   uint64_t voxels = 0, above = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) voxels += volume->histogram[bin];
   int bin = HL_HISTOGRAM_BINS;
   while (bin > 1 && (above += volume->histogram[bin - 1]) <= voxels / 100000) bin--;
-  return bin == HL_HISTOGRAM_BINS ? volume->maximum
-                                  : volume->minimum + (volume->maximum - volume->minimum) * bin / HL_HISTOGRAM_BINS;
+  return bin == HL_HISTOGRAM_BINS
+             ? volume->maximum
+             : volume->minimum + (volume->maximum - volume->minimum) * bin / HL_HISTOGRAM_BINS;
 }
 
-/* For maximum projections: greys from what surrounds the things, which is not shown, to the greatest value. Where things lie
- * below what surrounds them, or to both sides of it, from the least value. */
+/* For maximum projections: greys from what surrounds the things, which is not shown, to the greatest value.
+ * Where things lie below what surrounds them, or to both sides of it, from the least value. */
 static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
   const hl_data_analysis *a = w->analysis;
   bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;
@@ -135,8 +143,8 @@ static const struct {
   const char *name;
   void (*write)(hl_function_writer *w, const hl_volume *volume);
 } presets[] = {
-    {"ct-bone", write_bone},   {"ct-skin", write_skin},   {"ct-soft-tissue", write_soft_tissue},
-    {"mr-brain", write_brain}, {"smoke", write_smoke},     {"electron-density", write_electron_density},
+    {"ct-bone", write_bone},   {"ct-skin", write_skin}, {"ct-soft-tissue", write_soft_tissue},
+    {"mr-brain", write_brain}, {"smoke", write_smoke},  {"electron-density", write_electron_density},
     {"mip", write_maximum},
 };
 

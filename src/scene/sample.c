@@ -91,8 +91,8 @@ hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *e
   double range = volume->maximum - volume->minimum;
   *sample = (hl_sample){.context = volume->context, .low = volume->minimum, .range = range > 0 ? range : 1};
   sample->step = hl_lattice_step(n, SAMPLE_COUNT);
-  size_t capacity =
-      steps_in(n[0], sample->step) * steps_in(n[1], sample->step) * steps_in(n[2], sample->step);
+  size_t capacity = steps_in(n[0], sample->step) * steps_in(n[1], sample->step) *
+                    steps_in(n[2], sample->step);
   sample->values = hl_allocate(volume->context, capacity, sizeof(float));
   if (sample->values == NULL) return hl_fail_memory(error, capacity * sizeof(float), "a volume's sample");
   sample->count = collect(sample, volume, low, n, sample->step, sample->values);

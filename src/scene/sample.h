@@ -13,15 +13,16 @@
 
 typedef struct hl_sample {
   hl_context *context;
-  double low, range;  /* data value = low + range * relative value */
+  double low, range; /* data value = low + range * relative value */
   float *values; /* owned; [count]; relative values of finite voxels on a regular sub-lattice, ascending */
   size_t count;
-  float *border;      /* owned; [border_count]; the same for the grid's six faces */
+  float *border; /* owned; [border_count]; the same for the grid's six faces */
   size_t border_count;
-  size_t step;        /* voxels from one sample to the next along each axis */
+  size_t step; /* voxels from one sample to the next along each axis */
 } hl_sample;
 
-/* The step along each axis of a lattice of at most `most` places in a grid, thin grids included; at least 1. */
+/* The step along each axis of a lattice of at most `most` places in a grid, thin grids included; at least
+ * 1. */
 size_t hl_lattice_step(const size_t dimension[3], double most);
 
 /* Fails for lack of memory alone; either array may be empty where the volume is full of NaNs. */
@@ -35,8 +36,8 @@ double hl_quantile(const float *ascending, size_t count, double fraction);
  * Bickel and Fruehwirth 2006). */
 double hl_mode(const float *ascending, size_t count);
 
-/* Threshold between two classes of greatest variance between them (Otsu 1979); of values above `above` only.
- */
+/* Threshold between two classes of greatest variance between them (Otsu 1979); of values above `above`
+ * only. */
 double hl_threshold_otsu(const float *ascending, size_t count, double above);
 
 /* Threshold of least cross entropy between an image and its two classes' means (Li and Tam 1998), of values

@@ -167,20 +167,22 @@ void hl_light_images_release(hl_context *context, hl_light *light) {
 }
 
 /* An image of width x height pixels and the name of its file; null for none. */
-static hl_status copy_light_image(hl_context *context, const float *from, int width, int height, const char *file,
-                                  const float **pixels, const char **name, hl_error *error) {
+static hl_status copy_light_image(hl_context *context, const float *from, int width, int height,
+                                  const char *file, const float **pixels, const char **name,
+                                  hl_error *error) {
   if (from == NULL) return HL_OK;
   void *copy = NULL;
-  hl_status status = copy_array(context, from, (size_t)width * (size_t)height, 3 * sizeof(float), "a light's image",
-                                &copy, error);
+  hl_status status = copy_array(context, from, (size_t)width * (size_t)height, 3 * sizeof(float),
+                                "a light's image", &copy, error);
   *pixels = copy;
   return status == HL_OK ? copy_text(context, file, name, error) : status;
 }
 
 /* to: its images' pointers are null until they are its own. */
 static hl_status copy_images(hl_context *context, const hl_light *from, hl_light *to, hl_error *error) {
-  hl_status status = copy_light_image(context, from->texture.pixels, from->texture.width, from->texture.height,
-                                      from->texture.file, &to->texture.pixels, &to->texture.file, error);
+  hl_status status = copy_light_image(context, from->texture.pixels, from->texture.width,
+                                      from->texture.height, from->texture.file, &to->texture.pixels,
+                                      &to->texture.file, error);
   if (status != HL_OK) return status;
   return copy_light_image(context, from->emission.pixels, from->emission.width, from->emission.height,
                           from->emission.file, &to->emission.pixels, &to->emission.file, error);

@@ -12,7 +12,8 @@ struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
-  hl_scene_description placed;      /* the same with all lights in the world: what is rendered; owns its lights' array */
+  hl_scene_description
+      placed; /* the same with all lights in the world: what is rendered; owns its lights' array */
 };
 
 /* Along x, y or z (0 to 2) of the world of the volume's own file. */
@@ -25,14 +26,15 @@ affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);
  * (clip is a box in the file's own world; where the grid is oblique to it, its bounds in index space). */
 void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]);
 
-/* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of all volumes' boxes, unit the
- * power of two that the smallest voxel edge is 1 to 2 times as long as. */
+/* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of all volumes'
+ * boxes, unit the power of two that the smallest voxel edge is 1 to 2 times as long as. */
 typedef struct hl_frame_space {
   vec3 centre;
   double unit;
 } hl_frame_space;
 
-/* In frame space: closer to its centre no light gets brighter, though it fall with the square of the distance. */
+/* In frame space: closer to its centre no light gets brighter, though it fall with the square of the
+ * distance. */
 #define HL_LEAST_LIGHT_DISTANCE 1e-3
 
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene); /* of one volume at least */

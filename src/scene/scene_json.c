@@ -16,8 +16,8 @@
 /* What reading gathers and must let go of, whatever happens. */
 typedef struct gathered {
   hl_scene_description description;
-  hl_light *lights;           /* owned; [light_count] */
-  hl_scene_volume *volumes;   /* owned, with their transfer functions' points; [volume_count] */
+  hl_light *lights;         /* owned; [light_count] */
+  hl_scene_volume *volumes; /* owned, with their transfer functions' points; [volume_count] */
   hl_volume_shelf shelf;
   hl_light key_light;
 } gathered;
@@ -40,7 +40,8 @@ static void release(hl_context *context, gathered *g) {
 }
 
 static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene_description *d) {
-  static const char *const keys[] = {"width", "height", "background", "background_transparent", "exposure", NULL};
+  static const char *const keys[] = {"width",    "height", "background", "background_transparent",
+                                     "exposure", NULL};
   const json_t *value = json_object_get(root, "image");
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "image");
@@ -138,7 +139,7 @@ static hl_status read_version(hl_json_reader *reader, const json_t *root) {
 }
 
 static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
-  static const char *const keys[] = {"halflight", "description", "image",   "camera",  "ambient", "lights",
+  static const char *const keys[] = {"halflight", "description", "image",  "camera",  "ambient", "lights",
                                      "groups",    "volumes",     "render", "$schema", NULL};
   hl_scene_description *d = &g->description;
   const char *schema = NULL;
@@ -161,8 +162,8 @@ hl_status hl_scene_from_json(hl_context *context, const char *text, size_t lengt
   if (context == NULL || text == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_from_json: null context, text or scene");
   *scene = NULL;
-  hl_json_reader reader = {.context = context, .name = name != NULL ? name : "scene", .folder = base_folder,
-                           .error = error};
+  hl_json_reader reader = {
+      .context = context, .name = name != NULL ? name : "scene", .folder = base_folder, .error = error};
   json_t *root = NULL;
   hl_status status = hl_json_parse(text, length, reader.name, &root, error);
   if (status != HL_OK) return status;

@@ -7,12 +7,12 @@
 #include "scene/bodies.h"
 #include "scene/sample.h"
 
-#define FAINT 0.02           /* of the greatest opacity: at the rim of what is seen, fainter voxels do not count */
-#define LOST 0.04            /* optical depth of a column that is seen */
-#define OPAQUE 0.9999        /* opacity that counts as the greatest */
-#define CELLS 1e6            /* of a lattice, at most */
-#define VOXELS_EXAMINED 6e6  /* of one volume: larger ones are sampled by rows */
-#define SPECKS_AT_MOST 0.03  /* of all cells that are seen: more are matter */
+#define FAINT           0.02   /* of the greatest opacity: fainter voxels at the rim do not count */
+#define LOST            0.04   /* optical depth of a column that is seen */
+#define OPAQUE          0.9999 /* opacity that counts as the greatest */
+#define CELLS           1e6    /* of a lattice, at most */
+#define VOXELS_EXAMINED 6e6    /* of one volume: larger ones are sampled by rows */
+#define SPECKS_AT_MOST  0.03   /* of all cells that are seen: more are matter */
 
 enum { BINS = 4096, SPECK = 3, SPECK_RATIO = 50, SMALL_RATIO = 5000 };
 
@@ -22,8 +22,8 @@ static double depth_of(const hl_transfer_function *function, double value) {
 }
 
 static double greatest_opacity(const hl_transfer_function *function, double low, double high) {
-  double greatest =
-      fmax(hl_transfer_function_opacity(function, low), hl_transfer_function_opacity(function, high));
+  double greatest = fmax(hl_transfer_function_opacity(function, low),
+                         hl_transfer_function_opacity(function, high));
   for (size_t p = 0; p < function->opacity_count; p++)
     if (function->opacity[p].value >= low && function->opacity[p].value <= high)
       greatest = fmax(greatest, function->opacity[p].opacity);
@@ -38,12 +38,14 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
   size_t count = volume->storage == HL_STORAGE_U8 ? 256 : whole ? 65536 : BINS + 1;
   seen->depth = hl_allocate(volume->context, count, sizeof *seen->depth);
   seen->bends = hl_allocate_zeroed(volume->context, BINS, 1);
-  if (seen->depth == NULL || seen->bends == NULL) return hl_fail_memory(error, count * sizeof *seen->depth, "a table of opacities");
+  if (seen->depth == NULL || seen->bends == NULL)
+    return hl_fail_memory(error, count * sizeof *seen->depth, "a table of opacities");
   double range = volume->maximum - volume->minimum;
   seen->low = volume->minimum;
   seen->scale = range > 0 ? BINS / range : 0;
   for (size_t n = 0; n < count; n++) {
-    double value = whole ? volume->value_scale * (double)n + volume->value_offset : volume->minimum + range * (double)n / BINS;
+    double value = whole ? volume->value_scale * (double)n + volume->value_offset
+                         : volume->minimum + range * (double)n / BINS;
     seen->depth[n] = (float)depth_of(seen->function, value);
   }
   for (size_t p = 0; p < seen->function->opacity_count; p++) {
@@ -56,7 +58,8 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
 
 static float depth_of_float(const hl_seen *seen, float stored) {
   if (!isfinite(stored)) return 0;
-  double value = seen->volume->value_scale * (double)stored + seen->volume->value_offset, at = (value - seen->low) * seen->scale;
+  double value = seen->volume->value_scale * (double)stored + seen->volume->value_offset,
+         at = (value - seen->low) * seen->scale;
   int bin = at < 0 ? 0 : at >= BINS ? BINS - 1 : (int)at;
   if (seen->bends[bin]) return (float)depth_of(seen->function, value);
   return seen->depth[bin] + (float)(at - bin) * (seen->depth[bin + 1] - seen->depth[bin]);
@@ -79,7 +82,8 @@ static size_t index_of(const hl_volume *volume, ptrdiff_t i, ptrdiff_t j, ptrdif
 
 static size_t cell_of(const hl_seen *seen, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k) {
   size_t step = seen->step;
-  return ((size_t)k / step * (size_t)seen->size[1] + (size_t)j / step) * (size_t)seen->size[0] + (size_t)i / step;
+  return ((size_t)k / step * (size_t)seen->size[1] + (size_t)j / step) * (size_t)seen->size[0] +
+         (size_t)i / step;
 }
 
 static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
@@ -96,8 +100,10 @@ static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
 
 /* How many voxels of a cell were looked at along an axis; at least 1. */
 static double looked_at(const hl_seen *seen, int axis, int cell) {
-  ptrdiff_t step = (ptrdiff_t)seen->step, stride = axis == 0 ? 1 : (ptrdiff_t)seen->stride, begin = seen->first[axis];
-  ptrdiff_t low = cell * step > begin ? cell * step : begin, high = low < (cell + 1) * step ? (cell + 1) * step : low;
+  ptrdiff_t step = (ptrdiff_t)seen->step, stride = axis == 0 ? 1 : (ptrdiff_t)seen->stride,
+            begin = seen->first[axis];
+  ptrdiff_t low = cell * step > begin ? cell * step : begin,
+            high = low < (cell + 1) * step ? (cell + 1) * step : low;
   if (high > seen->end[axis]) high = seen->end[axis];
   ptrdiff_t count = (high - begin + stride - 1) / stride - (low - begin + stride - 1) / stride;
   return count > 0 ? (double)count : 1;
@@ -118,7 +124,8 @@ static void make_means(hl_seen *seen) {
   }
 }
 
-/* Optical depths of the columns along each axis: [j][k], [k][i], [i][j] for x, y, z, the second index running fastest. */
+/* Optical depths of the columns along each axis: [j][k], [k][i], [i][j] for x, y, z, the second index running
+ * fastest. */
 static void sum_columns(const hl_seen *seen, const double edge[3], float *column[3]) {
   const float *mean = seen->mean;
   const int *n = seen->size;
@@ -151,7 +158,8 @@ static hl_status find_seen_cells(hl_seen *seen, affine3 placement, hl_error *err
   for (int a = 0; a < 3; a++) edge[a] = (double)seen->step * vec3_length(mat3_column(placement.linear, a));
   size_t faces[3] = {(size_t)n[1] * (size_t)n[2], (size_t)n[2] * (size_t)n[0], (size_t)n[0] * (size_t)n[1]};
   float *all = hl_allocate_zeroed(context, faces[0] + faces[1] + faces[2], sizeof *all);
-  if (all == NULL) return hl_fail_memory(error, (faces[0] + faces[1] + faces[2]) * sizeof *all, "a volume's columns");
+  if (all == NULL)
+    return hl_fail_memory(error, (faces[0] + faces[1] + faces[2]) * sizeof *all, "a volume's columns");
   float *column[3] = {all, all + faces[0], all + faces[0] + faces[1]};
   sum_columns(seen, edge, column);
   mark_seen(seen, column);
@@ -221,14 +229,17 @@ static hl_status make_cells(hl_seen *seen, hl_error *error) {
   const hl_volume *volume = seen->volume;
   size_t cells = 1;
   seen->step = hl_lattice_step(volume->dimension, CELLS);
-  seen->stride = (size_t)fmin(ceil(sqrt((double)hl_volume_voxel_count(volume) / VOXELS_EXAMINED)), (double)seen->step);
+  seen->stride = (size_t)fmin(ceil(sqrt((double)hl_volume_voxel_count(volume) / VOXELS_EXAMINED)),
+                              (double)seen->step);
   for (int a = 0; a < 3; a++) {
     seen->size[a] = (int)((volume->dimension[a] + seen->step - 1) / seen->step);
     cells *= (size_t)seen->size[a];
   }
   seen->kind = hl_allocate_zeroed(volume->context, cells, 1);
   seen->mean = hl_allocate_zeroed(volume->context, cells, sizeof *seen->mean);
-  return seen->kind != NULL && seen->mean != NULL ? HL_OK : hl_fail_memory(error, cells * sizeof *seen->mean, "a volume's cells");
+  return seen->kind != NULL && seen->mean != NULL
+             ? HL_OK
+             : hl_fail_memory(error, cells * sizeof *seen->mean, "a volume's cells");
 }
 
 hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, hl_error *error) {
@@ -262,7 +273,8 @@ static float least_depth(const hl_seen *seen, size_t cell) {
 }
 
 /* The first voxel from `from` on towards `to` that counts; to + way: none. way is 1 or -1. */
-static ptrdiff_t first_that_counts(const hl_seen *seen, size_t row, size_t cells, ptrdiff_t from, ptrdiff_t to, int way) {
+static ptrdiff_t first_that_counts(const hl_seen *seen, size_t row, size_t cells, ptrdiff_t from,
+                                   ptrdiff_t to, int way) {
   const ptrdiff_t step = (ptrdiff_t)seen->step;
   for (ptrdiff_t i = from; way * (to - i) >= 0;) {
     ptrdiff_t cell = i / step, next = way > 0 ? (cell + 1) * step : cell * step - 1;

@@ -11,9 +11,10 @@ void hl_shapes_options_defaults(hl_shapes_options *options) {
 
 static hl_status check_options(const hl_shapes_options *options, hl_error *error) {
   if (options->struct_size != sizeof *options)
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "hl_volume_from_shapes: struct_size is %zu, not %zu: call hl_shapes_options_defaults() first",
-                   options->struct_size, sizeof *options);
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "hl_volume_from_shapes: struct_size is %zu, not %zu: call hl_shapes_options_defaults() first",
+        options->struct_size, sizeof *options);
   if (options->size != 0 && (options->size < LEAST_SIZE || options->size > MOST_SIZE))
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_from_shapes: a size of %d voxels: give %d to %d",
                    options->size, LEAST_SIZE, MOST_SIZE);
@@ -45,7 +46,8 @@ hl_status hl_volume_from_shapes(hl_context *context, const char *text, size_t le
   if (status == HL_OK) status = require_shapes(&reader, root);
   if (status == HL_OK) status = hl_json_check_groups(&reader, json_object_get(root, "groups"));
   if (status == HL_OK)
-    status = hl_json_read_shapes(&reader, root, json_object_get(root, "groups"), options, volume, &voxel_size);
+    status = hl_json_read_shapes(&reader, root, json_object_get(root, "groups"), options, volume,
+                                 &voxel_size);
   json_decref(root);
   return status;
 }

@@ -8,8 +8,8 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-/* The number of points whose value is <= value; points are spaced by stride bytes and begin with their value.
- */
+/* The number of points whose value is <= value; points are spaced by stride bytes and begin with their
+ * value. */
 static size_t count_not_above(const void *points, size_t count, size_t stride, double value) {
   size_t low = 0, high = count;
   while (low < high) {

@@ -3,8 +3,8 @@
  *
  * The kind is told by content: an array is ParaView's, an object with volumeProperties Slicer's. Foreign
  * colours are sRGB, mixed in the space that the file names; they become linear points, close enough together
- * that straight lines between them stand for the mixing. What cannot be carried over is said in a warning.
- */
+ * that straight lines between them stand for the mixing. What cannot be carried over is said in a
+ * warning. */
 #include <math.h>
 #include <string.h>
 
@@ -17,11 +17,13 @@
 #include "scene/json_parts.h"
 #include "scene/scene.h"
 
-#define PIECES 16      /* of a segment that is no straight line */
+#define PIECES     16   /* of a segment that is no straight line */
 #define MOST_NODES 2048 /* of a foreign function: its pieces stay below the limit of points */
 
 /* A point of a foreign function; the pair rules the segment to the next one, as in VTK's functions. */
-typedef struct node { double value, y[3], midpoint, sharpness; } node;
+typedef struct node {
+  double value, y[3], midpoint, sharpness;
+} node;
 
 /* VTK's piecewise functions: where in [0,1] a place t of a segment lies, and how it is eased. */
 static double ease(double t, const node *n) {
@@ -47,9 +49,9 @@ static hl_status set_opacity(hl_context *context, const node *nodes, size_t coun
       double t = piece / (double)PIECES, eased = ease(t, &nodes[n]);
       double y = nodes[n].y[0], next = straight ? y : nodes[n + 1].y[0],
              end = straight ? 0 : nodes[n + 1].value;
-      points[made++] =
-          (hl_opacity_point){straight ? nodes[n].value : nodes[n].value + t * (end - nodes[n].value),
-                             fmin(fmax(y + eased * (next - y), 0), 1)};
+      points[made++] = (hl_opacity_point){
+          straight ? nodes[n].value : nodes[n].value + t * (end - nodes[n].value),
+          fmin(fmax(y + eased * (next - y), 0), 1)};
     }
   }
   function->opacity = points;

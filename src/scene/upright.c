@@ -15,17 +15,17 @@
 #include "scene/scene.h"
 #include "scene/view.h"
 
-#define LATTICE 5e5     /* places looked at, about */
-#define BEND 3          /* places over which relief is felt */
+#define LATTICE       5e5 /* places looked at, about */
+#define BEND          3   /* places over which relief is felt */
 #define BODY_AT_LEAST 0.4 /* of all that is solid: a body that decides alone */
-#define CLEARLY 1.1     /* so much more relief has a side that is worth turning for */
+#define CLEARLY       1.1 /* so much more relief has a side that is worth turning for */
 
 /* What a thing looks like from its six sides. */
 typedef struct shape {
-  int size[3];             /* places of the lattice along each axis */
-  unsigned char *solid;    /* owned; [size[2]][size[1]][size[0]]; 1 where the things are */
-  double *area[3];         /* owned; [size[a]]; solid places in each slice across axis a */
-  int first[3], last[3];   /* slices that hold the things, but for one part in 500 at either end */
+  int size[3];           /* places of the lattice along each axis */
+  unsigned char *solid;  /* owned; [size[2]][size[1]][size[0]]; 1 where the things are */
+  double *area[3];       /* owned; [size[a]]; solid places in each slice across axis a */
+  int first[3], last[3]; /* slices that hold the things, but for one part in 500 at either end */
 } shape;
 
 static bool is_oriented(const hl_volume *volume) {
@@ -62,7 +62,9 @@ static size_t place_in(const shape *s, int i, int j, int k) {
   return ((size_t)k * (size_t)s->size[1] + (size_t)j) * (size_t)s->size[0] + (size_t)i;
 }
 
-static size_t places_of(const shape *s) { return (size_t)s->size[0] * (size_t)s->size[1] * (size_t)s->size[2]; }
+static size_t places_of(const shape *s) {
+  return (size_t)s->size[0] * (size_t)s->size[1] * (size_t)s->size[2];
+}
 
 static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size_t step, shape *s) {
   unsigned char *solid = s->solid;
@@ -75,7 +77,8 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
       }
 }
 
-/* The largest connected body alone is looked at, not a board beside it; many small bodies are taken together. */
+/* The largest connected body alone is looked at, not a board beside it; many small bodies are taken
+ * together. */
 static hl_status forget_others(hl_context *context, shape *s, hl_error *error) {
   hl_bodies bodies;
   hl_status status = hl_bodies_find(context, s->solid, s->size, &bodies, error);
@@ -111,11 +114,13 @@ static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *ana
   hl_context *context = volume->context;
   size_t step = hl_lattice_step(volume->dimension, LATTICE);
   memset(s, 0, sizeof *s);
-  if (!allocate(context, volume, step, s)) return hl_fail_memory(error, (size_t)LATTICE, "a volume's outline");
+  if (!allocate(context, volume, step, s))
+    return hl_fail_memory(error, (size_t)LATTICE, "a volume's outline");
   fill(volume, analysis, step, s);
   hl_status status = forget_others(context, s, error);
   *any = status == HL_OK && measure(s);
-  if (status == HL_OK && hl_cancelled(context)) status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume");
+  if (status == HL_OK && hl_cancelled(context))
+    status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume");
   return status;
 }
 
@@ -158,7 +163,7 @@ static int up_of(const shape *s, const hl_volume *volume) {
     extent[a] = (s->last[a] - s->first[a]) * vec3_length(mat3_column(volume->index_to_world.linear, a)) *
                 (double)volume->dimension[a] / s->size[a];
   if (extent[2] > 1.4 * fmax(extent[0], extent[1])) return 3; /* a column stands */
-  for (int a = 0; a < 3; a++) /* cut off by a face of the grid */
+  for (int a = 0; a < 3; a++)                                 /* cut off by a face of the grid */
     for (int end = 0; end < 2; end++)
       if (touch(s, a, end) > fmax(most, fmax(0.05, 4 * touch(s, a, !end)))) {
         most = touch(s, a, end);
@@ -177,8 +182,8 @@ static int up_of(const shape *s, const hl_volume *volume) {
   return sideways ? -2 : 3; /* rows of pictures run downwards */
 }
 
-/* Places from one end of an axis to the thing, along the row (u, v) of the other two axes; -1: nothing there.
- */
+/* Places from one end of an axis to the thing, along the row (u, v) of the other two axes; -1: nothing
+ * there. */
 static int depth_at(const shape *s, int axis, int end, int u, int v) {
   int n[3];
   n[(axis + 1) % 3] = u;
@@ -231,8 +236,8 @@ static vec3 axis_along(int up) {
   return vec3_scale(axes[abs(up) - 1], up < 0 ? -1 : 1);
 }
 
-hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis, hl_upright *upright,
-                           hl_error *error) {
+hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis,
+                           hl_upright *upright, hl_error *error) {
   bool oriented = is_oriented(volume->volume), any = false;
   *upright = (hl_upright){axis_along(analysis->kind == HL_DATA_MEDIUM && !oriented ? 2 : 3), HL_VIEW_AZIMUTH};
   if (oriented || analysis->kind != HL_DATA_SURFACES) return HL_OK;

@@ -1,8 +1,8 @@
 /* shape/distance.c - signed distances of shapes, of their groups, and bounds of them over a ball.
  *
- * The distances of single shapes are exact (after I. Quilez, "Distance functions"), so a ball of radius r sees
- * values within r of its centre's, and joints are monotone in both of their distances: intervals pass through
- * them end by end.
+ * The distances of single shapes are exact (after I. Quilez, "Distance functions"), so a ball of radius r
+ * sees values within r of its centre's, and joints are monotone in both of their distances: intervals pass
+ * through them end by end.
  */
 #include <math.h>
 
@@ -20,7 +20,9 @@ static double box_distance(vec3 p, const double half[3], double rounding) {
 }
 
 /* A point in the plane of an axis: how far along it from its middle, and how far from it. */
-typedef struct axial { double along, away, half; } axial;
+typedef struct axial {
+  double along, away, half;
+} axial;
 
 static axial about_axis(const hl_shape *shape, vec3 p) {
   vec3 from = vec3_of(shape->from), axis = vec3_subtract(vec3_of(shape->to), from);
@@ -45,7 +47,8 @@ static double cone_distance(const hl_shape *shape, axial q) {
   double r1 = shape->radius, r2 = shape->end_radius;
   double end_x = q.away - fmin(q.away, q.along < 0 ? r1 : r2), end_y = fabs(q.along) - q.half;
   double slope_x = r2 - r1, slope_y = 2 * q.half;
-  double t = ((r2 - q.away) * slope_x + (q.half - q.along) * slope_y) / (slope_x * slope_x + slope_y * slope_y);
+  double t = ((r2 - q.away) * slope_x + (q.half - q.along) * slope_y) /
+             (slope_x * slope_x + slope_y * slope_y);
   t = clamp(t, 0, 1);
   double side_x = q.away - r2 + slope_x * t, side_y = q.along - q.half + slope_y * t;
   double distance = fmin(length2(end_x, end_y), length2(side_x, side_y));
@@ -103,16 +106,21 @@ static double bare_distance(const hl_shape_list *list, size_t index, const unsig
 }
 
 /* The nearest point of the surface: a step of the distance down the gradient of the distance. */
-static vec3 foot_point(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 p, double distance) {
+static vec3 foot_point(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 p,
+                       double distance) {
   double h = list->shapes[index].edge / 64;
   vec3 x = {h, 0, 0}, y = {0, h, 0}, z = {0, 0, h};
-  vec3 slope = {bare_distance(list, index, live, vec3_add(p, x)) - bare_distance(list, index, live, vec3_subtract(p, x)),
-                bare_distance(list, index, live, vec3_add(p, y)) - bare_distance(list, index, live, vec3_subtract(p, y)),
-                bare_distance(list, index, live, vec3_add(p, z)) - bare_distance(list, index, live, vec3_subtract(p, z))};
+  vec3 slope = {bare_distance(list, index, live, vec3_add(p, x)) -
+                    bare_distance(list, index, live, vec3_subtract(p, x)),
+                bare_distance(list, index, live, vec3_add(p, y)) -
+                    bare_distance(list, index, live, vec3_subtract(p, y)),
+                bare_distance(list, index, live, vec3_add(p, z)) -
+                    bare_distance(list, index, live, vec3_subtract(p, z))};
   return vec3_subtract(p, vec3_scale(vec3_normalise(slope), distance));
 }
 
-static double shape_distance(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 parent) {
+static double shape_distance(const hl_shape_list *list, size_t index, const unsigned char *live,
+                             vec3 parent) {
   const hl_shape *shape = &list->shapes[index];
   vec3 p = affine3_apply(shape->to_local, parent);
   double distance = bare_distance(list, index, live, p);

@@ -28,7 +28,8 @@ static inline double hl_exp_negative(double x) {
   return sum * hl_power_of_two(k);
 }
 
-/* ln x for normal x > 0: derived, x = 2^k m with sqrt(1/2) <= m < sqrt(2), ln m = 2 artanh((m - 1) / (m + 1)). */
+/* ln x for normal x > 0: derived, x = 2^k m with sqrt(1/2) <= m < sqrt(2), ln m = 2 artanh((m - 1) / (m +
+ * 1)). */
 static inline double hl_log(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);
@@ -40,8 +41,8 @@ static inline double hl_log(double x) {
   return k * HL_LN2 + 2 * s * sum;
 }
 
-/* Sine and cosine of an angle in degrees; exact at multiples of 90. Derived: a turn by the nearest multiple of
- * 90 degrees, and Taylor series of what is left, at most 45 degrees. abs(angle_deg) <= 1e6. */
+/* Sine and cosine of an angle in degrees; exact at multiples of 90. Derived: a turn by the nearest multiple
+ * of 90 degrees, and Taylor series of what is left, at most 45 degrees. abs(angle_deg) <= 1e6. */
 static inline void hl_sine_cosine(double angle_deg, double *sine, double *cosine) {
   int64_t quarter = (int64_t)(angle_deg / 90 + (angle_deg < 0 ? -0.5 : 0.5));
   double x = (angle_deg - 90.0 * (double)quarter) * (3.14159265358979323846 / 180), square = x * x;

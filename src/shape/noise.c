@@ -1,4 +1,5 @@
-/* shape/noise.c - Perlin's noise, turbulence, bias and gain, in arithmetic that is the same on every machine. */
+/* shape/noise.c - Perlin's noise, turbulence, bias and gain, in arithmetic that is the same on every
+ * machine. */
 #include "shape/noise.h"
 
 #include "shape/elementary.h"
@@ -28,10 +29,9 @@ static double mix(double t, double a, double b) { return a + t * (b - a); }
 
 /* The product of an offset with the hash's gradient; four of the sixteen codes repeat an edge. */
 static double slope(int hash, double x, double y, double z) {
-  static const double gradient[16][3] = {{1, 1, 0},  {-1, 1, 0},  {1, -1, 0}, {-1, -1, 0},
-                                              {1, 0, 1},  {-1, 0, 1},  {1, 0, -1}, {-1, 0, -1},
-                                              {0, 1, 1},  {0, -1, 1},  {0, 1, -1}, {0, -1, -1},
-                                              {1, 1, 0},  {0, -1, 1},  {-1, 1, 0}, {0, -1, -1}};
+  static const double gradient[16][3] = {
+      {1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
+      {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {0, -1, 1}, {-1, 1, 0}, {0, -1, -1}};
   const double *g = gradient[hash & 15];
   return g[0] * x + g[1] * y + g[2] * z;
 }

@@ -7,13 +7,15 @@
 #include "core/vector.h"
 
 /* A permutation of 0 .. 255, written twice. */
-typedef struct hl_noise { uint8_t permutation[512]; } hl_noise;
+typedef struct hl_noise {
+  uint8_t permutation[512];
+} hl_noise;
 
 /* The same seed gives the same noise on every machine. */
 void hl_noise_begin(hl_noise *noise, uint64_t seed);
 
-/* Perlin (2002): gradients towards the twelve edges of a cube, quintic fade. Zero on the integer lattice, about
- * -1 to 1 between, period 256. */
+/* Perlin (2002): gradients towards the twelve edges of a cube, quintic fade. Zero on the integer lattice,
+ * about -1 to 1 between, period 256. */
 double hl_noise_at(const hl_noise *noise, vec3 p);
 
 /* Sum over octaves i of noise(2^i p) / 2^i. */
@@ -22,8 +24,8 @@ double hl_noise_sum(const hl_noise *noise, vec3 p, int octaves);
 /* Perlin and Hoffert (1989): sum over octaves i of abs(noise(2^i p)) / 2^i. */
 double hl_turbulence(const hl_noise *noise, vec3 p, int octaves);
 
-/* Perlin and Hoffert (1989): bias_b(t) = t^(ln b / ln 0.5) takes 0.5 to b; gain_g pulls t in 0 to 1 towards 0.5
- * (g < 0.5) or away from it. Both take 0 to 0 and 1 to 1, and 0.5 changes nothing. */
+/* Perlin and Hoffert (1989): bias_b(t) = t^(ln b / ln 0.5) takes 0.5 to b; gain_g pulls t in 0 to 1 towards
+ * 0.5 (g < 0.5) or away from it. Both take 0 to 0 and 1 to 1, and 0.5 changes nothing. */
 double hl_bias(double bias, double t);
 double hl_gain(double gain, double t);
 

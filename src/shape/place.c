@@ -52,7 +52,8 @@ static double disk_reach(double radius, vec3 axis, vec3 u) {
 static double solid_reach(const hl_shape *shape, vec3 u) {
   const double *size = shape->size;
   vec3 from = vec3_of(shape->from), to = vec3_of(shape->to), axis = vec3_normalise(vec3_subtract(to, from));
-  double box = fabs(u.x) * size[0] / 2 + fabs(u.y) * size[1] / 2 + fabs(u.z) * size[2] / 2, length = vec3_length(u);
+  double box = fabs(u.x) * size[0] / 2 + fabs(u.y) * size[1] / 2 + fabs(u.z) * size[2] / 2,
+         length = vec3_length(u);
   switch (shape->type) {
     case HL_SHAPE_BOX: return box;
     case HL_SHAPE_PLANE: return box - u.z * size[2] / 2;
@@ -64,14 +65,14 @@ static double solid_reach(const hl_shape *shape, vec3 u) {
     case HL_SHAPE_CONE:
       return fmax(vec3_dot(from, u) + disk_reach(shape->radius, axis, u),
                   vec3_dot(to, u) + disk_reach(shape->end_radius, axis, u));
-    case HL_SHAPE_TORUS:
-      return disk_reach(shape->radius, (vec3){0, 0, 1}, u) + shape->tube_radius * length;
+    case HL_SHAPE_TORUS: return disk_reach(shape->radius, (vec3){0, 0, 1}, u) + shape->tube_radius * length;
     case HL_SHAPE_GROUP: break;
   }
   return -INFINITY;
 }
 
-/* The support function: the greatest u.x over all points x of [first, end). u: direction in the list's frame. */
+/* The support function: the greatest u.x over all points x of [first, end). u: direction in the list's
+ * frame. */
 static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u) {
   double farthest = -INFINITY;
   for (size_t index = first; index < end; index = list->shapes[index].end) {

@@ -3,7 +3,9 @@
 
 #include <string.h>
 
-typedef struct preset { const char *name, *summary, *text; } preset;
+typedef struct preset {
+  const char *name, *summary, *text;
+} preset;
 
 static const preset presets[] = {
     {"sphere", "a ball", "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 1}]}"},
@@ -16,7 +18,8 @@ static const preset presets[] = {
      "  {\"type\": \"torus\", \"radius\": 1, \"tube_radius\": 0.18, \"position\": [2, 0, 0]}]}"},
     {"hypertexture", "a ball that turbulence has eaten into",
      "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 36,\n"
-     "  \"hypertexture\": {\"frequency\": 0.042, \"octaves\": 5, \"gain\": 0.75, \"amplitude\": 30, \"soft\": 3.5}}]}"},
+     "  \"hypertexture\": {\"frequency\": 0.042, \"octaves\": 5, \"gain\": 0.75, \"amplitude\": 30, "
+     "\"soft\": 3.5}}]}"},
     {"furry-sphere", "hypertexture: a ball with fur",
      "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 1,\n"
      "  \"hypertexture\": {\"pattern\": \"noise\", \"frequency\": 14, \"gain\": 0.8, \"amplitude\": 0.55,\n"
@@ -34,7 +37,8 @@ static const preset presets[] = {
      "    {\"type\": \"sphere\", \"radius\": 18, \"position\": [-32, -2, 0], \"blend\": 6},\n"
      "    {\"type\": \"sphere\", \"radius\": 15, \"position\": [6, -18, -2], \"blend\": 6},\n"
      "    {\"type\": \"sphere\", \"radius\": 12, \"position\": [44, -2, -4], \"blend\": 6},\n"
-     "    {\"type\": \"box\", \"size\": [160, 120, 40], \"position\": [0, 0, -30], \"operation\": \"subtract\",\n"
+     "    {\"type\": \"box\", \"size\": [160, 120, 40], \"position\": [0, 0, -30], \"operation\": "
+     "\"subtract\",\n"
      "     \"blend\": 8}],\n"
      "  \"hypertexture\": {\"frequency\": 0.055, \"octaves\": 6, \"amplitude\": 24, \"soft\": 9}}]}"},
     {"orbital", "the wave function of hydrogen's 3d orbital with m = 1, from -1 to 1",
@@ -45,7 +49,9 @@ enum { PRESET_COUNT = sizeof presets / sizeof *presets };
 
 const char *hl_shape_preset_name(size_t index) { return index < PRESET_COUNT ? presets[index].name : NULL; }
 
-const char *hl_shape_preset_summary(size_t index) { return index < PRESET_COUNT ? presets[index].summary : NULL; }
+const char *hl_shape_preset_summary(size_t index) {
+  return index < PRESET_COUNT ? presets[index].summary : NULL;
+}
 
 const char *hl_shape_preset_text(const char *name) {
   for (size_t p = 0; name != NULL && p < PRESET_COUNT; p++)

@@ -1,8 +1,8 @@
 /* shape/sample.c - from a list of shapes to voxels.
  *
  * Blocks of 8x8x8 voxels are sampled in parallel. Most of them are far from every surface: the bounds of the
- * distance over a block tell so before any voxel is asked. Densities are kept as 16 bit, orbitals as float.
- */
+ * distance over a block tell so before any voxel is asked. Densities are kept as 16 bit, orbitals as
+ * float. */
 #include <math.h>
 
 #include "core/context.h"
@@ -15,15 +15,17 @@ enum { BLOCK = 8, DENSITY_STEPS = 65535 };
 typedef struct sampling {
   const hl_shape_list *list;
   const hl_shape_grid *grid;
-  unsigned char *live;  /* owned; [threads][list->count] */
-  uint16_t *density;    /* of solids; null for orbitals */
-  float *wave;          /* of orbitals; null for solids */
+  unsigned char *live; /* owned; [threads][list->count] */
+  uint16_t *density;   /* of solids; null for orbitals */
+  float *wave;         /* of orbitals; null for solids */
   size_t blocks[3];
-  size_t layer;         /* of blocks, along k */
+  size_t layer; /* of blocks, along k */
 } sampling;
 
 /* One block's voxels: [low, high) along each axis. */
-typedef struct block { size_t low[3], high[3]; } block;
+typedef struct block {
+  size_t low[3], high[3];
+} block;
 
 static block block_at(const sampling *s, size_t index) {
   size_t at[3] = {index % s->blocks[0], index / s->blocks[0], s->layer};
@@ -37,7 +39,8 @@ static block block_at(const sampling *s, size_t index) {
 }
 
 static vec3 voxel_centre(const hl_shape_grid *grid, double i, double j, double k) {
-  return (vec3){((double)grid->first[0] + i) * grid->voxel_size, ((double)grid->first[1] + j) * grid->voxel_size,
+  return (vec3){((double)grid->first[0] + i) * grid->voxel_size,
+                ((double)grid->first[1] + j) * grid->voxel_size,
                 ((double)grid->first[2] + k) * grid->voxel_size};
 }
 
@@ -80,7 +83,8 @@ static void sample_solids(void *data, size_t index, int worker) {
     for (size_t j = b.low[1]; j < b.high[1]; j++) {
       uint16_t *row = s->density + row_start(s, 0, j, k);
       for (size_t i = b.low[0]; i < b.high[0]; i++)
-        row[i] = density_at(hl_shapes_distance(s->list, live, voxel_centre(grid, (double)i, (double)j, (double)k)), edge);
+        row[i] = density_at(
+            hl_shapes_distance(s->list, live, voxel_centre(grid, (double)i, (double)j, (double)k)), edge);
     }
 }
 
@@ -139,14 +143,16 @@ static void describe(const hl_shape_grid *grid, bool orbitals, hl_volume_descrip
   description->value_scale = orbitals ? 1 : 1.0 / DENSITY_STEPS;
 }
 
-hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid, int threads,
-                           const char *subject, hl_volume **volume, hl_error *error) {
+hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid,
+                           int threads, const char *subject, hl_volume **volume, hl_error *error) {
   bool orbitals = list->shapes[0].type == HL_SHAPE_ORBITAL; /* then all of them are */
   const size_t *dimension = grid->dimension;
-  size_t count = dimension[0] * dimension[1] * dimension[2], bytes = orbitals ? sizeof(float) : sizeof(uint16_t);
+  size_t count = dimension[0] * dimension[1] * dimension[2],
+         bytes = orbitals ? sizeof(float) : sizeof(uint16_t);
   void *voxels = hl_allocate(context, count, bytes);
   if (voxels == NULL) return hl_fail_memory(error, count * bytes, subject);
-  sampling s = {.list = list, .grid = grid, .density = orbitals ? NULL : voxels, .wave = orbitals ? voxels : NULL};
+  sampling s = {
+      .list = list, .grid = grid, .density = orbitals ? NULL : voxels, .wave = orbitals ? voxels : NULL};
   for (int axis = 0; axis < 3; axis++) s.blocks[axis] = (dimension[axis] + BLOCK - 1) / BLOCK;
   hl_status status = sample(context, &s, threads, subject, error);
   if (status != HL_OK) {

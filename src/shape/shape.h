@@ -1,9 +1,9 @@
 /* shape/shape.h - solids from signed distances, hypertexture and orbitals, sampled into a volume.
  *
  * A list of shapes is a tree in one array: a group is followed by its members. Each shape has its own frame:
- * scaled, then turned, then moved into the frame of its group, or of the volume. Solids have a density, 1 inside,
- * 0 outside, 0.5 on the surface and linear in the distance over HL_SHAPE_EDGE voxels across it, so that kernels
- * which reproduce linear functions reconstruct the surface of a plane exactly.
+ * scaled, then turned, then moved into the frame of its group, or of the volume. Solids have a density, 1
+ * inside, 0 outside, 0.5 on the surface and linear in the distance over HL_SHAPE_EDGE voxels across it, so
+ * that kernels which reproduce linear functions reconstruct the surface of a plane exactly.
  */
 #ifndef HL_SHAPE_SHAPE_H
 #define HL_SHAPE_SHAPE_H
@@ -13,10 +13,10 @@
 #include "shape/noise.h"
 #include "volume/volume.h"
 
-#define HL_SHAPE_EDGE 4.0               /* voxels from density 1 to density 0 */
-#define HL_SHAPE_MARGIN 2               /* empty voxels beyond that on each side of the grid */
+#define HL_SHAPE_EDGE   4.0               /* voxels from density 1 to density 0 */
+#define HL_SHAPE_MARGIN 2                 /* empty voxels beyond that on each side of the grid */
 #define HL_SHAPE_VOXELS ((size_t)1 << 30) /* most voxels of a grid */
-#define HL_SHAPE_COUNT 4096             /* most shapes of a list, members of groups counted where they are placed */
+#define HL_SHAPE_COUNT  4096 /* most shapes of a list, members of groups counted where they are placed */
 
 typedef enum hl_shape_type {
   HL_SHAPE_BOX = 0,
@@ -43,11 +43,11 @@ typedef enum hl_shape_pattern {
   HL_PATTERN_TURBULENCE = 2
 } hl_shape_pattern;
 
-/* Perlin and Hoffert (1989): what noise does to the density near a shape's surface. Lengths are of the shape's
- * own frame. */
+/* Perlin and Hoffert (1989): what noise does to the density near a shape's surface. Lengths are of the
+ * shape's own frame. */
 typedef struct hl_hypertexture {
   hl_shape_pattern pattern;
-  double frequency;  /* lattice cells per length */
+  double frequency; /* lattice cells per length */
   int octaves;
   double bias, gain; /* of the pattern's value, 0 to 1 */
   double amplitude;  /* how deep the surface is eaten where the value is 1; negative: how far it grows */
@@ -59,26 +59,26 @@ typedef struct hl_hypertexture {
 typedef struct hl_shape {
   hl_shape_type type;
   hl_shape_operation operation;
-  double blend;            /* length over which the joint with the shapes before is rounded; 0: sharp */
+  double blend; /* length over which the joint with the shapes before is rounded; 0: sharp */
   double position[3];
   double rotate_axis[3];
   double rotate_angle_deg;
   double scale;
-  double size[3];          /* box: full edges; plane: x, y and thickness */
-  double from[3], to[3];   /* cylinder, capsule, cone: ends of the axis */
-  double radius;           /* sphere, torus (to the tube's middle), orbital (where it is cut), cone (at from) */
-  double end_radius;       /* cone: at to */
-  double tube_radius;      /* torus */
-  double rounding;         /* box, plane, cylinder: radius of the edges, inside the given size */
-  int quantum[3];          /* orbital: n, l, m */
+  double size[3];        /* box: full edges; plane: x, y and thickness */
+  double from[3], to[3]; /* cylinder, capsule, cone: ends of the axis */
+  double radius;         /* sphere, torus (to the tube's middle), orbital (where it is cut), cone (at from) */
+  double end_radius;     /* cone: at to */
+  double tube_radius;    /* torus */
+  double rounding;       /* box, plane, cylinder: radius of the edges, inside the given size */
+  int quantum[3];        /* orbital: n, l, m */
   hl_hypertexture texture;
-  size_t end;              /* index of the shape after this one and its members */
-  affine3 to_local;        /* from the parent's frame; these two by hl_shapes_place() */
-  double edge;             /* HL_SHAPE_EDGE voxels in the own frame */
+  size_t end;       /* index of the shape after this one and its members */
+  affine3 to_local; /* from the parent's frame; these two by hl_shapes_place() */
+  double edge;      /* HL_SHAPE_EDGE voxels in the own frame */
 } hl_shape;
 
 typedef struct hl_shape_list {
-  hl_shape *shapes;        /* [count] in reading order: each group before its members */
+  hl_shape *shapes; /* [count] in reading order: each group before its members */
   size_t count, capacity;
 } hl_shape_list;
 
@@ -87,7 +87,7 @@ void hl_shape_defaults(hl_shape *shape);
 /* The grid that holds all shapes, with an empty margin: voxel centres at whole multiples of voxel_size. */
 typedef struct hl_shape_grid {
   double voxel_size;
-  int64_t first[3];        /* the first voxel's centre, in voxels */
+  int64_t first[3]; /* the first voxel's centre, in voxels */
   size_t dimension[3];
 } hl_shape_grid;
 
@@ -101,10 +101,12 @@ double hl_shapes_extent(const hl_shape_list *list);
 bool hl_shapes_grid(const hl_shape_list *list, double voxel_size, hl_shape_grid *grid);
 
 /* Bounds of a distance. */
-typedef struct hl_interval { double low, high; } hl_interval;
+typedef struct hl_interval {
+  double low, high;
+} hl_interval;
 
-/* The signed distance (negative inside; edge / 2 and -edge / 2 stand for anything farther) at p, a point of the
- * volume's frame. live: [count], from hl_shapes_bounds(); null: all. */
+/* The signed distance (negative inside; edge / 2 and -edge / 2 stand for anything farther) at p, a point of
+ * the volume's frame. live: [count], from hl_shapes_bounds(); null: all. */
 double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, vec3 p);
 
 /* What that distance can be within radius of p, and which shapes can have a say there. */
@@ -121,7 +123,7 @@ double hl_orbital_at(const hl_shape *shape, vec3 p);
 
 /* The volume of a list that has been placed for the grid. Orbitals are scaled to a greatest magnitude of 1.
  * threads: 0: one per processor. subject starts the error lines. */
-hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid, int threads,
-                           const char *subject, hl_volume **volume, hl_error *error);
+hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid,
+                           int threads, const char *subject, hl_volume **volume, hl_error *error);
 
 #endif

@@ -1,8 +1,9 @@
 /* shape/texture.c - hypertexture: noise that eats into the soft region of a shape.
  *
  * Derived from Perlin and Hoffert's (1989) D(x (1 + turbulence(x))): the distance of the surface grows by
- * amplitude times the pattern's value, and the density then falls from 1 to 0 over the length `soft` about the
- * new surface. The density goes on as the distance that the edge of a solid of the same density would have.
+ * amplitude times the pattern's value, and the density then falls from 1 to 0 over the length `soft` about
+ * the new surface. The density goes on as the distance that the edge of a solid of the same density would
+ * have.
  */
 #include "shape/shape.h"
 

@@ -23,7 +23,11 @@
 #endif
 
 const hot_functions HL_HOT_TABLE = {
-    .grid = {{bound_rows_u8, bound_rows_u16, bound_rows_f32}, bound_along, bound_across, brick_bits, HL_COLUMN_SLICE},
+    .grid = {{bound_rows_u8, bound_rows_u16, bound_rows_f32},
+             bound_along,
+             bound_across,
+             brick_bits,
+             HL_COLUMN_SLICE},
     .brick_ranges = brick_ranges_in_view,
     .relevant_blocks_tile = relevant_blocks_tile,
     .splat_tile = splat_tile,

@@ -23,8 +23,8 @@ typedef int32_t lanes_int __attribute__((vector_size(64)));
 
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 
-/* Functions that are one instruction or a few where there are vectors of the size, and long without: there they are
- * called, which keeps the baseline's code (and its compile time under sanitizers) within bounds. */
+/* Functions that are one instruction or a few where there are vectors of the size, and long without: there
+ * they are called, which keeps the baseline's code (and its compile time under sanitizers) within bounds. */
 #if defined(__AVX2__)
 #define LANES_CALL LANES_INLINE
 #else
@@ -49,7 +49,9 @@ LANES_INLINE lanes_int lanes_load_short_int(const uint16_t *p) {
   memcpy(&v, p, sizeof v);
   return __builtin_convertvector(v, lanes_int);
 }
-LANES_INLINE lanes lanes_load_short(const uint16_t *p) { return __builtin_convertvector(lanes_load_short_int(p), lanes); }
+LANES_INLINE lanes lanes_load_short(const uint16_t *p) {
+  return __builtin_convertvector(lanes_load_short_int(p), lanes);
+}
 
 /* A 4x4 block of pixels: lane 4*row + column; rows are stride floats apart. */
 LANES_INLINE lanes lanes_load_block(const float *p, size_t stride) {
@@ -146,10 +148,11 @@ LANES_INLINE lanes_int lower_words(lanes_double x) {
   return __builtin_shufflevector(words, words, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 }
 
-/* A product of floats is exact in doubles, a sum is not. Rounded to floats from there it is wrong only where it lies in the middle
- * between two of them and was not exact (among subnormal floats: where any digits were lost). There it is rounded to odd, to the one
- * of the two doubles around it that has an odd last bit, and rounds to the right float then (Boldo and Melquiond, "Emulation of a FMA
- * and correctly rounded sums", 2008). */
+/* A product of floats is exact in doubles, a sum is not. Rounded to floats from there it is wrong only where
+ * it lies in the middle between two of them and was not exact (among subnormal floats: where any digits were
+ * lost). There it is rounded to odd, to the one of the two doubles around it that has an odd last bit, and
+ * rounds to the right float then (Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums",
+ * 2008). */
 LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   lanes_double product = __builtin_convertvector(a, lanes_double) * __builtin_convertvector(b, lanes_double);
   lanes_double addend = __builtin_convertvector(c, lanes_double), sum = product + addend;
@@ -160,7 +163,8 @@ LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   lanes_double back = sum - product, lost = (product - (sum - back)) + (addend - back);
   lanes_long even = ((lanes_long)sum & 1) - 1, inexact = (lost < 0.0) | (lost > 0.0);
   lanes_long outwards = (lost > 0.0) ^ (sum < 0.0); /* all bits, or none */
-  return __builtin_convertvector((lanes_double)((lanes_long)sum + (inexact & even & (-2 * outwards - 1))), lanes);
+  return __builtin_convertvector((lanes_double)((lanes_long)sum + (inexact & even & (-2 * outwards - 1))),
+                                 lanes);
 }
 #endif
 
@@ -192,9 +196,13 @@ LANES_INLINE lanes lanes_fma(lanes a, lanes b, lanes c) {
 #endif
 }
 /* x slope + offset, rounded once. */
-LANES_INLINE lanes lanes_line(lanes x, float slope, float offset) { return lanes_fma(x, lanes_set(slope), lanes_set(offset)); }
+LANES_INLINE lanes lanes_line(lanes x, float slope, float offset) {
+  return lanes_fma(x, lanes_set(slope), lanes_set(offset));
+}
 /* sum + x factor, rounded once. */
-LANES_INLINE lanes lanes_add_scaled(lanes sum, lanes x, float factor) { return lanes_fma(x, lanes_set(factor), sum); }
+LANES_INLINE lanes lanes_add_scaled(lanes sum, lanes x, float factor) {
+  return lanes_fma(x, lanes_set(factor), sum);
+}
 
 LANES_INLINE lanes lanes_clamp(lanes x, float low, float high) {
   return lanes_min(lanes_max(x, lanes_set(low)), lanes_set(high));
@@ -268,20 +276,28 @@ LANES_CALL lanes_int lanes_floor(lanes x) {
 #endif
 }
 
-/* Offsets of sixteen loads, in memory: taking them from a vector register lane by lane costs more than the loads. */
-typedef struct lanes_offsets { _Alignas(64) int32_t at[LANES]; } lanes_offsets;
+/* Offsets of sixteen loads, in memory: taking them from a vector register lane by lane costs more than the
+ * loads. */
+typedef struct lanes_offsets {
+  _Alignas(64) int32_t at[LANES];
+} lanes_offsets;
 
 LANES_INLINE void lanes_store_offsets(lanes_offsets *offsets, lanes_int value) {
   memcpy(offsets->at, &value, sizeof offsets->at);
-  __asm__ volatile("" : : "r"(offsets) : "memory"); /* keeps the compiler from taking them from the register after all */
+  __asm__ volatile(""
+                   :
+                   : "r"(offsets)
+                   : "memory"); /* keeps the compiler from taking them from the register after all */
 }
 
-/* Sixteen 4-byte loads at base + offset (bytes). Plain loads: gather instructions were measured four times slower on
- * processors with the mitigations against data sampling. (clang 19 makes some of them for AVX-512 of its own accord.) */
+/* Sixteen 4-byte loads at base + offset (bytes). Plain loads: gather instructions were measured four times
+ * slower on processors with the mitigations against data sampling. (clang 19 makes some of them for AVX-512
+ * of its own accord.) */
 LANES_CALL lanes_int lanes_load_words(const unsigned char *base, const lanes_offsets *offsets) {
 #define LANES_WORD(lane) lanes_word(base + offsets->at[lane])
-  return (lanes_int){LANES_WORD(0),  LANES_WORD(1),  LANES_WORD(2),  LANES_WORD(3), LANES_WORD(4),  LANES_WORD(5),
-                     LANES_WORD(6),  LANES_WORD(7),  LANES_WORD(8),  LANES_WORD(9), LANES_WORD(10), LANES_WORD(11),
+  return (lanes_int){LANES_WORD(0),  LANES_WORD(1),  LANES_WORD(2),  LANES_WORD(3),
+                     LANES_WORD(4),  LANES_WORD(5),  LANES_WORD(6),  LANES_WORD(7),
+                     LANES_WORD(8),  LANES_WORD(9),  LANES_WORD(10), LANES_WORD(11),
                      LANES_WORD(12), LANES_WORD(13), LANES_WORD(14), LANES_WORD(15)};
 #undef LANES_WORD
 }
@@ -329,8 +345,10 @@ LANES_INLINE __m512 two_row_pairs(const float *table, int32_t first, int32_t sec
 
 /* In each quarter of four registers four rows of four floats: their columns. */
 LANES_INLINE void columns_of_quads(const __m512 rows[4], __m512 columns[4]) {
-  __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(rows[0], rows[1])), b = _mm512_castps_pd(_mm512_unpacklo_ps(rows[2], rows[3]));
-  __m512d c = _mm512_castps_pd(_mm512_unpackhi_ps(rows[0], rows[1])), d = _mm512_castps_pd(_mm512_unpackhi_ps(rows[2], rows[3]));
+  __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(rows[0], rows[1])),
+          b = _mm512_castps_pd(_mm512_unpacklo_ps(rows[2], rows[3]));
+  __m512d c = _mm512_castps_pd(_mm512_unpackhi_ps(rows[0], rows[1])),
+          d = _mm512_castps_pd(_mm512_unpackhi_ps(rows[2], rows[3]));
   columns[0] = _mm512_castpd_ps(_mm512_unpacklo_pd(a, b));
   columns[1] = _mm512_castpd_ps(_mm512_unpackhi_pd(a, b));
   columns[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(c, d));
@@ -359,10 +377,14 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
     const int32_t *at = offsets.at + 8 * half;
     __m256 of_lanes[4]; /* of the lanes k and 4 + k */
     for (int k = 0; k < 4; k++)
-      of_lanes[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(table + at[k])), _mm_loadu_ps(table + at[4 + k]), 1);
-    __m256d a = _mm256_castps_pd(_mm256_unpacklo_ps(of_lanes[0], of_lanes[1])), b = _mm256_castps_pd(_mm256_unpacklo_ps(of_lanes[2], of_lanes[3]));
-    __m256d c = _mm256_castps_pd(_mm256_unpackhi_ps(of_lanes[0], of_lanes[1])), d = _mm256_castps_pd(_mm256_unpackhi_ps(of_lanes[2], of_lanes[3]));
-    const __m256d column[4] = {_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b), _mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d)};
+      of_lanes[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(table + at[k])),
+                                         _mm_loadu_ps(table + at[4 + k]), 1);
+    __m256d a = _mm256_castps_pd(_mm256_unpacklo_ps(of_lanes[0], of_lanes[1])),
+            b = _mm256_castps_pd(_mm256_unpacklo_ps(of_lanes[2], of_lanes[3]));
+    __m256d c = _mm256_castps_pd(_mm256_unpackhi_ps(of_lanes[0], of_lanes[1])),
+            d = _mm256_castps_pd(_mm256_unpackhi_ps(of_lanes[2], of_lanes[3]));
+    const __m256d column[4] = {_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b), _mm256_unpacklo_pd(c, d),
+                               _mm256_unpackhi_pd(c, d)};
     for (int i = 0; i < 4; i++) memcpy((float *)&quad[i] + 8 * half, &column[i], sizeof column[i]);
   }
 #else
@@ -370,7 +392,8 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #endif
 }
 
-/* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to 2: one load a lane, or two, instead of six. */
+/* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to 2: one load a lane, or
+ * two, instead of six. */
 LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lanes first[3], lanes second[3]) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;
@@ -420,7 +443,8 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
   __m512 pairs[2];
   for (int j = 0; j < 2; j++) {
     __m128 part[4];
-    for (int q = 0; q < 4; q++) part[q] = two_pairs(table, offsets.at[4 * q + 2 * j], offsets.at[4 * q + 2 * j + 1]);
+    for (int q = 0; q < 4; q++)
+      part[q] = two_pairs(table, offsets.at[4 * q + 2 * j], offsets.at[4 * q + 2 * j + 1]);
     __m512 pair = _mm512_insertf32x4(_mm512_castps128_ps512(part[0]), part[1], 1);
     pairs[j] = _mm512_insertf32x4(_mm512_insertf32x4(pair, part[2], 2), part[3], 3);
   }
@@ -434,7 +458,8 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
     const int32_t *at = offsets.at + 8 * half;
     __m256 pairs[2];
     for (int j = 0; j < 2; j++)
-      pairs[j] = _mm256_set_m128(two_pairs(table, at[4 + 2 * j], at[5 + 2 * j]), two_pairs(table, at[2 * j], at[1 + 2 * j]));
+      pairs[j] = _mm256_set_m128(two_pairs(table, at[4 + 2 * j], at[5 + 2 * j]),
+                                 two_pairs(table, at[2 * j], at[1 + 2 * j]));
     columns[0][half] = _mm256_shuffle_ps(pairs[0], pairs[1], 0x88);
     columns[1][half] = _mm256_shuffle_ps(pairs[0], pairs[1], 0xdd);
   }
@@ -447,14 +472,17 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
 }
 
 /* The same of numbers of 16 bits: one load of four bytes a lane. */
-LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int index, lanes_int *first, lanes_int *second) {
+LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int index, lanes_int *first,
+                                           lanes_int *second) {
   lanes_int pair = lanes_gather_bytes((const unsigned char *)table, index * 2);
   *first = pair & 0xffff;
   *second = pair >> 16 & 0xffff;
 }
 
 /* Where sixteen squares of two by two numbers begin in a table. */
-typedef struct lanes_squares { lanes_int column, row; } lanes_squares;
+typedef struct lanes_squares {
+  lanes_int column, row;
+} lanes_squares;
 
 #if defined(__AVX512BW__)
 /* The least column and row of the active lanes, in 16 bits each of every lane; both are below 65535. */
@@ -474,8 +502,10 @@ LANES_INLINE __m512i four_rows(const uint16_t *from, size_t stride) {
   return _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + 3 * stride)), 3);
 }
 
-/* Squares of lanes near each other, one active lane at least, lie in eight rows of eight numbers. False where they do not. */
-LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_squares squares, uint32_t active, __m512i pair[2]) {
+/* Squares of lanes near each other, one active lane at least, lie in eight rows of eight numbers. False where
+ * they do not. */
+LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_squares squares,
+                                   uint32_t active, __m512i pair[2]) {
   __m512i corners = _mm512_or_si512((__m512i)squares.column, _mm512_slli_epi32((__m512i)squares.row, 16));
   __m512i least = least_corner(corners, (__mmask16)active), apart = _mm512_sub_epi16(corners, least);
   __m512i ends = _mm512_add_epi16(apart, _mm512_set1_epi16(1));
@@ -483,7 +513,8 @@ LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_s
   uint32_t corner = (uint32_t)_mm_cvtsi128_si32(_mm512_castsi512_si128(least));
   const uint16_t *first = table + (corner >> 16) * stride + (corner & 0xffff);
   __m512i upper = four_rows(first, stride), lower = four_rows(first + 4 * stride, stride);
-  __m512i index = _mm512_or_si512(_mm512_srli_epi32(apart, 13), _mm512_and_si512(apart, _mm512_set1_epi32(7)));
+  __m512i index = _mm512_or_si512(_mm512_srli_epi32(apart, 13),
+                                  _mm512_and_si512(apart, _mm512_set1_epi32(7)));
   index = _mm512_add_epi16(_mm512_or_si512(index, _mm512_slli_epi32(index, 16)), _mm512_set1_epi32(0x10000));
   pair[0] = _mm512_permutex2var_epi16(upper, index, lower);
   pair[1] = _mm512_permutex2var_epi16(upper, _mm512_add_epi16(index, _mm512_set1_epi16(8)), lower);
@@ -491,9 +522,10 @@ LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_s
 }
 #endif
 
-/* Of each active lane table[stride * row + column], the number beside it, the one below and the one beside that. Columns and rows
- * are below 65535; six more of them may be read. */
-LANES_CALL void lanes_gather_short_squares(const uint16_t *table, size_t stride, lanes_squares squares, uint32_t active, lanes_int square[4]) {
+/* Of each active lane table[stride * row + column], the number beside it, the one below and the one beside
+ * that. Columns and rows are below 65535; six more of them may be read. */
+LANES_CALL void lanes_gather_short_squares(const uint16_t *table, size_t stride, lanes_squares squares,
+                                           uint32_t active, lanes_int square[4]) {
 #if defined(__AVX512BW__)
   __m512i pair[2];
   if (squares_in_window(table, stride, squares, active, pair)) {
@@ -511,8 +543,9 @@ LANES_CALL void lanes_gather_short_squares(const uint16_t *table, size_t stride,
   lanes_gather_short_pairs(table + stride, at, &square[2], &square[3]);
 }
 
-/* 2^x for |x| < 126, relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by the polynomial of degree 5 with 2^0 = 1
- * whose greatest relative error there is least (derived: 9.2e-8 by Remez' exchange, 1.7e-7 in floats), 2^n by the exponent bits. */
+/* 2^x for |x| < 126, relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by the polynomial of degree
+ * 5 with 2^0 = 1 whose greatest relative error there is least (derived: 9.2e-8 by Remez' exchange, 1.7e-7 in
+ * floats), 2^n by the exponent bits. */
 LANES_CALL lanes lanes_exp2(lanes x) {
   lanes_int n = lanes_floor(x + 0.5f);
   lanes f = x - lanes_from_int(n);
@@ -551,8 +584,10 @@ LANES_INLINE __m128i lanes_least_of_each(const lanes_int x[4]) {
     half[0] = _mm256_min_epi32(half[0], half[1]);
     of_four[i] = _mm_min_epi32(_mm256_castsi256_si128(half[0]), _mm256_extracti128_si256(half[0], 1));
   }
-  __m128i first = _mm_min_epi32(_mm_unpacklo_epi32(of_four[0], of_four[1]), _mm_unpackhi_epi32(of_four[0], of_four[1]));
-  __m128i last = _mm_min_epi32(_mm_unpacklo_epi32(of_four[2], of_four[3]), _mm_unpackhi_epi32(of_four[2], of_four[3]));
+  __m128i first = _mm_min_epi32(_mm_unpacklo_epi32(of_four[0], of_four[1]),
+                                _mm_unpackhi_epi32(of_four[0], of_four[1]));
+  __m128i last = _mm_min_epi32(_mm_unpacklo_epi32(of_four[2], of_four[3]),
+                               _mm_unpackhi_epi32(of_four[2], of_four[3]));
   return _mm_min_epi32(_mm_unpacklo_epi64(first, last), _mm_unpackhi_epi64(first, last));
 }
 #endif

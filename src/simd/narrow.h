@@ -1,5 +1,6 @@
-/* simd/narrow.h - sixteen small numbers in half a register of AVX2, or a quarter: what is near each other is told by its distance from
- * the least. Their order is the packing instructions': lanes 0-3, 8-11, 4-7, 12-15. */
+/* simd/narrow.h - sixteen small numbers in half a register of AVX2, or a quarter: what is near each other is
+ * told by its distance from the least. Their order is the packing instructions': lanes 0-3, 8-11, 4-7,
+ * 12-15. */
 #ifndef HL_SIMD_NARROW_H
 #define HL_SIMD_NARROW_H
 
@@ -25,13 +26,17 @@ LANES_INLINE int any_short_above(__m256i x, int limit) {
 }
 
 /* Those numbers in memory, and where those of lanes k and k + 4 of a half are there. */
-typedef struct narrow_offsets { _Alignas(32) uint16_t at[LANES]; } narrow_offsets;
+typedef struct narrow_offsets {
+  _Alignas(32) uint16_t at[LANES];
+} narrow_offsets;
 
 LANES_INLINE void narrow_store(narrow_offsets *offsets, __m256i shorts) {
   memcpy(offsets->at, &shorts, sizeof offsets->at);
   __asm__ volatile("" : : "r"(offsets) : "memory"); /* as in lanes_store_offsets() */
 }
-LANES_INLINE const uint16_t *narrow_pair(const narrow_offsets *offsets, int half, int k) { return offsets->at + 4 * half + k; }
+LANES_INLINE const uint16_t *narrow_pair(const narrow_offsets *offsets, int half, int k) {
+  return offsets->at + 4 * half + k;
+}
 enum { NARROW_SECOND = 8 /* from lane k's to lane k + 4's */ };
 #endif
 

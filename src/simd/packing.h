@@ -24,8 +24,9 @@ LANES_INLINE uint64_t spread_bits(uint64_t bits) {
   return (bits | bits << 3) & NIBBLE_ONES;
 }
 
-/* The numbers of the nibbles that are chosen, moved together: each moves down by as many as are not chosen below it, by one, two,
- * four and eight in turn (Warren, "Hacker's Delight", compress). before: how many are chosen below each. */
+/* The numbers of the nibbles that are chosen, moved together: each moves down by as many as are not chosen
+ * below it, by one, two, four and eight in turn (Warren, "Hacker's Delight", compress). before: how many are
+ * chosen below each. */
 LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
   uint64_t all = chosen * 15, numbers = NIBBLE_NUMBERS & all, ways = (NIBBLE_NUMBERS - before) & all;
   for (int step = 0; step < 4; step++) {
@@ -40,8 +41,8 @@ LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
 /* Some of sixteen lanes, one bit each, that move together to the lanes `at` and on, in their order. */
 typedef struct lanes_packing {
 #if defined(__AVX512F__)
-  __m512i from;       /* of the packed lanes: where each comes from */
-  __m512i to;         /* of the lanes with a bit: where each goes */
+  __m512i from; /* of the packed lanes: where each comes from */
+  __m512i to;   /* of the lanes with a bit: where each goes */
   __mmask16 packed, bits;
 #else
   lanes_int from, to, packed, bits;
@@ -58,7 +59,8 @@ LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   packing.from = _mm512_maskz_expand_epi32(packing.packed, _mm512_maskz_compress_epi32(packing.bits, first));
   packing.to = _mm512_maskz_expand_epi32(packing.bits, _mm512_add_epi32(first, _mm512_set1_epi32(at)));
 #else
-  uint64_t chosen = spread_bits(bits), before = chosen * NIBBLE_ONES - chosen; /* products add up what is below */
+  uint64_t chosen = spread_bits(bits),
+           before = chosen * NIBBLE_ONES - chosen; /* products add up what is below */
   packing.bits = lanes_from_bits(bits);
   packing.packed = lanes_from_bits(packed);
   packing.from = lanes_from_nibbles(chosen_numbers(chosen, before) << 4 * at);

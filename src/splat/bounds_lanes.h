@@ -7,7 +7,8 @@
 
 enum { BOUND_CHUNK = 256 };
 
-static void bound_rows_u8(const void *const *rows, int row_count, size_t count, float *least, float *greatest) {
+static void bound_rows_u8(const void *const *rows, int row_count, size_t count, float *least,
+                          float *greatest) {
   for (size_t start = 0; start < count; start += BOUND_CHUNK) {
     uint8_t low[BOUND_CHUNK], high[BOUND_CHUNK];
     size_t length = count - start < BOUND_CHUNK ? count - start : BOUND_CHUNK;
@@ -21,7 +22,8 @@ static void bound_rows_u8(const void *const *rows, int row_count, size_t count, 
   }
 }
 
-static void bound_rows_u16(const void *const *rows, int row_count, size_t count, float *least, float *greatest) {
+static void bound_rows_u16(const void *const *rows, int row_count, size_t count, float *least,
+                           float *greatest) {
   for (size_t start = 0; start < count; start += BOUND_CHUNK) {
     uint16_t low[BOUND_CHUNK], high[BOUND_CHUNK];
     size_t length = count - start < BOUND_CHUNK ? count - start : BOUND_CHUNK;
@@ -35,7 +37,8 @@ static void bound_rows_u16(const void *const *rows, int row_count, size_t count,
   }
 }
 
-static void bound_rows_f32(const void *const *rows, int row_count, size_t count, float *least, float *greatest) {
+static void bound_rows_f32(const void *const *rows, int row_count, size_t count, float *least,
+                           float *greatest) {
   for (size_t i = 0; i < count; i++) least[i] = greatest[i] = ((const float *)rows[0])[i];
   for (int r = 1; r < row_count; r++) {
     const float *row = rows[r];

@@ -1,4 +1,5 @@
-/* splat/brick_ranges.h - the tiles of a view and the sheets that bricks may touch, sixteen bricks at a time. */
+/* splat/brick_ranges.h - the tiles of a view and the sheets that bricks may touch, sixteen bricks at a
+ * time. */
 #ifndef HL_SPLAT_BRICK_RANGES_H
 #define HL_SPLAT_BRICK_RANGES_H
 
@@ -9,11 +10,11 @@ enum range_axis { RANGE_X, RANGE_Y, RANGE_SHEETS };
 
 /* One grid in one view: rows for a point of index space, less middle. */
 typedef struct brick_view {
-  float view[3][4];           /* w; w times tiles across; w times tiles down */
-  float height[4];            /* sheets */
-  float slack[4];             /* of the four: more than rounding errs by */
-  float middle[3];            /* index space */
-  float spare;                /* tiles around what bricks touch that count as touched */
+  float view[3][4];                            /* w; w times tiles across; w times tiles down */
+  float height[4];                             /* sheets */
+  float slack[4];                              /* of the four: more than rounding errs by */
+  float middle[3];                             /* index space */
+  float spare;                                 /* tiles around what bricks touch that count as touched */
   int32_t first[RANGE_AXES], last[RANGE_AXES]; /* that there are: tiles across, tiles down, sheets */
 } brick_view;
 
@@ -23,7 +24,7 @@ typedef struct brick_ranges {
 } brick_ranges;
 
 /* place: of bricks, along each axis. */
-typedef void brick_ranges_function(const brick_view *view, const grid *grid, const int32_t place[3][BRICKS_AT_ONCE],
-                                   brick_ranges *ranges);
+typedef void brick_ranges_function(const brick_view *view, const grid *grid,
+                                   const int32_t place[3][BRICKS_AT_ONCE], brick_ranges *ranges);
 
 #endif

@@ -6,11 +6,16 @@
 #include "splat/brick_ranges.h"
 
 /* Boxes: centres and half edges. */
-typedef struct lanes_boxes { lanes centre[3], half[3]; } lanes_boxes;
-typedef struct lanes_range { lanes low, high; } lanes_range;
+typedef struct lanes_boxes {
+  lanes centre[3], half[3];
+} lanes_boxes;
+typedef struct lanes_range {
+  lanes low, high;
+} lanes_range;
 
 /* Of the points that the cells of bricks stand for, borders stretched. */
-LANES_INLINE lanes_boxes boxes_of_bricks(const brick_view *view, const grid *grid, const int32_t place[3][BRICKS_AT_ONCE]) {
+LANES_INLINE lanes_boxes boxes_of_bricks(const brick_view *view, const grid *grid,
+                                         const int32_t place[3][BRICKS_AT_ONCE]) {
   lanes_boxes boxes;
   for (int axis = 0; axis < 3; axis++) {
     float count = (float)grid->dimension[axis];
@@ -27,35 +32,42 @@ LANES_INLINE lanes_boxes boxes_of_bricks(const brick_view *view, const grid *gri
 
 LANES_INLINE lanes_range range_of_row(const lanes_boxes *boxes, const float row[4], float slack) {
   lanes centre = boxes->centre[0] * row[0] + boxes->centre[1] * row[1] + (boxes->centre[2] * row[2] + row[3]);
-  lanes reach = boxes->half[0] * fabsf(row[0]) + boxes->half[1] * fabsf(row[1]) + (boxes->half[2] * fabsf(row[2]) + slack);
+  lanes reach = boxes->half[0] * fabsf(row[0]) + boxes->half[1] * fabsf(row[1]) +
+                (boxes->half[2] * fabsf(row[2]) + slack);
   return (lanes_range){centre - reach, centre + reach};
 }
 
-/* Whole numbers from first to last, those that there are; their first one is beyond the last where there is none. */
-LANES_INLINE void store_range(const brick_view *view, lanes first, lanes last, int axis, brick_ranges *ranges) {
+/* Whole numbers from first to last, those that there are; their first one is beyond the last where there is
+ * none. */
+LANES_INLINE void store_range(const brick_view *view, lanes first, lanes last, int axis,
+                              brick_ranges *ranges) {
   float least = (float)view->first[axis], greatest = (float)view->last[axis];
-  lanes_int from = lanes_floor(lanes_clamp(first, least, greatest + 1.0f)), to = lanes_floor(lanes_clamp(last, least - 1.0f, greatest));
+  lanes_int from = lanes_floor(lanes_clamp(first, least, greatest + 1.0f)),
+            to = lanes_floor(lanes_clamp(last, least - 1.0f, greatest));
   memcpy(ranges->first[axis], &from, sizeof from);
   memcpy(ranges->last[axis], &to, sizeof to);
 }
 
-static void brick_ranges_in_view(const brick_view *view, const grid *grid, const int32_t place[3][BRICKS_AT_ONCE],
-                                 brick_ranges *ranges) {
+static void brick_ranges_in_view(const brick_view *view, const grid *grid,
+                                 const int32_t place[3][BRICKS_AT_ONCE], brick_ranges *ranges) {
   lanes_boxes boxes = boxes_of_bricks(view, grid, place);
   lanes_range w = range_of_row(&boxes, view->view[0], view->slack[0]);
   lanes_range height = range_of_row(&boxes, view->height, view->slack[3]);
   lanes_int ahead = w.high > 0.0f;
   lanes_int anywhere = w.low <= w.high * 1e-6f; /* the box reaches behind the eye */
-  lanes nearest = 1.0f / lanes_select(anywhere, lanes_set(1.0f), w.low), farthest = 1.0f / lanes_select(ahead, w.high, lanes_set(1.0f));
+  lanes nearest = 1.0f / lanes_select(anywhere, lanes_set(1.0f), w.low),
+        farthest = 1.0f / lanes_select(ahead, w.high, lanes_set(1.0f));
   for (int axis = 0; axis < 2; axis++) {
     lanes_range at = range_of_row(&boxes, view->view[1 + axis], view->slack[1 + axis]);
-    lanes low = at.low * lanes_select(at.low < 0.0f, nearest, farthest), high = at.high * lanes_select(at.high < 0.0f, farthest, nearest);
+    lanes low = at.low * lanes_select(at.low < 0.0f, nearest, farthest),
+          high = at.high * lanes_select(at.high < 0.0f, farthest, nearest);
     low = lanes_select(anywhere, lanes_set(-INFINITY), low - lanes_abs(low) * 1e-6f - view->spare);
     high = lanes_select(anywhere, lanes_set(INFINITY), high + lanes_abs(high) * 1e-6f + view->spare);
     store_range(view, low, lanes_select(ahead, high, lanes_set(-INFINITY)), axis, ranges);
   }
   /* a sheet is where it is: the first is the next whole number */
-  store_range(view, -lanes_from_int(lanes_floor(lanes_clamp(-height.low, -1e9f, 1e9f))), height.high, RANGE_SHEETS, ranges);
+  store_range(view, -lanes_from_int(lanes_floor(lanes_clamp(-height.low, -1e9f, 1e9f))), height.high,
+              RANGE_SHEETS, ranges);
 }
 
 #endif

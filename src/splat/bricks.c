@@ -14,11 +14,14 @@
 #include "core/memory.h"
 
 enum {
-  BEFORE = 3, AFTER = 5,             /* brick b of an axis depends on voxels 4b-3 .. 4b+5 */
+  BEFORE = 3,
+  AFTER = 5, /* brick b of an axis depends on voxels 4b-3 .. 4b+5 */
   WINDOW = BEFORE + AFTER + 1
 };
 
-static int32_t clamp_index(int64_t i, int32_t count) { return (int32_t)(i < 0 ? 0 : i >= count ? count - 1 : i); }
+static int32_t clamp_index(int64_t i, int32_t count) {
+  return (int32_t)(i < 0 ? 0 : i >= count ? count - 1 : i);
+}
 
 typedef struct bound_job {
   const grid *grid;
@@ -97,7 +100,7 @@ static void bound_slab(void *data, size_t index, int worker) {
 typedef struct replace_job {
   const float *from;
   float *to;
-  size_t slice;       /* voxels */
+  size_t slice; /* voxels */
   float empty;
 } replace_job;
 
@@ -128,9 +131,11 @@ static hl_status bound_bricks(hl_context *context, hl_pool *pool, bound_rows_fun
   grid->relevant = hl_allocate_zeroed(context, bricks + 4, 1); /* read four bytes at a time */
   grid->relevant_list = hl_allocate(context, bricks, sizeof(uint32_t));
   float *columns = hl_allocate(context, column_count, sizeof(float));
-  if (grid->brick_bounds == NULL || grid->relevant == NULL || grid->relevant_list == NULL || columns == NULL) {
+  if (grid->brick_bounds == NULL || grid->relevant == NULL || grid->relevant_list == NULL ||
+      columns == NULL) {
     hl_release(context, columns);
-    return hl_fail_memory(error, bricks * brick_bytes(grid->storage) + column_count * sizeof(float), "the bricks of a volume");
+    return hl_fail_memory(error, bricks * brick_bytes(grid->storage) + column_count * sizeof(float),
+                          "the bricks of a volume");
   }
   bound_scratch scratch = {{grid, bound_rows}, columns};
   hl_pool_run(pool, (size_t)grid->brick_count[2], bound_slab, &scratch);
@@ -150,21 +155,26 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
 static hl_status make_room_for_bits(hl_context *context, grid *grid, hl_error *error) {
   size_t bricks = hl_grid_bricks(grid);
   grid->cell_bits = hl_allocate(context, bricks, sizeof *grid->cell_bits);
-  return grid->cell_bits != NULL ? HL_OK : hl_fail_memory(error, bricks * sizeof *grid->cell_bits, "the bits of a volume's cells");
+  return grid->cell_bits != NULL
+             ? HL_OK
+             : hl_fail_memory(error, bricks * sizeof *grid->cell_bits, "the bits of a volume's cells");
 }
 
 uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions, int threads) {
   uint64_t bricks = 1;
   for (int axis = 0; axis < 3; axis++) bricks *= volume->dimension[axis] / HL_BRICK_CELLS + 1;
   uint64_t copied = volume->nonfinite_count > 0 ? hl_volume_voxel_count(volume) * sizeof(float) : 0;
-  int32_t dimension[3] = {(int32_t)volume->dimension[0], (int32_t)volume->dimension[1], (int32_t)volume->dimension[2]};
-  if (hl_columns_wanted(functions->column_slice, dimension, volume->storage)) copied += hl_columns_bytes(dimension);
-  return copied + bricks * brick_bytes(volume->storage) + hl_cell_bits_bytes(bricks) + hl_cell_bounds_bytes(volume->dimension, threads);
+  int32_t dimension[3] = {(int32_t)volume->dimension[0], (int32_t)volume->dimension[1],
+                          (int32_t)volume->dimension[2]};
+  if (hl_columns_wanted(functions->column_slice, dimension, volume->storage))
+    copied += hl_columns_bytes(dimension);
+  return copied + bricks * brick_bytes(volume->storage) + hl_cell_bits_bytes(bricks) +
+         hl_cell_bounds_bytes(volume->dimension, threads);
 }
 
-hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions, const kernel *kernel,
-                         const hl_scene_volume *scene_volume, affine3 index_to_frame, double empty, grid *grid,
-                         hl_error *error) {
+hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
+                         const kernel *kernel, const hl_scene_volume *scene_volume, affine3 index_to_frame,
+                         double empty, grid *grid, hl_error *error) {
   const hl_volume *volume = scene_volume->volume;
   *grid = (struct grid){0};
   grid->voxels = volume->voxels;
@@ -188,7 +198,8 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
   if (status == HL_OK && hl_cell_bits_wanted(grid, kernel)) status = make_room_for_bits(context, grid, error);
   set_cell_range(volume, grid);
   if (status == HL_OK)
-    status = hl_cell_bounds_build(context, pool, functions->along, functions->across, kernel->degree == HL_BSPLINE_DEGREE, grid, error);
+    status = hl_cell_bounds_build(context, pool, functions->along, functions->across,
+                                  kernel->degree == HL_BSPLINE_DEGREE, grid, error);
   if (status != HL_OK) hl_grid_release(context, grid);
   return status;
 }
@@ -228,7 +239,8 @@ static void mark_slab(void *data, size_t index, int worker) {
     for (b[0] = 0; b[0] < grid->brick_count[0]; b[0]++, at++) {
       float bounds[2];
       hl_bounds_of_brick(grid, at, bounds);
-      grid->relevant[at] = brick_in_box(grid, b) && hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]);
+      grid->relevant[at] = brick_in_box(grid, b) &&
+                           hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]);
     }
 }
 
@@ -248,7 +260,8 @@ static bool brick_reaches_faces(const grid *grid, const int32_t b[3]) {
   return false;
 }
 
-void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const classifier *classifier, hl_pool *pool) {
+void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const classifier *classifier,
+                           hl_pool *pool) {
   mark_job job = {grid, classifier};
   hl_pool_run(pool, (size_t)grid->brick_count[2], mark_slab, &job);
   hl_cells_mark_visible(grid, classifier, pool);

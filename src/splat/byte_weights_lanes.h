@@ -8,14 +8,20 @@
 #if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
 #define HL_PERMUTES_BYTES 1
 
-/* A lane's four weights as two bytes each, the higher first. The processor multiplies bytes without a sign by bytes with one:
- * voxels less 128 by weights, and slopes by voxels. */
-typedef struct byte_weights { __m512i digit[2]; } byte_weights;
-typedef struct byte_slopes { __m512i digit[2]; } byte_slopes;
+/* A lane's four weights as two bytes each, the higher first. The processor multiplies bytes without a sign by
+ * bytes with one: voxels less 128 by weights, and slopes by voxels. */
+typedef struct byte_weights {
+  __m512i digit[2];
+} byte_weights;
+typedef struct byte_slopes {
+  __m512i digit[2];
+} byte_slopes;
 
-/* Of words of 16 bits, the taps 0 and 2 in one register and 1 and 3 in the other, the lower bytes and the higher ones, in order. */
+/* Of words of 16 bits, the taps 0 and 2 in one register and 1 and 3 in the other, the lower bytes and the
+ * higher ones, in order. */
 LANES_INLINE __m512i lower_bytes(__m512i even, __m512i odd) {
-  return _mm512_ternarylogic_epi32(_mm512_set1_epi32(0x00ff00ff), even, _mm512_slli_epi32(odd, 8), 0xca); /* a ? b : c */
+  return _mm512_ternarylogic_epi32(_mm512_set1_epi32(0x00ff00ff), even, _mm512_slli_epi32(odd, 8),
+                                   0xca); /* a ? b : c */
 }
 LANES_INLINE __m512i higher_bytes(__m512i even, __m512i odd) {
   return _mm512_ternarylogic_epi32(_mm512_set1_epi32(0x00ff00ff), _mm512_srli_epi32(even, 8), odd, 0xca);
@@ -34,7 +40,8 @@ LANES_INLINE byte_slopes split_slopes(const whole_weights *whole) {
   const __m512i sign = _mm512_set1_epi16((short)0x8080);
   __m512i even = _mm512_add_epi16(two_words(whole->tap[0], whole->tap[2]), sign);
   __m512i odd = _mm512_add_epi16(two_words(whole->tap[1], whole->tap[3]), sign);
-  return (byte_slopes){{_mm512_xor_si512(higher_bytes(even, odd), sign), _mm512_xor_si512(lower_bytes(even, odd), sign)}};
+  return (byte_slopes){
+      {_mm512_xor_si512(higher_bytes(even, odd), sign), _mm512_xor_si512(lower_bytes(even, odd), sign)}};
 }
 
 /* Voxels less 128, and back. */
@@ -53,9 +60,11 @@ LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes)
   return (lanes_int)_mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), (__m512i)taps, slopes->digit[1]);
 }
 #elif defined(__AVX2__)
-/* Those of the taps 0 and 2 share a word, and those of 1 and 3: one instruction multiplies signed numbers of 16 bits and adds the
- * two products. */
-typedef struct byte_weights { lanes_int pair[2]; } byte_weights;
+/* Those of the taps 0 and 2 share a word, and those of 1 and 3: one instruction multiplies signed numbers of
+ * 16 bits and adds the two products. */
+typedef struct byte_weights {
+  lanes_int pair[2];
+} byte_weights;
 typedef byte_weights byte_slopes;
 
 LANES_INLINE byte_weights split_weights(const whole_weights *whole) {
@@ -66,9 +75,12 @@ LANES_INLINE byte_weights split_weights(const whole_weights *whole) {
 LANES_INLINE byte_slopes split_slopes(const whole_weights *whole) { return split_weights(whole); }
 
 LANES_INLINE lanes_int weigh_bytes(lanes_int taps, const byte_weights *weights) {
-  return lanes_multiply_shorts(taps & 0x00ff00ff, weights->pair[0]) + lanes_multiply_shorts((taps >> 8) & 0x00ff00ff, weights->pair[1]);
+  return lanes_multiply_shorts(taps & 0x00ff00ff, weights->pair[0]) +
+         lanes_multiply_shorts((taps >> 8) & 0x00ff00ff, weights->pair[1]);
 }
-LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes) { return weigh_bytes(taps, slopes); }
+LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes) {
+  return weigh_bytes(taps, slopes);
+}
 #else
 typedef whole_weights byte_weights, byte_slopes;
 
@@ -79,7 +91,9 @@ LANES_INLINE lanes_int weigh_bytes(lanes_int taps, const byte_weights *weights) 
   return ((taps & 255) * weights->tap[0] + ((taps >> 8) & 255) * weights->tap[1]) +
          (((taps >> 16) & 255) * weights->tap[2] + ((taps >> 24) & 255) * weights->tap[3]);
 }
-LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes) { return weigh_bytes(taps, slopes); }
+LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes) {
+  return weigh_bytes(taps, slopes);
+}
 #endif
 
 #endif

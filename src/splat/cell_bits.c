@@ -23,19 +23,21 @@ typedef struct bits_job {
   uint64_t visible, shown; /* visible bricks, and their cells with a bit; atomic */
 } bits_job;
 
-/* The level, lowered by what sums of floats and the rounded weights of u8 voxels may err by: 6e-6 of the greatest
- * number, and 1e-3 of a table's entry. False where floats cannot tell. */
+/* The level, lowered by what sums of floats and the rounded weights of u8 voxels may err by: 6e-6 of the
+ * greatest number, and 1e-3 of a table's entry. False where floats cannot tell. */
 static bool find_level(const grid *grid, const classifier *classifier, bits_job *job) {
   double high = (double)grid->cell_base + 255.0 * (double)grid->cell_step;
   double greatest = fmax(fmax(fabs((double)grid->cell_base), fabs(high)), fabs((double)grid->empty));
   double scale = (double)classifier->scale;
   if (scale == 0 || !isfinite(scale) || !(greatest > 1e-30) || !(greatest < 1e30)) return false;
-  double value = ((double)classifier->first_visible - (double)classifier->offset) / scale + (double)grid->empty;
+  double value = ((double)classifier->first_visible - (double)classifier->offset) / scale +
+                 (double)grid->empty;
   job->sign = scale > 0 ? 1 : -1;
   job->level = (float)(value * (double)job->sign - 8e-6 * greatest - 2e-3 / fabs(scale));
   /* sums of zeros are zero without an error */
   float at_zero = -grid->empty * classifier->scale + classifier->offset;
-  if (scale > 0 && grid->cell_base >= 0 && at_zero <= classifier->first_visible) job->level = fmaxf(job->level, 0);
+  if (scale > 0 && grid->cell_base >= 0 && at_zero <= classifier->first_visible)
+    job->level = fmaxf(job->level, 0);
   return isfinite(job->level);
 }
 
@@ -67,7 +69,8 @@ static void find_layer(void *data, size_t layer, int worker) {
   __atomic_fetch_add(&job->shown, shown, __ATOMIC_RELAXED);
 }
 
-void hl_cell_bits_find(grid *grid, const classifier *classifier, brick_bits_function *brick_bits, hl_pool *pool) {
+void hl_cell_bits_find(grid *grid, const classifier *classifier, brick_bits_function *brick_bits,
+                       hl_pool *pool) {
   bits_job job = {.grid = grid, .brick_bits = brick_bits};
   grid->cell_bits_tell = grid->cell_bits != NULL && find_level(grid, classifier, &job);
   if (!grid->cell_bits_tell) return;

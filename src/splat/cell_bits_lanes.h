@@ -1,5 +1,5 @@
-/* splat/cell_bits_lanes.h - the bits of a brick's 64 cells, from its 7x7x7 voxels: bounds along z, then y, then x. Rows of
- * eight numbers along x, two of them in sixteen lanes. */
+/* splat/cell_bits_lanes.h - the bits of a brick's 64 cells, from its 7x7x7 voxels: bounds along z, then y,
+ * then x. Rows of eight numbers along x, two of them in sixteen lanes. */
 #ifndef HL_SPLAT_CELL_BITS_LANES_H
 #define HL_SPLAT_CELL_BITS_LANES_H
 
@@ -10,7 +10,9 @@ enum { BITS_ROW = 8, BITS_ROWS = 8 };
 
 /* ---- voxels as numbers ---- */
 
-LANES_INLINE int32_t bits_voxel_at(int32_t i, int32_t count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
+LANES_INLINE int32_t bits_voxel_at(int32_t i, int32_t count) {
+  return i < 0 ? 0 : i >= count ? count - 1 : i;
+}
 
 /* Eight voxels of each of two rows. */
 LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const row[2]) {
@@ -42,9 +44,12 @@ LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, in
 
 /* ---- bounds of four cells along an axis ---- */
 
-/* Derived: in units of a third, the Bezier points of the cell between voxels b and c are the thirds 2 b + c and b + 2 c, and its
- * knots, each the mean of the thirds on its two sides: (b + 4 c + d) / 6 = ((b + 2 c) / 3 + (2 c + d) / 3) / 2. */
-typedef struct bits_thirds { lanes near, far; } bits_thirds;
+/* Derived: in units of a third, the Bezier points of the cell between voxels b and c are the thirds 2 b + c
+ * and b + 2 c, and its knots, each the mean of the thirds on its two sides: (b + 4 c + d) / 6 = ((b + 2 c) /
+ * 3 + (2 c + d) / 3) / 2. */
+typedef struct bits_thirds {
+  lanes near, far;
+} bits_thirds;
 
 LANES_INLINE bits_thirds thirds_between(lanes b, lanes c) {
   lanes sum = b + c;
@@ -73,8 +78,10 @@ LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[
 LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
                                float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
   const int32_t *count = grid->dimension;
-  size_t bytes = hl_storage_bytes(storage), row_bytes = (size_t)count[0] * bytes, slice_bytes = row_bytes * (size_t)count[1];
-  int32_t x = brick[0] * HL_BRICK_CELLS - 2, y = brick[1] * HL_BRICK_CELLS - 2, z = brick[2] * HL_BRICK_CELLS - 2;
+  size_t bytes = hl_storage_bytes(storage), row_bytes = (size_t)count[0] * bytes,
+         slice_bytes = row_bytes * (size_t)count[1];
+  int32_t x = brick[0] * HL_BRICK_CELLS - 2, y = brick[1] * HL_BRICK_CELLS - 2,
+          z = brick[2] * HL_BRICK_CELLS - 2;
   int within = x >= 0 && x + BITS_ROW <= count[0];
   const unsigned char *voxels = (const unsigned char *)grid->voxels + (within ? (size_t)x * bytes : 0);
   for (int pair = 0; pair < BITS_ROWS / 2; pair++) {
@@ -84,7 +91,8 @@ LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32
     for (int tap = 0; tap < CELL_BIT_TAPS; tap++) {
       const unsigned char *slice = voxels + (size_t)bits_voxel_at(z + tap, count[2]) * slice_bytes;
       const unsigned char *const rows[2] = {slice + first, slice + second};
-      v[tap] = (within ? bits_two_rows(storage, rows) : bits_two_held_rows(grid, x, y + 2 * pair, z + tap)) * sign;
+      v[tap] = (within ? bits_two_rows(storage, rows) : bits_two_held_rows(grid, x, y + 2 * pair, z + tap)) *
+               sign;
     }
     greatest_of_four(v, greatest);
     for (int i = 0; i < HL_BRICK_CELLS; i++) lanes_store(bounds[i][2 * pair], greatest[i]);
@@ -108,15 +116,18 @@ LANES_INLINE void bits_along_y(float from[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW],
   }
 }
 
-LANES_INLINE uint64_t bits_of_brick(const grid *grid, hl_storage storage, const int32_t brick[3], float sign, float level) {
-  _Alignas(64) float along_z[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW], along_y[HL_BRICK_CELLS][HL_BRICK_CELLS][BITS_ROW];
+LANES_INLINE uint64_t bits_of_brick(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
+                                    float level) {
+  _Alignas(64) float along_z[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW],
+      along_y[HL_BRICK_CELLS][HL_BRICK_CELLS][BITS_ROW];
   bits_along_z(grid, storage, brick, sign, along_z);
   bits_along_y(along_z, along_y);
   uint64_t bits = 0;
   for (int layer = 0; layer < HL_BRICK_CELLS; layer++) {
     lanes v[4];
     for (int tap = 0; tap < 4; tap++) v[tap] = lanes_load_block(&along_y[layer][0][tap], BITS_ROW);
-    lanes greatest = greatest_of_cell(thirds_between(v[0], v[1]), thirds_between(v[1], v[2]), thirds_between(v[2], v[3]));
+    lanes greatest = greatest_of_cell(thirds_between(v[0], v[1]), thirds_between(v[1], v[2]),
+                                      thirds_between(v[2], v[3]));
     /* in units of a third along each axis */
     bits |= (uint64_t)lanes_bits(greatest > lanes_set(27 * level)) << (16 * layer);
   }

@@ -1,5 +1,5 @@
-/* splat/cell_bounds.c - bounds of all cells, once a volume. They are kept until the transfer function changes, packed: most
- * of a volume is empty, or as even as a brick. */
+/* splat/cell_bounds.c - bounds of all cells, once a volume. They are kept until the transfer function
+ * changes, packed: most of a volume is empty, or as even as a brick. */
 #include "splat/cell_bounds.h"
 
 #include <string.h>
@@ -17,7 +17,7 @@ typedef struct bound_job {
   float *scratch;       /* [workers][scratch_floats] */
   unsigned char *bytes; /* [workers][scratch_bytes] */
   size_t scratch_floats, scratch_bytes, plane;
-  bool failed;          /* for lack of memory; atomic */
+  bool failed; /* for lack of memory; atomic */
 } bound_job;
 
 /* Bounds of one slice of voxels along x and y: [2][near y][near x], low and high. */
@@ -39,17 +39,19 @@ static void bound_slice(const bound_job *job, int32_t z, float *rows, float *pad
       low[tap] = rows + 2 * (size_t)y * width;
       high[tap] = low[tap] + width;
     }
-    job->across(low, high, width, job->smooth, slice + (size_t)f * width, slice + job->plane + (size_t)f * width);
+    job->across(low, high, width, job->smooth, slice + (size_t)f * width,
+                slice + job->plane + (size_t)f * width);
   }
 }
 
-/* Rounded outwards to 255 steps of the volume's range; sums of floats may err by far less than the ten-thousandth
- * of a step that is forgiven, and a table's entry is sixteen times finer than a step. */
-static void round_bounds(const grid *grid, const float *low, const float *high, size_t count, unsigned char *to_low,
-                         unsigned char *to_high) {
+/* Rounded outwards to 255 steps of the volume's range; sums of floats may err by far less than the
+ * ten-thousandth of a step that is forgiven, and a table's entry is sixteen times finer than a step. */
+static void round_bounds(const grid *grid, const float *low, const float *high, size_t count,
+                         unsigned char *to_low, unsigned char *to_high) {
   float inverse = 1 / grid->cell_step;
   for (size_t i = 0; i < count; i++) {
-    float a = floorf((low[i] - grid->cell_base) * inverse + 1e-4f), b = ceilf((high[i] - grid->cell_base) * inverse - 1e-4f);
+    float a = floorf((low[i] - grid->cell_base) * inverse + 1e-4f),
+          b = ceilf((high[i] - grid->cell_base) * inverse - 1e-4f);
     to_low[i] = (unsigned char)(a < 0 ? 0 : a > 255 ? 255 : a);
     to_high[i] = (unsigned char)(b < 0 ? 0 : b > 255 ? 255 : b);
   }
@@ -75,7 +77,9 @@ static void gather_cells(const cell_rows rows, int32_t x, int32_t count, unsigne
   }
 }
 
-static bool all_alike(const unsigned char cells[BRICK_CELLS]) { return memcmp(cells, cells + 1, BRICK_CELLS - 1) == 0; }
+static bool all_alike(const unsigned char cells[BRICK_CELLS]) {
+  return memcmp(cells, cells + 1, BRICK_CELLS - 1) == 0;
+}
 
 /* bounds: [CELL_LAYERS][2][plane], lower and upper; returns the bytes of the layer. */
 static size_t pack_layer(const grid *grid, const unsigned char *bounds, size_t plane, unsigned char *to) {
@@ -148,11 +152,13 @@ static void bound_layers(void *data, size_t index, int worker) {
   bound_job *job = data;
   const grid *grid = job->grid;
   size_t plane = job->plane;
-  bound_slices s = {.slices = job->scratch + (size_t)worker * job->scratch_floats, .held = {-1, -1, -1, -1, -1}};
+  bound_slices s = {.slices = job->scratch + (size_t)worker * job->scratch_floats,
+                    .held = {-1, -1, -1, -1, -1}};
   s.out = s.slices + CELL_TAPS * 2 * plane;
   s.rows = s.out + 2 * plane;
   s.padded = s.rows + 2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0];
-  unsigned char *bounds = job->bytes + (size_t)worker * job->scratch_bytes, *packed = bounds + CELL_LAYERS * 2 * plane;
+  unsigned char *bounds = job->bytes + (size_t)worker * job->scratch_bytes,
+                *packed = bounds + CELL_LAYERS * 2 * plane;
   int32_t end = ((int32_t)index + 1) * LAYERS_A_TASK;
   for (int32_t layer = (int32_t)index * LAYERS_A_TASK; layer < end && layer < grid->brick_count[2]; layer++) {
     for (int32_t k = 0; k < CELL_LAYERS; k++) {
@@ -186,7 +192,8 @@ static bool size_scratch(grid *grid, bound_job *job) {
     cells *= (size_t)grid->level[0].count[axis];
   }
   job->plane = (size_t)grid->level[0].count[0] * (size_t)grid->level[0].count[1];
-  job->scratch_floats = (2 * CELL_TAPS + 2) * job->plane + 2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0] +
+  job->scratch_floats = (2 * CELL_TAPS + 2) * job->plane +
+                        2 * (size_t)grid->dimension[1] * (size_t)grid->level[0].count[0] +
                         (size_t)grid->dimension[0] + 6;
   job->scratch_bytes = CELL_LAYERS * 2 * job->plane + greatest_layer_bytes(grid);
   return cells < INT32_MAX;
@@ -215,8 +222,10 @@ hl_status hl_cell_bounds_build(hl_context *context, hl_pool *pool, bound_along_f
   grid->cell_bounds = hl_allocate_zeroed(context, layers, sizeof *grid->cell_bounds);
   hl_status status = allocate_levels(context, grid, error);
   job.failed = job.scratch == NULL || job.bytes == NULL || grid->cell_bounds == NULL;
-  if (status == HL_OK && !job.failed) hl_pool_run(pool, (layers + LAYERS_A_TASK - 1) / LAYERS_A_TASK, bound_layers, &job);
-  if (status == HL_OK && job.failed) status = hl_fail_memory(error, layers * greatest_layer_bytes(grid), "the bounds of a volume's cells");
+  if (status == HL_OK && !job.failed)
+    hl_pool_run(pool, (layers + LAYERS_A_TASK - 1) / LAYERS_A_TASK, bound_layers, &job);
+  if (status == HL_OK && job.failed)
+    status = hl_fail_memory(error, layers * greatest_layer_bytes(grid), "the bounds of a volume's cells");
   hl_release(context, job.scratch);
   hl_release(context, job.bytes);
   return status;

@@ -1,4 +1,5 @@
-/* splat/cell_bounds_lanes.h - bounds of cells along and across rows, as plain loops that compilers turn into vectors. */
+/* splat/cell_bounds_lanes.h - bounds of cells along and across rows, as plain loops that compilers turn into
+ * vectors. */
 #ifndef HL_SPLAT_CELL_BOUNDS_LANES_H
 #define HL_SPLAT_CELL_BOUNDS_LANES_H
 
@@ -44,21 +45,23 @@ LANES_INLINE void pairs_of_row(const float *restrict padded, int32_t count, int 
   }
 }
 
-static void bound_along(hl_storage storage, const void *row, int32_t count, bool smooth, float *padded, float *low,
-                        float *high) {
+static void bound_along(hl_storage storage, const void *row, int32_t count, bool smooth, float *padded,
+                        float *low, float *high) {
   pad_row(storage, row, count, padded);
   if (smooth) pairs_of_row(padded, count / 2 + 1, 1, low, high);
   else pairs_of_row(padded, count / 2 + 1, 0, low, high);
 }
 
-LANES_INLINE void bound_five(const float *const l[CELL_TAPS], const float *const h[CELL_TAPS], size_t count, int smooth,
-                             float *restrict low, float *restrict high) {
-  for (size_t i = 0; i < count; i++) low[i] = least_of_cells(smooth, l[0][i], l[1][i], l[2][i], l[3][i], l[4][i]);
-  for (size_t i = 0; i < count; i++) high[i] = greatest_of_cells(smooth, h[0][i], h[1][i], h[2][i], h[3][i], h[4][i]);
+LANES_INLINE void bound_five(const float *const l[CELL_TAPS], const float *const h[CELL_TAPS], size_t count,
+                             int smooth, float *restrict low, float *restrict high) {
+  for (size_t i = 0; i < count; i++)
+    low[i] = least_of_cells(smooth, l[0][i], l[1][i], l[2][i], l[3][i], l[4][i]);
+  for (size_t i = 0; i < count; i++)
+    high[i] = greatest_of_cells(smooth, h[0][i], h[1][i], h[2][i], h[3][i], h[4][i]);
 }
 
-static void bound_across(const float *const low_rows[CELL_TAPS], const float *const high_rows[CELL_TAPS], size_t count,
-                         bool smooth, float *low, float *high) {
+static void bound_across(const float *const low_rows[CELL_TAPS], const float *const high_rows[CELL_TAPS],
+                         size_t count, bool smooth, float *low, float *high) {
   if (smooth) bound_five(low_rows, high_rows, count, 1, low, high);
   else bound_five(low_rows, high_rows, count, 0, low, high);
 }

@@ -13,8 +13,9 @@ typedef struct mark_job {
 static void find_least_high(const classifier *classifier, const grid *grid, uint16_t least_high[256]) {
   for (int low = 255; low >= 0; low--) {
     int high = low;
-    while (high < 256 && !hl_classifier_span_visible(classifier, grid, grid->cell_base + (float)low * grid->cell_step,
-                                                     grid->cell_base + (float)high * grid->cell_step))
+    while (high < 256 &&
+           !hl_classifier_span_visible(classifier, grid, grid->cell_base + (float)low * grid->cell_step,
+                                       grid->cell_base + (float)high * grid->cell_step))
       high++;
     least_high[low] = (uint16_t)high;
   }
@@ -28,7 +29,8 @@ static size_t packed_row_bytes(const grid *grid, const unsigned char *even) {
 }
 
 /* Writes 1 where one of a brick's cells shows something; returns whether any does. */
-static unsigned char mark_brick(const mark_job *job, const int32_t brick[3], const unsigned char *bounds, bool even) {
+static unsigned char mark_brick(const mark_job *job, const int32_t brick[3], const unsigned char *bounds,
+                                bool even) {
   const cell_level *level = &job->grid->level[0];
   unsigned char any = 0;
   if (even && bounds[1] < job->least_high[bounds[0]]) return 0;
@@ -36,7 +38,8 @@ static unsigned char mark_brick(const mark_job *job, const int32_t brick[3], con
     int32_t x = 2 * brick[0] + cell % 2, y = 2 * brick[1] + cell / 2 % 2, z = 2 * brick[2] + cell / 4;
     bool shows = even || bounds[BRICK_CELLS + cell] >= job->least_high[bounds[cell]];
     if (!shows || x >= level->count[0] || y >= level->count[1] || z >= level->count[2]) continue;
-    level->near[((size_t)z * (size_t)level->count[1] + (size_t)y) * (size_t)level->count[0] + (size_t)x] = any = 1;
+    level->near[((size_t)z * (size_t)level->count[1] + (size_t)y) * (size_t)level->count[0] + (size_t)x] =
+        any = 1;
   }
   return any;
 }
@@ -49,7 +52,8 @@ static void mark_layer(void *data, size_t layer, int worker) {
   size_t plane = (size_t)fine->count[0] * (size_t)fine->count[1], width = (size_t)grid->brick_count[0];
   int32_t slices = fine->count[2] - 2 * (int32_t)layer < 2 ? 1 : 2;
   memset(fine->near + 2 * layer * plane, 0, (size_t)slices * plane);
-  memset(coarse->near + layer * width * (size_t)grid->brick_count[1], 0, width * (size_t)grid->brick_count[1]);
+  memset(coarse->near + layer * width * (size_t)grid->brick_count[1], 0,
+         width * (size_t)grid->brick_count[1]);
   const unsigned char *even = grid->cell_bounds[layer];
   const unsigned char *bounds = even + hl_even_row_bytes(grid) * (size_t)grid->brick_count[1];
   for (int32_t y = 0; y < grid->brick_count[1]; y++, even += hl_even_row_bytes(grid)) {
@@ -87,8 +91,8 @@ static void mark_row(unsigned char *cells, size_t width) {
     cells[x] = (unsigned char)-(cells[x] | cells[width - 1]);
 }
 
-/* The look-ups along y or z, in place, from the first cell on. step: from a cell to the next along the axis; there are
- * `width` cells side by side. three: the bits of boxes three cells long along it. */
+/* The look-ups along y or z, in place, from the first cell on. step: from a cell to the next along the axis;
+ * there are `width` cells side by side. three: the bits of boxes three cells long along it. */
 static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t width, unsigned char three) {
   for (int32_t i = 0; i + 2 < count; i++) {
     unsigned char *cell = cells + (size_t)i * step;
@@ -115,7 +119,8 @@ static void mark_across(void *data, size_t index, int worker) {
   (void)worker;
   const cell_level *level = data;
   size_t width = (size_t)level->count[0];
-  join_axis(level->near + index * width, width * (size_t)level->count[1], level->count[2], width, THREE_ALONG_Z);
+  join_axis(level->near + index * width, width * (size_t)level->count[1], level->count[2], width,
+            THREE_ALONG_Z);
 }
 
 void hl_cells_mark_near(grid *grid, hl_pool *pool) {

@@ -14,12 +14,13 @@ static double extinction_of(const hl_transfer_function *function, double value) 
 }
 
 double hl_transparent_below(const hl_scene_volume *volume, double empty) {
-  bool below_all = empty < volume->volume->minimum && hl_transfer_function_opacity(&volume->transfer_function, empty) > 0;
+  bool below_all = empty < volume->volume->minimum &&
+                   hl_transfer_function_opacity(&volume->transfer_function, empty) > 0;
   return below_all ? (empty + volume->volume->minimum) / 2 : -INFINITY;
 }
 
-/* Exact for the piecewise linear table: over one step the mean extinction e is (e0 + e1) / 2, its moment about the
- * step's start (e0 + 2 e1) / 6 (derived). */
+/* Exact for the piecewise linear table: over one step the mean extinction e is (e0 + e1) / 2, its moment
+ * about the step's start (e0 + 2 e1) / 6 (derived). */
 static void integrate(classifier *classifier) {
   double integral = 0, moment = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -44,7 +45,8 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
     for (int c = 0; c < 3; c++) classifier->color[entry][c] = (float)color[c];
   }
   classifier->sums[CLASSIFIER_ENTRIES + 1][0] = classifier->sums[CLASSIFIER_ENTRIES][0];
-  memcpy(classifier->color[CLASSIFIER_ENTRIES + 1], classifier->color[CLASSIFIER_ENTRIES], sizeof classifier->color[0]);
+  memcpy(classifier->color[CLASSIFIER_ENTRIES + 1], classifier->color[CLASSIFIER_ENTRIES],
+         sizeof classifier->color[0]);
   integrate(classifier);
   int32_t next = CLASSIFIER_ENTRIES + 2;
   for (int entry = CLASSIFIER_ENTRIES + 1; entry >= 0; entry--) {
@@ -65,7 +67,8 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
   mat3 placed = volume->volume->index_to_world.linear; /* but for the rotation, which keeps lengths */
-  for (int axis = 0; axis < 3; axis++) placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
+  for (int axis = 0; axis < 3; axis++)
+    placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
   double edge = mat3_shortest_column(placed) * volume->scale;
   return (float)fmin(fmax(1e-3 * span / edge * entries_per_value, 1e-30), 1e30);
 }
@@ -106,7 +109,9 @@ bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, 
   float b = (high - grid->empty) * classifier->scale + classifier->offset;
   float least = fminf(a, b), greatest = fmaxf(a, b);
   int32_t first = least <= 0 ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
-  int32_t last = greatest <= 0 ? 1 : greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1 : (int32_t)greatest + 1;
+  int32_t last = greatest <= 0                    ? 1
+                 : greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1
+                                                  : (int32_t)greatest + 1;
   return classifier->next_visible[first] <= last;
 }
 

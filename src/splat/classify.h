@@ -1,9 +1,9 @@
 /* splat/classify.h - transfer functions as tables, for post-classification per pixel.
  *
  * Density on a sheet (stored units, relative to the grid's empty value) -> extinction and colour, linear
- * between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. Along a ray from one sheet to
- * the next, density runs from a to b; its mean extinction is the integral of the table from a to b over (b - a), so
- * the table is kept integrated too: a sharp transfer function is never stepped over. */
+ * between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. Along a ray from one sheet
+ * to the next, density runs from a to b; its mean extinction is the integral of the table from a to b over (b
+ * - a), so the table is kept integrated too: a sharp transfer function is never stepped over. */
 #ifndef HL_SPLAT_CLASSIFY_H
 #define HL_SPLAT_CLASSIFY_H
 
@@ -12,21 +12,21 @@
 enum { CLASSIFIER_ENTRIES = 4096 };
 
 typedef struct classifier {
-  float scale, offset;   /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
-  float (*sums)[4];      /* owned; [CLASSIFIER_ENTRIES + 2]; extinction per world unit; its integral over entries, from
-                            entry 0; the integral of extinction * entry; 0 */
-  float (*color)[4];     /* owned with sums; [same]; linear RGB; 0 */
+  float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
+  float (*sums)[4];  /* owned; [CLASSIFIER_ENTRIES + 2]; extinction per world unit; its integral over entries,
+                        from  entry 0; the integral of extinction * entry; 0 */
+  float (*color)[4]; /* owned with sums; [same]; linear RGB; 0 */
   int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: first entry at or above with extinction > 0 */
   float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
-  float normal_edge;     /* the least gradient (table entries per frame unit) that counts as a surface */
+  float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
                                classifier *classifier, hl_error *error);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
-/* Where nothing of the function is transparent and empty lies below all values, what is nearer to empty than to the least value
- * is transparent: data values below this. Else -infinity. */
+/* Where nothing of the function is transparent and empty lies below all values, what is nearer to empty than
+ * to the least value is transparent: data values below this. Else -infinity. */
 double hl_transparent_below(const hl_scene_volume *volume, double empty);
 
 /* True if some stored value in [low, high] is visible. */

@@ -6,7 +6,11 @@
 #include "splat/classify.h"
 
 /* A place in the tables: entry + fraction. */
-typedef struct table_place { lanes x; lanes_int entry; lanes fraction; } table_place;
+typedef struct table_place {
+  lanes x;
+  lanes_int entry;
+  lanes fraction;
+} table_place;
 
 LANES_INLINE table_place place_of_coordinate(lanes x) {
   lanes_int entry = lanes_truncate(x);
@@ -14,7 +18,8 @@ LANES_INLINE table_place place_of_coordinate(lanes x) {
 }
 
 LANES_INLINE table_place classify_place(const classifier *classifier, lanes density) {
-  return place_of_coordinate(lanes_clamp(lanes_line(density, classifier->scale, classifier->offset), 0, CLASSIFIER_ENTRIES));
+  return place_of_coordinate(
+      lanes_clamp(lanes_line(density, classifier->scale, classifier->offset), 0, CLASSIFIER_ENTRIES));
 }
 
 /* The values of a table's columns at a place. */
@@ -51,9 +56,11 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_place 
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
-/* How far from a and from b on the way between them, weighted by extinction, the density lies, in entries; 1 and 1 where the
- * way is short or holds nothing. */
-typedef struct way_parts { lanes from_a, from_b; } way_parts;
+/* How far from a and from b on the way between them, weighted by extinction, the density lies, in entries; 1
+ * and 1 where the way is short or holds nothing. */
+typedef struct way_parts {
+  lanes from_a, from_b;
+} way_parts;
 
 LANES_INLINE way_parts parts_of_way(lanes a, lanes b, const way_sums *sums) {
   lanes_int usable = lanes_abs(sums->whole) > 0.0f;

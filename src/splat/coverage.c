@@ -1,16 +1,16 @@
 /* splat/coverage.c - sets up the rays of a view against a volume's box. */
 #include "splat/coverage.h"
 
-/* s of the rays at which the middle one is nearest to frame space's origin: counted from there, numbers are as small as
- * what is seen, however far the eye is. */
+/* s of the rays at which the middle one is nearest to frame space's origin: counted from there, numbers are
+ * as small as what is seen, however far the eye is. */
 static double way_to_middle(const view *view) {
   vec3 start, way;
   hl_view_ray(view, view->width / 2.0, view->height / 2.0, &start, &way);
   return -vec3_dot(start, way) / vec3_dot(way, way);
 }
 
-void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 frame_to_index, const double low[3],
-                 const double high[3], box_rays *rays) {
+void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 frame_to_index,
+                 const double low[3], const double high[3], box_rays *rays) {
   vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5));
   vec3 zero = {0, 0, 0}, direction = view->perspective ? first : view->direction;
   vec3 direction_u = view->perspective ? view->du : zero, direction_v = view->perspective ? view->dv : zero;

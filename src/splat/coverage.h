@@ -1,8 +1,8 @@
 /* splat/coverage.h - how much of a sheet's slab along a ray lies inside a volume's box.
  *
  * A homogeneous box must be as thick as it is: counting sheets would round its depth to whole sheets.
- * So each ray keeps the heights at which it enters and leaves the box, and the slab between two sheets counts with
- * the part that lies in between (derived; exact for a homogeneous medium). */
+ * So each ray keeps the heights at which it enters and leaves the box, and the slab between two sheets counts
+ * with the part that lies in between (derived; exact for a homogeneous medium). */
 #ifndef HL_SPLAT_COVERAGE_H
 #define HL_SPLAT_COVERAGE_H
 
@@ -23,7 +23,7 @@ typedef struct box_rays {
  * has enter > leave. */
 typedef void coverage_tile_function(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave);
 
-void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 frame_to_index, const double low[3],
-                 const double high[3], box_rays *rays);
+void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 frame_to_index,
+                 const double low[3], const double high[3], box_rays *rays);
 
 #endif

@@ -12,7 +12,8 @@ static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *e
     lanes first = lanes_set(rays->least), last = lanes_set(1e30f);
     for (int axis = 0; axis < 3; axis++) {
       lanes start = linear_in_view(rays->start[axis], rays->start_u[axis], rays->start_v[axis], u, v);
-      lanes direction = linear_in_view(rays->direction[axis], rays->direction_u[axis], rays->direction_v[axis], u, v);
+      lanes direction = linear_in_view(rays->direction[axis], rays->direction_u[axis],
+                                       rays->direction_v[axis], u, v);
       /* a ray along the slab: a tiny direction sends both crossings far out on the right sides */
       direction = lanes_select(lanes_abs(direction) < 1e-12f, lanes_set(1e-12f), direction);
       lanes a = (rays->low[axis] - start) / direction, b = (rays->high[axis] - start) / direction;
@@ -29,7 +30,9 @@ static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *e
 }
 
 /* Where the covered part of the slab [height - spacing, height] begins and how long it is, in slabs. */
-typedef struct covered_part { lanes begin, length; } covered_part;
+typedef struct covered_part {
+  lanes begin, length;
+} covered_part;
 
 LANES_INLINE covered_part covered(lanes enter, lanes leave, float height, float spacing) {
   lanes top = lanes_min(leave, lanes_set(height));

@@ -26,13 +26,15 @@ typedef struct tap_window {
   lanes_offsets offsets; /* bytes from voxels to tap (0,0,0) */
 } tap_window;
 
-LANES_INLINE const unsigned char *window_row(const grid *grid, hl_storage storage, const tap_window *window, int y, int z) {
+LANES_INLINE const unsigned char *window_row(const grid *grid, hl_storage storage, const tap_window *window,
+                                             int y, int z) {
   size_t row_bytes = (size_t)grid->dimension[0] * hl_storage_bytes(storage);
   return window->voxels + ((size_t)z * (size_t)grid->dimension[1] + (size_t)y) * row_bytes;
 }
 
 /* The loops stay loops: unrolled, they outgrow the instruction cache and take a compiler minutes. */
-LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window, const lanes weight[3][4]) {
+LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window,
+                            const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
   row_weights along = weights_of_row(storage, weight[0]);
 #pragma GCC unroll 1
@@ -40,28 +42,33 @@ LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_wind
     lanes plane = lanes_set(0);
 #pragma GCC unroll 1
     for (int y = 0; y < 4; y++)
-      plane = lanes_fma(sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along), weight[1][y], plane);
+      plane = lanes_fma(sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along),
+                        weight[1][y], plane);
     sum = lanes_fma(plane, weight[2][z], sum);
   }
   return from_units(storage, sum);
 }
 
-static __attribute__((noinline)) lanes sum_u8(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
+static __attribute__((noinline)) lanes sum_u8(const grid *grid, const tap_window *window,
+                                              const lanes weight[3][4]) {
   return sum_taps(grid, HL_STORAGE_U8, window, weight);
 }
-static __attribute__((noinline)) lanes sum_u16(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
+static __attribute__((noinline)) lanes sum_u16(const grid *grid, const tap_window *window,
+                                               const lanes weight[3][4]) {
 #ifdef HL_SHORT_ROWS
   return sum_short_rows(grid, window->voxels, &window->offsets, weight);
 #else
   return sum_taps(grid, HL_STORAGE_U16, window, weight);
 #endif
 }
-static __attribute__((noinline)) lanes sum_f32(const grid *grid, const tap_window *window, const lanes weight[3][4]) {
+static __attribute__((noinline)) lanes sum_f32(const grid *grid, const tap_window *window,
+                                               const lanes weight[3][4]) {
   return sum_taps(grid, HL_STORAGE_F32, window, weight);
 }
 
 /* The same sum in grids less than four voxels thick somewhere. One lane at a time, same order. */
-static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const lanes_int cell[3], uint32_t active, const lanes weight[3][4]) {
+static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const lanes_int cell[3],
+                                                        uint32_t active, const lanes weight[3][4]) {
   lanes sums = lanes_set(0);
   for (; active != 0; active &= active - 1) {
     int lane = __builtin_ctz(active);
@@ -81,15 +88,19 @@ static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const 
   return sums;
 }
 
-/* Beyond the border its values continue: taps outside fold their weights onto the border's voxel, and the window of
- * four moves inside. The cells -1, 0 and n-2, n-1 are the ones with taps outside. */
+/* Beyond the border its values continue: taps outside fold their weights onto the border's voxel, and the
+ * window of four moves inside. The cells -1, 0 and n-2, n-1 are the ones with taps outside. */
 LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4]) {
   lanes zero = lanes_set(0);
-  lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2, last = cell == count - 1;
+  lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2,
+            last = cell == count - 1;
   lanes w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
-  weight[0] = lanes_select(first, w0 + w1 + w2, lanes_select(second, w0 + w1, lanes_select(last | last_but_one, zero, w0)));
-  weight[1] = lanes_select(first, w3, lanes_select(second, w2, lanes_select(last, zero, lanes_select(last_but_one, w0, w1))));
-  weight[2] = lanes_select(first, zero, lanes_select(second, w3, lanes_select(last, w0, lanes_select(last_but_one, w1, w2))));
+  weight[0] = lanes_select(first, w0 + w1 + w2,
+                           lanes_select(second, w0 + w1, lanes_select(last | last_but_one, zero, w0)));
+  weight[1] = lanes_select(
+      first, w3, lanes_select(second, w2, lanes_select(last, zero, lanes_select(last_but_one, w0, w1))));
+  weight[2] = lanes_select(
+      first, zero, lanes_select(second, w3, lanes_select(last, w0, lanes_select(last_but_one, w1, w2))));
   weight[3] = lanes_select(first | second, zero,
                            lanes_select(last, w1 + w2 + w3, lanes_select(last_but_one, w2 + w3, w3)));
   lanes_int inside = lanes_select_int(cell < 1, lanes_set_int(1), cell);
@@ -97,7 +108,9 @@ LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4
 }
 
 /* The lanes whose taps lie in the grid along an axis. */
-LANES_INLINE uint32_t taps_inside(lanes_int cell, int32_t count) { return lanes_bits((cell >= 1) & (cell < count - 2)); }
+LANES_INLINE uint32_t taps_inside(lanes_int cell, int32_t count) {
+  return lanes_bits((cell >= 1) & (cell < count - 2));
+}
 
 /* The axes, one bit each, along which taps of active lanes lie outside. */
 LANES_INLINE int axes_to_fold(const grid *grid, const lanes_int cell[3], uint32_t active) {
@@ -115,15 +128,19 @@ LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uin
   tap_window window;
   window.voxels = (const unsigned char *)grid->voxels +
                   (((size_t)(reference[2] - 1) * (size_t)grid->dimension[1] + (size_t)(reference[1] - 1)) *
-                       (size_t)grid->dimension[0] + (size_t)(reference[0] - 1)) * bytes;
+                       (size_t)grid->dimension[0] +
+                   (size_t)(reference[0] - 1)) *
+                      bytes;
   lanes_int offset = (cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
                      (cell[1] - reference[1]) * grid->dimension[0] + (cell[0] - reference[0]);
   lanes_store_offsets(&window.offsets, (offset * (int32_t)bytes) & lanes_from_bits(active));
   return window;
 }
 
-/* The weighted sum for the active lanes of a block. inside: all lanes are active, and all their taps lie in the grid. */
-LANES_INLINE lanes gather_block(const fill_source *source, const block_place *place, uint32_t active, int degree, int inside) {
+/* The weighted sum for the active lanes of a block. inside: all lanes are active, and all their taps lie in
+ * the grid. */
+LANES_INLINE lanes gather_block(const fill_source *source, const block_place *place, uint32_t active,
+                                int degree, int inside) {
   const grid *grid = source->grid;
   hl_storage storage = grid->storage;
   lanes weight[3][4];
@@ -134,7 +151,8 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {
-    if (weights_are_whole(storage)) round_to_weights(weight[0]); /* before they fold, as splatting takes them */
+    if (weights_are_whole(storage))
+      round_to_weights(weight[0]); /* before they fold, as splatting takes them */
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);
     for (int a = 0; a < 3; a++)
@@ -151,15 +169,17 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_place *pl
 }
 
 /* One block's densities; returns whether any may show. */
-LANES_INLINE int gather_place(const fill_source *source, const block_place *place, int inside, float *density) {
+LANES_INLINE int gather_place(const fill_source *source, const block_place *place, int inside,
+                              float *density) {
   uint32_t active = inside ? 0xffff : lanes_bits(place->inside);
   lanes sum = lanes_set(0);
   if (active == 0) {
     lanes_store(density, sum);
     return 0;
   }
-  sum = source->kernel->degree == HL_BSPLINE_DEGREE ? gather_block(source, place, active, HL_BSPLINE_DEGREE, inside)
-                                                    : gather_block(source, place, active, HL_KERNEL_DEGREE, inside);
+  sum = source->kernel->degree == HL_BSPLINE_DEGREE
+            ? gather_block(source, place, active, HL_BSPLINE_DEGREE, inside)
+            : gather_block(source, place, active, HL_KERNEL_DEGREE, inside);
   sum = sum - source->grid->empty;
   lanes_int shown = may_show(source, sum);
   if (!inside) {
@@ -170,16 +190,18 @@ LANES_INLINE int gather_place(const fill_source *source, const block_place *plac
   return lanes_bits(shown) != 0;
 }
 
-LANES_INLINE block_place place_in_tile(const fill_source *source, int tile_x, int tile_y, int block, int inside) {
+LANES_INLINE block_place place_in_tile(const fill_source *source, int tile_x, int tile_y, int block,
+                                       int inside) {
   int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK;
   block_place place = inside ? place_block_inside(source, x, y) : place_block(source, x, y);
   lowest_of_block(place.cell, place.low);
   return place;
 }
 
-/* All of the others are asked before the first block is gone into: which of them show something no processor foresees. */
-LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others,
-                                         int inside, float *density) {
+/* All of the others are asked before the first block is gone into: which of them show something no processor
+ * foresees. */
+LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
+                                         uint32_t others, int inside, float *density) {
   block_place place[TILE_BLOCKS];
   filled_blocks blocks = {need, 0};
   for (uint32_t left = others; left != 0; left &= left - 1) {
@@ -190,14 +212,17 @@ LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, 
   for (uint32_t left = blocks.filled; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
     if (need >> block & 1) place[block] = place_in_tile(source, tile_x, tile_y, block, inside);
-    blocks.showing |= (uint32_t)gather_place(source, &place[block], inside, density + block * BLOCK_PIXELS) << block;
+    blocks.showing |= (uint32_t)gather_place(source, &place[block], inside, density + block * BLOCK_PIXELS)
+                      << block;
   }
   return blocks;
 }
 
-static filled_blocks gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others, float *density) {
+static filled_blocks gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need,
+                                 uint32_t others, float *density) {
   if (!source->grid->cell_bits_tell) need |= others, others = 0;
-  if (tile_is_inside(source, tile_x * TILE, tile_y * TILE)) return gather_blocks(source, tile_x, tile_y, need, others, 1, density);
+  if (tile_is_inside(source, tile_x * TILE, tile_y * TILE))
+    return gather_blocks(source, tile_x, tile_y, need, others, 1, density);
   return gather_blocks(source, tile_x, tile_y, need, others, 0, density);
 }
 

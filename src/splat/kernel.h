@@ -13,11 +13,11 @@ enum { HL_KERNEL_DEGREE = 5, HL_BSPLINE_DEGREE = 3 /* the cubic B-spline's, and 
 
 typedef struct kernel {
   const char *name;
-  float support;                       /* radius in voxels: 1 or 2 */
-  double variance;                     /* per axis, voxels^2: how much it blurs */
-  float inner[HL_KERNEL_DEGREE + 1];   /* coefficients of a^0 .. a^5, a = |d| in [0,1] */
-  float outer[HL_KERNEL_DEGREE + 1];   /* the same with a = |d| - 1 in [0,1] */
-  int degree;                          /* the highest non-zero power */
+  float support;                     /* radius in voxels: 1 or 2 */
+  double variance;                   /* per axis, voxels^2: how much it blurs */
+  float inner[HL_KERNEL_DEGREE + 1]; /* coefficients of a^0 .. a^5, a = |d| in [0,1] */
+  float outer[HL_KERNEL_DEGREE + 1]; /* the same with a = |d| - 1 in [0,1] */
+  int degree;                        /* the highest non-zero power */
 } kernel;
 
 const kernel *hl_kernel_get(hl_kernel which);

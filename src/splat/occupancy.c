@@ -81,7 +81,8 @@ static int last_tile(double high, int tiles) {
 /* The tiles of some bounds and what is to spare around them; empty where the view does not see them. */
 static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *o) {
   tile_rectangle r = {.x = first_tile(bounds->low[0] - o->spare), .y = first_tile(bounds->low[1] - o->spare)};
-  int x1 = last_tile(bounds->high[0] + o->spare, o->tiles_x), y1 = last_tile(bounds->high[1] + o->spare, o->tiles_y);
+  int x1 = last_tile(bounds->high[0] + o->spare, o->tiles_x),
+      y1 = last_tile(bounds->high[1] + o->spare, o->tiles_y);
   r.width = x1 < r.x ? 0 : x1 - r.x + 1;
   r.height = y1 < r.y ? 0 : y1 - r.y + 1;
   return r;
@@ -121,7 +122,8 @@ static void number_patches(occupancy *o, int grid_count) {
 }
 
 /* Rounding errs by a few parts in 2^24 of the greatest sum: that of a row's magnitudes over the grid. */
-static float set_row(const double row[4], const double middle[3], const double half[3], double scale, float rounded[4]) {
+static float set_row(const double row[4], const double middle[3], const double half[3], double scale,
+                     float rounded[4]) {
   double offset = row[3], greatest = 0;
   for (int axis = 0; axis < 3; axis++) {
     rounded[axis] = (float)(row[axis] * scale);
@@ -132,8 +134,8 @@ static float set_row(const double row[4], const double middle[3], const double h
   return (float)((greatest + fabs(offset)) * fabs(scale) * 1e-6);
 }
 
-static void set_view(const footprint_map *map, const grid *grid, const sheet_stack *sheets, const occupancy *o,
-                     const tile_rectangle *r, brick_view *view) {
+static void set_view(const footprint_map *map, const grid *grid, const sheet_stack *sheets,
+                     const occupancy *o, const tile_rectangle *r, brick_view *view) {
   double middle[3], half[3], height[4];
   for (int axis = 0; axis < 3; axis++) {
     middle[axis] = 0.5 * grid->dimension[axis];
@@ -147,7 +149,8 @@ static void set_view(const footprint_map *map, const grid *grid, const sheet_sta
     view->slack[1 + axis] = set_row(map->view[1 + axis], middle, half, 1.0 / TILE, view->view[1 + axis]);
   view->slack[3] = set_row(height, middle, half, 1 / sheets->spacing, view->height);
   view->spare = (float)(o->spare / TILE);
-  const int32_t first[RANGE_AXES] = {r->x, r->y, 0}, last[RANGE_AXES] = {r->x + r->width - 1, r->y + r->height - 1, o->sheets - 1};
+  const int32_t first[RANGE_AXES] = {r->x, r->y, 0},
+                last[RANGE_AXES] = {r->x + r->width - 1, r->y + r->height - 1, o->sheets - 1};
   memcpy(view->first, first, sizeof first);
   memcpy(view->last, last, sizeof last);
 }
@@ -157,7 +160,8 @@ static void mark_bits(uint64_t *words, int first, int last) {
   for (int word = first / 64; word <= last / 64; word++) {
     int low = word == first / 64 ? first % 64 : 0, high = word == last / 64 ? last % 64 : 63;
     uint64_t mask = (high == 63 ? ~(uint64_t)0 : ((uint64_t)1 << (high + 1)) - 1) & (~(uint64_t)0 << low);
-    if ((__atomic_load_n(&words[word], __ATOMIC_RELAXED) & mask) != mask) __atomic_fetch_or(&words[word], mask, __ATOMIC_RELAXED);
+    if ((__atomic_load_n(&words[word], __ATOMIC_RELAXED) & mask) != mask)
+      __atomic_fetch_or(&words[word], mask, __ATOMIC_RELAXED);
   }
 }
 
@@ -174,7 +178,8 @@ static void mark_brick(const occupancy_job *job, const brick_ranges *ranges, int
 }
 
 /* Numbers rise: most often the next one is in the same row of bricks. */
-static void places_of_bricks(const grid *grid, const uint32_t *bricks, int count, int32_t place[3][BRICKS_AT_ONCE]) {
+static void places_of_bricks(const grid *grid, const uint32_t *bricks, int count,
+                             int32_t place[3][BRICKS_AT_ONCE]) {
   uint32_t row_start = 0, row_end = 0;
   int32_t b[3] = {0};
   for (int i = 0; i < BRICKS_AT_ONCE; i++) {
@@ -227,8 +232,10 @@ static hl_status allocate(hl_context *context, occupancy *o, size_t tiles, hl_er
   o->first_patch = hl_allocate(context, tiles + 1, sizeof(uint32_t));
   o->by_patch = hl_allocate_zeroed(context, o->patch_count * (size_t)o->words + 1, sizeof(uint64_t));
   o->by_sheet = hl_allocate_zeroed(context, (size_t)o->words * 64 * (size_t)o->tile_words, sizeof(uint64_t));
-  if (o->patch_of == NULL || o->patch_grid == NULL || o->first_patch == NULL || o->by_patch == NULL || o->by_sheet == NULL)
-    return hl_fail_memory(error, o->patch_count * (size_t)o->words * sizeof(uint64_t), "the occupancy of tiles");
+  if (o->patch_of == NULL || o->patch_grid == NULL || o->first_patch == NULL || o->by_patch == NULL ||
+      o->by_sheet == NULL)
+    return hl_fail_memory(error, o->patch_count * (size_t)o->words * sizeof(uint64_t),
+                          "the occupancy of tiles");
   return HL_OK;
 }
 
@@ -242,8 +249,8 @@ static void set_size(const view *view, const sheet_stack *sheets, double spare, 
 }
 
 /* As allocate() takes it. */
-uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets, double spare,
-                            size_t *patch_count) {
+uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets,
+                            double spare, size_t *patch_count) {
   occupancy o = {0};
   set_size(view, sheets, spare, &o);
   for (int g = 0; g < grid_count; g++) {
@@ -257,13 +264,14 @@ uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view,
   return o.patch_count * (8 + 8 * words) + 4 * tiles + words * 64 * (uint64_t)o.tile_words * 8;
 }
 
-hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
-                             const sheet_stack *sheets, double spare, brick_ranges_function *ranges, occupancy *occupancy,
-                             hl_error *error) {
+hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count,
+                             const view *view, const sheet_stack *sheets, double spare,
+                             brick_ranges_function *ranges, occupancy *occupancy, hl_error *error) {
   set_size(view, sheets, spare, occupancy);
   size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
   occupancy->rectangle = hl_allocate(context, (size_t)grid_count, sizeof(tile_rectangle));
-  if (occupancy->rectangle == NULL) return hl_fail_memory(error, sizeof(tile_rectangle), "the occupancy of tiles");
+  if (occupancy->rectangle == NULL)
+    return hl_fail_memory(error, sizeof(tile_rectangle), "the occupancy of tiles");
   for (int g = 0; g < grid_count; g++) {
     footprint_map map;
     hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &map);
@@ -276,7 +284,8 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *gri
   if (status != HL_OK) return status;
   number_patches(occupancy, grid_count);
   for (int g = 0; g < grid_count; g++) {
-    occupancy_job job = {.occupancy = occupancy, .grid = &grids[g], .rectangle = &occupancy->rectangle[g], .ranges = ranges};
+    occupancy_job job = {
+        .occupancy = occupancy, .grid = &grids[g], .rectangle = &occupancy->rectangle[g], .ranges = ranges};
     footprint_map map;
     hl_footprint_map(view, sheets->normal, grids[g].index_to_frame, &map);
     set_view(&map, &grids[g], sheets, occupancy, job.rectangle, &job.view);

@@ -10,12 +10,14 @@
 
 /* The sheets of a sweep: mid-plane of sheet k at height first + k * spacing along the unit normal. */
 typedef struct sheet_stack {
-  vec3 normal;    /* h; frame space */
+  vec3 normal; /* h; frame space */
   double first, spacing;
   int count;
 } sheet_stack;
 
-static inline double hl_sheet_height(const sheet_stack *sheets, int sheet) { return sheets->first + sheet * sheets->spacing; }
+static inline double hl_sheet_height(const sheet_stack *sheets, int sheet) {
+  return sheets->first + sheet * sheets->spacing;
+}
 
 /* The tiles of a view that one grid can touch: nothing is kept or done for it elsewhere. */
 typedef struct tile_rectangle {
@@ -31,23 +33,23 @@ typedef struct occupancy {
   double spare;              /* pixels */
   tile_rectangle *rectangle; /* owned; [grids] */
   size_t patch_count;
-  uint32_t *patch_of;        /* owned; [patches]; the patch of each tile of each grid's rectangle */
-  uint32_t *first_patch;     /* owned; [tiles + 1]; a tile's patches */
-  uint32_t *patch_grid;      /* owned; [patches]; whose it is */
-  uint64_t *by_patch;        /* owned; [patches][words]; bit = sheet */
-  uint64_t *by_sheet;        /* owned; [words * 64][tile_words]; bit = tile, all grids together */
+  uint32_t *patch_of;    /* owned; [patches]; the patch of each tile of each grid's rectangle */
+  uint32_t *first_patch; /* owned; [tiles + 1]; a tile's patches */
+  uint32_t *patch_grid;  /* owned; [patches]; whose it is */
+  uint64_t *by_patch;    /* owned; [patches][words]; bit = sheet */
+  uint64_t *by_sheet;    /* owned; [words * 64][tile_words]; bit = tile, all grids together */
 } occupancy;
 
-/* Builds an empty occupancy for a view of width x height pixels. spare: pixels around each brick that it touches too. What
- * fails half-way is released as usual. */
-hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count, const view *view,
-                             const sheet_stack *sheets, double spare, brick_ranges_function *ranges, occupancy *occupancy,
-                             hl_error *error);
+/* Builds an empty occupancy for a view of width x height pixels. spare: pixels around each brick that it
+ * touches too. What fails half-way is released as usual. */
+hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count,
+                             const view *view, const sheet_stack *sheets, double spare,
+                             brick_ranges_function *ranges, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
 /* How many patches it would have, and the bytes that it would hold. */
-uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets, double spare,
-                            size_t *patch_count);
+uint64_t hl_occupancy_bytes(const grid *grids, int grid_count, const view *view, const sheet_stack *sheets,
+                            double spare, size_t *patch_count);
 
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
   const uint64_t *bits = occupancy->by_patch + patch * (size_t)occupancy->words;
@@ -56,8 +58,8 @@ static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int
 
 /* Bounds of a box of index space (centre, half edges) in a view and in sheets. */
 typedef struct footprint_bounds {
-  double low[2], high[2];           /* continuous pixels */
-  double low_height, high_height;   /* along the normal */
+  double low[2], high[2];         /* continuous pixels */
+  double low_height, high_height; /* along the normal */
 } footprint_bounds;
 
 /* Maps index space to a view and to heights; prepared once a grid and view. */

@@ -1,4 +1,5 @@
-/* splat/place_lanes.h - what splat and gather share: kernels, and the places of a block's pixels in a grid. */
+/* splat/place_lanes.h - what splat and gather share: kernels, and the places of a block's pixels in a
+ * grid. */
 #ifndef HL_SPLAT_PLACE_LANES_H
 #define HL_SPLAT_PLACE_LANES_H
 
@@ -21,8 +22,10 @@ LANES_INLINE lanes bspline_outer(lanes rest) { return rest * rest * (rest * (1.0
 /* A stored value; beyond the grid's faces they continue. */
 static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
   int64_t at[3] = {x, y, z};
-  for (int a = 0; a < 3; a++) at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
-  size_t index = ((size_t)at[2] * (size_t)grid->dimension[1] + (size_t)at[1]) * (size_t)grid->dimension[0] + (size_t)at[0];
+  for (int a = 0; a < 3; a++)
+    at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
+  size_t index = ((size_t)at[2] * (size_t)grid->dimension[1] + (size_t)at[1]) * (size_t)grid->dimension[0] +
+                 (size_t)at[0];
   if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)grid->voxels)[index];
   if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)grid->voxels)[index];
   return ((const float *)grid->voxels)[index];
@@ -30,10 +33,10 @@ static inline float stored_value(const grid *grid, int64_t x, int64_t y, int64_t
 
 /* The point of a block's pixels in index space, clamped to the grid, and which of them matter. */
 typedef struct block_place {
-  lanes3 point;     /* index space, clamped to [-1, n) */
+  lanes3 point;      /* index space, clamped to [-1, n) */
   lanes_int cell[3]; /* floor(point): -1 .. n-1 */
   int32_t low[3];    /* the least cell along each axis, where something asks for it (lowest_of_block) */
-  lanes_int inside; /* within the grid or a little outside */
+  lanes_int inside;  /* within the grid or a little outside */
 } block_place;
 
 /* Lanes whose density is not below all that is shown. */
@@ -60,8 +63,8 @@ LANES_INLINE block_place place_block(const fill_source *source, int x, int y) {
   return place;
 }
 
-/* The least cell of a block along each axis. Along a row or a column of its pixels places rise or fall throughout, so that the
- * least is at a corner, rounding apart. */
+/* The least cell of a block along each axis. Along a row or a column of its pixels places rise or fall
+ * throughout, so that the least is at a corner, rounding apart. */
 LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 #if defined(__AVX512BW__)
   const __m512i of_two = _mm512_set_epi32(0, 0, 0, 0, 15, 12, 3, 0, 31, 28, 19, 16, 15, 12, 3, 0);
@@ -88,8 +91,9 @@ LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 #endif
 }
 
-/* Whether the taps of all pixels of a tile lie in the grid, with room for rounding. A sheet's part that a tile's pixels
- * cover has straight edges: the pixels lie among those at its corners, unless some of them lie behind the view. */
+/* Whether the taps of all pixels of a tile lie in the grid, with room for rounding. A sheet's part that a
+ * tile's pixels cover has straight edges: the pixels lie among those at its corners, unless some of them lie
+ * behind the view. */
 LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   const sheet_rays *rays = &source->rays;
   const float spare = 1.0f / 64;

@@ -1,16 +1,19 @@
-/* splat/relevant_lanes.h - which blocks of a tile can hold anything between two sheets: one look at the box around each
- * one's rays, all sixteen at a time. A few slabs in a row at once: they share boxes and what they read of the cells. */
+/* splat/relevant_lanes.h - which blocks of a tile can hold anything between two sheets: one look at the box
+ * around each one's rays, all sixteen at a time. A few slabs in a row at once: they share boxes and what they
+ * read of the cells. */
 #ifndef HL_SPLAT_RELEVANT_LANES_H
 #define HL_SPLAT_RELEVANT_LANES_H
 
 #include "splat/fill.h"
 #include "splat/rays_lanes.h"
 
-typedef struct lanes_box { lanes low[3], high[3]; } lanes_box; /* index space */
+typedef struct lanes_box {
+  lanes low[3], high[3];
+} lanes_box; /* index space */
 
 /* Derived: on the sheet at base + P / H, a pixel further is (Pu - (Hu / H) P) / H further along it;
- * from a block's middle to its pixels' centres it is at most 3/2 pixels either way (a little more is allowed for: H
- * changes within the block). */
+ * from a block's middle to its pixels' centres it is at most 3/2 pixels either way (a little more is allowed
+ * for: H changes within the block). */
 LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   const float reach = 1.5f * 1.02f;
   lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
@@ -28,9 +31,10 @@ LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   return box;
 }
 
-/* Whether a box that spans no more cells of a level than one look takes in holds something; *wide: the others. */
-LANES_INLINE lanes_int box_shows(const cell_level *level, int shift, const lanes_int low[3], const lanes_int high[3],
-                                 lanes_int inside, lanes_int *wide) {
+/* Whether a box that spans no more cells of a level than one look takes in holds something; *wide: the
+ * others. */
+LANES_INLINE lanes_int box_shows(const cell_level *level, int shift, const lanes_int low[3],
+                                 const lanes_int high[3], lanes_int inside, lanes_int *wide) {
   lanes_int first = lanes_set_int(0), bit = first, fits = lanes_set_int(-1);
   for (int a = 2; a >= 0; a--) {
     lanes_int from = low[a] >> shift, beyond = (high[a] >> shift) - from;
@@ -73,11 +77,13 @@ LANES_INLINE uint32_t showing_blocks(const grid *grid, const lanes_box *box) {
 /* The blocks whose boxes lie in the run's. */
 LANES_INLINE uint32_t whole_blocks(const slab_run *run, const lanes_box *box) {
   lanes_int whole = lanes_set_int(-1);
-  for (int axis = 0; axis < 3; axis++) whole &= (box->low[axis] >= run->low[axis]) & (box->high[axis] <= run->high[axis]);
+  for (int axis = 0; axis < 3; axis++)
+    whole &= (box->low[axis] >= run->low[axis]) & (box->high[axis] <= run->high[axis]);
   return lanes_bits(whole);
 }
 
-static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, uint32_t slabs, uint32_t need, relevant_blocks *found) {
+static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, uint32_t slabs, uint32_t need,
+                                 relevant_blocks *found) {
   lanes u = lanes_load(block_column) * (float)BLOCK + ((float)(tile_x * TILE) + 1.5f);
   lanes v = lanes_load(block_row) * (float)BLOCK + ((float)(tile_y * TILE) + 1.5f);
   lanes_box on_sheet[RUN_SLABS + 1];

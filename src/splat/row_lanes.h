@@ -11,11 +11,21 @@ LANES_INLINE lanes weigh_floats(lanes a, lanes b, lanes c, lanes d, const lanes 
 }
 
 /* Of the 64 taps, along each axis. */
-typedef struct tap_slope_weights { lanes weight[3][4], slope[3][4]; } tap_slope_weights;
+typedef struct tap_slope_weights {
+  lanes weight[3][4], slope[3][4];
+} tap_slope_weights;
 
 /* Weights along x and their slopes, in the form that the voxels' type takes: whole numbers but for f32. */
-typedef struct row_weights { lanes real[4]; byte_weights bytes; short_weights shorts; } row_weights;
-typedef struct row_slopes { lanes real[4]; byte_slopes bytes; short_slopes shorts; } row_slopes;
+typedef struct row_weights {
+  lanes real[4];
+  byte_weights bytes;
+  short_weights shorts;
+} row_weights;
+typedef struct row_slopes {
+  lanes real[4];
+  byte_slopes bytes;
+  short_slopes shorts;
+} row_slopes;
 
 LANES_INLINE int weights_are_whole(hl_storage storage) { return storage != HL_STORAGE_F32; }
 
@@ -38,25 +48,37 @@ LANES_INLINE row_slopes slopes_of_row(hl_storage storage, const lanes slope[4]) 
   return slopes;
 }
 
-/* Four neighbouring voxels along x for every lane, weighed and added; offsets in bytes. In units of weights where those are whole. */
+/* Four neighbouring voxels along x for every lane, weighed and added; offsets in bytes. In units of weights
+ * where those are whole. */
 LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
   return weigh_floats((lanes)lanes_load_words(row, offsets), (lanes)lanes_load_words(row + 4, offsets),
-                      (lanes)lanes_load_words(row + 8, offsets), (lanes)lanes_load_words(row + 12, offsets), weight);
+                      (lanes)lanes_load_words(row + 8, offsets), (lanes)lanes_load_words(row + 12, offsets),
+                      weight);
 }
-LANES_INLINE lanes sum_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets, const row_weights *weights) {
+LANES_INLINE lanes sum_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets,
+                           const row_weights *weights) {
   if (storage == HL_STORAGE_F32) return row_f32(row, offsets, weights->real);
-  if (storage == HL_STORAGE_U8) return lanes_from_int(weigh_bytes(lanes_load_words(row, offsets), &weights->bytes));
-  return lanes_from_int(weigh_shorts(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), &weights->shorts));
+  if (storage == HL_STORAGE_U8)
+    return lanes_from_int(weigh_bytes(lanes_load_words(row, offsets), &weights->bytes));
+  return lanes_from_int(
+      weigh_shorts(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), &weights->shorts));
 }
 /* The same by slopes, and in their units. */
-LANES_INLINE lanes slope_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets, const row_slopes *slopes) {
+LANES_INLINE lanes slope_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets,
+                             const row_slopes *slopes) {
   if (storage == HL_STORAGE_F32) return row_f32(row, offsets, slopes->real);
-  if (storage == HL_STORAGE_U8) return lanes_from_int(slope_of_bytes(lanes_load_words(row, offsets), &slopes->bytes));
-  return lanes_from_int(slope_of_shorts(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), &slopes->shorts));
+  if (storage == HL_STORAGE_U8)
+    return lanes_from_int(slope_of_bytes(lanes_load_words(row, offsets), &slopes->bytes));
+  return lanes_from_int(
+      slope_of_shorts(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), &slopes->shorts));
 }
 
 /* Sums in units of weights, in the voxels'. */
-LANES_INLINE lanes from_units(hl_storage storage, lanes sum) { return weights_are_whole(storage) ? sum * WEIGHT_INVERSE : sum; }
-LANES_INLINE lanes from_slope_units(hl_storage storage, lanes sum) { return weights_are_whole(storage) ? sum * SLOPE_INVERSE : sum; }
+LANES_INLINE lanes from_units(hl_storage storage, lanes sum) {
+  return weights_are_whole(storage) ? sum * WEIGHT_INVERSE : sum;
+}
+LANES_INLINE lanes from_slope_units(hl_storage storage, lanes sum) {
+  return weights_are_whole(storage) ? sum * SLOPE_INVERSE : sum;
+}
 
 #endif

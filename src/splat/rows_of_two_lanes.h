@@ -1,15 +1,21 @@
-/* splat/rows_of_two_lanes.h - sums along y and z where there is AVX2 alone: two lanes share a register of 256 bits, k and k + 4 of
- * eight. What weighing their taps along x leaves, a row of taps in each number, is turned so that lanes lie side by side. */
+/* splat/rows_of_two_lanes.h - sums along y and z where there is AVX2 alone: two lanes share a register of 256
+ * bits, k and k + 4 of eight. What weighing their taps along x leaves, a row of taps in each number, is
+ * turned so that lanes lie side by side. */
 #ifndef HL_SPLAT_ROWS_OF_TWO_LANES_H
 #define HL_SPLAT_ROWS_OF_TWO_LANES_H
 
 #include "splat/row_lanes.h"
 
 /* The taps of lanes k and k + 4 of a half. */
-typedef struct pair_of_taps { const unsigned char *first, *second; } pair_of_taps;
+typedef struct pair_of_taps {
+  const unsigned char *first, *second;
+} pair_of_taps;
 
-/* Eight lanes' rows, weighed along x: slice by slice, of lanes k and k + 4 four rows each. In units of weights. */
-typedef struct sums_of_rows { __m256i of_two[4][4]; } sums_of_rows;
+/* Eight lanes' rows, weighed along x: slice by slice, of lanes k and k + 4 four rows each. In units of
+ * weights. */
+typedef struct sums_of_rows {
+  __m256i of_two[4][4];
+} sums_of_rows;
 
 /* From four rows of two lanes in each of four, to eight lanes in each row, as floats. */
 LANES_INLINE void turn_rows(const __m256i of_two[4], __m256 row[4]) {
@@ -43,9 +49,12 @@ LANES_INLINE __m256 add_slices(const sums_of_rows *rows, const lanes weight[3][4
 }
 
 /* Eight lanes' gradients. sloped: rows weighed by slopes, and in their units. */
-typedef struct half_slope { __m256 x, y, z; } half_slope;
+typedef struct half_slope {
+  __m256 x, y, z;
+} half_slope;
 
-LANES_INLINE half_slope add_slopes(const sums_of_rows *rows, const sums_of_rows *sloped_rows, const tap_slope_weights *w, int half) {
+LANES_INLINE half_slope add_slopes(const sums_of_rows *rows, const sums_of_rows *sloped_rows,
+                                   const tap_slope_weights *w, int half) {
   __m256 x = _mm256_setzero_ps(), y = x, z = x;
   for (int slice = 0; slice < 4; slice++) {
     __m256 plain[4], sloped[4], weight = half_of(&w->weight[2][slice], half);
@@ -56,7 +65,8 @@ LANES_INLINE half_slope add_slopes(const sums_of_rows *rows, const sums_of_rows 
     z = _mm256_fmadd_ps(add_rows(plain, w->weight[1], half), half_of(&w->slope[2][slice], half), z);
   }
   const __m256 units = _mm256_set1_ps(WEIGHT_INVERSE);
-  return (half_slope){_mm256_mul_ps(x, _mm256_set1_ps(SLOPE_INVERSE)), _mm256_mul_ps(y, units), _mm256_mul_ps(z, units)};
+  return (half_slope){_mm256_mul_ps(x, _mm256_set1_ps(SLOPE_INVERSE)), _mm256_mul_ps(y, units),
+                      _mm256_mul_ps(z, units)};
 }
 
 LANES_INLINE void store_half(half_slope of, int half, lanes3 *slope) {

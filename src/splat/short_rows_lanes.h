@@ -1,12 +1,13 @@
-/* splat/short_rows_lanes.h - u16 voxels where there is AVX2 alone: each lane's rows of four taps are one load, eight bytes, from the
- * volume, and are weighed as they lie (rows_of_two_lanes.h). */
+/* splat/short_rows_lanes.h - u16 voxels where there is AVX2 alone: each lane's rows of four taps are one
+ * load, eight bytes, from the volume, and are weighed as they lie (rows_of_two_lanes.h). */
 #ifndef HL_SPLAT_SHORT_ROWS_LANES_H
 #define HL_SPLAT_SHORT_ROWS_LANES_H
 
 #include "splat/rows_of_two_lanes.h"
 
 /* voxels, offsets: bytes to every lane's first tap. */
-LANES_INLINE pair_of_taps short_taps_of_pair(const unsigned char *voxels, const lanes_offsets *offsets, int half, int k) {
+LANES_INLINE pair_of_taps short_taps_of_pair(const unsigned char *voxels, const lanes_offsets *offsets,
+                                             int half, int k) {
   const int32_t *at = offsets->at + 8 * half + k;
   return (pair_of_taps){voxels + at[0], voxels + at[4]};
 }
@@ -26,10 +27,13 @@ LANES_INLINE __m256i short_rows_of_two(const pair_of_taps *taps, size_t at, size
 }
 
 /* A slice of two lanes' taps. */
-typedef struct short_slice { __m256i upper, lower; } short_slice;
+typedef struct short_slice {
+  __m256i upper, lower;
+} short_slice;
 
 LANES_INLINE short_slice short_slice_of_two(const pair_of_taps *taps, size_t at, size_t row_bytes) {
-  return (short_slice){short_rows_of_two(taps, at, row_bytes), short_rows_of_two(taps, at + 2 * row_bytes, row_bytes)};
+  return (short_slice){short_rows_of_two(taps, at, row_bytes),
+                       short_rows_of_two(taps, at + 2 * row_bytes, row_bytes)};
 }
 
 /* Two lanes' weights or slopes, each lane's four in half a register, twice: once for each row. */
@@ -42,14 +46,16 @@ LANES_INLINE __m256i short_weights_of_pair(const short_weights *weights, int hal
 
 /* Each row's sum. */
 LANES_INLINE __m256i slope_short_slice(const short_slice *slice, __m256i weights) {
-  return _mm256_hadd_epi32(_mm256_madd_epi16(slice->upper, weights), _mm256_madd_epi16(slice->lower, weights));
+  return _mm256_hadd_epi32(_mm256_madd_epi16(slice->upper, weights),
+                           _mm256_madd_epi16(slice->lower, weights));
 }
 LANES_INLINE __m256i weigh_short_slice(const short_slice *slice, __m256i weights) {
   return _mm256_add_epi32(slope_short_slice(slice, weights), _mm256_set1_epi32(LESS_BY));
 }
 
 /* Of every lane; its place in the volume as above. */
-LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets, const lanes weight[3][4]) {
+LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets,
+                                  const lanes weight[3][4]) {
   size_t row_bytes = (size_t)grid->dimension[0] * 2, slice_bytes = row_bytes * (size_t)grid->dimension[1];
   row_weights weights = weights_of_row(HL_STORAGE_U16, weight[0]);
   __m256 sums[2];
@@ -71,7 +77,8 @@ LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels,
   return sum;
 }
 
-LANES_INLINE lanes3 slopes_of_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets, const tap_slope_weights *w) {
+LANES_INLINE lanes3 slopes_of_short_rows(const grid *grid, const unsigned char *voxels,
+                                         const lanes_offsets *offsets, const tap_slope_weights *w) {
   size_t row_bytes = (size_t)grid->dimension[0] * 2, slice_bytes = row_bytes * (size_t)grid->dimension[1];
   row_weights weights = weights_of_row(HL_STORAGE_U16, w->weight[0]);
   row_slopes slopes = slopes_of_row(HL_STORAGE_U16, w->slope[0]);
@@ -81,7 +88,8 @@ LANES_INLINE lanes3 slopes_of_short_rows(const grid *grid, const unsigned char *
     sums_of_rows plain, sloped;
     for (int k = 0; k < 4; k++) {
       pair_of_taps taps = short_taps_of_pair(voxels, offsets, half, k);
-      __m256i along = short_weights_of_pair(&weights.shorts, half, k), slope = short_weights_of_pair(&slopes.shorts, half, k);
+      __m256i along = short_weights_of_pair(&weights.shorts, half, k),
+              slope = short_weights_of_pair(&slopes.shorts, half, k);
       for (size_t z = 0; z < 4; z++) {
         short_slice slice = short_slice_of_two(&taps, z * slice_bytes, row_bytes);
         plain.of_two[z][k] = weigh_short_slice(&slice, along);

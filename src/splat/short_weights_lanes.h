@@ -6,9 +6,11 @@
 
 /* Two u16 taps a word, four a lane, weighed and added. */
 #if defined(__AVX2__)
-/* Those of the taps 0 and 1 share a word, and those of 2 and 3: one instruction multiplies signed numbers of 16 bits and adds the
- * two products. Voxels are less 32768 for it, as numbers with a sign. */
-typedef struct short_weights { lanes_int pair[2]; } short_weights;
+/* Those of the taps 0 and 1 share a word, and those of 2 and 3: one instruction multiplies signed numbers of
+ * 16 bits and adds the two products. Voxels are less 32768 for it, as numbers with a sign. */
+typedef struct short_weights {
+  lanes_int pair[2];
+} short_weights;
 typedef short_weights short_slopes;
 enum { VOXEL_SIGN = (int32_t)0x80008000u, LESS_BY = 32768 * WEIGHT_UNITS };
 

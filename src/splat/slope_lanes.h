@@ -1,5 +1,5 @@
-/* splat/slope_lanes.h - the gradient of a volume's density at points of index space: the kernel's derivative along
- * each axis in turn, over the same 4x4x4 voxels that gathering weighs. */
+/* splat/slope_lanes.h - the gradient of a volume's density at points of index space: the kernel's derivative
+ * along each axis in turn, over the same 4x4x4 voxels that gathering weighs. */
 #ifndef HL_SPLAT_SLOPE_LANES_H
 #define HL_SPLAT_SLOPE_LANES_H
 
@@ -8,11 +8,13 @@
 /* d/dt of a piece. */
 LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
   lanes sum = lanes_set(piece[degree] * (float)degree);
-  for (int power = degree - 1; power >= 1; power--) sum = lanes_fma(sum, a, lanes_set(piece[power] * (float)power));
+  for (int power = degree - 1; power >= 1; power--)
+    sum = lanes_fma(sum, a, lanes_set(piece[power] * (float)power));
   return sum;
 }
 
-/* Derivatives of the four taps' weights; the two on the far side see their distance shrink. Their sum is 0. */
+/* Derivatives of the four taps' weights; the two on the far side see their distance shrink. Their sum is
+ * 0. */
 LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes slope[4]) {
   lanes s = 1.0f - t;
   int bspline = degree == HL_BSPLINE_DEGREE;
@@ -23,7 +25,8 @@ LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes sl
 }
 
 /* The three sums share the loads: along x once with the weights and once with their slopes. */
-LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window, const tap_slope_weights *w) {
+LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window,
+                               const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   row_weights weights = weights_of_row(storage, w->weight[0]);
   row_slopes slopes = slopes_of_row(storage, w->slope[0]);
@@ -45,21 +48,25 @@ LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_w
   return (lanes3){from_slope_units(storage, sum.x), from_units(storage, sum.y), from_units(storage, sum.z)};
 }
 
-static __attribute__((noinline)) lanes3 slopes_u8(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
+static __attribute__((noinline)) lanes3 slopes_u8(const grid *grid, const tap_window *window,
+                                                  const tap_slope_weights *w) {
   return sum_slopes(grid, HL_STORAGE_U8, window, w);
 }
-static __attribute__((noinline)) lanes3 slopes_u16(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
+static __attribute__((noinline)) lanes3 slopes_u16(const grid *grid, const tap_window *window,
+                                                   const tap_slope_weights *w) {
 #ifdef HL_SHORT_ROWS
   return slopes_of_short_rows(grid, window->voxels, &window->offsets, w);
 #else
   return sum_slopes(grid, HL_STORAGE_U16, window, w);
 #endif
 }
-static __attribute__((noinline)) lanes3 slopes_f32(const grid *grid, const tap_window *window, const tap_slope_weights *w) {
+static __attribute__((noinline)) lanes3 slopes_f32(const grid *grid, const tap_window *window,
+                                                   const tap_slope_weights *w) {
   return sum_slopes(grid, HL_STORAGE_F32, window, w);
 }
 
-static lanes3 slopes_of_taps(const grid *grid, const lanes_int cell[3], uint32_t active, const tap_slope_weights *w) {
+static lanes3 slopes_of_taps(const grid *grid, const lanes_int cell[3], uint32_t active,
+                             const tap_slope_weights *w) {
   tap_window window = window_at(grid, cell, active);
   if (grid->storage == HL_STORAGE_U8) return slopes_u8(grid, &window, w);
   if (grid->storage == HL_STORAGE_U16) return slopes_u16(grid, &window, w);
@@ -69,10 +76,12 @@ static lanes3 slopes_of_taps(const grid *grid, const lanes_int cell[3], uint32_t
 /* Whether 32 bits hold the offsets between any two voxels; in larger grids they hold those within a block. */
 LANES_INLINE int fits_offsets(const grid *grid) {
   return (uint64_t)grid->dimension[0] * (uint64_t)grid->dimension[1] * (uint64_t)grid->dimension[2] *
-             hl_storage_bytes(grid->storage) <= INT32_MAX;
+             hl_storage_bytes(grid->storage) <=
+         INT32_MAX;
 }
 
-static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uint32_t active, const tap_slope_weights *w) {
+static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uint32_t active,
+                                  const tap_slope_weights *w) {
   lanes3 slope;
   lanes *sums[3] = {&slope.x, &slope.y, &slope.z};
   for (int axis = 0; axis < 3; axis++) {
@@ -84,10 +93,11 @@ static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uin
   return slope;
 }
 
-/* Derivatives along the index axes, stored units a voxel, for the active lanes, of which there is one at least.
- * starts: the lanes at which those of one block of pixels follow those of another, the first included. */
-LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point, uint32_t active,
-                                     uint32_t starts) {
+/* Derivatives along the index axes, stored units a voxel, for the active lanes, of which there is one at
+ * least. starts: the lanes at which those of one block of pixels follow those of another, the first
+ * included. */
+LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point,
+                                     uint32_t active, uint32_t starts) {
   tap_slope_weights w;
   lanes_int cell[3];
   lanes at[3] = {point.x, point.y, point.z};
@@ -115,16 +125,19 @@ LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (uint32_t left = active; left != 0;) {
     uint32_t block = left;
-    for (uint32_t less = drop_last_block(left, starts); less != 0; less = drop_last_block(less, starts)) block = less;
+    for (uint32_t less = drop_last_block(left, starts); less != 0; less = drop_last_block(less, starts))
+      block = less;
     join_slopes(block, slopes_of_taps(grid, cell, block, &w), &sum);
     left &= ~block;
   }
   return sum;
 }
 
-static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active, uint32_t starts) {
-  return kernel->degree == HL_BSPLINE_DEGREE ? slopes_of_degree(grid, kernel, HL_BSPLINE_DEGREE, point, active, starts)
-                                             : slopes_of_degree(grid, kernel, HL_KERNEL_DEGREE, point, active, starts);
+static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active,
+                        uint32_t starts) {
+  return kernel->degree == HL_BSPLINE_DEGREE
+             ? slopes_of_degree(grid, kernel, HL_BSPLINE_DEGREE, point, active, starts)
+             : slopes_of_degree(grid, kernel, HL_KERNEL_DEGREE, point, active, starts);
 }
 
 #endif

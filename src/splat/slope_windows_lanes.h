@@ -18,12 +18,14 @@ LANES_INLINE void join_slopes(uint32_t bits, lanes3 part, lanes3 *slope) {
 }
 
 #if defined(__AVX512BW__)
-LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window *window, int spread, const tap_slope_weights *w) {
+LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window *window, int spread,
+                                         const tap_slope_weights *w) {
   own_slices own;
   window_taps taps[4];
   row_weights weights = weights_of_row(storage, w->weight[0]);
   row_slopes slopes = slopes_of_row(storage, w->slope[0]);
-  lanes none = lanes_set(0), value[4] = {none, none, none, none}, along_x[4] = {none, none, none, none}, along_y[4] = {none, none, none, none};
+  lanes none = lanes_set(0), value[4] = {none, none, none, none}, along_x[4] = {none, none, none, none},
+        along_y[4] = {none, none, none, none};
   lanes3 sum = {none, none, none};
   load_own_slices(storage, window, spread, &own);
   for (int y = 0; y < 4; y++) {
@@ -43,7 +45,8 @@ LANES_INLINE lanes3 slopes_of_own_slices(hl_storage storage, const voxel_window 
   return (lanes3){from_slope_units(storage, sum.x), from_units(storage, sum.y), from_units(storage, sum.z)};
 }
 
-LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *window, const tap_slope_weights *w) {
+LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *window,
+                                     const tap_slope_weights *w) {
   switch (window->slices - 4) {
     case 0: return slopes_of_own_slices(storage, window, 0, w);
     case 1: return slopes_of_own_slices(storage, window, 1, w);
@@ -53,13 +56,16 @@ LANES_INLINE lanes3 slopes_of_window(hl_storage storage, const voxel_window *win
   }
 }
 
-static __attribute__((noinline)) lanes3 slopes_of_window_u8(const voxel_window *window, const tap_slope_weights *w) {
+static __attribute__((noinline)) lanes3 slopes_of_window_u8(const voxel_window *window,
+                                                            const tap_slope_weights *w) {
   return slopes_of_window(HL_STORAGE_U8, window, w);
 }
-static __attribute__((noinline)) lanes3 slopes_of_window_u16(const voxel_window *window, const tap_slope_weights *w) {
+static __attribute__((noinline)) lanes3 slopes_of_window_u16(const voxel_window *window,
+                                                             const tap_slope_weights *w) {
   return slopes_of_window(HL_STORAGE_U16, window, w);
 }
-static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window *window, const tap_slope_weights *w) {
+static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window *window,
+                                                             const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int slice = 0; slice < window->slices; slice++) {
     window_slice voxels = slice_of_window(HL_STORAGE_F32, window, slice);
@@ -102,7 +108,8 @@ static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t
 }
 
 #elif defined(HL_WINDOWS)
-static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *copies, __m256i taps_at, const tap_slope_weights *w) {
+static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *copies, __m256i taps_at,
+                                                         const tap_slope_weights *w) {
   narrow_offsets offsets;
   lanes3 sum;
   row_weights weights = weights_of_row(HL_STORAGE_U8, w->weight[0]);
@@ -113,7 +120,8 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
     sums_of_rows plain, sloped;
     for (int k = 0; k < 4; k++) {
       pair_of_taps taps = copied_taps_of_pair(copies, &offsets, half, k);
-      weights_of_two along = weights_of_pair(&weights.bytes, half, k), slope = weights_of_pair(&slopes.bytes, half, k);
+      weights_of_two along = weights_of_pair(&weights.bytes, half, k),
+                     slope = weights_of_pair(&slopes.bytes, half, k);
       for (int z = 0; z < 4; z++) {
         taps_of_two of_slice = slice_of_two(&taps, z);
         plain.of_two[z][k] = weigh_two(&of_slice, &along);
@@ -125,9 +133,11 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
   return sum;
 }
 
-_Static_assert(LANES * sizeof(window_copies) <= INT16_MAX, "16 bits with a sign hold places in all windows' copies");
+_Static_assert(LANES * sizeof(window_copies) <= INT16_MAX,
+               "16 bits with a sign hold places in all windows' copies");
 
-/* As many blocks to a window as fit, and all windows' copies to one sum. False where even one block does not fit. */
+/* As many blocks to a window as fit, and all windows' copies to one sum. False where even one block does not
+ * fit. */
 static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
                              const tap_slope_weights *w, lanes3 *slope) {
   window_copies copies[LANES];
@@ -140,7 +150,8 @@ static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t
     while (!open_window(grid, cell, together, &window))
       if ((together = drop_last_block(together, starts)) == 0) return 0;
     copy_window(&window, &copies[count]);
-    __m256i in_copy = _mm256_add_epi16(window.taps, _mm256_set1_epi16((short)(count++ * (int)sizeof copies[0])));
+    __m256i in_copy = _mm256_add_epi16(window.taps,
+                                       _mm256_set1_epi16((short)(count++ * (int)sizeof copies[0])));
     taps = _mm256_blendv_epi8(taps, in_copy, narrow_shorts(lanes_from_bits(together)));
     left &= ~together;
   }

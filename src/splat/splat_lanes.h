@@ -7,8 +7,8 @@
 
 #include "splat/gather_lanes.h"
 
-/* A tile's pixels in index space, and the bounds of each block there (lane = block). Of u8 and u16 voxels the four taps' weights along
- * x are those that gathering rounds to (whole_weights_lanes.h). */
+/* A tile's pixels in index space, and the bounds of each block there (lane = block). Of u8 and u16 voxels the
+ * four taps' weights along x are those that gathering rounds to (whole_weights_lanes.h). */
 typedef struct tile_place {
   block_place block[TILE_BLOCKS];
   lanes along_x[TILE_BLOCKS][4];
@@ -31,8 +31,10 @@ LANES_INLINE void weigh_along_x(const kernel *kernel, const block_place *place, 
 
 static void place_tile(const fill_source *source, int tile_x, int tile_y, tile_place *tile) {
   for (int block = 0; block < TILE_BLOCKS; block++) {
-    tile->block[block] = place_block(source, tile_x * TILE + block % 4 * BLOCK, tile_y * TILE + block / 4 * BLOCK);
-    if (weights_are_whole(source->grid->storage)) weigh_along_x(source->kernel, &tile->block[block], tile->along_x[block]);
+    tile->block[block] = place_block(source, tile_x * TILE + block % 4 * BLOCK,
+                                     tile_y * TILE + block / 4 * BLOCK);
+    if (weights_are_whole(source->grid->storage))
+      weigh_along_x(source->kernel, &tile->block[block], tile->along_x[block]);
     keep_relevant(source->grid, &tile->block[block]);
     const lanes3 *p = &tile->block[block].point;
     tile->low.x[block] = lanes_least(p->x);
@@ -60,16 +62,19 @@ LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
 }
 
 /* The weights along x of voxel x at a block's pixels. */
-LANES_INLINE lanes weight_along_x(const fill_source *source, const tile_place *tile, int block, int degree, int32_t x) {
+LANES_INLINE lanes weight_along_x(const fill_source *source, const tile_place *tile, int block, int degree,
+                                  int32_t x) {
   const block_place *place = &tile->block[block];
-  if (!weights_are_whole(source->grid->storage)) return kernel_at(source->kernel, degree, place->point.x - (float)x);
+  if (!weights_are_whole(source->grid->storage))
+    return kernel_at(source->kernel, degree, place->point.x - (float)x);
   lanes weight = lanes_set(0);
-  for (int tap = 0; tap < 4; tap++) weight = lanes_select(place->cell[0] == x + 1 - tap, tile->along_x[block][tap], weight);
+  for (int tap = 0; tap < 4; tap++)
+    weight = lanes_select(place->cell[0] == x + 1 - tap, tile->along_x[block][tap], weight);
   return weight;
 }
 
-LANES_INLINE void splat_voxel(const fill_source *source, const tile_place *tile, uint32_t need, uint32_t voxel,
-                              int degree, float *density) {
+LANES_INLINE void splat_voxel(const fill_source *source, const tile_place *tile, uint32_t need,
+                              uint32_t voxel, int degree, float *density) {
   const grid *grid = source->grid;
   uint32_t padded_x = (uint32_t)grid->dimension[0] + 4, padded_y = (uint32_t)grid->dimension[1] + 4;
   int32_t x = (int32_t)(voxel % padded_x) - 2, y = (int32_t)(voxel / padded_x % padded_y) - 2;
@@ -88,7 +93,8 @@ LANES_INLINE void splat_voxel(const fill_source *source, const tile_place *tile,
   }
 }
 
-static filled_blocks splat_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need, uint32_t others, float *density) {
+static filled_blocks splat_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need,
+                                uint32_t others, float *density) {
   const voxel_lists *lists = source->lists;
   tile_place tile;
   place_tile(source, tile_x, tile_y, &tile);
@@ -96,17 +102,19 @@ static filled_blocks splat_tile(const fill_source *source, int tile_x, int tile_
     int block = __builtin_ctz(left);
     block_place *place = &tile.block[block];
     lowest_of_block(place->cell, place->low);
-    if (!source->grid->cell_bits_tell || cells_show(source->grid, place->cell, place->low)) need |= 1u << block;
+    if (!source->grid->cell_bits_tell || cells_show(source->grid, place->cell, place->low))
+      need |= 1u << block;
   }
   for (uint32_t left = need; left != 0; left &= left - 1)
     lanes_store(density + __builtin_ctz(left) * BLOCK_PIXELS, lanes_set(0));
-  const uint32_t *start = lists->start + ((size_t)tile_y * (size_t)lists->tiles_x + (size_t)tile_x) * (size_t)lists->bucket_count +
+  const uint32_t *start = lists->start +
+                          ((size_t)tile_y * (size_t)lists->tiles_x + (size_t)tile_x) *
+                              (size_t)lists->bucket_count +
                           (size_t)source->sheet;
   for (uint32_t at = start[0]; at < start[lists->span]; at++) {
     if (source->kernel->degree == HL_BSPLINE_DEGREE)
       splat_voxel(source, &tile, need, lists->voxel[at], HL_BSPLINE_DEGREE, density);
-    else
-      splat_voxel(source, &tile, need, lists->voxel[at], HL_KERNEL_DEGREE, density);
+    else splat_voxel(source, &tile, need, lists->voxel[at], HL_KERNEL_DEGREE, density);
   }
   filled_blocks blocks = {need, 0};
   for (uint32_t left = need; left != 0; left &= left - 1) {

@@ -23,8 +23,9 @@ void hl_view_ray(const view *view, double u, double v, vec3 *start, vec3 *direct
 }
 
 void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]) {
-  affine3 to_view = {view->inverse,
-                     vec3_scale(mat3_apply(view->inverse, view->perspective ? view->origin : view->corner), -1)};
+  affine3 to_view = {
+      view->inverse,
+      vec3_scale(mat3_apply(view->inverse, view->perspective ? view->origin : view->corner), -1)};
   affine3 whole = affine3_multiply(to_view, to_frame);
   const double offset[3] = {whole.offset.x, whole.offset.y, whole.offset.z};
   for (int row = 0; row < 3; row++) {
@@ -39,7 +40,8 @@ void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]) 
   }
 }
 
-/* The ray's point on the sheet is start + ((height - h.start) / (h.direction)) direction: linear in the pixel. */
+/* The ray's point on the sheet is start + ((height - h.start) / (h.direction)) direction: linear in the
+ * pixel. */
 static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
   return vec3_add(start,
                   vec3_scale(direction, (height - vec3_dot(normal, start)) / vec3_dot(normal, direction)));
@@ -48,7 +50,8 @@ static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
 /* A middle ray that runs along the sheet meets it nowhere near: then base is the eye. */
 static const double FLATTEST_MIDDLE = 0.01;
 
-static void perspective_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays) {
+static void perspective_rays(const view *view, vec3 normal, double height, affine3 from_frame,
+                             sheet_rays *rays) {
   vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5)), middle, start;
   hl_view_ray(view, view->width / 2.0, view->height / 2.0, &start, &middle);
   const vec3 w[3] = {first, view->du, view->dv};
@@ -67,7 +70,8 @@ static void perspective_rays(const view *view, vec3 normal, double height, affin
   rays->step = (float)step;
 }
 
-static void parallel_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays) {
+static void parallel_rays(const view *view, vec3 normal, double height, affine3 from_frame,
+                          sheet_rays *rays) {
   vec3 first = vec3_add(view->corner, vec3_scale(vec3_add(view->du, view->dv), 0.5));
   vec3 start = on_sheet(first, view->direction, normal, height);
   vec3 along_u = vec3_subtract(on_sheet(vec3_add(first, view->du), view->direction, normal, height), start);

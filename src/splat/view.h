@@ -36,12 +36,12 @@ void hl_view_ray(const view *view, double u, double v, vec3 *start, vec3 *direct
  * the last is the constant. For a parallel view w is 1. */
 void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]);
 
-/* Pixels on one sheet, in the space that was asked for; (u, v) counts whole pixels from the first pixel's centre.
- * perspective: position = base + P / H, direction W
- * parallel:    position = P
- * with P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu + v hv. Derived: the ray E + s W meets the sheet
- * h.X = z at s = (z - h.E) / H; with any t and Wc, base = E + t Wc gives P = (z - h.E) W - t H Wc, linear as H is. With Wc the
- * middle ray and base where it meets the sheet, P stays as small as what is seen, however far the eye is. */
+/* Pixels on one sheet, in the space that was asked for; (u, v) counts whole pixels from the first pixel's
+ * centre. perspective: position = base + P / H, direction W parallel:    position = P with P = p0 + u pu + v
+ * pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu + v hv. Derived: the ray E + s W meets the sheet h.X = z
+ * at s = (z - h.E) / H; with any t and Wc, base = E + t Wc gives P = (z - h.E) W - t H Wc, linear as H is.
+ * With Wc the middle ray and base where it meets the sheet, P stays as small as what is seen, however far the
+ * eye is. */
 typedef struct sheet_rays {
   int perspective;
   float base[3], p0[3], pu[3], pv[3];

@@ -13,10 +13,10 @@ typedef struct sort_job {
   const grid *grid;
   const sheet_stack *sheets;
   footprint_map map;
-  double support;       /* voxels */
+  double support; /* voxels */
   voxel_lists *lists;
-  uint32_t *cursor;     /* [tiles * buckets + 1]: counts, then places */
-  int placing;          /* 0: counting */
+  uint32_t *cursor; /* [tiles * buckets + 1]: counts, then places */
+  int placing;      /* 0: counting */
 } sort_job;
 
 static int32_t clamp_brick(int32_t cell, int32_t cells) {
@@ -33,7 +33,8 @@ static bool voxel_relevant(const grid *grid, const int32_t v[3]) {
   for (int32_t z = first[2]; z <= last[2]; z++)
     for (int32_t y = first[1]; y <= last[1]; y++)
       for (int32_t x = first[0]; x <= last[0]; x++)
-        if (grid->relevant[((size_t)z * (size_t)grid->brick_count[1] + (size_t)y) * (size_t)grid->brick_count[0] +
+        if (grid->relevant[((size_t)z * (size_t)grid->brick_count[1] + (size_t)y) *
+                               (size_t)grid->brick_count[0] +
                            (size_t)x])
           return true;
   return false;
@@ -56,7 +57,8 @@ static void footprint_half(const sort_job *job, const int32_t v[3], double half[
   }
 }
 
-/* A sheet reads span buckets: a footprint that touches more sheets than that is listed once every span of them. */
+/* A sheet reads span buckets: a footprint that touches more sheets than that is listed once every span of
+ * them. */
 static void visit_voxel(const sort_job *job, const int32_t v[3], uint32_t voxel) {
   voxel_lists *lists = job->lists;
   const double centre[3] = {v[0], v[1], v[2]};
@@ -75,8 +77,10 @@ static void visit_voxel(const sort_job *job, const int32_t v[3], uint32_t voxel)
     if (bucket < 0 || bucket >= lists->bucket_count) continue;
     for (int y = y0; y <= y1; y++)
       for (int x = x0; x <= x1; x++)
-        visit_cell(job, ((size_t)y * (size_t)lists->tiles_x + (size_t)x) * (size_t)lists->bucket_count + (size_t)bucket,
-                   voxel);
+        visit_cell(
+            job,
+            ((size_t)y * (size_t)lists->tiles_x + (size_t)x) * (size_t)lists->bucket_count + (size_t)bucket,
+            voxel);
   }
 }
 
@@ -98,10 +102,12 @@ static void order_tile(void *data, size_t index, int worker) {
   (void)worker;
   const sort_job *job = data;
   const voxel_lists *lists = job->lists;
-  for (size_t cell = index * (size_t)lists->bucket_count; cell < (index + 1) * (size_t)lists->bucket_count; cell++)
+  for (size_t cell = index * (size_t)lists->bucket_count; cell < (index + 1) * (size_t)lists->bucket_count;
+       cell++)
     for (uint32_t i = lists->start[cell] + 1; i < lists->start[cell + 1]; i++) {
       uint32_t voxel = lists->voxel[i], j = i;
-      for (; j > lists->start[cell] && lists->voxel[j - 1] > voxel; j--) lists->voxel[j] = lists->voxel[j - 1];
+      for (; j > lists->start[cell] && lists->voxel[j - 1] > voxel; j--)
+        lists->voxel[j] = lists->voxel[j - 1];
       lists->voxel[j] = voxel;
     }
 }
@@ -111,8 +117,9 @@ static hl_status prepare(const grid *grid, const kernel *kernel, const view *vie
   uint64_t padded = (uint64_t)(grid->dimension[0] + 4) * (uint64_t)(grid->dimension[1] + 4) *
                     (uint64_t)(grid->dimension[2] + 4);
   if (padded > UINT32_MAX)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "/render/reconstruction: splat sorts at most 4294967295 voxels, this volume has more: use gather");
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "/render/reconstruction: splat sorts at most 4294967295 voxels, this volume has more: use gather");
   hl_footprint_map(view, sheets->normal, grid->index_to_frame, &job->map);
   double reach = 0;
   job->support = kernel->support;
@@ -136,7 +143,8 @@ static uint64_t accumulate(const uint32_t *count, size_t cells, uint32_t *start)
 }
 
 hl_status hl_voxel_lists_build(hl_context *context, hl_pool *pool, const grid *grid, const kernel *kernel,
-                               const view *view, const sheet_stack *sheets, voxel_lists *lists, hl_error *error) {
+                               const view *view, const sheet_stack *sheets, voxel_lists *lists,
+                               hl_error *error) {
   *lists = (voxel_lists){0};
   sort_job job = {grid, sheets, {{{0}}, {0}}, 0, lists, NULL, 0};
   hl_status status = prepare(grid, kernel, view, sheets, lists, &job, error);

@@ -5,7 +5,8 @@
 #include "splat/occupancy.h"
 
 hl_status hl_voxel_lists_build(hl_context *context, hl_pool *pool, const grid *grid, const kernel *kernel,
-                               const view *view, const sheet_stack *sheets, voxel_lists *lists, hl_error *error);
+                               const view *view, const sheet_stack *sheets, voxel_lists *lists,
+                               hl_error *error);
 void hl_voxel_lists_release(hl_context *context, voxel_lists *lists);
 
 #endif

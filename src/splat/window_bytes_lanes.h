@@ -11,7 +11,8 @@ LANES_INLINE __m512i repeat_bytes(__m512i x) {
   return _mm512_shuffle_epi8(x, _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0));
 }
 
-/* From how far each lane's first tap lies from the window's first voxel: a byte for each tap's place in the first row. */
+/* From how far each lane's first tap lies from the window's first voxel: a byte for each tap's place in the
+ * first row. */
 LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(y, 3), x);
   return _mm512_add_epi8(repeat_bytes(first), _mm512_set1_epi32(0x03020100));
@@ -50,7 +51,8 @@ LANES_INLINE window_lanes starting_u8(__m512i start, int slice) {
 }
 
 /* Some lanes' taps from another slice. */
-LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice, __m512i index) {
+LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice,
+                                  __m512i index) {
   taps->part[0] = _mm512_mask_permutexvar_epi8(taps->part[0], some, index, slice->part[0]);
 }
 

@@ -1,37 +1,49 @@
-/* splat/window_copies_lanes.h - the voxels around a block of pixels where there are no registers of 512 bits: u8 ones, in memory.
+/* splat/window_copies_lanes.h - the voxels around a block of pixels where there are no registers of 512 bits:
+ * u8 ones, in memory.
  *
- * A slice of a window, 8x8 voxels of the grid's columns, is written down three times, or five, each time a voxel further along x and
- * four voxels wide: four rows of four taps of a lane are then sixteen bytes in a row, one load. Two lanes' taps share a register, those
- * of lanes k and k + 4, and are weighed there; what comes out, a row of taps in each number, is turned so that lanes lie side by side. */
+ * A slice of a window, 8x8 voxels of the grid's columns, is written down three times, or five, each time a
+ * voxel further along x and four voxels wide: four rows of four taps of a lane are then sixteen bytes in a
+ * row, one load. Two lanes' taps share a register, those of lanes k and k + 4, and are weighed there; what
+ * comes out, a row of taps in each number, is turned so that lanes lie side by side. */
 #ifndef HL_SPLAT_WINDOW_COPIES_LANES_H
 #define HL_SPLAT_WINDOW_COPIES_LANES_H
 
-#include "splat/columns_lanes.h"
 #include "simd/narrow.h"
+#include "splat/columns_lanes.h"
 #include "splat/rows_of_two_lanes.h"
 
-enum { WINDOW_SIDE = GRID_COLUMN, WINDOW_SPREAD = WINDOW_SIDE - 4 }; /* voxels; how far lanes' first taps may lie apart */
-enum { USUAL_SPREAD = 2, USUAL_SLICES = 4 + USUAL_SPREAD }; /* few blocks need more, and how many no processor foresees */
+enum {
+  WINDOW_SIDE = GRID_COLUMN,
+  WINDOW_SPREAD = WINDOW_SIDE - 4
+}; /* voxels; how far lanes' first taps may lie apart */
+enum {
+  USUAL_SPREAD = 2,
+  USUAL_SLICES = 4 + USUAL_SPREAD
+}; /* few blocks need more, and how many no processor foresees */
 enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BYTES };
 
 typedef struct voxel_window {
-  const unsigned char *first;    /* the window's first row, in its column */
+  const unsigned char *first; /* the window's first row, in its column */
   size_t slice_bytes;
-  size_t beside;                 /* bytes to the next column, where the window reaches into it */
-  int shift;                     /* bits from the column's first voxel to the window's, in every row */
-  int slices, copies;            /* of each slice: as far as lanes' first taps lie apart, and one */
-  __m256i taps;                  /* bytes to each lane's first in the copies (simd/narrow.h) */
+  size_t beside;      /* bytes to the next column, where the window reaches into it */
+  int shift;          /* bits from the column's first voxel to the window's, in every row */
+  int slices, copies; /* of each slice: as far as lanes' first taps lie apart, and one */
+  __m256i taps;       /* bytes to each lane's first in the copies (simd/narrow.h) */
 } voxel_window;
 
-typedef struct window_copies { _Alignas(32) unsigned char slice[WINDOW_SIDE][SLICE_BYTES]; } window_copies;
+typedef struct window_copies {
+  _Alignas(32) unsigned char slice[WINDOW_SIDE][SLICE_BYTES];
+} window_copies;
 
 /* Whether a grid has windows at all. */
-LANES_INLINE int has_windows(const grid *grid) { return grid->columns != NULL && grid->dimension[2] >= USUAL_SLICES; }
+LANES_INLINE int has_windows(const grid *grid) {
+  return grid->columns != NULL && grid->dimension[2] >= USUAL_SLICES;
+}
 
-/* Of a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each
- * axis. False where they do not fit a window. */
-LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3], uint32_t active,
-                                voxel_window *window) {
+/* Of a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest:
+ * of cells, along each axis. False where they do not fit a window. */
+LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3],
+                                uint32_t active, voxel_window *window) {
   const int32_t side[3] = {WINDOW_SIDE, WINDOW_SIDE, USUAL_SLICES};
   int32_t low[3];
   __m256i offset[3];
@@ -41,29 +53,33 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
     offset[a] = narrow_shorts(cell[a] - (low[a] + 1));
     if (active != 0xffff) offset[a] = _mm256_and_si256(offset[a], narrow_shorts(lanes_from_bits(active)));
   }
-  if (any_short_above(_mm256_max_epu16(_mm256_max_epu16(offset[0], offset[1]), offset[2]), WINDOW_SPREAD)) return 0;
+  if (any_short_above(_mm256_max_epu16(_mm256_max_epu16(offset[0], offset[1]), offset[2]), WINDOW_SPREAD))
+    return 0;
   window->slices = any_short_above(offset[2], USUAL_SPREAD) ? WINDOW_SIDE : USUAL_SLICES;
   if (window->slices > grid->dimension[2] - low[2]) window->slices = grid->dimension[2] - low[2];
   window->copies = any_short_above(offset[0], USUAL_SPREAD) ? WINDOW_SPREAD + 1 : USUAL_SPREAD + 1;
   __m256i slice = _mm256_mullo_epi16(offset[2], _mm256_set1_epi16(SLICE_BYTES));
   __m256i copy = _mm256_mullo_epi16(offset[0], _mm256_set1_epi16(COPY_BYTES));
-  window->taps = _mm256_add_epi16(_mm256_add_epi16(slice, copy), _mm256_slli_epi16(offset[1], 2)); /* rows of four bytes */
+  window->taps = _mm256_add_epi16(_mm256_add_epi16(slice, copy),
+                                  _mm256_slli_epi16(offset[1], 2)); /* rows of four bytes */
   uint32_t first_voxel = (uint32_t)low[0], within = first_voxel % GRID_COLUMN;
   window->slice_bytes = grid->column_slice_bytes;
-  window->first = grid->columns + (size_t)(first_voxel / GRID_COLUMN) * grid->column_bytes + (size_t)low[2] * grid->column_slice_bytes +
-                  (size_t)low[1] * GRID_COLUMN;
+  window->first = grid->columns + (size_t)(first_voxel / GRID_COLUMN) * grid->column_bytes +
+                  (size_t)low[2] * grid->column_slice_bytes + (size_t)low[1] * GRID_COLUMN;
   window->beside = within > 0 ? grid->column_bytes : 0;
   window->shift = (int)within * 8;
   return 1;
 }
 
-LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, voxel_window *window) {
+LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active,
+                             voxel_window *window) {
   if (active == 0) return 0;
   lanes_int used[4] = {cell[0], cell[1], cell[2]};
   int32_t lowest[4];
   int first_lane = __builtin_ctz(active);
   if (active != 0xffff)
-    for (int a = 0; a < 3; a++) used[a] = lanes_select_int(lanes_from_bits(active), cell[a], lanes_set_int(cell[a][first_lane]));
+    for (int a = 0; a < 3; a++)
+      used[a] = lanes_select_int(lanes_from_bits(active), cell[a], lanes_set_int(cell[a][first_lane]));
   used[3] = used[2];
   _mm_storeu_si128((__m128i *)(void *)lowest, lanes_least_of_each(used));
   return open_window_at(grid, cell, lowest, active, window);
@@ -72,17 +88,20 @@ LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t
 /* Two rows of eight voxels, and the two four rows below. */
 LANES_INLINE __m256i rows_apart(const unsigned char *first) {
   __m256i rows = _mm256_castsi128_si256(_mm_loadu_si128((const __m128i *)(const void *)first));
-  return _mm256_inserti128_si256(rows, _mm_loadu_si128((const __m128i *)(const void *)(first + 4 * GRID_COLUMN)), 1);
+  return _mm256_inserti128_si256(
+      rows, _mm_loadu_si128((const __m128i *)(const void *)(first + 4 * GRID_COLUMN)), 1);
 }
 
 /* The lower or upper half of each row, rows in their order. */
 LANES_INLINE void store_copy(unsigned char *copy, const __m256i rows[2], int upper) {
   __m256 a = _mm256_castsi256_ps(rows[0]), b = _mm256_castsi256_ps(rows[1]);
-  _mm256_store_ps((float *)(void *)copy, upper ? _mm256_shuffle_ps(a, b, 0xdd) : _mm256_shuffle_ps(a, b, 0x88));
+  _mm256_store_ps((float *)(void *)copy,
+                  upper ? _mm256_shuffle_ps(a, b, 0xdd) : _mm256_shuffle_ps(a, b, 0x88));
 }
 
 LANES_INLINE void copy_slice_of(const voxel_window *window, int slice, int count, window_copies *copies) {
-  const unsigned char *first = window->first + (size_t)slice * window->slice_bytes, *beside = first + window->beside;
+  const unsigned char *first = window->first + (size_t)slice * window->slice_bytes,
+                      *beside = first + window->beside;
   __m128i left = _mm_cvtsi32_si128(window->shift), right = _mm_cvtsi32_si128(64 - window->shift);
   unsigned char *copy = copies->slice[slice];
   __m256i rows[2];
@@ -115,21 +134,28 @@ LANES_INLINE __m256i lanes_of_two(const lanes_int *x, int half, int k) {
   return _mm256_shuffle_epi8(eight, _mm256_set1_epi32(0x03020100 + k * 0x04040404));
 }
 
-/* Two lanes' weights along x, or slopes, each lane's in half a register, once for each row, as byte_weights has them. */
-typedef struct weights_of_two { __m256i pair[2]; } weights_of_two;
+/* Two lanes' weights along x, or slopes, each lane's in half a register, once for each row, as byte_weights
+ * has them. */
+typedef struct weights_of_two {
+  __m256i pair[2];
+} weights_of_two;
 
 LANES_INLINE weights_of_two weights_of_pair(const byte_weights *weights, int half, int k) {
-  return (weights_of_two){{lanes_of_two(&weights->pair[0], half, k), lanes_of_two(&weights->pair[1], half, k)}};
+  return (weights_of_two){
+      {lanes_of_two(&weights->pair[0], half, k), lanes_of_two(&weights->pair[1], half, k)}};
 }
 
 /* The taps of lanes k and k + 4 of a half, in some windows' copies. */
-LANES_INLINE pair_of_taps copied_taps_of_pair(const window_copies *copies, const narrow_offsets *taps, int half, int k) {
+LANES_INLINE pair_of_taps copied_taps_of_pair(const window_copies *copies, const narrow_offsets *taps,
+                                              int half, int k) {
   const uint16_t *at = narrow_pair(taps, half, k);
   return (pair_of_taps){&copies->slice[0][0] + at[0], &copies->slice[0][0] + at[NARROW_SECOND]};
 }
 
 /* Slice z of them, four rows of four each, in 16 bits as they share a pair. */
-typedef struct taps_of_two { __m256i pair[2]; } taps_of_two;
+typedef struct taps_of_two {
+  __m256i pair[2];
+} taps_of_two;
 
 LANES_INLINE taps_of_two slice_of_two(const pair_of_taps *taps, int z) {
   __m128i first = _mm_loadu_si128((const __m128i *)(const void *)(taps->first + z * SLICE_BYTES));
@@ -140,7 +166,8 @@ LANES_INLINE taps_of_two slice_of_two(const pair_of_taps *taps, int z) {
 
 /* Each row's sum. */
 LANES_INLINE __m256i weigh_two(const taps_of_two *taps, const weights_of_two *weights) {
-  return _mm256_add_epi32(_mm256_madd_epi16(taps->pair[0], weights->pair[0]), _mm256_madd_epi16(taps->pair[1], weights->pair[1]));
+  return _mm256_add_epi32(_mm256_madd_epi16(taps->pair[0], weights->pair[0]),
+                          _mm256_madd_epi16(taps->pair[1], weights->pair[1]));
 }
 
 static __attribute__((noinline)) lanes sum_window_u8(const voxel_window *window, const lanes weight[3][4]) {

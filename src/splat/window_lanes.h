@@ -1,11 +1,12 @@
-/* splat/window_lanes.h - the voxels around a block of pixels, held in registers; where there is AVX2 alone, close by in memory
- * (window_copies_lanes.h).
+/* splat/window_lanes.h - the voxels around a block of pixels, held in registers; where there is AVX2 alone,
+ * close by in memory (window_copies_lanes.h).
  *
- * Sixteen neighbouring pixels of a sheet draw on few voxels: most often on a window of 8x8 voxels and up to eight
- * slices. One slice of it fills one to four 512-bit registers, from which permutations take four neighbouring taps of every
- * lane. u8 voxels come from the grid's columns, permuted as bytes (window_bytes_lanes.h) or, where the processor cannot, as
- * words (window_words_lanes.h); others come from the volume's rows (window_rows_lanes.h). Lanes whose taps do not reach a slice weigh it by zero, which changes
- * no bit of their sums: these are the sums of gather_lanes.h and slope_lanes.h, in the same order. */
+ * Sixteen neighbouring pixels of a sheet draw on few voxels: most often on a window of 8x8 voxels and up to
+ * eight slices. One slice of it fills one to four 512-bit registers, from which permutations take four
+ * neighbouring taps of every lane. u8 voxels come from the grid's columns, permuted as bytes
+ * (window_bytes_lanes.h) or, where the processor cannot, as words (window_words_lanes.h); others come from
+ * the volume's rows (window_rows_lanes.h). Lanes whose taps do not reach a slice weigh it by zero, which
+ * changes no bit of their sums: these are the sums of gather_lanes.h and slope_lanes.h, in the same order. */
 #ifndef HL_SPLAT_WINDOW_LANES_H
 #define HL_SPLAT_WINDOW_LANES_H
 
@@ -22,15 +23,18 @@
 #endif
 #include "splat/window_rows_lanes.h"
 
-enum { WINDOW_SIDE = GRID_COLUMN, WINDOW_SPREAD = WINDOW_SIDE - 4 }; /* voxels; how far lanes' first taps may lie apart */
+enum {
+  WINDOW_SIDE = GRID_COLUMN,
+  WINDOW_SPREAD = WINDOW_SIDE - 4
+}; /* voxels; how far lanes' first taps may lie apart */
 
 typedef struct voxel_window {
-  const unsigned char *first;    /* the window's first row: of u8 voxels, in their column */
+  const unsigned char *first; /* the window's first row: of u8 voxels, in their column */
   size_t row_bytes, slice_bytes;
-  size_t beside;                 /* u8: bytes to the next column, where the window reaches into it */
-  __m512i shift;                 /* u8: bits from the column's first voxel to the window's, in every row */
-  __m512i index;                 /* of each lane's taps in the first row */
-  __m512i start;                 /* of each lane's taps: the slice in which they begin; 0 of idle lanes */
+  size_t beside; /* u8: bytes to the next column, where the window reaches into it */
+  __m512i shift; /* u8: bits from the column's first voxel to the window's, in every row */
+  __m512i index; /* of each lane's taps in the first row */
+  __m512i start; /* of each lane's taps: the slice in which they begin; 0 of idle lanes */
   int slices;
 } voxel_window;
 
@@ -69,10 +73,10 @@ LANES_INLINE int has_windows(const grid *grid) {
   return grid->dimension[0] >= WINDOW_SIDE && grid->dimension[1] >= WINDOW_SIDE;
 }
 
-/* Of a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest: of cells, along each
- * axis. False where they do not fit a window. */
-LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3], uint32_t active,
-                                voxel_window *window) {
+/* Of a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest:
+ * of cells, along each axis. False where they do not fit a window. */
+LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3],
+                                uint32_t active, voxel_window *window) {
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
   const int32_t side[3] = {grid->storage == HL_STORAGE_U8 ? WINDOW_WIDTH : WINDOW_SIDE,
                            grid->storage == HL_STORAGE_U8 ? WINDOW_SIDE : WINDOW_ROWS, WINDOW_SIDE};
@@ -92,7 +96,8 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
   return 1;
 }
 
-LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active, voxel_window *window) {
+LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t active,
+                             voxel_window *window) {
   int32_t lowest[3];
   if (active == 0) return 0;
   lowest_of_lanes(cell, active, lowest);
@@ -103,26 +108,32 @@ LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window
   const unsigned char *first = window->first + (size_t)slice * window->slice_bytes;
   if (storage == HL_STORAGE_U8)
     return join_columns(_mm512_loadu_si512(first), _mm512_loadu_si512(first + window->beside), window->shift);
-  return storage == HL_STORAGE_U16 ? slice_u16(first, window->row_bytes) : slice_f32(first, window->row_bytes);
+  return storage == HL_STORAGE_U16 ? slice_u16(first, window->row_bytes)
+                                   : slice_f32(first, window->row_bytes);
 }
 
 /* ---- u8 and u16: every lane's own four slices ---- */
 
-/* Of u8 and u16 voxels taps of tap row y and slice z are taken for all lanes at once: from the slice in which the first
- * lanes' begin, and from later ones, spread of them, for lanes that begin later. That is fewer sums than one for each slice. */
+/* Of u8 and u16 voxels taps of tap row y and slice z are taken for all lanes at once: from the slice in which
+ * the first lanes' begin, and from later ones, spread of them, for lanes that begin later. That is fewer sums
+ * than one for each slice. */
 typedef struct own_slices {
   window_slice voxels[WINDOW_SIDE];
   window_lanes later[WINDOW_SPREAD + 1]; /* lanes whose taps start at this slice */
 } own_slices;
 
-LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window, int spread, own_slices *own) {
-  for (int slice = 0; slice < spread + 4; slice++) own->voxels[slice] = slice_of_window(storage, window, slice);
+LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window, int spread,
+                                  own_slices *own) {
+  for (int slice = 0; slice < spread + 4; slice++)
+    own->voxels[slice] = slice_of_window(storage, window, slice);
   for (int start = 1; start <= spread; start++)
-    own->later[start] = storage == HL_STORAGE_U8 ? starting_u8(window->start, start) : starting_u16(window->start, start);
+    own->later[start] = storage == HL_STORAGE_U8 ? starting_u8(window->start, start)
+                                                 : starting_u16(window->start, start);
 }
 
 /* The taps (0..3, y, z) of every lane, z from 0 to 3. */
-LANES_INLINE void own_taps(hl_storage storage, const own_slices *own, int spread, __m512i index, int y, window_taps taps[4]) {
+LANES_INLINE void own_taps(hl_storage storage, const own_slices *own, int spread, __m512i index, int y,
+                           window_taps taps[4]) {
   window_slice rows[WINDOW_SIDE];
   if (storage == HL_STORAGE_U8) index = index_in_row_u8(index, y);
   for (int slice = 0; slice < spread + 4; slice++)
@@ -130,10 +141,8 @@ LANES_INLINE void own_taps(hl_storage storage, const own_slices *own, int spread
   for (int z = 0; z < 4; z++) {
     taps[z] = storage == HL_STORAGE_U8 ? taps_u8(&rows[z], index) : taps_u16(&rows[z], index);
     for (int start = 1; start <= spread; start++)
-      if (storage == HL_STORAGE_U8)
-        replace_taps_u8(&taps[z], own->later[start], &rows[z + start], index);
-      else
-        replace_taps_u16(&taps[z], own->later[start], &rows[z + start], index);
+      if (storage == HL_STORAGE_U8) replace_taps_u8(&taps[z], own->later[start], &rows[z + start], index);
+      else replace_taps_u16(&taps[z], own->later[start], &rows[z + start], index);
   }
 }
 
@@ -144,7 +153,8 @@ LANES_INLINE lanes slope_of_taps(hl_storage storage, const window_taps *taps, co
   return storage == HL_STORAGE_U8 ? slope_u8(taps, &slopes->bytes) : slope_u16(taps, &slopes->shorts);
 }
 
-LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window, int spread, const lanes weight[3][4]) {
+LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window, int spread,
+                                  const lanes weight[3][4]) {
   own_slices own;
   window_taps taps[4];
   row_weights along = weights_of_row(storage, weight[0]);
@@ -152,7 +162,8 @@ LANES_INLINE lanes sum_own_slices(hl_storage storage, const voxel_window *window
   load_own_slices(storage, window, spread, &own);
   for (int y = 0; y < 4; y++) {
     own_taps(storage, &own, spread, window->index, y, taps);
-    for (int z = 0; z < 4; z++) plane[z] = lanes_fma(weigh_taps(storage, &taps[z], &along), weight[1][y], plane[z]);
+    for (int z = 0; z < 4; z++)
+      plane[z] = lanes_fma(weigh_taps(storage, &taps[z], &along), weight[1][y], plane[z]);
   }
   for (int z = 0; z < 4; z++) sum = lanes_fma(plane[z], weight[2][z], sum);
   return from_units(storage, sum);
@@ -208,7 +219,7 @@ LANES_INLINE lanes sum_of_window(hl_storage storage, const voxel_window *window,
                                      : sum_window_f32(window, weight);
 }
 #elif defined(__AVX2__)
-#define HL_WINDOWS 1
+#define HL_WINDOWS    1
 #define HL_SHORT_ROWS 1
 
 #include "splat/short_rows_lanes.h"
@@ -216,20 +227,24 @@ LANES_INLINE lanes sum_of_window(hl_storage storage, const voxel_window *window,
 #endif
 
 #ifdef HL_WINDOWS
-/* The sums of a block's active lanes, through one window or one for each half of it. lowest: where every lane is active, the least
- * cell along each axis, rounding apart; else null. False where its taps lie too far apart. */
-LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], const int32_t *lowest, uint32_t active,
-                                const lanes weight[3][4], lanes *sum) {
+/* The sums of a block's active lanes, through one window or one for each half of it. lowest: where every lane
+ * is active, the least cell along each axis, rounding apart; else null. False where its taps lie too far
+ * apart. */
+LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], const int32_t *lowest,
+                                uint32_t active, const lanes weight[3][4], lanes *sum) {
   hl_storage storage = grid->storage;
   voxel_window window, below;
   const uint32_t upper = 0x00ff; /* half of a block */
   if (!has_windows(grid)) return 0;
-  if ((lowest != NULL && open_window_at(grid, cell, lowest, active, &window)) || open_window(grid, cell, active, &window)) {
+  if ((lowest != NULL && open_window_at(grid, cell, lowest, active, &window)) ||
+      open_window(grid, cell, active, &window)) {
     *sum = sum_of_window(storage, &window, weight);
     return 1;
   }
-  if (!open_window(grid, cell, active & upper, &window) || !open_window(grid, cell, active & ~upper, &below)) return 0;
-  *sum = lanes_select(lanes_from_bits(upper), sum_of_window(storage, &window, weight), sum_of_window(storage, &below, weight));
+  if (!open_window(grid, cell, active & upper, &window) || !open_window(grid, cell, active & ~upper, &below))
+    return 0;
+  *sum = lanes_select(lanes_from_bits(upper), sum_of_window(storage, &window, weight),
+                      sum_of_window(storage, &below, weight));
   return 1;
 }
 #endif

@@ -1,5 +1,5 @@
-/* splat/window_rows_lanes.h - windows of u16 and f32 voxels: eight voxels each of seven rows of the volume, from which taps are
- * taken by permutations. */
+/* splat/window_rows_lanes.h - windows of u16 and f32 voxels: eight voxels each of seven rows of the volume,
+ * from which taps are taken by permutations. */
 #ifndef HL_SPLAT_WINDOW_ROWS_LANES_H
 #define HL_SPLAT_WINDOW_ROWS_LANES_H
 
@@ -9,10 +9,12 @@ enum { WINDOW_ROWS = GRID_COLUMN - 1 }; /* of u16 and f32 voxels */
 
 /* ---- u16: two taps a word ---- */
 
-/* From how far each lane's first tap lies from the window's first voxel: the places of its first two taps in the first row. */
+/* From how far each lane's first tap lies from the window's first voxel: the places of its first two taps in
+ * the first row. */
 LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(y, 3), x);
-  return _mm512_add_epi32(_mm512_or_si512(first, _mm512_slli_epi32(first, 16)), _mm512_set1_epi32(0x00010000));
+  return _mm512_add_epi32(_mm512_or_si512(first, _mm512_slli_epi32(first, 16)),
+                          _mm512_set1_epi32(0x00010000));
 }
 
 LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_si128((const __m128i *)row); }
@@ -20,7 +22,8 @@ LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_
 /* Four rows, and the three below them, less 32768. */
 LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
-  __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)), lower = _mm512_castsi128_si512(row_of_shorts(row + 4 * row_bytes));
+  __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)),
+          lower = _mm512_castsi128_si512(row_of_shorts(row + 4 * row_bytes));
   upper = _mm512_inserti32x4(upper, row_of_shorts(row + row_bytes), 1);
   lower = _mm512_inserti32x4(lower, row_of_shorts(row + 5 * row_bytes), 1);
   upper = _mm512_inserti32x4(upper, row_of_shorts(row + 2 * row_bytes), 2);
@@ -41,7 +44,9 @@ LANES_INLINE window_slice rows_u16(const window_slice *slice, int y) {
   return rows;
 }
 
-LANES_INLINE __m512i third_u16(__m512i index) { return _mm512_add_epi32(index, _mm512_set1_epi32(0x00020002)); }
+LANES_INLINE __m512i third_u16(__m512i index) {
+  return _mm512_add_epi32(index, _mm512_set1_epi32(0x00020002));
+}
 
 /* The four taps of every lane. */
 LANES_INLINE window_taps taps_u16(const window_slice *rows, __m512i index) {
@@ -58,9 +63,11 @@ LANES_INLINE window_lanes starting_u16(__m512i start, int slice) {
 }
 
 /* Some lanes' taps from another slice. */
-LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows, __m512i index) {
+LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows,
+                                   __m512i index) {
   taps->part[0] = _mm512_mask_permutexvar_epi16(taps->part[0], (__mmask32)some, index, rows->part[0]);
-  taps->part[1] = _mm512_mask_permutexvar_epi16(taps->part[1], (__mmask32)some, third_u16(index), rows->part[0]);
+  taps->part[1] = _mm512_mask_permutexvar_epi16(taps->part[1], (__mmask32)some, third_u16(index),
+                                                rows->part[0]);
 }
 
 LANES_INLINE lanes weigh_u16(const window_taps *taps, const short_weights *weights) {
@@ -74,13 +81,16 @@ LANES_INLINE lanes slope_u16(const window_taps *taps, const short_slopes *slopes
 
 LANES_INLINE __m512i index_f32(__m512i x, __m512i y) { return _mm512_add_epi32(_mm512_slli_epi32(y, 3), x); }
 
-LANES_INLINE __m256i row_of_floats(const unsigned char *row) { return _mm256_loadu_si256((const __m256i *)row); }
+LANES_INLINE __m256i row_of_floats(const unsigned char *row) {
+  return _mm256_loadu_si256((const __m256i *)row);
+}
 
 /* Seven rows, two to a part. */
 LANES_INLINE window_slice slice_f32(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   for (int pair = 0; pair < 3; pair++, row += 2 * row_bytes)
-    slice.part[pair] = _mm512_inserti64x4(_mm512_castsi256_si512(row_of_floats(row)), row_of_floats(row + row_bytes), 1);
+    slice.part[pair] = _mm512_inserti64x4(_mm512_castsi256_si512(row_of_floats(row)),
+                                          row_of_floats(row + row_bytes), 1);
   slice.part[3] = _mm512_castsi256_si512(row_of_floats(row));
   return slice;
 }

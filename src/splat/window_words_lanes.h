@@ -8,15 +8,18 @@ enum { WINDOW_WIDTH = GRID_COLUMN - 1 }; /* voxels along x that taps are taken f
 
 /* From how far each lane's first tap lies from the window's first voxel. */
 LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
-  __m512i pair = _mm512_slli_epi32(_mm512_srli_epi32(x, 1), 4), second = _mm512_and_si512(x, _mm512_set1_epi32(1));
+  __m512i pair = _mm512_slli_epi32(_mm512_srli_epi32(x, 1), 4),
+          second = _mm512_and_si512(x, _mm512_set1_epi32(1));
   return _mm512_or_si512(_mm512_or_si512(pair, second), _mm512_slli_epi32(y, 1));
 }
 
-/* The rows that begin so many bits after those of the left column: of each of them the four voxels from its first one on and
- * from its second one on in turn, and the same from its third and fourth. Every lane's taps are one of these 32 words. */
+/* The rows that begin so many bits after those of the left column: of each of them the four voxels from its
+ * first one on and from its second one on in turn, and the same from its third and fourth. Every lane's taps
+ * are one of these 32 words. */
 LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shift) {
   const __mmask16 odd = 0xaaaa;
-  __m512i rows = _mm512_or_si512(_mm512_srlv_epi64(left, shift), _mm512_sllv_epi64(right, _mm512_sub_epi64(_mm512_set1_epi64(64), shift)));
+  __m512i rows = _mm512_or_si512(_mm512_srlv_epi64(left, shift),
+                                 _mm512_sllv_epi64(right, _mm512_sub_epi64(_mm512_set1_epi64(64), shift)));
   rows = _mm512_xor_si512(rows, _mm512_set1_epi8((char)0x80)); /* in columns voxels are less 128 */
   window_slice slice;
   slice.part[0] = _mm512_mask_mov_epi32(rows, odd, _mm512_slli_epi64(rows, 24));
@@ -25,7 +28,9 @@ LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shif
 }
 
 /* The same in row y of a slice. */
-LANES_INLINE __m512i index_in_row_u8(__m512i index, int y) { return _mm512_add_epi32(index, _mm512_set1_epi32(2 * y)); }
+LANES_INLINE __m512i index_in_row_u8(__m512i index, int y) {
+  return _mm512_add_epi32(index, _mm512_set1_epi32(2 * y));
+}
 
 /* The four taps of every lane. */
 LANES_INLINE window_taps taps_u8(const window_slice *slice, __m512i index) {
@@ -42,10 +47,13 @@ LANES_INLINE lanes slope_u8(const window_taps *taps, const byte_slopes *slopes) 
 }
 
 /* The lanes whose taps begin in a slice. */
-LANES_INLINE window_lanes starting_u8(__m512i start, int slice) { return _mm512_cmpeq_epi32_mask(start, _mm512_set1_epi32(slice)); }
+LANES_INLINE window_lanes starting_u8(__m512i start, int slice) {
+  return _mm512_cmpeq_epi32_mask(start, _mm512_set1_epi32(slice));
+}
 
 /* Some lanes' taps from another slice. */
-LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice, __m512i index) {
+LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice,
+                                  __m512i index) {
   taps->part[0] = _mm512_mask_mov_epi32(taps->part[0], (__mmask16)some, taps_u8(slice, index).part[0]);
 }
 

@@ -8,8 +8,8 @@
 #include "core/memory.h"
 #include "volume/text.h"
 
-hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type, bool of_cells,
-                        hl_error *error) {
+hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
+                        bool of_cells, hl_error *error) {
   if (request->arrays == NULL)
     request->arrays = hl_allocate_zeroed(request->context, HL_ARRAYS_MOST, sizeof *request->arrays);
   if (request->arrays == NULL)
@@ -35,10 +35,12 @@ static void list_arrays(const hl_load_request *request, char *text, size_t size)
   for (size_t n = 0; n < request->array_count && n < NAMED && used < size; n++) {
     const hl_array_entry *array = &request->arrays[n];
     char shown[HL_PRINTABLE_BYTES], components[40] = "";
-    if (array->components > 1) snprintf(components, sizeof components, " (%zu components)", array->components);
-    used += (size_t)snprintf(text + used, size - used, "%s%s%s%s", n > 0 ? "; " : "",
-                             array->name[0] != 0 ? hl_text_printable(shown, array->name) : "one without a name",
-                             components, array->of_cells ? " of cells" : "");
+    if (array->components > 1)
+      snprintf(components, sizeof components, " (%zu components)", array->components);
+    used += (size_t)snprintf(
+        text + used, size - used, "%s%s%s%s", n > 0 ? "; " : "",
+        array->name[0] != 0 ? hl_text_printable(shown, array->name) : "one without a name", components,
+        array->of_cells ? " of cells" : "");
   }
   if (request->array_count > NAMED && used < size) snprintf(text + used, size - used, "; ...");
 }
@@ -46,7 +48,8 @@ static void list_arrays(const hl_load_request *request, char *text, size_t size)
 static hl_status choose_named(hl_load_request *request, const char *path, hl_error *error) {
   for (int cells = 0; cells < 2; cells++)
     for (size_t n = 0; n < request->array_count; n++)
-      if (request->arrays[n].of_cells == (cells == 1) && strcmp(request->arrays[n].name, request->array) == 0) {
+      if (request->arrays[n].of_cells == (cells == 1) &&
+          strcmp(request->arrays[n].name, request->array) == 0) {
         request->chosen = n;
         return HL_OK;
       }
@@ -69,14 +72,16 @@ static size_t choose_default(const hl_load_request *request) {
 
 hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error) {
   if (request->array != NULL) return choose_named(request, path, error);
-  request->chosen = active >= 0 && (size_t)active < request->array_count ? (size_t)active : choose_default(request);
+  request->chosen = active >= 0 && (size_t)active < request->array_count ? (size_t)active
+                                                                         : choose_default(request);
   if (request->array_count < 2) return HL_OK;
   char list[600], shown[HL_PRINTABLE_BYTES];
   list_arrays(request, list, sizeof list);
   const char *name = request->arrays[request->chosen].name;
   snprintf(request->array_told, sizeof request->array_told,
-           "%.200s: of %zu arrays%s, %s is taken: name another by \"array\" (--array): %s", path, request->array_count,
-           request->more ? " and more" : "", name[0] != 0 ? hl_text_printable(shown, name) : "the one without a name", list);
+           "%.200s: of %zu arrays%s, %s is taken: name another by \"array\" (--array): %s", path,
+           request->array_count, request->more ? " and more" : "",
+           name[0] != 0 ? hl_text_printable(shown, name) : "the one without a name", list);
   return HL_OK;
 }
 
@@ -86,7 +91,10 @@ static int default_component(hl_load_request *request, const char *path, bool is
   snprintf(request->component_told, sizeof request->component_told,
            "%.200s: %s: %s is taken: choose by \"component\" (--component): 0 to %zu, or magnitude", path,
            is_series ? "a series of volumes" : "voxels of several components",
-           magnitude ? "their magnitude" : is_series ? "the first, 0," : "component 0", components - 1);
+           magnitude   ? "their magnitude"
+           : is_series ? "the first, 0,"
+                       : "component 0",
+           components - 1);
   return magnitude ? HL_COMPONENT_MAGNITUDE : 0;
 }
 
@@ -99,11 +107,12 @@ hl_status hl_component_choose(hl_load_request *request, const char *path, bool i
     return HL_OK;
   }
   if (components == 1)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: its voxels have one component, 0: leave \"component\" out", path);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: its voxels have one component, 0: leave \"component\" out",
+                   path);
   if (wanted == HL_COMPONENT_DEFAULT) wanted = default_component(request, path, is_series, components);
   if (wanted != HL_COMPONENT_MAGNITUDE && (wanted < 0 || (size_t)wanted >= components))
-    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no component %d: choose 0 to %zu, or magnitude", path, wanted,
-                   components - 1);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no component %d: choose 0 to %zu, or magnitude", path,
+                   wanted, components - 1);
   payload->component = request->chosen_component = wanted;
   return HL_OK;
 }
@@ -112,7 +121,8 @@ hl_status hl_component_only(hl_load_request *request, const char *path, bool is_
                             hl_error *error) {
   hl_status status = hl_arrays_add(request, "", payload->components, payload->grid.type, false, error);
   if (status == HL_OK && request->array != NULL && request->array[0] != 0)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the file has one array, without a name: leave \"array\" out", path);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the file has one array, without a name: leave \"array\" out",
+                   path);
   request->chosen = 0;
   return status == HL_OK ? hl_component_choose(request, path, is_series, payload, error) : status;
 }

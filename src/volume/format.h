@@ -1,7 +1,7 @@
 /* volume/format.h - the file formats behind hl_volume_load, one function each.
  *
- * Each reads *stream from its current place, may replace or push on it, and leaves closing to the caller. It lists in
- * *request what arrays there are, and reads the one that is wanted.
+ * Each reads *stream from its current place, may replace or push on it, and leaves closing to the caller. It
+ * lists in *request what arrays there are, and reads the one that is wanted.
  */
 #ifndef HL_VOLUME_FORMAT_H
 #define HL_VOLUME_FORMAT_H
@@ -9,12 +9,15 @@
 #include "volume/arrays.h"
 
 hl_status hl_load_nrrd(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
-hl_status hl_load_metaimage(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+hl_status hl_load_metaimage(hl_stream **stream, hl_load_request *request, hl_volume **volume,
+                            hl_error *error);
 hl_status hl_load_nifti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 hl_status hl_load_npy(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 hl_status hl_load_vti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
-hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
-hl_status hl_load_raw_descriptor(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_volume **volume,
+                             hl_error *error);
+hl_status hl_load_raw_descriptor(hl_stream **stream, hl_load_request *request, hl_volume **volume,
+                                 hl_error *error);
 hl_status hl_load_raw(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
 /* Whether a file that starts with these bytes (at least as many as there are up to 1024) is of the format. */

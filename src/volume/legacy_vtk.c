@@ -1,9 +1,9 @@
 /* volume/legacy_vtk.c - legacy .vtk files with STRUCTURED_POINTS, ASCII or BINARY (big-endian).
  *
- * After three lines (mark, title, ASCII or BINARY) come keywords. A first pass lists the arrays under POINT_DATA (SCALARS,
- * COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the parts of a FIELD) as far as they are understood; a
- * second stops at the values of the chosen one. What cannot be read twice, a pipe, is read once, up to the first array of
- * one component or of the wanted name.
+ * After three lines (mark, title, ASCII or BINARY) come keywords. A first pass lists the arrays under
+ * POINT_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the parts of a
+ * FIELD) as far as they are understood; a second stops at the values of the chosen one. What cannot be read
+ * twice, a pipe, is read once, up to the first array of one component or of the wanted name.
  */
 #include <string.h>
 
@@ -17,12 +17,12 @@ typedef struct vtk_header {
   hl_payload payload;
   int line;
   bool has_dimensions, in_point_data;
-  size_t tuples;     /* of the POINT_DATA or CELL_DATA section; of the volume's array once it is found */
+  size_t tuples; /* of the POINT_DATA or CELL_DATA section; of the volume's array once it is found */
   hl_load_request *request;
-  bool lists;        /* first pass: arrays are listed */
-  bool once;         /* and there is no second one: stop at the first that will do */
-  size_t arrays;     /* under POINT_DATA so far */
-  bool found;        /* the stream is at the voxels */
+  bool lists;    /* first pass: arrays are listed */
+  bool once;     /* and there is no second one: stop at the first that will do */
+  size_t arrays; /* under POINT_DATA so far */
+  bool found;    /* the stream is at the voxels */
 } vtk_header;
 
 static hl_status fail(const vtk_header *header, const char *message, const char *text, hl_error *error) {
@@ -98,8 +98,8 @@ static bool is_wanted(const vtk_header *header, const char *name, size_t compone
 }
 
 /* An array's values come next: stop there if they are the volume. */
-static hl_status meet_array(vtk_header *header, const char *name, const char *type_name, size_t components, size_t tuples,
-                            hl_error *error) {
+static hl_status meet_array(vtk_header *header, const char *name, const char *type_name, size_t components,
+                            size_t tuples, hl_error *error) {
   hl_voxel_type type = HL_VOXEL_U8;
   hl_status status = read_type(header, type_name, &type, error);
   if (status != HL_OK) return status;
@@ -156,8 +156,8 @@ static hl_status read_coordinates(vtk_header *header, const char *arguments, hl_
   const char *cursor = arguments;
   size_t components;
   if (!hl_text_word(&cursor, name, sizeof name) || !hl_text_word(&cursor, dimension, sizeof dimension) ||
-      !hl_text_word(&cursor, type, sizeof type) || hl_text_sizes(dimension, &components, 1) != 1 || components < 1 ||
-      components > 1024)
+      !hl_text_word(&cursor, type, sizeof type) || hl_text_sizes(dimension, &components, 1) != 1 ||
+      components < 1 || components > 1024)
     return fail(header, "expected \"name components type\", not", arguments, error);
   return meet_array(header, name, type, components, header->tuples, error);
 }
@@ -167,7 +167,8 @@ static hl_status skip_table(vtk_header *header, const char *arguments, hl_error 
   char name[WORD_BYTES];
   const char *cursor = arguments;
   size_t colors;
-  if (!hl_text_word(&cursor, name, sizeof name) || hl_text_sizes(cursor, &colors, 1) != 1 || colors > SIZE_MAX / 8)
+  if (!hl_text_word(&cursor, name, sizeof name) || hl_text_sizes(cursor, &colors, 1) != 1 ||
+      colors > SIZE_MAX / 8)
     return fail(header, "expected \"LOOKUP_TABLE name size\", not", arguments, error);
   return skip_values(header, 4 * colors, 1, error);
 }
@@ -236,10 +237,8 @@ static hl_status read_geometry(vtk_header *header, const char *keyword, const ch
     sound = false;
   } else {
     for (int axis = 0; axis < 3; axis++)
-      if (hl_text_equal(keyword, "ORIGIN"))
-        grid->origin[axis] = numbers[axis];
-      else
-        grid->axis[axis][axis] = numbers[axis];
+      if (hl_text_equal(keyword, "ORIGIN")) grid->origin[axis] = numbers[axis];
+      else grid->axis[axis][axis] = numbers[axis];
   }
   return sound ? HL_OK : fail(header, "expected three numbers, not", arguments, error);
 }
@@ -299,7 +298,8 @@ static hl_status read_header(vtk_header *header, hl_error *error) {
 }
 
 static vtk_header begin(hl_stream *stream, hl_load_request *request, bool lists) {
-  vtk_header header = {.stream = stream, .request = request, .lists = lists, .once = lists && !hl_stream_can_restart(stream)};
+  vtk_header header = {
+      .stream = stream, .request = request, .lists = lists, .once = lists && !hl_stream_can_restart(stream)};
   hl_payload_defaults(&header.payload);
   header.payload.trailing = HL_TRAILING_IGNORED;
   return header;
@@ -309,13 +309,15 @@ static vtk_header begin(hl_stream *stream, hl_load_request *request, bool lists)
 static bool is_enough(const hl_load_request *request, hl_status status) {
   if (status != HL_ERROR_INPUT && status != HL_ERROR_UNSUPPORTED) return false;
   for (size_t n = 0; n < request->array_count; n++)
-    if (request->array != NULL ? strcmp(request->arrays[n].name, request->array) == 0 : request->arrays[n].components == 1)
+    if (request->array != NULL ? strcmp(request->arrays[n].name, request->array) == 0
+                               : request->arrays[n].components == 1)
       return true;
   return false;
 }
 
 /* Comes to the values of the chosen array. What is wrong behind them does not matter. */
-static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_header *header, hl_error *error) {
+static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_header *header,
+                             hl_error *error) {
   *header = begin(*stream, request, true);
   hl_error first = {0};
   hl_status status = read_header(header, &first);
@@ -335,7 +337,8 @@ static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_h
   return read_header(header, error);
 }
 
-hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_volume **volume,
+                             hl_error *error) {
   vtk_header header;
   hl_status status = find_volume(stream, request, &header, error);
   if (status != HL_OK) return status;
@@ -350,5 +353,6 @@ hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_vo
                    header.tuples, dimension[0], dimension[1], dimension[2],
                    dimension[0] * dimension[1] * dimension[2]);
   status = hl_component_choose(request, (*stream)->path, false, &header.payload, error);
-  return status == HL_OK ? hl_payload_read(*stream, &header.payload, request->spacing, volume, error) : status;
+  return status == HL_OK ? hl_payload_read(*stream, &header.payload, request->spacing, volume, error)
+                         : status;
 }

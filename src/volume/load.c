@@ -8,7 +8,8 @@
 
 enum { SNIFFED_BYTES = 1024 };
 
-typedef hl_status load_function(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+typedef hl_status load_function(hl_stream **stream, hl_load_request *request, hl_volume **volume,
+                                hl_error *error);
 
 static bool begins(const unsigned char *bytes, size_t length, const char *mark, size_t mark_length) {
   return length >= mark_length && memcmp(bytes, mark, mark_length) == 0;
@@ -26,8 +27,10 @@ static load_function *by_content(const unsigned char *bytes, size_t length) {
 }
 
 /* Takes the mark with which Windows programs begin UTF-8 text, where the rest is a header of text. */
-static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **bytes, size_t *length, hl_error *error) {
-  if (!begins(*bytes, *length, "\xef\xbb\xbf", 3) || by_content(*bytes + 3, *length - 3) == NULL) return HL_OK;
+static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **bytes, size_t *length,
+                                      hl_error *error) {
+  if (!begins(*bytes, *length, "\xef\xbb\xbf", 3) || by_content(*bytes + 3, *length - 3) == NULL)
+    return HL_OK;
   hl_stream_take(stream, 3);
   return hl_stream_peek(stream, SNIFFED_BYTES, bytes, length, error);
 }
@@ -66,12 +69,9 @@ static hl_status switch_to_pair_header(hl_stream **stream, bool *switched, hl_er
   char header[1024];
   size_t length = strlen(name);
   *switched = false;
-  if (hl_text_ends(name, ".img.gz"))
-    length -= 7;
-  else if (hl_text_ends(name, ".img"))
-    length -= 4;
-  else
-    return HL_OK;
+  if (hl_text_ends(name, ".img.gz")) length -= 7;
+  else if (hl_text_ends(name, ".img")) length -= 4;
+  else return HL_OK;
   if (length + 8 > sizeof header) return HL_OK;
   memcpy(header, name, length);
   static const char *const endings[] = {".hdr", ".hdr.gz"};
@@ -102,11 +102,11 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
     if (hl_text_ends(path, marks[n].ending))
       return hl_fail(error, HL_ERROR_INPUT, "%s: the file does not begin with %s, as %s files do", path,
                      marks[n].mark, marks[n].ending);
-  return hl_fail(
-      error, HL_ERROR_INPUT,
-      "%s: not a volume file that is known (NRRD, MetaImage, NIfTI, VTK .vti, .vtk, NumPy .npy); raw voxels need their "
-      "size and type in the name: name_256x256x128_uint8.raw",
-      path);
+  return hl_fail(error, HL_ERROR_INPUT,
+                 "%s: not a volume file that is known (NRRD, MetaImage, NIfTI, VTK .vti, .vtk, NumPy .npy); "
+                 "raw voxels need their "
+                 "size and type in the name: name_256x256x128_uint8.raw",
+                 path);
 }
 
 bool hl_find_type(const hl_named_type *types, size_t count, const char *name, hl_voxel_type *type) {
@@ -162,16 +162,18 @@ void hl_volume_load_options_defaults(hl_volume_load_options *options) {
 static hl_status check_options(const hl_volume_load_options *options, hl_error *error) {
   static const char subject[] = "hl_volume_load_with";
   if (options->struct_size != sizeof *options)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: struct_size is %zu, expected %zu: call hl_volume_load_options_defaults first",
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "%s: struct_size is %zu, expected %zu: call hl_volume_load_options_defaults first",
                    subject, options->struct_size, sizeof *options);
   if (options->component < HL_COMPONENT_MAGNITUDE)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: component is %d: give an index or an HL_COMPONENT_ value", subject,
-                   options->component);
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: component is %d: give an index or an HL_COMPONENT_ value",
+                   subject, options->component);
   bool given = options->spacing[0] != 0 || options->spacing[1] != 0 || options->spacing[2] != 0;
   for (int axis = 0; axis < 3; axis++)
     if (given && !(options->spacing[axis] > 0 && isfinite(options->spacing[axis])))
-      return hl_fail(error, HL_ERROR_ARGUMENT, "%s: spacing[%d] is %g: give three finite numbers above 0, or 0 for the file's",
-                     subject, axis, options->spacing[axis]);
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "%s: spacing[%d] is %g: give three finite numbers above 0, or 0 for the file's", subject,
+                     axis, options->spacing[axis]);
   return HL_OK;
 }
 

@@ -178,20 +178,24 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
   grid->value_offset = header->intercept;
 }
 
-/* Several channels of a voxel lie side by side; samples along a fourth axis and more are volumes after each other. */
-static hl_status find_components(const meta_header *header, bool *is_series, hl_payload *payload, hl_error *error) {
+/* Several channels of a voxel lie side by side; samples along a fourth axis and more are volumes after each
+ * other. */
+static hl_status find_components(const meta_header *header, bool *is_series, hl_payload *payload,
+                                 hl_error *error) {
   size_t series = 1;
   for (int axis = 3; axis < header->dimension; axis++)
     if (!hl_multiply(series, header->size[axis], &series)) series = SIZE_MAX;
   *is_series = series != 1;
   if (series == 0 || header->channels == 0)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the header states %s: each must be at least 1", header->stream->path,
-                   series == 0 ? "a size of 0" : "0 channels");
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the header states %s: each must be at least 1",
+                   header->stream->path, series == 0 ? "a size of 0" : "0 channels");
   if (series > 1 && header->channels > 1)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu channels in each of %zu volumes: save one of them",
                    header->stream->path, header->channels, series);
   payload->components = series > 1 ? series : header->channels;
-  payload->block = series > 1 ? payload->grid.dimensions[0] * payload->grid.dimensions[1] * payload->grid.dimensions[2] : 1;
+  payload->block = series > 1 ? payload->grid.dimensions[0] * payload->grid.dimensions[1] *
+                                    payload->grid.dimensions[2]
+                              : 1;
   return HL_OK;
 }
 
@@ -212,7 +216,8 @@ static hl_status go_to_voxels(hl_stream **stream, const meta_header *header, con
   return status == HL_OK && header->compressed ? hl_stream_push_inflate(stream, error) : status;
 }
 
-hl_status hl_load_metaimage(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+hl_status hl_load_metaimage(hl_stream **stream, hl_load_request *request, hl_volume **volume,
+                            hl_error *error) {
   meta_header header = {.dimension = 0};
   hl_payload payload;
   hl_payload_defaults(&payload);

@@ -66,8 +66,8 @@ static int64_t load_dimension(const nifti_header *header, int index) {
 
 /* The layout and byte order that the first four bytes state; null if they state none. */
 static const nifti_layout *identify(const unsigned char *bytes, bool *big_endian) {
-  uint32_t little =
-      (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+  uint32_t little = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+                    (uint32_t)bytes[3] << 24;
   uint32_t big = __builtin_bswap32(little);
   *big_endian = big == HEADER_1_BYTES || big == HEADER_2_BYTES;
   uint32_t size = *big_endian ? big : little;
@@ -105,8 +105,8 @@ static hl_status read_header(hl_stream *stream, nifti_header *header, hl_error *
 }
 
 /* Of the first three axes; *series: the volumes along the fourth, *others: those along the ones after it. */
-static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3], size_t *series, size_t *others,
-                                 hl_error *error) {
+static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3], size_t *series,
+                                 size_t *others, hl_error *error) {
   int64_t count = load_dimension(header, 0);
   if (count < 1 || count > 7)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->dim,
@@ -126,14 +126,16 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
 }
 
 /* components: numbers that lie side by side in each voxel, as of colours. */
-static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size_t *components, hl_error *error) {
+static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size_t *components,
+                           hl_error *error) {
   static const struct {
     int code;
     hl_voxel_type type;
     size_t components;
-  } types[] = {{2, HL_VOXEL_U8, 1},     {256, HL_VOXEL_I8, 1},  {512, HL_VOXEL_U16, 1}, {4, HL_VOXEL_I16, 1},
-               {768, HL_VOXEL_U32, 1},  {8, HL_VOXEL_I32, 1},   {16, HL_VOXEL_F32, 1},  {64, HL_VOXEL_F64, 1},
-               {1280, HL_VOXEL_U64, 1}, {1024, HL_VOXEL_I64, 1}, {32, HL_VOXEL_F32, 2},  {1792, HL_VOXEL_F64, 2},
+  } types[] = {{2, HL_VOXEL_U8, 1},     {256, HL_VOXEL_I8, 1},  {512, HL_VOXEL_U16, 1},
+               {4, HL_VOXEL_I16, 1},    {768, HL_VOXEL_U32, 1}, {8, HL_VOXEL_I32, 1},
+               {16, HL_VOXEL_F32, 1},   {64, HL_VOXEL_F64, 1},  {1280, HL_VOXEL_U64, 1},
+               {1024, HL_VOXEL_I64, 1}, {32, HL_VOXEL_F32, 2},  {1792, HL_VOXEL_F64, 2},
                {128, HL_VOXEL_U8, 3},   {2304, HL_VOXEL_U8, 4}};
   static const struct {
     int code;
@@ -230,12 +232,9 @@ static hl_status switch_to_image(hl_stream **stream, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
   char image[NAME_BYTES];
   size_t length = strlen(name);
-  if (hl_text_ends(name, ".hdr"))
-    length -= 4;
-  else if (hl_text_ends(name, ".hdr.gz"))
-    length -= 7;
-  else if (hl_text_ends(name, ".nii"))
-    length -= 4;
+  if (hl_text_ends(name, ".hdr")) length -= 4;
+  else if (hl_text_ends(name, ".hdr.gz")) length -= 7;
+  else if (hl_text_ends(name, ".nii")) length -= 4;
   if (length + 8 > sizeof image)
     return hl_fail(error, HL_ERROR_INPUT, "%s: the name is too long", (*stream)->path);
   memcpy(image, name, length);
@@ -271,14 +270,14 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
 }
 
 /* Colours lie side by side; volumes of a series and components along further axes follow each other. */
-static hl_status find_components(const nifti_header *header, size_t side_by_side, size_t series, size_t others,
-                                 hl_payload *payload, hl_error *error) {
+static hl_status find_components(const nifti_header *header, size_t side_by_side, size_t series,
+                                 size_t others, hl_payload *payload, hl_error *error) {
   const size_t *dimension = payload->grid.dimensions;
   size_t volumes;
   if (!hl_multiply(series, others, &volumes)) volumes = SIZE_MAX;
   if (side_by_side > 1 && volumes > 1)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu components in each of %zu volumes: save one of them", header->path,
-                   side_by_side, volumes);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu components in each of %zu volumes: save one of them",
+                   header->path, side_by_side, volumes);
   payload->components = side_by_side > 1 ? side_by_side : volumes;
   payload->block = side_by_side > 1 ? 1 : dimension[0] * dimension[1] * dimension[2];
   return HL_OK;

@@ -1,9 +1,9 @@
 /* volume/npy.c - NumPy arrays, .npy format 1.0 to 3.0: axes [z][y][x], in C or Fortran order.
  *
- * Header: a mark, two bytes of version, the length of the text, the text: a dictionary of descr, fortran_order and shape.
- * Two axes are [y][x]. Of four, a last one of at most four values holds the components of voxels, else the first one is a
- * series. Voxels have no place in the file: the spacing is 1 and the origin 0. Source: NumPy's format specification,
- * numpy/lib/format.py (NEP 1).
+ * Header: a mark, two bytes of version, the length of the text, the text: a dictionary of descr,
+ * fortran_order and shape. Two axes are [y][x]. Of four, a last one of at most four values holds the
+ * components of voxels, else the first one is a series. Voxels have no place in the file: the spacing is 1
+ * and the origin 0. Source: NumPy's format specification, numpy/lib/format.py (NEP 1).
  */
 #include <string.h>
 
@@ -17,9 +17,9 @@ static const char mark[] = "\x93NUMPY";
 
 typedef struct npy_header {
   const char *path;
-  const char *at;       /* in the text, which ends with a zero byte */
+  const char *at; /* in the text, which ends with a zero byte */
   hl_voxel_type type;
-  size_t numbers;       /* 2 for complex values */
+  size_t numbers; /* 2 for complex values */
   bool big_endian, fortran, has_type, has_order, has_shape;
   int axes;
   size_t shape[MOST_AXES];
@@ -29,7 +29,8 @@ bool hl_is_npy(const unsigned char *bytes, size_t length) {
   return length >= MARK_BYTES && memcmp(bytes, mark, sizeof mark - 1) == 0;
 }
 
-static hl_status refuse(const npy_header *header, hl_status code, const char *what, const char *text, hl_error *error) {
+static hl_status refuse(const npy_header *header, hl_status code, const char *what, const char *text,
+                        hl_error *error) {
   char shown[HL_PRINTABLE_BYTES];
   return hl_fail(error, code, "%s: %s \"%s\"", header->path, what, hl_text_printable(shown, text));
 }
@@ -66,13 +67,15 @@ static hl_status take_type(npy_header *header, hl_error *error) {
     const char *name;
     hl_voxel_type type;
     size_t numbers;
-  } types[] = {{"b1", HL_VOXEL_U8, 1},  {"u1", HL_VOXEL_U8, 1},  {"i1", HL_VOXEL_I8, 1},  {"u2", HL_VOXEL_U16, 1},
-               {"i2", HL_VOXEL_I16, 1}, {"u4", HL_VOXEL_U32, 1}, {"i4", HL_VOXEL_I32, 1}, {"u8", HL_VOXEL_U64, 1},
-               {"i8", HL_VOXEL_I64, 1}, {"f2", HL_VOXEL_F16, 1}, {"f4", HL_VOXEL_F32, 1}, {"f8", HL_VOXEL_F64, 1},
+  } types[] = {{"b1", HL_VOXEL_U8, 1},  {"u1", HL_VOXEL_U8, 1},  {"i1", HL_VOXEL_I8, 1},
+               {"u2", HL_VOXEL_U16, 1}, {"i2", HL_VOXEL_I16, 1}, {"u4", HL_VOXEL_U32, 1},
+               {"i4", HL_VOXEL_I32, 1}, {"u8", HL_VOXEL_U64, 1}, {"i8", HL_VOXEL_I64, 1},
+               {"f2", HL_VOXEL_F16, 1}, {"f4", HL_VOXEL_F32, 1}, {"f8", HL_VOXEL_F64, 1},
                {"c8", HL_VOXEL_F32, 2}, {"c16", HL_VOXEL_F64, 2}};
   char text[16] = "";
   if (!take_text(header, text, sizeof text))
-    return refuse(header, HL_ERROR_UNSUPPORTED, "elements of one plain type are read, such as '<f4', not", header->at, error);
+    return refuse(header, HL_ERROR_UNSUPPORTED, "elements of one plain type are read, such as '<f4', not",
+                  header->at, error);
   header->big_endian = text[0] == '>' || (text[0] == '=' && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__);
   for (size_t n = 0; n < sizeof types / sizeof *types && text[0] != 0; n++)
     if (strchr("<>|=", text[0]) != NULL && strcmp(text + 1, types[n].name) == 0) {
@@ -81,25 +84,28 @@ static hl_status take_type(npy_header *header, hl_error *error) {
       header->has_type = true;
       return HL_OK;
     }
-  return refuse(header, HL_ERROR_UNSUPPORTED, "bool, integers, floats and complex numbers are read, not elements of type", text,
-                error);
+  return refuse(header, HL_ERROR_UNSUPPORTED,
+                "bool, integers, floats and complex numbers are read, not elements of type", text, error);
 }
 
 static hl_status take_shape(npy_header *header, hl_error *error) {
-  if (!take(header, "(")) return refuse(header, HL_ERROR_INPUT, "expected a shape such as (64, 64, 64), not", header->at, error);
+  if (!take(header, "("))
+    return refuse(header, HL_ERROR_INPUT, "expected a shape such as (64, 64, 64), not", header->at, error);
   header->axes = 0;
   while (!take(header, ")")) {
     skip_spaces(header);
     size_t length = strspn(header->at, "0123456789"), count = 0;
-    if (length == 0 || length > 18) return refuse(header, HL_ERROR_INPUT, "expected a count in the shape, not", header->at, error);
+    if (length == 0 || length > 18)
+      return refuse(header, HL_ERROR_INPUT, "expected a count in the shape, not", header->at, error);
     for (size_t n = 0; n < length; n++) count = 10 * count + (size_t)(header->at[n] - '0');
     if (header->axes == MOST_AXES)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: an array of more than four axes: save a part of three, [z][y][x]",
-                     header->path);
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: an array of more than four axes: save a part of three, [z][y][x]", header->path);
     header->shape[header->axes++] = count;
     header->at += length;
     skip_spaces(header);
-    if (*header->at != ')' && !take(header, ",")) return refuse(header, HL_ERROR_INPUT, "expected ',' or ')', not", header->at, error);
+    if (*header->at != ')' && !take(header, ","))
+      return refuse(header, HL_ERROR_INPUT, "expected ',' or ')', not", header->at, error);
   }
   header->has_shape = true;
   return HL_OK;
@@ -113,19 +119,23 @@ static hl_status take_entry(npy_header *header, hl_error *error) {
   if (strcmp(key, "descr") == 0) return take_type(header, error);
   if (strcmp(key, "shape") == 0) return take_shape(header, error);
   if (strcmp(key, "fortran_order") != 0)
-    return refuse(header, HL_ERROR_INPUT, "expected the keys descr, fortran_order and shape, not", key, error);
+    return refuse(header, HL_ERROR_INPUT, "expected the keys descr, fortran_order and shape, not", key,
+                  error);
   header->fortran = take(header, "True");
   header->has_order = header->fortran || take(header, "False");
-  return header->has_order ? HL_OK : refuse(header, HL_ERROR_INPUT, "expected True or False, not", header->at, error);
+  return header->has_order ? HL_OK
+                           : refuse(header, HL_ERROR_INPUT, "expected True or False, not", header->at, error);
 }
 
 static hl_status parse(npy_header *header, hl_error *error) {
-  if (!take(header, "{")) return refuse(header, HL_ERROR_INPUT, "expected a header that begins with '{', not", header->at, error);
+  if (!take(header, "{"))
+    return refuse(header, HL_ERROR_INPUT, "expected a header that begins with '{', not", header->at, error);
   while (!take(header, "}")) {
     hl_status status = take_entry(header, error);
     if (status != HL_OK) return status;
     skip_spaces(header);
-    if (*header->at != '}' && !take(header, ",")) return refuse(header, HL_ERROR_INPUT, "expected ',' or '}', not", header->at, error);
+    if (*header->at != '}' && !take(header, ","))
+      return refuse(header, HL_ERROR_INPUT, "expected ',' or '}', not", header->at, error);
   }
   if (header->has_type && header->has_order && header->has_shape) return HL_OK;
   return hl_fail(error, HL_ERROR_INPUT, "%s: the header lacks %s", header->path,
@@ -140,8 +150,8 @@ static hl_status read_header(hl_stream *stream, npy_header *header, char *text, 
   if (status != HL_OK) return status;
   int version = bytes[6];
   if (version < 1 || version > 3)
-    return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 6, "%s, byte 6: version %d of the format: 1, 2 and 3 are read",
-                          stream->path, version);
+    return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 6,
+                          "%s, byte 6: version %d of the format: 1, 2 and 3 are read", stream->path, version);
   size_t length = bytes[8] | (size_t)bytes[9] << 8;
   if (version > 1) {
     status = hl_stream_read_all(stream, bytes + MARK_BYTES + 2, 2, error);
@@ -149,8 +159,8 @@ static hl_status read_header(hl_stream *stream, npy_header *header, char *text, 
     length |= (size_t)bytes[10] << 16 | (size_t)bytes[11] << 24;
   }
   if (length >= TEXT_BYTES_MOST)
-    return hl_fail_offset(error, HL_ERROR_INPUT, 8, "%s, byte 8: a header of %zu bytes: at most %d are read", stream->path,
-                          length, TEXT_BYTES_MOST - 1);
+    return hl_fail_offset(error, HL_ERROR_INPUT, 8, "%s, byte 8: a header of %zu bytes: at most %d are read",
+                          stream->path, length, TEXT_BYTES_MOST - 1);
   status = hl_stream_read_all(stream, text, length, error);
   text[status == HL_OK ? length : 0] = 0;
   header->path = stream->path;
@@ -160,10 +170,14 @@ static hl_status read_header(hl_stream *stream, npy_header *header, char *text, 
 
 /* ---- the voxels ---- */
 
-/* Sizes as the values lie in the file, fastest first: in C order the last axis, in Fortran order the first. */
-static hl_status make_payload(const npy_header *header, bool *is_series, hl_payload *payload, hl_error *error) {
+/* Sizes as the values lie in the file, fastest first: in C order the last axis, in Fortran order the
+ * first. */
+static hl_status make_payload(const npy_header *header, bool *is_series, hl_payload *payload,
+                              hl_error *error) {
   int axes = header->axes, first = 0;
-  if (axes < 2) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: an array of %d axes: a volume has three, [z][y][x]", header->path, axes);
+  if (axes < 2)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: an array of %d axes: a volume has three, [z][y][x]",
+                   header->path, axes);
   bool four = axes == 4, last_is_component = four && header->shape[3] <= MOST_COMPONENTS;
   size_t extra = !four ? 1 : header->shape[last_is_component ? 3 : 0];
   *is_series = four && !last_is_component;
@@ -171,9 +185,11 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   int grid_axes = four ? 3 : axes;
   for (int n = 0; n < grid_axes; n++) /* shape[first] is z, or y of a plane */
     payload->grid.dimensions[header->fortran ? n : grid_axes - 1 - n] = header->shape[first + n];
-  if (extra == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: the shape has a zero: each must be at least 1", header->path);
+  if (extra == 0)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the shape has a zero: each must be at least 1", header->path);
   if (extra > 1 && header->numbers > 1)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: complex numbers of four axes: save a part of three", header->path);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: complex numbers of four axes: save a part of three",
+                   header->path);
   payload->grid.type = header->type;
   payload->big_endian = header->big_endian;
   payload->components = extra * header->numbers;

@@ -158,10 +158,8 @@ static hl_status read_directions(nrrd_header *header, const char *value, hl_erro
     while (hl_is_space(*cursor)) cursor++;
     nrrd_axis *place = &header->axis[axis];
     place->has_direction = !hl_text_starts(cursor, "none");
-    if (!place->has_direction)
-      cursor += 4;
-    else if (!scan_vector(&cursor, place->direction))
-      return refuse(header, "space directions", value, error);
+    if (!place->has_direction) cursor += 4;
+    else if (!scan_vector(&cursor, place->direction)) return refuse(header, "space directions", value, error);
     header->has_directions = header->has_directions || place->has_direction;
   }
   return HL_OK;
@@ -217,26 +215,25 @@ static field_function *find_field(const char *name) {
   static const struct {
     const char *names;
     field_function *read;
-  } fields[] = {
-      {"dimension", read_dimension},
-      {"sizes", read_sizes},
-      {"type", read_type},
-      {"encoding", read_encoding},
-      {"endian", read_endian},
-      {"spacings", read_spacings},
-      {"axis mins|axismins", read_minima},
-      {"axis maxs|axismaxs", read_maxima},
-      {"centers|centerings", read_centers},
-      {"kinds", read_kinds},
-      {"space directions", read_directions},
-      {"space origin", read_origin},
-      {"data file|datafile", read_data_file},
-      {"line skip|lineskip", read_line_skip},
-      {"byte skip|byteskip", read_byte_skip},
-      {"space", read_space},
-      {"space dimension|space units|measurement frame|content|number|block size|blocksize|min|max|"
-       "old min|oldmin|old max|oldmax|thicknesses|labels|units|sample units|sampleunits",
-       pass_over}};
+  } fields[] = {{"dimension", read_dimension},
+                {"sizes", read_sizes},
+                {"type", read_type},
+                {"encoding", read_encoding},
+                {"endian", read_endian},
+                {"spacings", read_spacings},
+                {"axis mins|axismins", read_minima},
+                {"axis maxs|axismaxs", read_maxima},
+                {"centers|centerings", read_centers},
+                {"kinds", read_kinds},
+                {"space directions", read_directions},
+                {"space origin", read_origin},
+                {"data file|datafile", read_data_file},
+                {"line skip|lineskip", read_line_skip},
+                {"byte skip|byteskip", read_byte_skip},
+                {"space", read_space},
+                {"space dimension|space units|measurement frame|content|number|block size|blocksize|min|max|"
+                 "old min|oldmin|old max|oldmax|thicknesses|labels|units|sample units|sampleunits",
+                 pass_over}};
   for (size_t n = 0; n < sizeof fields / sizeof *fields; n++)
     if (hl_text_is_one_of(name, fields[n].names)) return fields[n].read;
   return NULL;

@@ -1,4 +1,5 @@
-/* volume/nrrd_axes.c - which axes of a NRRD file are those of the grid, which hold components, and where the grid lies. */
+/* volume/nrrd_axes.c - which axes of a NRRD file are those of the grid, which hold components, and where the
+ * grid lies. */
 #include <math.h>
 #include <string.h>
 
@@ -10,12 +11,14 @@
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
   if (header->has_directions) return !axis->has_direction;
   int space = 0;
-  for (int n = 0; n < header->dimension; n++) space += hl_text_is_one_of(header->axis[n].kind, "domain|space");
+  for (int n = 0; n < header->dimension; n++)
+    space += hl_text_is_one_of(header->axis[n].kind, "domain|space");
   if (hl_text_equal(axis->kind, "time")) return space >= 3;
   return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
 }
 
-/* Of four axes and more that nothing is said of, a first one of at most four samples holds the components of voxels. */
+/* Of four axes and more that nothing is said of, a first one of at most four samples holds the components of
+ * voxels. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->has_directions;
   int thick = 0;
@@ -26,8 +29,8 @@ static bool is_first_of_components(const nrrd_header *header) {
   return unsaid && thick > 3;
 }
 
-/* Of the axes that are not components, at most three: while there are more, the last of one sample goes, and then the
- * last of all, a series. */
+/* Of the axes that are not components, at most three: while there are more, the last of one sample goes, and
+ * then the last of all, a series. */
 static int drop_thin_axes(int axes[NRRD_MOST_AXES], const nrrd_header *header, int count) {
   for (int n = count - 1; n >= 0 && count > 3; n--)
     if (header->axis[axes[n]].size == 1) {
@@ -41,13 +44,15 @@ static int drop_thin_axes(int axes[NRRD_MOST_AXES], const nrrd_header *header, i
 static int choose_axes(const nrrd_header *header, int chosen[NRRD_MOST_AXES]) {
   int count = 0;
   for (int n = 0; n < header->dimension; n++)
-    if (!is_component_axis(header, &header->axis[n]) && !(n == 0 && is_first_of_components(header))) chosen[count++] = n;
+    if (!is_component_axis(header, &header->axis[n]) && !(n == 0 && is_first_of_components(header)))
+      chosen[count++] = n;
   return drop_thin_axes(chosen, header, count);
 }
 
-/* The other axes hold components, which must follow each other: the grid's axes come before and after them. */
-static hl_status find_components(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count, bool *is_series,
-                                 hl_payload *payload, hl_error *error) {
+/* The other axes hold components, which must follow each other: the grid's axes come before and after
+ * them. */
+static hl_status find_components(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count,
+                                 bool *is_series, hl_payload *payload, hl_error *error) {
   size_t before = 1, since = 1; /* voxels of the axes before the components, and since the last of them */
   int grid_axis = 0;
   *is_series = false;
@@ -59,7 +64,8 @@ static hl_status find_components(const nrrd_header *header, const int chosen[NRR
       grid_axis++;
       continue;
     }
-    if (axis->size == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: axis %d has 0 samples", header->stream->path, n + 1);
+    if (axis->size == 0)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: axis %d has 0 samples", header->stream->path, n + 1);
     if (axis->size == 1) continue;
     if (payload->components > 1 && since > 1)
       return hl_fail(error, HL_ERROR_UNSUPPORTED,
@@ -95,14 +101,13 @@ static void complete_axes(hl_volume_description *grid, int count) {
   }
 }
 
-static void make_grid(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count, hl_volume_description *grid) {
+static void make_grid(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count,
+                      hl_volume_description *grid) {
   for (int n = 0; n < count; n++) {
     const nrrd_axis *axis = &header->axis[chosen[n]];
     grid->dimensions[n] = axis->size;
-    if (header->has_directions)
-      memcpy(grid->axis[n], axis->direction, sizeof grid->axis[n]);
-    else
-      place_axis(axis, &grid->axis[n][n], &grid->origin[n]);
+    if (header->has_directions) memcpy(grid->axis[n], axis->direction, sizeof grid->axis[n]);
+    else place_axis(axis, &grid->axis[n][n], &grid->origin[n]);
   }
   if (header->has_directions) complete_axes(grid, count);
   if (header->has_space_origin) memcpy(grid->origin, header->space_origin, sizeof grid->origin);

@@ -1,8 +1,8 @@
 /* volume/payload.c - reads the voxels that a header promises.
  *
  * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes go to their final
- * place and are converted there, piece by piece; only 8-byte voxels, which shrink, go through a small stage.
- */
+ * place and are converted there, piece by piece; only 8-byte voxels, which shrink, go through a small
+ * stage. */
 #include "volume/payload.h"
 
 #include <math.h>
@@ -35,7 +35,9 @@ size_t hl_payload_voxels(const hl_payload *payload) {
 /* Of all components; the greatest number there is where there are more. */
 static uint64_t value_count(const hl_payload *payload) {
   uint64_t values;
-  return __builtin_mul_overflow((uint64_t)hl_payload_voxels(payload), payload->components, &values) ? UINT64_MAX : values;
+  return __builtin_mul_overflow((uint64_t)hl_payload_voxels(payload), payload->components, &values)
+             ? UINT64_MAX
+             : values;
 }
 
 uint64_t hl_payload_bytes(const hl_payload *payload) {
@@ -49,8 +51,9 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
   if (status != HL_OK) return status;
   uint64_t most = hl_stream_at_most(stream), promised = hl_payload_bytes(payload);
   if (payload->text)
-    promised = value_count(payload) > UINT64_MAX / 2 ? UINT64_MAX
-                                                     : 2 * value_count(payload) - 1; /* a digit each, and what separates them */
+    promised = value_count(payload) > UINT64_MAX / 2
+                   ? UINT64_MAX
+                   : 2 * value_count(payload) - 1; /* a digit each, and what separates them */
   if (promised <= most) return HL_OK;
   return hl_fail_offset(
       error, HL_ERROR_INPUT, (int64_t)stream->offset,
@@ -80,8 +83,8 @@ static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, 
 }
 
 /* done values are read; reads so many more, through raw where that is not their place. */
-static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count, void *raw,
-                            void *place, hl_error *error) {
+static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
+                            void *raw, void *place, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
   size_t file_bytes = hl_voxel_type_bytes(type), got;
   hl_status status = hl_stream_read(stream, raw, count * file_bytes, &got, error);
@@ -119,8 +122,7 @@ static hl_status next_number(hl_stream *stream, double *value, bool *found, hl_e
   do {
     hl_status status = hl_stream_peek(stream, HL_NUMBER_CHARACTERS, &bytes, &available, error);
     if (status != HL_OK || available == 0) return status;
-    for (begin = 0; begin < available && is_separator(bytes[begin]); begin++) {
-    }
+    for (begin = 0; begin < available && is_separator(bytes[begin]); begin++) {}
     if (begin > 0) hl_stream_take(stream, begin);
   } while (begin > 0 && available - begin < HL_NUMBER_CHARACTERS);
   bytes += begin;
@@ -162,8 +164,8 @@ static void store_number(const hl_volume_description *grid, double value, size_t
 }
 
 /* The next number of a text, which is that of value number done. */
-static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index, void *voxels,
-                                 hl_error *error) {
+static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index,
+                                 void *voxels, hl_error *error) {
   double value;
   bool found;
   hl_status status = next_number(stream, &value, &found, error);
@@ -171,13 +173,13 @@ static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, u
   if (!found)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
                           "%s: %s promises %llu voxels, but only %llu numbers follow", stream->path,
-                          payload->promiser, (unsigned long long)value_count(payload), (unsigned long long)done);
+                          payload->promiser, (unsigned long long)value_count(payload),
+                          (unsigned long long)done);
   if (payload->text_is_fraction) value = floor(255 * value + 0.5);
   if (!fits_type(payload->grid.type, value))
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
                           "%s, before byte %llu: %.17g does not fit the type %s", stream->path,
-                          (unsigned long long)stream->offset, value,
-                          hl_voxel_type_name(payload->grid.type));
+                          (unsigned long long)stream->offset, value, hl_voxel_type_name(payload->grid.type));
   store_number(&payload->grid, value, index, voxels);
   return HL_OK;
 }
@@ -192,8 +194,8 @@ static hl_status read_text(hl_stream *stream, const hl_payload *payload, void *v
   return HL_OK;
 }
 
-hl_status hl_payload_stage(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count, void *stage,
-                           hl_error *error) {
+hl_status hl_payload_stage(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
+                           void *stage, hl_error *error) {
   unsigned char raw[STAGE_VOXELS * 8];
   if (!payload->text) return read_piece(stream, payload, done, count, raw, stage, error);
   hl_status status = HL_OK;
@@ -244,8 +246,8 @@ static hl_volume_description grid_of(const hl_payload *payload, const double spa
   return grid;
 }
 
-hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const double spacing[3], hl_volume **volume,
-                          hl_error *error) {
+hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const double spacing[3],
+                          hl_volume **volume, hl_error *error) {
   hl_status status = check_promise(stream, payload, error);
   if (status != HL_OK) return status;
   hl_volume_description grid = grid_of(payload, spacing);

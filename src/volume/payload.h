@@ -14,11 +14,11 @@ typedef enum hl_trailing {
 /* What a header says about its voxels. */
 typedef struct hl_payload {
   hl_volume_description grid; /* dimensions, type, origin, axis, value_scale, value_offset; nothing else */
-  size_t components; /* values of each voxel */
-  size_t block;      /* of several: voxels whose values of one component follow each other; divides the voxels */
-  int component;     /* of several: the one that is read, or HL_COMPONENT_MAGNITUDE */
+  size_t components;          /* values of each voxel */
+  size_t block;  /* of several: voxels whose values of one component follow each other; divides the voxels */
+  int component; /* of several: the one that is read, or HL_COMPONENT_MAGNITUDE */
   bool big_endian;
-  bool text; /* decimal numbers separated by white space or commas, not binary */
+  bool text;             /* decimal numbers separated by white space or commas, not binary */
   bool text_is_fraction; /* the numbers 0 to 1 of the text stand for the values 0 to 255 of u8 */
   hl_trailing trailing;
   const char *promiser; /* who states size and type, for error lines: "the header" */
@@ -31,7 +31,7 @@ uint64_t hl_payload_bytes(const hl_payload *payload);
 
 /* Checks the grid, and before any allocation whether the stream can hold so much; reads, converts and adopts
  * the voxels. Reports progress and can be cancelled. spacing: in place of the grid's, unless 0. */
-hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const double spacing[3], hl_volume **volume,
-                          hl_error *error);
+hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const double spacing[3],
+                          hl_volume **volume, hl_error *error);
 
 #endif

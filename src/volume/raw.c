@@ -110,7 +110,8 @@ static hl_status read_field(const hl_stream *stream, int line_number, const char
                               hl_text_printable(shown, value));
 }
 
-hl_status hl_load_raw_descriptor(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+hl_status hl_load_raw_descriptor(hl_stream **stream, hl_load_request *request, hl_volume **volume,
+                                 hl_error *error) {
   descriptor header = {.has_sizes = false};
   hl_payload_defaults(&header.payload);
   header.payload.promiser = "the .dat descriptor";
@@ -136,5 +137,6 @@ hl_status hl_load_raw_descriptor(hl_stream **stream, hl_load_request *request, h
   if (status == HL_OK) status = hl_component_only(request, (*stream)->path, false, &header.payload, error);
   if (status == HL_OK && hl_stream_at_most(*stream) != hl_payload_bytes(&header.payload))
     status = hl_stream_inflate_if_gzip(stream, error);
-  return status == HL_OK ? hl_payload_read(*stream, &header.payload, request->spacing, volume, error) : status;
+  return status == HL_OK ? hl_payload_read(*stream, &header.payload, request->spacing, volume, error)
+                         : status;
 }

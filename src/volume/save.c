@@ -1,7 +1,7 @@
 /* volume/save.c - a volume to a file: NRRD with gzip, or bare voxels whose name says what they are.
  *
- * Data values are what is kept. Integers of 8 and 16 bits without a scale are written as they are, everything else
- * as float; the file appears whole or not at all, and the same volume gives the same bytes.
+ * Data values are what is kept. Integers of 8 and 16 bits without a scale are written as they are, everything
+ * else as float; the file appears whole or not at all, and the same volume gives the same bytes.
  */
 #define _GNU_SOURCE
 #include <string.h>
@@ -23,8 +23,8 @@ typedef struct saving {
   hl_volume_description grid; /* type is the file's */
   hl_output output;
   bool compress;
-  unsigned char *piece;       /* owned; PIECE voxels in the file's type, native byte order */
-  unsigned char *packed;      /* owned; [OUT_BYTES] */
+  unsigned char *piece;  /* owned; PIECE voxels in the file's type, native byte order */
+  unsigned char *packed; /* owned; [OUT_BYTES] */
   z_stream stream;
 } saving;
 
@@ -89,8 +89,10 @@ static void write_header(saving *s) {
           grid->dimensions[1], grid->dimensions[2]);
   fprintf(s->output.file, "space directions:");
   for (int axis = 0; axis < 3; axis++)
-    fprintf(s->output.file, " (%.17g,%.17g,%.17g)", grid->axis[axis][0], grid->axis[axis][1], grid->axis[axis][2]);
-  fprintf(s->output.file, "\nspace origin: (%.17g,%.17g,%.17g)\n", grid->origin[0], grid->origin[1], grid->origin[2]);
+    fprintf(s->output.file, " (%.17g,%.17g,%.17g)", grid->axis[axis][0], grid->axis[axis][1],
+            grid->axis[axis][2]);
+  fprintf(s->output.file, "\nspace origin: (%.17g,%.17g,%.17g)\n", grid->origin[0], grid->origin[1],
+          grid->origin[2]);
   if (hl_voxel_type_bytes(grid->type) > 1) fprintf(s->output.file, "endian: %s\n", little ? "little" : "big");
   fprintf(s->output.file, "encoding: gzip\n\n");
 }
@@ -135,8 +137,8 @@ static hl_status check_raw_name(const saving *s, const char *path, hl_error *err
       memcmp(payload.grid.dimensions, n, sizeof payload.grid.dimensions) == 0)
     return HL_OK;
   return hl_fail(error, HL_ERROR_ARGUMENT,
-                 "%s: bare voxels are read by their name: put _%zux%zux%zu_%s before .raw, or write .nrrd", path,
-                 n[0], n[1], n[2], hl_voxel_type_name(s->grid.type));
+                 "%s: bare voxels are read by their name: put _%zux%zux%zu_%s before .raw, or write .nrrd",
+                 path, n[0], n[1], n[2], hl_voxel_type_name(s->grid.type));
 }
 
 static bool ends_in(const char *path, const char *extension) {
@@ -166,9 +168,11 @@ static hl_status save(hl_context *context, saving *s, const char *path, bool nrr
 hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path, hl_error *error) {
   if (context == NULL || volume == NULL || path == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_save: null context, volume or path");
-  bool nrrd = ends_in(path, ".nrrd"), packed = ends_in(path, ".raw.gz"), raw = packed || ends_in(path, ".raw");
+  bool nrrd = ends_in(path, ".nrrd"), packed = ends_in(path, ".raw.gz"),
+       raw = packed || ends_in(path, ".raw");
   if (!nrrd && !raw)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: volumes are written as .nrrd, .raw or .raw.gz: end the name so", path);
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "%s: volumes are written as .nrrd, .raw or .raw.gz: end the name so", path);
   saving s = {.volume = volume, .compress = nrrd || packed};
   describe(volume, &s.grid);
   hl_status status = raw ? check_raw_name(&s, path, error) : HL_OK;

@@ -12,7 +12,9 @@
 #include "volume/volume.h"
 
 enum { LANES = 8 };
-enum { PIECE = 1 << 22 }; /* voxels between two questions whether to stop: a few milliseconds; a multiple of LANES */
+enum {
+  PIECE = 1 << 22
+}; /* voxels between two questions whether to stop: a few milliseconds; a multiple of LANES */
 
 /* Stored values; low > high if no voxel is finite. */
 typedef struct tally {
@@ -70,7 +72,8 @@ static void count_u16(const uint16_t *voxels, size_t count, uint64_t *counts) {
 static bool count_values(const hl_volume *volume, size_t count, uint64_t *counts) {
   walk w = {.context = volume->context, .count = count};
   while (next_piece(&w)) {
-    if (volume->storage == HL_STORAGE_U8) count_u8((const uint8_t *)volume->voxels + w.first, w.piece, counts);
+    if (volume->storage == HL_STORAGE_U8)
+      count_u8((const uint8_t *)volume->voxels + w.first, w.piece, counts);
     else count_u16((const uint16_t *)volume->voxels + w.first, w.piece, counts);
   }
   return !w.cancelled;
@@ -125,7 +128,8 @@ static bool tally_f32(const hl_volume *volume, size_t count, tally *total) {
   size_t whole = count - count % LANES;
   walk w = {.context = volume->context, .count = whole};
   while (next_piece(&w))
-    for (size_t start = w.first; start < w.first + w.piece; start += LANES) tally_group(voxels + start, &lanes);
+    for (size_t start = w.first; start < w.first + w.piece; start += LANES)
+      tally_group(voxels + start, &lanes);
   memcpy(rest, voxels + whole, (count - whole) * sizeof *rest);
   tally_group(rest, &lanes);
   *total = (tally){INFINITY, -INFINITY, 0, 0};

@@ -14,7 +14,7 @@ typedef struct file_stream {
   hl_stream base;
   int descriptor; /* -1 until open */
   bool regular;
-  uint64_t size, position; /* of a regular file, bytes */
+  uint64_t size, position;     /* of a regular file, bytes */
   const unsigned char *memory; /* borrowed; [size]: the content, instead of a file's; else null */
 } file_stream;
 
@@ -45,12 +45,14 @@ void hl_stream_close(hl_stream *stream) {
 static hl_status file_pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count,
                            hl_error *error) {
   file_stream *file = (file_stream *)stream;
-  hl_status status = hl_file_pull(stream->context, file->descriptor, stream->path, bytes, capacity, count, error);
+  hl_status status = hl_file_pull(stream->context, file->descriptor, stream->path, bytes, capacity, count,
+                                  error);
   file->position += *count;
   return status;
 }
 
-static hl_status memory_pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error) {
+static hl_status memory_pull(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count,
+                             hl_error *error) {
   (void)error;
   file_stream *file = (file_stream *)stream;
   uint64_t left = file->size - file->position;
@@ -98,10 +100,8 @@ hl_status hl_stream_open(hl_context *context, const char *path, bool regular_onl
   file->base.at_most = file_at_most;
   file->base.close = file_close;
   hl_status status = file_begin(file, path, regular_only, error);
-  if (status == HL_OK)
-    *stream = &file->base;
-  else
-    hl_stream_close(&file->base);
+  if (status == HL_OK) *stream = &file->base;
+  else hl_stream_close(&file->base);
   return status;
 }
 
@@ -153,7 +153,8 @@ hl_status hl_stream_restart(hl_stream **stream, hl_error *error) {
   const file_stream *file = file_of(*stream);
   hl_stream *opened;
   hl_status status = file->memory != NULL
-                         ? hl_stream_open_memory((*stream)->context, (*stream)->path, file->memory, file->size, &opened, error)
+                         ? hl_stream_open_memory((*stream)->context, (*stream)->path, file->memory,
+                                                 file->size, &opened, error)
                          : hl_stream_open((*stream)->context, (*stream)->path, true, &opened, error);
   if (status != HL_OK) return status;
   hl_stream_close(*stream);

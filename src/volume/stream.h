@@ -21,9 +21,9 @@ struct hl_stream {
   hl_stream *below;      /* owned; null for a file */
   unsigned char *buffer; /* owned; HL_STREAM_BUFFER_BYTES, bytes [begin, end) are not yet read */
   size_t begin, end;
-  uint64_t offset;       /* bytes read from this stream so far */
-  bool ended;            /* nothing more to pull */
-  bool cut_short;        /* the end came in the middle of compressed or encoded data */
+  uint64_t offset; /* bytes read from this stream so far */
+  bool ended;      /* nothing more to pull */
+  bool cut_short;  /* the end came in the middle of compressed or encoded data */
   bool line_end_known, line_end_is_return;
   /* Up to capacity bytes more; *count 0 at the end. */
   hl_status (*pull)(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error);
@@ -35,8 +35,8 @@ struct hl_stream {
 /* Opens a file. regular_only: refuse pipes and devices (files that are named by another file). */
 hl_status hl_stream_open(hl_context *context, const char *path, bool regular_only, hl_stream **stream,
                          hl_error *error);
-/* The same of a file's content that is in the caller's memory, which must outlive the stream; path names it, and is where
- * files that it names are looked for. */
+/* The same of a file's content that is in the caller's memory, which must outlive the stream; path names it,
+ * and is where files that it names are looked for. */
 hl_status hl_stream_open_memory(hl_context *context, const char *path, const void *bytes, size_t byte_count,
                                 hl_stream **stream, hl_error *error);
 /* Replaces *stream by the file that its own file names (relative to its folder). */

@@ -64,8 +64,7 @@ static hl_status coded_pull(hl_stream *base, unsigned char *bytes, size_t capaci
         stream->finished = true;
         break;
       }
-      if (value == PADDING)
-        stream->padding++;
+      if (value == PADDING) stream->padding++;
       else {
         stream->bits = stream->bits << stream->digit_bits | value;
         stream->held++;

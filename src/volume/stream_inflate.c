@@ -170,10 +170,8 @@ static hl_status blocks_pull(hl_stream *base, unsigned char *bytes, size_t capac
     *count += made;
     stream->compressed_left -= consumed;
     stream->plain_left -= made;
-    if (stream->plain_left == 0)
-      status = end_block(stream, error);
-    else if (code == Z_STREAM_END || (consumed == 0 && made == 0))
-      status = fail_block(stream, error);
+    if (stream->plain_left == 0) status = end_block(stream, error);
+    else if (code == Z_STREAM_END || (consumed == 0 && made == 0)) status = fail_block(stream, error);
     if (status != HL_OK) return status;
   }
   return HL_OK;

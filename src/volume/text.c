@@ -67,10 +67,8 @@ static bool scan_decimal(const char *text, const char *end, decimal *number) {
       continue;
     }
     any = true;
-    if (number->mantissa > (UINT64_MAX - 9) / 10)
-      number->long_form = true;
-    else
-      number->mantissa = 10 * number->mantissa + (uint64_t)(*text - '0');
+    if (number->mantissa > (UINT64_MAX - 9) / 10) number->long_form = true;
+    else number->mantissa = 10 * number->mantissa + (uint64_t)(*text - '0');
     if (point) number->exponent--;
   }
   if (!any) return false;
@@ -87,12 +85,10 @@ static bool scan_special(const char *text, size_t length, double *value) {
   }
   if (length == 0 || length >= sizeof word) return false;
   memcpy(word, text, length);
-  if (hl_text_equal(word, "nan"))
-    *value = NAN;
+  if (hl_text_equal(word, "nan")) *value = NAN;
   else if (hl_text_equal(word, "inf") || hl_text_equal(word, "infinity"))
     *value = negative ? -INFINITY : INFINITY;
-  else
-    return false;
+  else return false;
   return true;
 }
 

@@ -59,10 +59,12 @@ static hl_status check_step(const double axis[3], int number, const char *subjec
   bool finite = isfinite(axis[0]) && isfinite(axis[1]) && isfinite(axis[2]);
   if (finite && greatest >= SHORTEST_STEP && greatest <= LONGEST_STEP) return HL_OK;
   if (!finite || !(greatest > 0))
-    return hl_fail(error, HL_ERROR_INPUT,
-                   "%s: the spacing along axis %d is %g: give a finite number above 0, or a direction that is not zero", subject,
-                   number, finite ? greatest : vec3_length(vec3_of(axis)));
-  return hl_fail(error, HL_ERROR_INPUT, "%s: the spacing along axis %d is %g, and can be from %g to %g: use another unit of length",
+    return hl_fail(
+        error, HL_ERROR_INPUT,
+        "%s: the spacing along axis %d is %g: give a finite number above 0, or a direction that is not zero",
+        subject, number, finite ? greatest : vec3_length(vec3_of(axis)));
+  return hl_fail(error, HL_ERROR_INPUT,
+                 "%s: the spacing along axis %d is %g, and can be from %g to %g: use another unit of length",
                  subject, number, greatest, SHORTEST_STEP, LONGEST_STEP);
 }
 
@@ -74,14 +76,17 @@ static hl_status check_place(const hl_volume_description *description, const cha
   }
   const double *origin = description->origin;
   if (!isfinite(origin[0]) || !isfinite(origin[1]) || !isfinite(origin[2]))
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the origin has coordinates that are not finite: correct it", subject);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the origin has coordinates that are not finite: correct it",
+                   subject);
   if (greatest_part(origin) > LONGEST_STEP)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the origin is %g away, and can be as far as %g: use another unit of length", subject,
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: the origin is %g away, and can be as far as %g: use another unit of length", subject,
                    greatest_part(origin), LONGEST_STEP);
   bool possible = affine3_invert(place, &inverse) && isfinite(vec3_length(inverse.offset));
   for (int axis = 0; axis < 3; axis++) possible = possible && isfinite(vec3_length(inverse.linear.row[axis]));
   if (!possible)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the three axes lie in one plane: correct its directions", subject);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the three axes lie in one plane: correct its directions",
+                   subject);
   return HL_OK;
 }
 
@@ -112,18 +117,16 @@ static hl_volume *make_volume(hl_context *context, const hl_volume_description *
   volume->space = description->space;
   volume->storage = hl_voxel_type_storage(description->type);
   volume->value_scale = description->value_scale;
-  volume->value_offset =
-      description->value_offset - description->value_scale * hl_voxel_type_bias(description->type);
+  volume->value_offset = description->value_offset -
+                         description->value_scale * hl_voxel_type_bias(description->type);
   volume->index_to_world = index_to_world(description);
   return volume;
 }
 
 static hl_status finish_volume(hl_volume *made, const char *subject, hl_volume **volume, hl_error *error) {
   hl_status status = hl_volume_measure(made, subject, error);
-  if (status == HL_OK)
-    *volume = made;
-  else
-    hl_volume_release(made);
+  if (status == HL_OK) *volume = made;
+  else hl_volume_release(made);
   return status;
 }
 
@@ -167,8 +170,8 @@ static void copy_voxels(const hl_volume_description *description, const ptrdiff_
   size_t row_bytes = dimension[0] * hl_storage_bytes(hl_voxel_type_storage(description->type));
   for (size_t k = 0; k < dimension[2]; k++)
     for (size_t j = 0; j < dimension[1]; j++) {
-      const unsigned char *source =
-          (const unsigned char *)description->voxels + (ptrdiff_t)j * stride[1] + (ptrdiff_t)k * stride[2];
+      const unsigned char *source = (const unsigned char *)description->voxels + (ptrdiff_t)j * stride[1] +
+                                    (ptrdiff_t)k * stride[2];
       if (stride[0] != (ptrdiff_t)voxel_bytes) {
         gather_row(source, stride[0], voxel_bytes, dimension[0], row);
         source = row;
@@ -220,8 +223,8 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
     return finish_volume(made, subject, volume, error);
   }
   size_t count = hl_volume_voxel_count(made), voxel_bytes = hl_storage_bytes(made->storage);
-  unsigned char *row =
-      hl_allocate(context, description->dimensions[0], hl_voxel_type_bytes(description->type));
+  unsigned char *row = hl_allocate(context, description->dimensions[0],
+                                   hl_voxel_type_bytes(description->type));
   made->voxels = made->owned_voxels = hl_allocate(context, count, voxel_bytes);
   if (row == NULL || made->voxels == NULL) {
     hl_release(context, row);
@@ -274,7 +277,12 @@ hl_status hl_volume_get_array(const hl_volume *volume, size_t index, hl_volume_a
     return HL_ERROR_ARGUMENT;
   const hl_array_entry *entry = &volume->arrays[index];
   bool chosen = index == volume->chosen_array;
-  *array = (hl_volume_array){sizeof *array, entry->name, entry->components, entry->type, entry->of_cells, chosen,
+  *array = (hl_volume_array){sizeof *array,
+                             entry->name,
+                             entry->components,
+                             entry->type,
+                             entry->of_cells,
+                             chosen,
                              chosen ? volume->component : HL_COMPONENT_DEFAULT};
   return HL_OK;
 }

@@ -17,7 +17,7 @@ typedef enum hl_storage { HL_STORAGE_U8 = 0, HL_STORAGE_U16 = 1, HL_STORAGE_F32 
 
 /* An array of the file that a volume was loaded from. */
 typedef struct hl_array_entry {
-  char *name;         /* owned */
+  char *name; /* owned */
   size_t components;
   hl_voxel_type type; /* 0: values that are not read */
   bool of_cells;
@@ -26,22 +26,22 @@ typedef struct hl_array_entry {
 struct hl_volume {
   hl_context *context;
   atomic_int references;
-  size_t dimension[3];       /* i, j, k */
+  size_t dimension[3]; /* i, j, k */
   hl_storage storage;
-  const void *voxels;        /* [k][j][i]; stored values; owned unless borrowed */
-  void *owned_voxels;        /* what hl_release gets; null if borrowed */
-  double value_scale;        /* data value = value_scale * stored + value_offset */
+  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed */
+  void *owned_voxels; /* what hl_release gets; null if borrowed */
+  double value_scale; /* data value = value_scale * stored + value_offset */
   double value_offset;
-  affine3 index_to_world;    /* voxel centres at integer indices */
-  hl_voxel_type type;        /* as in the file */
+  affine3 index_to_world; /* voxel centres at integer indices */
+  hl_voxel_type type;     /* as in the file */
   hl_space space;
-  double minimum, maximum;   /* data values over finite voxels */
+  double minimum, maximum; /* data values over finite voxels */
   double mean;
   uint64_t nonfinite_count;
   uint64_t histogram[HL_HISTOGRAM_BINS];
-  hl_array_entry *arrays;    /* owned; [array_count]; null unless loaded */
+  hl_array_entry *arrays; /* owned; [array_count]; null unless loaded */
   size_t array_count, chosen_array;
-  int component;             /* that was read, or HL_COMPONENT_MAGNITUDE */
+  int component; /* that was read, or HL_COMPONENT_MAGNITUDE */
 };
 
 static inline size_t hl_storage_bytes(hl_storage storage) {
@@ -55,8 +55,8 @@ size_t hl_voxel_type_bytes(hl_voxel_type type); /* 0 if there is no such type */
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
  * hl_allocate that the volume takes over, also on failure. description gives the grid, the type in the
  * file, and value_scale and value_offset of that type's own values; subject starts the error lines. */
-hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description,
-                          const char *subject, void *voxels, hl_volume **volume, hl_error *error);
+hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
+                          void *voxels, hl_volume **volume, hl_error *error);
 
 /* Fails unless the grid is possible: type, dimensions, their product in bytes, axes, scale and offset. */
 hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,

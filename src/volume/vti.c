@@ -1,8 +1,8 @@
 /* volume/vti.c - VTK XML image data (.vti): ascii, base64 and appended arrays, plain or in zlib blocks.
  *
- * A first pass over the tags lists the arrays. Of those that nobody named, the active scalars are the volume, else the
- * first of one component, of the points, else of the cells. A second pass goes to the values. World: Origin + Direction * (Spacing * index),
- * where indices count from the extent's start.
+ * A first pass over the tags lists the arrays. Of those that nobody named, the active scalars are the volume,
+ * else the first of one component, of the points, else of the cells. A second pass goes to the values. World:
+ * Origin + Direction * (Spacing * index), where indices count from the extent's start.
  */
 #include <math.h>
 #include <string.h>
@@ -30,13 +30,13 @@ typedef struct vti_header {
   double extent[6];    /* first and last point index along x, y, z */
   double origin[3], spacing[3], direction[9];
   bool has_extent, has_piece;
-  bool is_whole;       /* its last tag was seen, or the appended data */
+  bool is_whole; /* its last tag was seen, or the appended data */
   section section;
-  char active[NAME_BYTES]; /* name of the section's active scalars */
-  vti_array *arrays;       /* owned; [HL_ARRAYS_MOST]; null before the first */
+  char active[NAME_BYTES];         /* name of the section's active scalars */
+  vti_array *arrays;               /* owned; [HL_ARRAYS_MOST]; null before the first */
   int active_points, active_cells; /* index of the active scalars; -1: none */
-  hl_load_request *request; /* lists the same arrays */
-  uint64_t appended;       /* offset in the file of the appended data's first byte; 0: none */
+  hl_load_request *request;        /* lists the same arrays */
+  uint64_t appended;               /* offset in the file of the appended data's first byte; 0: none */
   bool appended_is_base64;
 } vti_header;
 
@@ -127,7 +127,8 @@ static bool find_type(const char *name, hl_voxel_type *type) {
 }
 
 /* Where an array's values are and how they are written. */
-static hl_status read_array_place(const vti_header *header, const hl_xml_tag *tag, vti_array *array, hl_error *error) {
+static hl_status read_array_place(const vti_header *header, const hl_xml_tag *tag, vti_array *array,
+                                  hl_error *error) {
   const char *type = hl_xml_attribute(tag, "type"), *format = hl_xml_attribute(tag, "format");
   const char *offset = hl_xml_attribute(tag, "offset");
   size_t appended = 0;
@@ -142,7 +143,8 @@ static hl_status read_array_place(const vti_header *header, const hl_xml_tag *ta
     return refuse(header, HL_ERROR_INPUT, "a DataArray's format", format, error);
   if (array->format != FORMAT_APPENDED) return HL_OK;
   if (offset == NULL || hl_text_sizes(offset, &appended, 1) != 1)
-    return refuse(header, HL_ERROR_INPUT, "an appended DataArray's offset", offset == NULL ? "" : offset, error);
+    return refuse(header, HL_ERROR_INPUT, "an appended DataArray's offset", offset == NULL ? "" : offset,
+                  error);
   array->place = appended;
   return HL_OK;
 }
@@ -163,11 +165,13 @@ static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_er
   if (status != HL_OK || header->request->array_count == index) return status;
   if (header->arrays == NULL) {
     header->arrays = hl_allocate(header->request->context, HL_ARRAYS_MOST, sizeof *header->arrays);
-    if (header->arrays == NULL) return hl_fail_memory(error, HL_ARRAYS_MOST * sizeof array, header->stream->path);
+    if (header->arrays == NULL)
+      return hl_fail_memory(error, HL_ARRAYS_MOST * sizeof array, header->stream->path);
   }
   header->arrays[index] = array;
   int *active = cells ? &header->active_cells : &header->active_points;
-  if (header->active[0] != 0 && name != NULL && strcmp(name, header->active) == 0 && *active < 0) *active = (int)index;
+  if (header->active[0] != 0 && name != NULL && strcmp(name, header->active) == 0 && *active < 0)
+    *active = (int)index;
   return HL_OK;
 }
 
@@ -281,8 +285,8 @@ static hl_status read_length(hl_stream *stream, const vti_header *header, uint64
 static hl_status decode_array(hl_stream **stream, const vti_header *header, const vti_array *array,
                               const hl_payload *payload, hl_error *error) {
   hl_status status = HL_OK;
-  bool is_base64 =
-      array->format == FORMAT_BINARY || (array->format == FORMAT_APPENDED && header->appended_is_base64);
+  bool is_base64 = array->format == FORMAT_BINARY ||
+                   (array->format == FORMAT_APPENDED && header->appended_is_base64);
   if (array->format == FORMAT_ASCII) return HL_OK;
   if (is_base64) status = hl_stream_push_base64(stream, error);
   uint64_t promised = hl_payload_bytes(payload);
@@ -306,7 +310,8 @@ static hl_status choose_array(const vti_header *header, hl_error *error) {
     const hl_array_entry *chosen = &header->request->arrays[header->request->chosen];
     bool is_last_resort = header->request->array == NULL && (chosen->of_cells || chosen->components > 1);
     if (status == HL_OK && is_last_resort && !header->is_whole && header->appended == 0)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: the file is cut short: it ends before </VTKFile>", header->stream->path);
+      return hl_fail(error, HL_ERROR_INPUT, "%s: the file is cut short: it ends before </VTKFile>",
+                     header->stream->path);
     return status;
   }
   return hl_fail(error, HL_ERROR_INPUT, "%s: the file has no %s", header->stream->path,
@@ -314,7 +319,8 @@ static hl_status choose_array(const vti_header *header, hl_error *error) {
 }
 
 /* Goes to the chosen array and makes the volume of it. */
-static hl_status read_array(hl_stream **stream, const vti_header *header, hl_volume **volume, hl_error *error) {
+static hl_status read_array(hl_stream **stream, const vti_header *header, hl_volume **volume,
+                            hl_error *error) {
   hl_load_request *request = header->request;
   const vti_array *array = &header->arrays[request->chosen];
   const hl_array_entry *entry = &request->arrays[request->chosen];
@@ -336,8 +342,12 @@ static hl_status read_array(hl_stream **stream, const vti_header *header, hl_vol
 }
 
 hl_status hl_load_vti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
-  vti_header header = {.stream = *stream, .spacing = {1, 1, 1}, .direction = {1, 0, 0, 0, 1, 0, 0, 0, 1},
-                       .active_points = -1, .active_cells = -1, .request = request};
+  vti_header header = {.stream = *stream,
+                       .spacing = {1, 1, 1},
+                       .direction = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                       .active_points = -1,
+                       .active_cells = -1,
+                       .request = request};
   hl_status status = read_tags(&header, error);
   if (status == HL_OK) status = choose_array(&header, error);
   if (status == HL_OK) status = read_array(stream, &header, volume, error);

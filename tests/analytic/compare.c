@@ -94,8 +94,8 @@ static int compare_one(stage *set, const scenario *scene, const shadow_setting *
   keep(set->context, chosen, scene->name, setting->name, "reference", reference);
   keep(set->context, chosen, scene->name, setting->name, "renderer", rendered);
   hl_image_destroy(rendered);
-  int barred =
-      setting->shadows != HL_SHADOWS_SOFT && scene->bar > 0 && chosen->spacing <= 0.5 && chosen->size >= 64;
+  int barred = setting->shadows != HL_SHADOWS_SOFT && scene->bar > 0 && chosen->spacing <= 0.5 &&
+               chosen->size >= 64;
   return !barred || difference.rmse <= scene->bar;
 }
 
@@ -136,18 +136,12 @@ static int read_choices(int argc, char **argv, choices *chosen) {
       continue;
     }
     if (value == NULL) return 0;
-    if (strcmp(argv[i], "--size") == 0)
-      chosen->size = atoi(value);
-    else if (strcmp(argv[i], "--spacing") == 0)
-      chosen->spacing = atof(value);
-    else if (strcmp(argv[i], "--only") == 0)
-      chosen->only = value;
-    else if (strcmp(argv[i], "--points") == 0)
-      chosen->light_points = atoi(value);
-    else if (strcmp(argv[i], "--write") == 0)
-      chosen->folder = value;
-    else
-      return 0;
+    if (strcmp(argv[i], "--size") == 0) chosen->size = atoi(value);
+    else if (strcmp(argv[i], "--spacing") == 0) chosen->spacing = atof(value);
+    else if (strcmp(argv[i], "--only") == 0) chosen->only = value;
+    else if (strcmp(argv[i], "--points") == 0) chosen->light_points = atoi(value);
+    else if (strcmp(argv[i], "--write") == 0) chosen->folder = value;
+    else return 0;
     i++;
   }
   return 1;

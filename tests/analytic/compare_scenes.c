@@ -59,9 +59,9 @@ static hl_scene_volume *add_field(stage *set, field_function *field, const size_
   for (size_t k = 0; k < n[2]; k++)
     for (size_t j = 0; j < n[1]; j++)
       for (size_t i = 0; i < n[0]; i++)
-        *out++ =
-            (float)field((2.0 * (double)i + 1) / (double)n[0] - 1, (2.0 * (double)j + 1) / (double)n[1] - 1,
-                         (2.0 * (double)k + 1) / (double)n[2] - 1);
+        *out++ = (float)field((2.0 * (double)i + 1) / (double)n[0] - 1,
+                              (2.0 * (double)j + 1) / (double)n[1] - 1,
+                              (2.0 * (double)k + 1) / (double)n[2] - 1);
   vec3 corner = {-0.5 * (double)n[0] * spacing[0], -0.5 * (double)n[1] * spacing[1],
                  -0.5 * (double)n[2] * spacing[2]};
   hl_scene_volume *volume = stage_add_grid(set, n, spacing, corner, voxels);
@@ -307,25 +307,29 @@ static const float *slide(void) {
   static float pixels[12 * 9 * 3];
   for (int y = 0; y < 9; y++)
     for (int x = 0; x < 12; x++)
-      for (int c = 0; c < 3; c++) pixels[3 * (12 * y + x) + c] = 1.4f * stage_noise(0.9 * x + c, 0.7 * y, 3 * c) * (float)((x + y) % 3 != 0);
+      for (int c = 0; c < 3; c++)
+        pixels[3 * (12 * y + x) + c] = 1.4f * stage_noise(0.9 * x + c, 0.7 * y, 3 * c) *
+                                       (float)((x + y) % 3 != 0);
   return pixels;
 }
 static void make_slide(stage *set) { /* parallel light, screen aslant */
   make_balls(set);
   set->volumes[0].shading = HL_SHADING_NONE;
-  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){12, -9, 30}, (vec3){14, 3, 4}, (vec3){-4, 15, -2});
+  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){12, -9, 30}, (vec3){14, 3, 4},
+                    (vec3){-4, 15, -2});
 }
 static void make_projector(stage *set) { /* a point light through a skewed screen at its side of the volume */
   make_balls_medium(set);
   set->scene.light_count = 0;
-  stage_set_texture(stage_add_point(set, (vec3){17, -8, 32}), 12, 9, slide(), (vec3){10, -6, 20}, (vec3){6, 2, 0},
-                    (vec3){-2, 4, 2});
+  stage_set_texture(stage_add_point(set, (vec3){17, -8, 32}), 12, 9, slide(), (vec3){10, -6, 20},
+                    (vec3){6, 2, 0}, (vec3){-2, 4, 2});
 }
 static void make_projector_behind(stage *set) { /* the screen on the far side; inverse square */
   make_projector(set);
   set->lights[0].falloff = HL_FALLOFF_INVERSE_SQUARE;
   set->lights[0].intensity = 1000;
-  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){-14, 8, -30}, (vec3){20, 3, -10}, (vec3){2, 20, 4});
+  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){-14, 8, -30}, (vec3){20, 3, -10},
+                    (vec3){2, 20, 4});
 }
 static void make_projector_soft(stage *set) {
   make_projector(set);
@@ -339,7 +343,8 @@ static void make_window_in_haze(stage *set) { /* beams towards the eye through a
   make_smoke_backlit(set);
   set->volumes[0].attenuation_color[0] = set->volumes[0].attenuation_color[1] = 1;
   set->volumes[0].receives_shadow = 0;
-  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){-40, 50, -30}, (vec3){10, 8, 0}, (vec3){0, -2, 12});
+  stage_set_texture(&set->lights[0], 12, 9, slide(), (vec3){-40, 50, -30}, (vec3){10, 8, 0},
+                    (vec3){0, -2, 12});
 }
 
 static void make_spot(stage *set) {
@@ -359,9 +364,9 @@ static void make_spot_in_smoke(stage *set) { /* a sharp cone across the view; wi
   stage_set_texture(light, 12, 9, slide(), (vec3){-15, -8, 6}, (vec3){3, -3, 0}, (vec3){1, 0, 3});
 }
 
-/* A step of opacity on a wall lit at a grazing angle wants shadow pixels well below a voxel (half a voxel is what there
- * is); the borders of holes lie half way between empty and the least value in the reference, nearer to the least in the
- * sheets. */
+/* A step of opacity on a wall lit at a grazing angle wants shadow pixels well below a voxel (half a voxel is
+ * what there is); the borders of holes lie half way between empty and the least value in the reference,
+ * nearer to the least in the sheets. */
 static const scenario SCENARIOS[] = {
     {"balls", make_balls, 0.006},
     {"balls-medium", make_balls_medium, 0.006},

@@ -1,7 +1,8 @@
-/* analytic/even_light.c - where nothing casts a shadow light draws nothing: floors and balls alone are as smooth as their light.
+/* analytic/even_light.c - where nothing casts a shadow light draws nothing: floors and balls alone are as
+ * smooth as their light.
  *
- * What an eye sees first are lines. A line is what differs from its surroundings: each pixel is held against the mean of the square
- * of pixels around it, whose own bend is far below the bars. */
+ * What an eye sees first are lines. A line is what differs from its surroundings: each pixel is held against
+ * the mean of the square of pixels around it, whose own bend is far below the bars. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,13 +20,18 @@ static float pixels[SIDE * SIDE * 4];
 
 /* A floor that fills the middle of the picture, or a ball. */
 #define FLOOR "{\"shapes\": [{\"type\": \"box\", \"size\": [420, 420, 12]}], \"voxel_size\": 2, " MATERIAL "}"
-#define BALL "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 45}], \"voxel_size\": 1, " MATERIAL "}"
-#define MATERIAL "\"transfer_function\": {\"color\": [1, 1, 1]}, \"material\": {\"ambient\": 0, \"diffuse\": 1, \"specular\": 0}"
+#define BALL  "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 45}], \"voxel_size\": 1, " MATERIAL "}"
+#define MATERIAL                                                                                   \
+  "\"transfer_function\": {\"color\": [1, 1, 1]}, \"material\": {\"ambient\": 0, \"diffuse\": 1, " \
+  "\"specular\": 0}"
 
 static void render(const char *volume, const char *light, const char *camera, const char *settings) {
   char text[2000];
-  snprintf(text, sizeof text, "{\"halflight\": 1, \"image\": {\"width\": %d, \"height\": %d}, \"ambient\": [0, 0, 0], \"camera\": {%s}, "
-           "\"lights\": [{%s}], \"volumes\": [%s], \"render\": {%s}}", SIDE, SIDE, camera, light, volume, settings);
+  snprintf(text, sizeof text,
+           "{\"halflight\": 1, \"image\": {\"width\": %d, \"height\": %d}, \"ambient\": [0, 0, 0], "
+           "\"camera\": {%s}, "
+           "\"lights\": [{%s}], \"volumes\": [%s], \"render\": {%s}}",
+           SIDE, SIDE, camera, light, volume, settings);
   hl_context *context = NULL;
   hl_scene *scene = NULL;
   hl_renderer *renderer = NULL;
@@ -60,8 +66,8 @@ static int greater_first(const void *a, const void *b) {
   return (x < y) - (x > y);
 }
 
-/* How far a pixel differs from its surroundings, in parts of the brightest surroundings' half or of its own, whichever is more: one
- * in a thousand differs by more. */
+/* How far a pixel differs from its surroundings, in parts of the brightest surroundings' half or of its own,
+ * whichever is more: one in a thousand differs by more. */
 static double ripple(void) {
   static double differences[SIDE * SIDE], means[SIDE * SIDE];
   size_t count = 0;
@@ -83,21 +89,26 @@ static double ripple(void) {
 static void assert_even(const char *what, double bar) {
   double greatest = ripple();
   if (getenv("HALFLIGHT_SHOW") != NULL) printf("# %s: %.4f\n", what, greatest);
-  if (!(greatest <= bar)) fail_msg("%s: one pixel in a thousand differs by more than %.4f of its surroundings", what, greatest);
+  if (!(greatest <= bar))
+    fail_msg("%s: one pixel in a thousand differs by more than %.4f of its surroundings", what, greatest);
 }
 
-static const char *const CAMERA = "\"position\": [300, -420, 500], \"target\": [0, 0, 0], \"up\": [0, 0, 1], \"fovy_deg\": 22";
+static const char *const CAMERA =
+    "\"position\": [300, -420, 500], \"target\": [0, 0, 0], \"up\": [0, 0, 1], \"fovy_deg\": 22";
 
-/* Thirty directions of light, or some of them, 25 to 85 degrees above the floor, the whole light at least 10. */
+/* Thirty directions of light, or some of them, 25 to 85 degrees above the floor, the whole light at least
+ * 10. */
 static void test_floors_under_directional_light(void **state) {
   const char *const *method = *state;
   for (int i = 0; i < 30; i += atoi(method[5])) {
     double elevation = (25 + 2 * i) * 3.14159265358979 / 180, azimuth = 2.4 * i;
     double size = i % 3 == 0 ? 5 : i % 3 == 1 ? 15 : 30;
     char light[200], settings[200], what[100];
-    snprintf(light, sizeof light, "\"type\": \"directional\", \"direction\": [%.6f, %.6f, %.6f], \"angular_diameter_deg\": %g",
+    snprintf(light, sizeof light,
+             "\"type\": \"directional\", \"direction\": [%.6f, %.6f, %.6f], \"angular_diameter_deg\": %g",
              -cos(elevation) * cos(azimuth), -cos(elevation) * sin(azimuth), -sin(elevation), size);
-    snprintf(settings, sizeof settings, "%s, \"sheet_spacing\": %g, \"threads\": 2", method[0], i % 2 ? 1.0 : 0.5);
+    snprintf(settings, sizeof settings, "%s, \"sheet_spacing\": %g, \"threads\": 2", method[0],
+             i % 2 ? 1.0 : 0.5);
     snprintf(what, sizeof what, "%s, light %d", method[1], i);
     render(FLOOR, light, CAMERA, settings);
     assert_even(what, atof(method[2]));
@@ -114,7 +125,8 @@ static void test_floors_under_near_lights(void **state) {
   const char *const *method = *state;
   for (size_t i = 0; i < 2 * sizeof lights / sizeof lights[0]; i++) {
     char settings[200], what[100];
-    snprintf(settings, sizeof settings, "%s, \"sheet_spacing\": %g, \"threads\": 2", method[0], i % 2 ? 1.0 : 0.5);
+    snprintf(settings, sizeof settings, "%s, \"sheet_spacing\": %g, \"threads\": 2", method[0],
+             i % 2 ? 1.0 : 0.5);
     snprintf(what, sizeof what, "%s, light %zu, spacing %g", method[1], i / 2, i % 2 ? 1.0 : 0.5);
     render(FLOOR, lights[i / 2], CAMERA, settings);
     assert_even(what, atof(method[3]));
@@ -127,19 +139,32 @@ static void test_balls(void **state) {
   const char *const *method = *state;
   for (size_t i = 0; i < 2 * sizeof sizes / sizeof sizes[0]; i++) {
     char light[200], settings[200], what[100];
-    snprintf(light, sizeof light, "\"type\": \"directional\", \"direction\": [-0.5, 0.55, -0.5], \"angular_diameter_deg\": %g", sizes[i / 2]);
-    snprintf(settings, sizeof settings, "%s, \"sheet_spacing\": %g, \"threads\": 2", method[0], i % 2 ? 1.0 : 0.5);
-    snprintf(what, sizeof what, "%s, a ball under %g degrees, spacing %g", method[1], sizes[i / 2], i % 2 ? 1.0 : 0.5);
-    render(BALL, light, "\"position\": [90, -160, 90], \"target\": [0, 0, 0], \"up\": [0, 0, 1], \"fovy_deg\": 20", settings);
+    snprintf(light, sizeof light,
+             "\"type\": \"directional\", \"direction\": [-0.5, 0.55, -0.5], \"angular_diameter_deg\": %g",
+             sizes[i / 2]);
+    snprintf(settings, sizeof settings, "%s, \"sheet_spacing\": %g, \"threads\": 2", method[0],
+             i % 2 ? 1.0 : 0.5);
+    snprintf(what, sizeof what, "%s, a ball under %g degrees, spacing %g", method[1], sizes[i / 2],
+             i % 2 ? 1.0 : 0.5);
+    render(BALL, light,
+           "\"position\": [90, -160, 90], \"target\": [0, 0, 0], \"up\": [0, 0, 1], \"fovy_deg\": 20",
+           settings);
     assert_even(what, atof(method[4]));
   }
 }
 
-/* Settings, name, the bars for floors far and near and for balls, and steps from one direction to the next. */
+/* Settings, name, the bars for floors far and near and for balls, and steps from one direction to the
+ * next. */
 static const char *hard[] = {"\"shadows\": \"hard\"", "hard", "0.005", "0.005", "0.007", "1"};
 static const char *cascade[] = {"\"soft_method\": \"cascade\"", "cascade", "0.005", "0.005", "0.007", "1"};
-static const char *coarse[] = {"\"soft_method\": \"cascade\", \"shadow_resolution\": 300", "cascade, coarse", "0.005", "0.007", "0.007", "3"};
-static const char *sublights[] = {"\"soft_method\": \"sublights\"", "sub-lights", "0.085", "0.04", "0.02", "3"};
+static const char *coarse[] = {"\"soft_method\": \"cascade\", \"shadow_resolution\": 300",
+                               "cascade, coarse",
+                               "0.005",
+                               "0.007",
+                               "0.007",
+                               "3"};
+static const char *sublights[] = {
+    "\"soft_method\": \"sublights\"", "sub-lights", "0.085", "0.04", "0.02", "3"};
 
 int main(void) {
   const struct CMUnitTest tests[] = {

@@ -1,5 +1,6 @@
-/* analytic/example_lights.c - the example scenes of projected images and beams, against closed forms. Each is read from
- * examples/ with the volumes that the measurement is about, without ambient light, seen as the measurement wants. */
+/* analytic/example_lights.c - the example scenes of projected images and beams, against closed forms. Each is
+ * read from examples/ with the volumes that the measurement is about, without ambient light, seen as the
+ * measurement wants. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -69,8 +70,12 @@ static void close_example(example *open) {
 static void look_along(example *open, vec3 direction, vec3 target, double height) {
   hl_camera *camera = &open->scene.camera;
   vec3 eye = vec3_subtract(target, vec3_scale(vec3_normalise(direction), 900));
-  *camera = (hl_camera){.type = HL_CAMERA_ORTHOGRAPHIC, .position = {eye.x, eye.y, eye.z},
-                        .target = {target.x, target.y, target.z}, .up = {0, 0, 1}, .height = height, .fovy_deg = 30};
+  *camera = (hl_camera){.type = HL_CAMERA_ORTHOGRAPHIC,
+                        .position = {eye.x, eye.y, eye.z},
+                        .target = {target.x, target.y, target.z},
+                        .up = {0, 0, 1},
+                        .height = height,
+                        .fovy_deg = 30};
   if (fabs(vec3_normalise(direction).z) > 0.9) camera->up[1] = 1, camera->up[2] = 0;
 }
 
@@ -97,7 +102,8 @@ static vec3 camera_axes(const hl_camera *camera, vec3 *right, vec3 *up) {
 /* Continuous pixel coordinates of a point: pixel i covers i to i + 1. */
 static void project(const example *open, vec3 point, double uv[2]) {
   const hl_camera *camera = &open->scene.camera;
-  vec3 right, up, forward = camera_axes(camera, &right, &up), offset = vec3_subtract(point, vec3_of(camera->position));
+  vec3 right, up, forward = camera_axes(camera, &right, &up),
+                  offset = vec3_subtract(point, vec3_of(camera->position));
   double scale = open->scene.height / camera->height;
   if (camera->type == HL_CAMERA_PERSPECTIVE)
     scale = open->scene.height / (2 * tan(camera->fovy_deg * HL_PI / 360) * vec3_dot(offset, forward));
@@ -110,7 +116,8 @@ static double brightness(const example *open, double u, double v, int channel) {
   int x = (int)floor(u - 0.5), y = (int)floor(v - 0.5), width = open->scene.width;
   double fx = u - 0.5 - x, fy = v - 0.5 - y;
   const float *a = &open->pixels[4 * (y * width + x) + channel], *b = a + 4 * width;
-  return (1 - fy) * ((1 - fx) * (double)a[0] + fx * (double)a[4]) + fy * ((1 - fx) * (double)b[0] + fx * (double)b[4]);
+  return (1 - fy) * ((1 - fx) * (double)a[0] + fx * (double)a[4]) +
+         fy * ((1 - fx) * (double)b[0] + fx * (double)b[4]);
 }
 
 static double brightness_at(const example *open, vec3 point, int channel) {
@@ -121,7 +128,8 @@ static double brightness_at(const example *open, vec3 point, int channel) {
 
 /* ---- beams through boxes (figs. 12 and 13) ---- */
 
-/* Between two points of a beam's axis, well inside the medium: without attenuation as bright, with it exp(-sigma way). */
+/* Between two points of a beam's axis, well inside the medium: without attenuation as bright, with it
+ * exp(-sigma way). */
 static void check_beam(example *open, vec3 entry, vec3 exit, int channel, double opacity) {
   double way = vec3_length(vec3_subtract(exit, entry)), sigma = -log(1 - opacity);
   for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
@@ -132,7 +140,8 @@ static void check_beam(example *open, vec3 entry, vec3 exit, int channel, double
     assert_true(first > 0.1);
     assert_near(last / first, expected, 0.01 * expected);
     for (int c = 0; c < 3; c++)
-      if (open->lights[0].texture.width == 96 && c != channel) assert_near(brightness_at(open, entry, c), 0, 1e-4);
+      if (open->lights[0].texture.width == 96 && c != channel)
+        assert_near(brightness_at(open, entry, c), 0, 1e-4);
   }
 }
 
@@ -147,7 +156,8 @@ static void test_cube_beams(void **state) {
     vec3 middle = vec3_scale(across, 36.0 * (1 - beam));
     double half = 36;
     if (beam != 1) middle = vec3_add(middle, vec3_scale(light, beam == 0 ? 10 : -10)), half = 20;
-    check_beam(open, vec3_add(middle, vec3_scale(light, -half)), vec3_add(middle, vec3_scale(light, half)), beam, 0.012);
+    check_beam(open, vec3_add(middle, vec3_scale(light, -half)), vec3_add(middle, vec3_scale(light, half)),
+               beam, 0.012);
     close_example(open);
   }
 }
@@ -160,14 +170,16 @@ static void test_slanted_parallelepiped(void **state) {
   double faces = 40 / cos(35 * HL_PI / 180); /* the beam enters and leaves there */
   for (int line = -1; line <= 1; line++) {
     double shift = 10 * line * tan(35 * HL_PI / 180);
-    check_beam(open, (vec3){-faces + shift + 6, 0, 10.0 * line}, (vec3){faces + shift - 6, 0, 10.0 * line}, 0, 0.025);
+    check_beam(open, (vec3){-faces + shift + 6, 0, 10.0 * line}, (vec3){faces + shift - 6, 0, 10.0 * line}, 0,
+               0.025);
   }
   close_example(open);
 }
 
 /* ---- the grid (fig. 11) ---- */
 
-/* On a plane through the data: walks where one family of lines is half way between two others and counts the rest. */
+/* On a plane through the data: walks where one family of lines is half way between two others and counts the
+ * rest. */
 static void test_grid_period(void **state) {
   (void)state;
   enum { STEPS = 4000 };
@@ -189,7 +201,8 @@ static void test_grid_period(void **state) {
   plane.transfer_function = (hl_transfer_function){0.01, &opacity, 1, &white, 1};
   plane.shading = HL_SHADING_NONE;
   plane.casts_shadow = 0;
-  if (hl_volume_create(open->context, &description, &plane.volume, &error) != HL_OK) fail_msg("%s", error.message);
+  if (hl_volume_create(open->context, &description, &plane.volume, &error) != HL_OK)
+    fail_msg("%s", error.message);
   open->scene.volumes = &plane;
   look_along(open, (vec3){0, 0, -1}, (vec3){31.5, 31.5, 31.5}, 70);
   render(open, MOST_SIDE);
@@ -198,7 +211,8 @@ static void test_grid_period(void **state) {
   vec3 way = vec3_normalise(vec3_of(open->lights[0].direction)), normal = vec3_cross(right, up);
   for (int family = 0; family < 2; family++) {
     vec3 along = family == 0 ? right : up, other = family == 0 ? up : right;
-    /* the image's coordinate is linear on the plane z = 31.5 (the volume's upper face): its slope along x and y */
+    /* the image's coordinate is linear on the plane z = 31.5 (the volume's upper face): its slope along x and
+     * y */
     double slope[2], other_slope[2];
     for (int axis = 0; axis < 2; axis++) {
       vec3 step = {axis == 0, axis == 1, 0};
@@ -208,7 +222,8 @@ static void test_grid_period(void **state) {
     }
     vec3 walk = vec3_normalise((vec3){other_slope[1], -other_slope[0], 0});
     double period = 2.0 / 16 / fabs(walk.x * slope[0] + walk.y * slope[1]);
-    /* start between two lines of the other family: try starts over one of its periods, take the darkest walk */
+    /* start between two lines of the other family: try starts over one of its periods, take the darkest
+     * walk */
     vec3 side = {-walk.y, walk.x, 0};
     double best = INFINITY, found = 0;
     for (int start = 0; start < 24; start++) {
@@ -241,7 +256,8 @@ static void test_grid_period(void **state) {
 
 /* ---- the projector (fig. 10) ---- */
 
-/* Where brightness passes half of what is inside, on the way from a dark to a lit place; continuous pixels. */
+/* Where brightness passes half of what is inside, on the way from a dark to a lit place; continuous
+ * pixels. */
 static double crossing(const example *open, const double dark[2], const double lit[2], int axis) {
   double full = brightness(open, lit[0], lit[1], 2), before = 0;
   for (int i = 0; i <= 200; i++) {
@@ -276,7 +292,8 @@ static void test_logo_corners(void **state) {
   for (int corner = 0; corner < 4; corner++) {
     vec3 here = uv[corner], beside = uv[corner ^ 1], above = uv[corner ^ 2];
     for (int axis = 0; axis < 2; axis++) {
-      /* across the edge that leaves the corner along the other axis, 2 % from the corner, inside the corner marks */
+      /* across the edge that leaves the corner along the other axis, 2 % from the corner, inside the corner
+       * marks */
       vec3 along = axis == 0 ? above : beside, inwards = axis == 0 ? beside : above;
       vec3 edge = vec3_add(here, vec3_scale(vec3_subtract(along, here), 0.02));
       vec3 step = vec3_scale(vec3_subtract(inwards, here), 0.025);
@@ -292,8 +309,8 @@ static void test_logo_corners(void **state) {
 
 /* ---- window light (fig. 8) ---- */
 
-/* Whether the sun reaches a point through the light screen and, where there is a wall, through one of its four panes of 34,
- * from 105 to 115 deep. */
+/* Whether the sun reaches a point through the light screen and, where there is a wall, through one of its
+ * four panes of 34, from 105 to 115 deep. */
 static bool lit_by_window(vec3 point, vec3 way, bool walled) {
   double t = (point.y - 110) / way.y;
   if (fabs(point.x - way.x * t - 30) > 46 || fabs(point.z - way.z * t - 105) > 46) return false;
@@ -305,8 +322,8 @@ static bool lit_by_window(vec3 point, vec3 way, bool walled) {
   return true;
 }
 
-/* Single scattering towards the eye: the integral of sigma exp(-sigma s) I exp(-sigma d) along the part of a ray that
- * is in the beam, d the sun's way in the haze. */
+/* Single scattering towards the eye: the integral of sigma exp(-sigma s) I exp(-sigma d) along the part of a
+ * ray that is in the beam, d the sun's way in the haze. */
 static double beam_towards_eye(const example *open, vec3 start, vec3 direction, bool walled) {
   vec3 way = vec3_normalise(vec3_of(open->lights[0].direction));
   double sigma = -log(1 - 0.0016), sum = 0, step = 0.1, haze = fmax((-210 - start.y) / direction.y, 0);
@@ -325,16 +342,20 @@ static double haze_column(const char *const *kept, bool walled, double *worst) {
   example *open = open_example("fig08-room.json", kept);
   render(open, SIDE);
   double sum = 0, expected_sum = 0;
-  vec3 right, up, forward = camera_axes(&open->scene.camera, &right, &up), eye = vec3_of(open->scene.camera.position);
+  vec3 right, up, forward = camera_axes(&open->scene.camera, &right, &up),
+                  eye = vec3_of(open->scene.camera.position);
   int count = 0;
   *worst = 0;
   for (int y = 70; y < 150; y += 4)
     for (int x = 30; x < 120; x += 4) {
-      double half = tan(open->scene.camera.fovy_deg * HL_PI / 360), u = 2 * (x + 0.5) / SIDE - 1, v = 1 - 2 * (y + 0.5) / SIDE;
-      vec3 direction = vec3_normalise(vec3_add(forward, vec3_add(vec3_scale(right, u * half), vec3_scale(up, v * half))));
+      double half = tan(open->scene.camera.fovy_deg * HL_PI / 360), u = 2 * (x + 0.5) / SIDE - 1,
+             v = 1 - 2 * (y + 0.5) / SIDE;
+      vec3 direction = vec3_normalise(
+          vec3_add(forward, vec3_add(vec3_scale(right, u * half), vec3_scale(up, v * half))));
       vec3 wall = vec3_add(eye, vec3_scale(direction, (105 - eye.y) / direction.y));
       if (fabs(wall.x - 30) < 45 && fabs(wall.z - 105) < 45) continue;
-      double expected = beam_towards_eye(open, eye, direction, walled), found = (double)open->pixels[4 * (y * SIDE + x)];
+      double expected = beam_towards_eye(open, eye, direction, walled),
+             found = (double)open->pixels[4 * (y * SIDE + x)];
       if (expected < 0.05) continue; /* beside the beam */
       sum += found;
       expected_sum += expected;
@@ -342,14 +363,15 @@ static double haze_column(const char *const *kept, bool walled, double *worst) {
       count++;
     }
   print_message("# haze column, %s: %d rays, sum %.4f of the closed form's, mean %.4f, worst ray %.4f off\n",
-                walled ? "through the window" : "through the light screen", count, sum / expected_sum, expected_sum / count, *worst);
+                walled ? "through the window" : "through the light screen", count, sum / expected_sum,
+                expected_sum / count, *worst);
   assert_in_range(count, 200, 10000);
   close_example(open);
   return sum / expected_sum;
 }
 
-/* The window's frame has the corners that its voxels, 1.5 a side, can give: rounded by a third of one, which the slanted
- * sun passes twice. */
+/* The window's frame has the corners that its voxels, 1.5 a side, can give: rounded by a third of one, which
+ * the slanted sun passes twice. */
 static void test_haze_column(void **state) {
   (void)state;
   static const char *const haze[] = {"haze", NULL}, *const room[] = {"haze", "walls", NULL};
@@ -375,8 +397,9 @@ static void measure_row(const example *open, double height, double *sum, double 
   *variance = square / *sum - mean / *sum * (mean / *sum);
 }
 
-/* Light sums to exp(-sigma way) along the beam. In the box, and in one so thin that it takes nothing, the profile's variance
- * grows by the light's disk: D^2 / 16 with D = 2 tan(angle / 2) times the distance from the hole, longer by the light's tilt. */
+/* Light sums to exp(-sigma way) along the beam. In the box, and in one so thin that it takes nothing, the
+ * profile's variance grows by the light's disk: D^2 / 16 with D = 2 tan(angle / 2) times the distance from
+ * the hole, longer by the light's tilt. */
 static void test_beam_through_a_hole(void **state) {
   (void)state;
   static const char *const kept[] = {"occluder", "box", NULL};
@@ -400,7 +423,8 @@ static void test_beam_through_a_hole(void **state) {
     print_message("# hole, %s: light %.4f of %.4f\n", thin ? "thin box" : "box", sum[1] / sum[0], passed);
     assert_near(sum[1] / sum[0] / passed, 1, 0.05);
   }
-  double expected = spread * spread / 16 * (distance[1] * distance[1] - distance[0] * distance[0]) / (way.z * way.z);
+  double expected = spread * spread / 16 * (distance[1] * distance[1] - distance[0] * distance[0]) /
+                    (way.z * way.z);
   print_message("# hole: variance grows by %.2f (in the box %.2f) of %.2f\n", grown[1], grown[0], expected);
   for (int thin = 0; thin < 2; thin++) assert_near(sqrt(grown[thin] / expected), 1, 0.05);
   close_example(open);

@@ -1,7 +1,8 @@
-/* analytic/figures.c - what the scenes of the figures show, as numbers: closed forms on their own shapes and lights.
+/* analytic/figures.c - what the scenes of the figures show, as numbers: closed forms on their own shapes and
+ * lights.
  *
- * The examples are read as they are; cameras, sizes and what is left out are set here so that a number can be told.
- * Data are not looked for: what stands in for them is rendered.
+ * The examples are read as they are; cameras, sizes and what is left out are set here so that a number can be
+ * told. Data are not looked for: what stands in for them is rendered.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -21,7 +22,8 @@ enum { MOST = 256 * 256 };
 static float pixels[MOST * 4], other[MOST * 4];
 
 static void assert_near(double value, double expected, double tolerance, const char *what) {
-  if (!(fabs(value - expected) <= tolerance)) fail_msg("%s: %.9g is not within %g of %.9g", what, value, tolerance, expected);
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%s: %.9g is not within %g of %.9g", what, value, tolerance, expected);
 }
 
 static hl_context *make_context(void) {
@@ -42,7 +44,8 @@ static hl_scene *load(hl_context *context, const char *name) {
 static hl_scene *read_text(hl_context *context, const char *text) {
   hl_scene *scene = NULL;
   hl_error error = {0};
-  if (hl_scene_from_json(context, text, strlen(text), NULL, "S", &scene, &error) != HL_OK) fail_msg("%s", error.message);
+  if (hl_scene_from_json(context, text, strlen(text), NULL, "S", &scene, &error) != HL_OK)
+    fail_msg("%s", error.message);
   return scene;
 }
 
@@ -88,7 +91,7 @@ static void bonsai_differs_in_its_shadow_only(void **state) {
     }
     assert_true(same > 0.5 * SIZE * SIZE && darker > 0.1 * SIZE * SIZE);
     assert_true(brighter < 0.005 * SIZE * SIZE); /* silhouettes: the sheets lie otherwise without shadows */
-    int corner = 4 * (SIZE - 1) * SIZE; /* the table at the lower left, towards the light */
+    int corner = 4 * (SIZE - 1) * SIZE;          /* the table at the lower left, towards the light */
     assert_near(other[corner], pixels[corner], 0.002, "the lit table");
   }
   hl_scene_release(off);
@@ -109,19 +112,24 @@ static double clearance(double x, double y, double height, vec3 towards_light) {
   return least;
 }
 
-/* One ring of the figure over the floor, seen from above, lit at 45 degrees so that its shadow lies beside it. */
+/* One ring of the figure over the floor, seen from above, lit at 45 degrees so that its shadow lies beside
+ * it. */
 static void ring_casts_its_outline(void **state) {
   (void)state;
   static const char text[] =
       "{ \"halflight\": 1, \"image\": { \"width\": 160, \"height\": 160 },"
-      "  \"camera\": { \"type\": \"orthographic\", \"position\": [60, 0, 200], \"target\": [60, 0, 0], \"up\": [0, 1, 0],"
+      "  \"camera\": { \"type\": \"orthographic\", \"position\": [60, 0, 200], \"target\": [60, 0, 0], "
+      "\"up\": [0, 1, 0],"
       "                \"height\": 60 },"
       "  \"ambient\": [0.2, 0.2, 0.2], \"lights\": [ { \"direction\": [1, 0, -1] } ],"
-      "  \"volumes\": [ { \"shapes\": [ { \"type\": \"torus\", \"radius\": 20, \"tube_radius\": 4.5, \"position\": [0, 0, 60] } ],"
+      "  \"volumes\": [ { \"shapes\": [ { \"type\": \"torus\", \"radius\": 20, \"tube_radius\": 4.5, "
+      "\"position\": [0, 0, 60] } ],"
       "                   \"voxel_size\": 0.5 },"
-      "                 { \"shapes\": [ { \"type\": \"plane\", \"size\": [160, 80], \"thickness\": 8, \"position\": [40, 0, 0] } ],"
+      "                 { \"shapes\": [ { \"type\": \"plane\", \"size\": [160, 80], \"thickness\": 8, "
+      "\"position\": [40, 0, 0] } ],"
       "                   \"voxel_size\": 2, \"casts_shadow\": false, \"material\": { \"specular\": 0 },"
-      "                   \"transfer_function\": { \"opacity\": [[0.46, 0], [0.54, 0.95]], \"unit_distance\": 0.3 } } ],"
+      "                   \"transfer_function\": { \"opacity\": [[0.46, 0], [0.54, 0.95]], "
+      "\"unit_distance\": 0.3 } } ],"
       "  \"render\": { \"shadows\": \"hard\", \"sheet_spacing\": 1 } }";
   hl_context *context = make_context();
   hl_scene *scene = read_text(context, text);
@@ -138,7 +146,8 @@ static void ring_casts_its_outline(void **state) {
       } else if (gap > 1) {
         assert_near(value, lit, 0.01, "the lit floor");
         light++;
-      } else if (fabs(gap) < 0.75) { /* as many on either side: half of them lit, if the outline is in place */
+      } else if (fabs(gap) <
+                 0.75) { /* as many on either side: half of them lit, if the outline is in place */
         edge++;
         edge_lit += value > (lit + dark) / 2;
       }
@@ -186,14 +195,16 @@ static void both_hypertextures_are_the_same_bytes(void **state) {
   (void)state;
   hl_context *context = make_context();
   hl_scene *hard = load(context, "fig06-hypertexture"), *soft = load(context, "fig22-hypertexture-soft");
-  const hl_volume *a = hl_scene_describe(hard)->volumes[0].volume, *b = hl_scene_describe(soft)->volumes[0].volume;
+  const hl_volume *a = hl_scene_describe(hard)->volumes[0].volume,
+                  *b = hl_scene_describe(soft)->volumes[0].volume;
   hl_volume_info one = {.struct_size = sizeof one}, two = {.struct_size = sizeof two};
   assert_int_equal(hl_volume_get_info(a, &one), HL_OK);
   assert_int_equal(hl_volume_get_info(b, &two), HL_OK);
   assert_memory_equal(&one, &two, sizeof one);
   assert_true(one.histogram[128] > 100);
   for (size_t n = 0; n < 100000; n++) {
-    size_t i = 7919 * n % one.dimensions[0], j = 104729 * n % one.dimensions[1], k = 1299709 * n % one.dimensions[2];
+    size_t i = 7919 * n % one.dimensions[0], j = 104729 * n % one.dimensions[1],
+           k = 1299709 * n % one.dimensions[2];
     assert_true(hl_volume_value(a, i, j, k) == hl_volume_value(b, i, j, k));
   }
   hl_scene_release(hard);
@@ -203,16 +214,20 @@ static void both_hypertextures_are_the_same_bytes(void **state) {
 
 /* ---- figure 7 ---- */
 
-/* Eight pixels a voxel: the shadow of a straight edge, askew to all grids, stays within 1.5 pixels of a line. */
+/* Eight pixels a voxel: the shadow of a straight edge, askew to all grids, stays within 1.5 pixels of a
+ * line. */
 static void close_shadow_edges_are_not_blocky(void **state) {
   (void)state;
   static const char text[] =
       "{ \"halflight\": 1, \"image\": { \"width\": 200, \"height\": 200 },"
-      "  \"camera\": { \"type\": \"orthographic\", \"position\": [0, 0, 100], \"target\": [0, 0, 0], \"up\": [0, 1, 0],"
+      "  \"camera\": { \"type\": \"orthographic\", \"position\": [0, 0, 100], \"target\": [0, 0, 0], \"up\": "
+      "[0, 1, 0],"
       "                \"height\": 25 },"
       "  \"ambient\": [0, 0, 0], \"lights\": [ { \"direction\": [0.5, 0.1, -1] } ],"
-      "  \"volumes\": [ { \"shapes\": [ { \"type\": \"box\", \"size\": [40, 120, 10], \"position\": [-31, 0, 22],"
-      "                                    \"rotate\": { \"axis\": [0, 0, 1], \"angle_deg\": 23 } } ], \"voxel_size\": 1 },"
+      "  \"volumes\": [ { \"shapes\": [ { \"type\": \"box\", \"size\": [40, 120, 10], \"position\": [-31, 0, "
+      "22],"
+      "                                    \"rotate\": { \"axis\": [0, 0, 1], \"angle_deg\": 23 } } ], "
+      "\"voxel_size\": 1 },"
       "                 { \"shapes\": [ { \"type\": \"plane\", \"size\": [80, 80], \"thickness\": 8 } ],"
       "                   \"voxel_size\": 1, \"casts_shadow\": false, \"material\": { \"specular\": 0 } } ],"
       "  \"render\": { \"shadows\": \"hard\" } }";
@@ -237,7 +252,8 @@ static void close_shadow_edges_are_not_blocky(void **state) {
   }
   assert_true(n > 150);
   double slope = (n * sxy - sy * sx) / (n * syy - sy * sy), start = (sx - slope * sy) / n;
-  assert_near(slope, tan(23 * HL_PI / 180), 0.02, "the edge's slope"); /* rows go down: the sign turns with them */
+  assert_near(slope, tan(23 * HL_PI / 180), 0.02,
+              "the edge's slope"); /* rows go down: the sign turns with them */
   for (int j = 0; j < 200; j++)
     if (!isnan(at[j])) assert_near(at[j], start + slope * j, 1.5, "the shadow's edge");
   hl_scene_release(scene);
@@ -257,22 +273,27 @@ static double edge_variance(const float *row, int count, double pitch) {
   return second / weight - mean * mean;
 }
 
-/* The light of figure 20 on a bar at the height: the spread of its shadow's edge, less that of the edge itself. */
+/* The light of figure 20 on a bar at the height: the spread of its shadow's edge, less that of the edge
+ * itself. */
 static double penumbra_spread(hl_context *context, double height, double angle_deg) {
   char text[2000];
   double variance[2];
   for (int soft = 0; soft < 2; soft++) {
-    snprintf(text, sizeof text,
-             "{ \"halflight\": 1, \"image\": { \"width\": 240, \"height\": 8 },"
-             "  \"camera\": { \"type\": \"orthographic\", \"position\": [0, 0, 200], \"target\": [0, 0, 0],"
-             "                \"up\": [0, 1, 0], \"height\": 1 },"
-             "  \"ambient\": [0, 0, 0], \"lights\": [ { \"direction\": [0, 0, -1], \"angular_diameter_deg\": %g } ],"
-             "  \"volumes\": [ { \"shapes\": [ { \"type\": \"box\", \"size\": [60, 40, 3], \"position\": [-30, 0, %g] } ],"
-             "                   \"voxel_size\": 0.5, \"visible\": false },"
-             "                 { \"shapes\": [ { \"type\": \"plane\", \"size\": [60, 40], \"thickness\": 5 } ],"
-             "                   \"voxel_size\": 1, \"casts_shadow\": false, \"material\": { \"specular\": 0 } } ],"
-             "  \"render\": { \"shadows\": \"%s\", \"sheet_spacing\": 1 } }",
-             angle_deg, height, soft ? "soft" : "hard");
+    snprintf(
+        text, sizeof text,
+        "{ \"halflight\": 1, \"image\": { \"width\": 240, \"height\": 8 },"
+        "  \"camera\": { \"type\": \"orthographic\", \"position\": [0, 0, 200], \"target\": [0, 0, 0],"
+        "                \"up\": [0, 1, 0], \"height\": 1 },"
+        "  \"ambient\": [0, 0, 0], \"lights\": [ { \"direction\": [0, 0, -1], \"angular_diameter_deg\": %g } "
+        "],"
+        "  \"volumes\": [ { \"shapes\": [ { \"type\": \"box\", \"size\": [60, 40, 3], \"position\": [-30, 0, "
+        "%g] } ],"
+        "                   \"voxel_size\": 0.5, \"visible\": false },"
+        "                 { \"shapes\": [ { \"type\": \"plane\", \"size\": [60, 40], \"thickness\": 5 } ],"
+        "                   \"voxel_size\": 1, \"casts_shadow\": false, \"material\": { \"specular\": 0 } } "
+        "],"
+        "  \"render\": { \"shadows\": \"%s\", \"sheet_spacing\": 1 } }",
+        angle_deg, height, soft ? "soft" : "hard");
     hl_scene *scene = read_text(context, text);
     render(context, hl_scene_describe(scene), pixels);
     variance[soft] = edge_variance(&pixels[4 * 240 * 4], 240, 1.0 / 8);
@@ -281,7 +302,8 @@ static double penumbra_spread(hl_context *context, double height, double angle_d
   return sqrt(variance[1] - variance[0]);
 }
 
-/* dx = L dZ / Z, eq. (5): for parallel light of an angle 2 tan(angle / 2) dZ; a disk of diameter D spreads by D / 4. */
+/* dx = L dZ / Z, eq. (5): for parallel light of an angle 2 tan(angle / 2) dZ; a disk of diameter D spreads by
+ * D / 4. */
 static void penumbra_grows_with_height(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -294,8 +316,8 @@ static void penumbra_grows_with_height(void **state) {
   hl_context_destroy(context);
 }
 
-/* The block of figure 21 seen from the side, along a straight edge in place of the ring: rows of the picture are
- * depths in the block, and each shows the shadow's edge at its depth. */
+/* The block of figure 21 seen from the side, along a straight edge in place of the ring: rows of the picture
+ * are depths in the block, and each shows the shadow's edge at its depth. */
 static void shadow_widens_through_the_block(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -303,11 +325,14 @@ static void shadow_widens_through_the_block(void **state) {
   double angle_deg = hl_scene_describe(example)->lights[0].angular_diameter_deg;
   static const char text[] =
       "{ \"halflight\": 1, \"image\": { \"width\": 240, \"height\": 256 },"
-      "  \"camera\": { \"type\": \"orthographic\", \"position\": [0, -300, 37], \"target\": [0, 0, 37], \"height\": 64 },"
+      "  \"camera\": { \"type\": \"orthographic\", \"position\": [0, -300, 37], \"target\": [0, 0, 37], "
+      "\"height\": 64 },"
       "  \"ambient\": [0, 0, 0], \"lights\": [ { \"direction\": [0, 0, -1], \"angular_diameter_deg\": 0 } ],"
-      "  \"volumes\": [ { \"shapes\": [ { \"type\": \"box\", \"size\": [66, 46, 62], \"position\": [0, 0, 37] } ], \"voxel_size\": 1,"
+      "  \"volumes\": [ { \"shapes\": [ { \"type\": \"box\", \"size\": [66, 46, 62], \"position\": [0, 0, "
+      "37] } ], \"voxel_size\": 1,"
       "                   \"transfer_function\": { \"opacity\": 0.018 }, \"shading\": \"none\" },"
-      "                 { \"shapes\": [ { \"type\": \"box\", \"size\": [60, 60, 3], \"position\": [-30, 0, 82] } ],"
+      "                 { \"shapes\": [ { \"type\": \"box\", \"size\": [60, 60, 3], \"position\": [-30, 0, "
+      "82] } ],"
       "                   \"voxel_size\": 0.5, \"visible\": false } ],"
       "  \"render\": { \"shadows\": \"soft\", \"sheet_spacing\": 1 } }";
   hl_scene *scene = read_text(context, text);
@@ -319,12 +344,15 @@ static void shadow_widens_through_the_block(void **state) {
   render(context, &d, pixels);
   const double depths[] = {62, 12}; /* within the block, near where light enters and leaves it */
   for (int n = 0; n < 2; n++) {
-    int row = (int)((69 - depths[n]) * 4), first = 40, count = 160; /* 40 world units about the edge, a quarter a pixel */
+    int row = (int)((69 - depths[n]) * 4), first = 40,
+        count = 160; /* 40 world units about the edge, a quarter a pixel */
     double variance = edge_variance(&pixels[4 * (240 * row + first)], count, 0.25) -
                       edge_variance(&other[4 * (240 * row + first)], count, 0.25);
     double expected = 2 * tan(angle_deg * HL_PI / 360) * (82 - depths[n]) / 4;
-    /* the cascade spreads 4 % too wide at the entrance and 18 % at the exit, with the block's own groups between */
-    assert_near(sqrt(variance), expected, (n == 0 ? 0.08 : 0.2) * expected, n == 0 ? "the entrance" : "the exit");
+    /* the cascade spreads 4 % too wide at the entrance and 18 % at the exit, with the block's own groups
+     * between */
+    assert_near(sqrt(variance), expected, (n == 0 ? 0.08 : 0.2) * expected,
+                n == 0 ? "the entrance" : "the exit");
   }
   hl_scene_release(scene);
   hl_scene_release(example);

@@ -15,7 +15,8 @@ enum { SIDE = 28, PIXELS = SIDE * SIDE };
 
 /* Buffers of every layer. */
 typedef struct layer_set {
-  float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], first[PIXELS], mean[PIXELS], normal[PIXELS * 3];
+  float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], first[PIXELS], mean[PIXELS],
+      normal[PIXELS * 3];
   float pictures[STAGE_LIGHTS][PIXELS * 3], shadows[STAGE_LIGHTS][PIXELS * 3];
   hl_light_layers lights[STAGE_LIGHTS];
   hl_layers all;
@@ -30,9 +31,14 @@ static void ask_for_all(const stage *set, layer_set *layers) {
   memset(layers, 0xff, sizeof *layers); /* NaN: every value must be written */
   for (size_t l = 0; l < STAGE_LIGHTS; l++)
     layers->lights[l] = (hl_light_layers){layers->pictures[l], layers->shadows[l]};
-  layers->all = (hl_layers){.struct_size = sizeof layers->all, .ambient = layers->ambient,
-                            .depth_first = layers->first, .depth_mean = layers->mean, .normal = layers->normal, .emission = layers->emission,
-                            .lights = layers->lights, .light_count = set->scene.light_count};
+  layers->all = (hl_layers){.struct_size = sizeof layers->all,
+                            .ambient = layers->ambient,
+                            .depth_first = layers->first,
+                            .depth_mean = layers->mean,
+                            .normal = layers->normal,
+                            .emission = layers->emission,
+                            .lights = layers->lights,
+                            .light_count = set->scene.light_count};
 }
 
 static void render_with(stage *set, bool reference, hl_layers *wanted, float *pixels) {
@@ -45,10 +51,11 @@ static void render_with(stage *set, bool reference, hl_layers *wanted, float *pi
   hl_status status = hl_scene_create(set->context, &set->scene, &scene, &error);
   if (status == HL_OK && !reference) status = hl_renderer_create(set->context, &renderer, &error);
   if (status == HL_OK && !reference)
-    status = hl_renderer_render_layers(renderer, scene, pixels, 4 * (size_t)set->scene.width, wanted, NULL, &error);
+    status = hl_renderer_render_layers(renderer, scene, pixels, 4 * (size_t)set->scene.width, wanted, NULL,
+                                       &error);
   if (status == HL_OK && reference)
-    status = hl_reference_render_layers(set->context, scene, &options, pixels, 4 * (size_t)set->scene.width, wanted,
-                                        &error);
+    status = hl_reference_render_layers(set->context, scene, &options, pixels, 4 * (size_t)set->scene.width,
+                                        wanted, &error);
   if (status != HL_OK) fail_msg("%s", error.message);
   hl_renderer_destroy(renderer);
   hl_scene_release(scene);
@@ -93,7 +100,8 @@ static void check_depths(const stage *set, const layer_set *layers) {
     misses += chord <= 0;
     if (chord <= 0) {
       assert_true(isinf(layers->mean[i]) && isinf(layers->first[i]));
-      for (int c = 0; c < 3; c++) assert_true(layers->shadows[0][3 * i + c] == 0 && layers->normal[3 * i + c] == 0);
+      for (int c = 0; c < 3; c++)
+        assert_true(layers->shadows[0][3 * i + c] == 0 && layers->normal[3 * i + c] == 0);
     } else {
       assert_near(layers->mean[i], enter + 1 / SIGMA - chord * exp(-e) / -expm1(-e), 0.004);
       if (chord > reach) assert_near(layers->first[i], enter + reach, 0.004);
@@ -149,7 +157,7 @@ static void check_plate(stage *set, bool reference) {
     vec3 origin, direction;
     stage_eye_ray(set, i % SIDE, i / SIDE, &origin, &direction);
     if (fabs(origin.x) > 6 || fabs(origin.y) > 6) continue;
-    bool below = fabs(origin.x) < 3 && fabs(origin.y) < 3, beside = fabs(origin.x) > 5 || fabs(origin.y) > 5;
+    bool below = fabs(origin.x) < 3 && fabs(origin.y)<3, beside = fabs(origin.x)> 5 || fabs(origin.y) > 5;
     const float *shadow = layers.shadows[0] + 3 * i, *picture = layers.pictures[0] + 3 * i;
     shadowed += below;
     lit += beside;
@@ -236,7 +244,8 @@ static void test_normal_of_ramp(void **state) {
   open_square(&set);
   for (int i = 0; i < N * N * N; i++)
     voxels[i] = (float)((i % N + 2 * (i / N % N) - 2 * (i / N / N)) * 0.1 + 10);
-  hl_scene_volume *ramp = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-7, -7, -7}, voxels);
+  hl_scene_volume *ramp = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-7, -7, -7},
+                                         voxels);
   ramp->shading = HL_SHADING_PHONG;
   ramp->clipped = 1; /* away from the border, where the ramp ends */
   for (int a = 0; a < 3; a++) ramp->clip_min[a] = -5, ramp->clip_max[a] = 5;
@@ -258,7 +267,8 @@ static void build_scene(stage *set) {
   static float voxels[N * N * N];
   for (int i = 0; i < N * N * N; i++) {
     double x = i % N - 7, y = i / N % N - 7, z = i / N / N - 7;
-    voxels[i] = (float)fmax(0, 1 - (x * x + y * y + z * z) / 49) * (0.5f + 0.5f * stage_noise(x / 3, y / 3, z / 3));
+    voxels[i] = (float)fmax(0, 1 - (x * x + y * y + z * z) / 49) *
+                (0.5f + 0.5f * stage_noise(x / 3, y / 3, z / 3));
   }
   for (int v = 0; v < 2; v++) {
     double edge = v == 0 ? 1 : 0.6;
@@ -344,7 +354,8 @@ static void assert_layers_near(const layer_set *a, const layer_set *b, size_t li
     samples++;
     square[0] += pow((double)a->first[i] - (double)b->first[i], 2);
     square[1] += pow((double)a->mean[i] - (double)b->mean[i], 2);
-    for (int c = 0; c < 3; c++) square[2] += pow((double)a->normal[3 * i + c] - (double)b->normal[3 * i + c], 2);
+    for (int c = 0; c < 3; c++)
+      square[2] += pow((double)a->normal[3 * i + c] - (double)b->normal[3 * i + c], 2);
     for (size_t l = 0; l < lights; l++) assert_near(a->shadows[l][3 * i], b->shadows[l][3 * i], 0.12);
   }
   assert_true(samples > 200);
@@ -443,11 +454,13 @@ static void test_refusals(void **state) {
     if (wrong == 0) layers.all.struct_size--;
     if (wrong == 1) layers.all.light_count = 2;
     if (wrong == 2) layers.all.lights = NULL;
-    assert_int_equal(hl_renderer_render_layers(renderer, scene, layers.pixels, 4 * SIDE, &layers.all, NULL, &error),
-                     HL_ERROR_ARGUMENT);
+    assert_int_equal(
+        hl_renderer_render_layers(renderer, scene, layers.pixels, 4 * SIDE, &layers.all, NULL, &error),
+        HL_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "layers->"));
-    assert_int_equal(hl_reference_render_layers(set.context, scene, NULL, layers.pixels, 4 * SIDE, &layers.all, NULL),
-                     HL_ERROR_ARGUMENT);
+    assert_int_equal(
+        hl_reference_render_layers(set.context, scene, NULL, layers.pixels, 4 * SIDE, &layers.all, NULL),
+        HL_ERROR_ARGUMENT);
   }
   hl_renderer_destroy(renderer);
   hl_scene_release(scene);
@@ -456,13 +469,12 @@ static void test_refusals(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_depth_of_box),       cmocka_unit_test(test_depth_of_box_in_perspective),
-      cmocka_unit_test(test_shadow_of_plate),    cmocka_unit_test(test_texture_is_no_shadow),
-      cmocka_unit_test(test_normal_of_ramp),
-      cmocka_unit_test(test_sum_is_the_picture), cmocka_unit_test(test_relighting),
-      cmocka_unit_test(test_sheets_against_reference), cmocka_unit_test(test_picture_stays),
-      cmocka_unit_test(test_same_bytes),         cmocka_unit_test(test_some_layers),
-      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_depth_of_box),    cmocka_unit_test(test_depth_of_box_in_perspective),
+      cmocka_unit_test(test_shadow_of_plate), cmocka_unit_test(test_texture_is_no_shadow),
+      cmocka_unit_test(test_normal_of_ramp),  cmocka_unit_test(test_sum_is_the_picture),
+      cmocka_unit_test(test_relighting),      cmocka_unit_test(test_sheets_against_reference),
+      cmocka_unit_test(test_picture_stays),   cmocka_unit_test(test_same_bytes),
+      cmocka_unit_test(test_some_layers),     cmocka_unit_test(test_refusals),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

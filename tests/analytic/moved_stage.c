@@ -21,7 +21,8 @@ motion motion_of_turn(vec3 axis, double angle_deg) {
 motion motion_of_mirror(vec3 n) {
   motion mirror = motion_of_scale(1);
   const double c[3] = {n.x, n.y, n.z};
-  for (int row = 0; row < 3; row++) mirror.turn.row[row] = vec3_subtract(NO_TURN.row[row], vec3_scale(n, 2 * c[row]));
+  for (int row = 0; row < 3; row++)
+    mirror.turn.row[row] = vec3_subtract(NO_TURN.row[row], vec3_scale(n, 2 * c[row]));
   return mirror;
 }
 
@@ -33,7 +34,9 @@ static void store(double to[3], vec3 v) {
   to[2] = v.z;
 }
 static void move_direction(const motion *by, double v[3]) { store(v, mat3_apply(by->turn, vec3_of(v))); }
-static void move_length(const motion *by, double v[3]) { store(v, vec3_scale(mat3_apply(by->turn, vec3_of(v)), by->scale)); }
+static void move_length(const motion *by, double v[3]) {
+  store(v, vec3_scale(mat3_apply(by->turn, vec3_of(v)), by->scale));
+}
 static void move_point(const motion *by, double p[3]) {
   move_length(by, p);
   store(p, vec3_add(vec3_of(p), by->shift));
@@ -58,11 +61,12 @@ static void move_light(const motion *by, hl_light *light, double (*vertices)[3])
   move_length(by, light->texture.screen_up);
 }
 
-/* Axis and angle of a rotation (derived from Rodrigues's formula): the axis is that column of R + R' + (1 - trace) I which
- * is longest, the angle's sine its part of the antisymmetric rest. */
+/* Axis and angle of a rotation (derived from Rodrigues's formula): the axis is that column of R + R' + (1 -
+ * trace) I which is longest, the angle's sine its part of the antisymmetric rest. */
 static void axis_of_rotation(mat3 r, double axis[3], double *angle_deg) {
   double trace = r.row[0].x + r.row[1].y + r.row[2].z;
-  vec3 rest = {r.row[2].y - r.row[1].z, r.row[0].z - r.row[2].x, r.row[1].x - r.row[0].y}, longest = {0, 0, 0};
+  vec3 rest = {r.row[2].y - r.row[1].z, r.row[0].z - r.row[2].x, r.row[1].x - r.row[0].y},
+       longest = {0, 0, 0};
   for (int column = 0; column < 3; column++) {
     vec3 unit = {column == 0, column == 1, column == 2};
     vec3 along = vec3_add(mat3_column(r, column), r.row[column]);
@@ -79,7 +83,8 @@ static void axis_of_rotation(mat3 r, double axis[3], double *angle_deg) {
 static void move_transform(const motion *by, hl_scene_volume *volume) {
   mat3 turn = NO_TURN;
   if (volume->rotate_angle_deg != 0)
-    turn = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), volume->rotate_angle_deg * HL_PI / 180);
+    turn = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)),
+                         volume->rotate_angle_deg * HL_PI / 180);
   axis_of_rotation(mat3_multiply(by->turn, turn), volume->rotate_axis, &volume->rotate_angle_deg);
   volume->scale *= by->scale;
   move_point(by, volume->translate);

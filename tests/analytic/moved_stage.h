@@ -1,4 +1,5 @@
-/* analytic/moved_stage.h - a stage turned, mirrored, scaled and shifted as a whole: the same picture, or its mirror image. */
+/* analytic/moved_stage.h - a stage turned, mirrored, scaled and shifted as a whole: the same picture, or its
+ * mirror image. */
 #ifndef MOVED_STAGE_H
 #define MOVED_STAGE_H
 
@@ -16,9 +17,10 @@ motion motion_of_shift(double x, double y, double z);
 motion motion_of_turn(vec3 axis, double angle_deg);
 motion motion_of_mirror(vec3 normal); /* unit normal of the mirror through the origin */
 
-/* Moves camera, lights and volumes. A volume's axes and origin take the motion, unless it has a clip box or `by_transform`
- * is set and the motion is no reflection: then its scene transform does. Where light falls with the square of the distance
- * its intensity makes up for the scale. vertices: room for all vertices of polygons, kept until the pictures are made. */
+/* Moves camera, lights and volumes. A volume's axes and origin take the motion, unless it has a clip box or
+ * `by_transform` is set and the motion is no reflection: then its scene transform does. Where light falls
+ * with the square of the distance its intensity makes up for the scale. vertices: room for all vertices of
+ * polygons, kept until the pictures are made. */
 void stage_move(stage *set, const motion *by, int by_transform, double (*vertices)[3]);
 
 #endif

@@ -1,4 +1,5 @@
-/* analytic/numbers_camera.c - eyes in odd places, extreme angles and extreme sizes: the pictures they must give. */
+/* analytic/numbers_camera.c - eyes in odd places, extreme angles and extreme sizes: the pictures they must
+ * give. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -52,10 +53,12 @@ static void open_perspective(stage *set, vec3 eye, vec3 target, double fovy_deg)
 /* Inside, on a voxel's centre, on a face, an edge and a corner. */
 static void test_eyes_in_the_volume(void **state) {
   (void)state;
-  static const vec3 eyes[] = {{0.2, -0.3, 0.4}, {0.5, 0.5, 0.5}, {1, 0, -0.5}, {-3, 0, 0}, {5, 0.3, 1}, {-3, -2, 0}, {5, 2, 3}};
+  static const vec3 eyes[] = {{0.2, -0.3, 0.4}, {0.5, 0.5, 0.5}, {1, 0, -0.5}, {-3, 0, 0},
+                              {5, 0.3, 1},      {-3, -2, 0},     {5, 2, 3}};
   for (size_t e = 0; e < sizeof eyes / sizeof *eyes; e++)
     for (int target = 0; target < 3; target++)
-      for (int lit = 0; lit <= (target == 0 && e % 3 == 0); lit++) { /* shadow buffers seen from within are large */
+      for (int lit = 0; lit <= (target == 0 && e % 3 == 0);
+           lit++) { /* shadow buffers seen from within are large */
         stage set;
         char what[80];
         const vec3 targets[] = {{0.9, 0.4, -0.5}, {-7, 1, 2}, {20, -9, 3}};
@@ -109,7 +112,9 @@ static void test_wide_views(void **state) {
       snprintf(what, sizeof what, "%g degrees, light %zu", angles[a], l);
       hl_status status = render_status(&set, &error);
       if (status == HL_OK) assert_chords(&set, 2e-4, what);
-      else assert_non_null(strstr(error.message, "/camera/fovy_deg: no sheets are crossed by every ray of so wide a view"));
+      else
+        assert_non_null(
+            strstr(error.message, "/camera/fovy_deg: no sheets are crossed by every ray of so wide a view"));
       if (angles[a] <= 120 && status != HL_OK) fail_msg("%s: %s", what, error.message);
       refused += status == HL_ERROR_UNSUPPORTED;
       stage_close(&set);
@@ -144,7 +149,8 @@ static void test_nothing_ahead(void **state) {
   }
 }
 
-/* Up along the line of sight says nothing: z stands in, or y where the sight is along z; in the reference as well. */
+/* Up along the line of sight says nothing: z stands in, or y where the sight is along z; in the reference as
+ * well. */
 static void test_useless_up(void **state) {
   (void)state;
   static float plain[18 * 14 * 4], useless[18 * 14 * 4], exact[18 * 14 * 4];
@@ -161,7 +167,8 @@ static void test_useless_up(void **state) {
       stage_render_sheets(&set, useless);
       assert_memory_equal(plain, useless, sizeof plain);
       stage_render(&set, NULL, exact);
-      for (size_t i = 0; i < sizeof exact / sizeof *exact; i++) assert_true(fabsf(exact[i] - useless[i]) < 1e-3f);
+      for (size_t i = 0; i < sizeof exact / sizeof *exact; i++)
+        assert_true(fabsf(exact[i] - useless[i]) < 1e-3f);
     }
     stage_close(&set);
   }
@@ -182,7 +189,8 @@ static void test_sizes(void **state) {
   }
 }
 
-/* 16384 x 16384 pixels are 4.3 GB as floats: under a limit of 1 GB the picture is refused before anything is rendered. */
+/* 16384 x 16384 pixels are 4.3 GB as floats: under a limit of 1 GB the picture is refused before anything is
+ * rendered. */
 static void test_large_picture_under_a_limit(void **state) {
   (void)state;
   stage set;
@@ -209,7 +217,9 @@ static void test_refused(void **state) {
   (void)state;
   stage set;
   open_perspective(&set, (vec3){9, -8, 7}, (vec3){9, -8, 7}, 60);
-  stage_refused(&set, "/camera/target: is where the eye is: move the target or the position, so that there is a line of sight");
+  stage_refused(&set,
+                "/camera/target: is where the eye is: move the target or the position, so that there is a "
+                "line of sight");
   stage_look(&set, (vec3){9, -8, 7}, (vec3){0, 0, 0}, (vec3){0, 0, 0});
   stage_refused(&set, "/camera/up: has no length: give the direction as three numbers, not all 0");
   stage_look(&set, (vec3){9, -8, NAN}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
@@ -218,9 +228,11 @@ static void test_refused(void **state) {
   set.scene.camera.fovy_deg = 0;
   stage_refused(&set, "/camera/fovy_deg: 0 is out of range: give an angle in degrees, above 0 and below 180");
   set.scene.camera.fovy_deg = 180;
-  stage_refused(&set, "/camera/fovy_deg: 180 is out of range: give an angle in degrees, above 0 and below 180");
+  stage_refused(&set,
+                "/camera/fovy_deg: 180 is out of range: give an angle in degrees, above 0 and below 180");
   set.scene.camera.fovy_deg = -30;
-  stage_refused(&set, "/camera/fovy_deg: -30 is out of range: give an angle in degrees, above 0 and below 180");
+  stage_refused(&set,
+                "/camera/fovy_deg: -30 is out of range: give an angle in degrees, above 0 and below 180");
   set.scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
   set.scene.camera.height = 0;
   stage_refused(&set, "/camera/height: 0 is not above 0: give the picture's height in world units, above 0");
@@ -237,9 +249,15 @@ static void test_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_eyes_in_the_volume), cmocka_unit_test(test_fields_of_view), cmocka_unit_test(test_wide_views),
-      cmocka_unit_test(test_eyes_far_and_near),  cmocka_unit_test(test_nothing_ahead),  cmocka_unit_test(test_useless_up),
-      cmocka_unit_test(test_sizes),              cmocka_unit_test(test_large_picture_under_a_limit), cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_eyes_in_the_volume),
+      cmocka_unit_test(test_fields_of_view),
+      cmocka_unit_test(test_wide_views),
+      cmocka_unit_test(test_eyes_far_and_near),
+      cmocka_unit_test(test_nothing_ahead),
+      cmocka_unit_test(test_useless_up),
+      cmocka_unit_test(test_sizes),
+      cmocka_unit_test(test_large_picture_under_a_limit),
+      cmocka_unit_test(test_refused),
   };
   return cmocka_run_group_tests_name("numbers_camera", tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* analytic/numbers_lights.c - lights without extent, in odd places, of odd strength: the pictures they must give. */
+/* analytic/numbers_lights.c - lights without extent, in odd places, of odd strength: the pictures they must
+ * give. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -17,7 +18,8 @@ static void open_haze(stage *set) {
   for (int i = 0; i < GRID * GRID * GRID; i++)
     voxels[i] = 0.2f + 0.8f * stage_noise(0.9 * (i % GRID), 0.8 * (i / GRID % GRID), 0.7 * (i / GRID / GRID));
   stage_open(set);
-  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){GRID, GRID, GRID}, (double[3]){1, 1, 1}, (vec3){-4.5, -4.5, -4.5}, voxels);
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){GRID, GRID, GRID}, (double[3]){1, 1, 1},
+                                           (vec3){-4.5, -4.5, -4.5}, voxels);
   static const hl_opacity_point opacity[] = {{0.2, 0}, {1, 0.4}};
   volume->transfer_function.opacity = opacity;
   volume->transfer_function.opacity_count = 2;
@@ -61,7 +63,8 @@ typedef void make_light(hl_light *light, double extent);
 static make_light *const MAKERS[] = {make_directional, make_sphere, make_spot, make_disk, make_rect};
 enum { MAKER_COUNT = sizeof MAKERS / sizeof *MAKERS };
 
-static void render_light(make_light *make, double extent, hl_shadows shadows, hl_soft_method method, float *pixels) {
+static void render_light(make_light *make, double extent, hl_shadows shadows, hl_soft_method method,
+                         float *pixels) {
   stage set;
   open_haze(&set);
   set.scene.render.shadows = shadows;
@@ -75,7 +78,8 @@ static void render_light(make_light *make, double extent, hl_shadows shadows, hl
   stage_close(&set);
 }
 
-/* Soft shadows of a light without extent are hard ones, to the byte; of one that is hardly extended, nearly so. */
+/* Soft shadows of a light without extent are hard ones, to the byte; of one that is hardly extended, nearly
+ * so. */
 static void test_no_extent(void **state) {
   (void)state;
   static float expected[FLOATS], pixels[FLOATS];
@@ -88,7 +92,8 @@ static void test_no_extent(void **state) {
         render_light(MAKERS[m], extent, HL_SHADOWS_SOFT, (hl_soft_method)method, pixels);
         for (int i = 0; i < FLOATS; i++)
           if (!(fabsf(pixels[i] - expected[i]) < 2e-2f)) /* buffers lie otherwise, and are coarser */
-            fail_msg("light %d, method %d, extent %g: %g instead of %g", m, method, extent, (double)pixels[i], (double)expected[i]);
+            fail_msg("light %d, method %d, extent %g: %g instead of %g", m, method, extent, (double)pixels[i],
+                     (double)expected[i]);
       }
     }
   }
@@ -125,7 +130,8 @@ static void test_lamps_in_odd_places(void **state) {
       open_haze(&set);
       set.scene.render.shadows = soft ? HL_SHADOWS_SOFT : HL_SHADOWS_HARD;
       stage_add_point(&set, places[p])->radius = soft ? 1 : 0;
-      snprintf(what, sizeof what, "%s lamp at %g %g %g", soft ? "soft" : "hard", places[p].x, places[p].y, places[p].z);
+      snprintf(what, sizeof what, "%s lamp at %g %g %g", soft ? "soft" : "hard", places[p].x, places[p].y,
+               places[p].z);
       bool border = p == 4; /* where shares of sectors meet */
       assert_near_reference(&set, soft ? 2e-2 : border ? 8e-3 : 2e-3, what);
       stage_close(&set);
@@ -208,7 +214,9 @@ static void test_refused(void **state) {
   light->intensity = INFINITY;
   stage_refused(&set, "/lights/0/intensity: inf is out of range: give a factor, 0 or more");
   light->intensity = 1e30;
-  stage_refused(&set, "/lights/0/intensity: makes the light's color 1e+30: use an intensity with which it is at most 1e20");
+  stage_refused(
+      &set,
+      "/lights/0/intensity: makes the light's color 1e+30: use an intensity with which it is at most 1e20");
   light->intensity = 1;
   light->color[1] = -0.5;
   stage_refused(&set, "/lights/0/color/1: -0.5 is negative: give linear RGB, none below 0");
@@ -225,14 +233,17 @@ static void test_refused(void **state) {
   light->type = HL_LIGHT_POLYGON;
   light->vertices = line;
   light->vertex_count = 3;
-  stage_refused(&set, "/lights/0/vertices: span no area: move one off the line, or use a rect light with an edge of no length");
+  stage_refused(&set,
+                "/lights/0/vertices: span no area: move one off the line, or use a rect light with an edge "
+                "of no length");
   stage_close(&set);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_no_extent),      cmocka_unit_test(test_lamps_in_odd_places), cmocka_unit_test(test_aligned_lights),
-      cmocka_unit_test(test_strengths),      cmocka_unit_test(test_falloff_at_the_lamp), cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_no_extent),           cmocka_unit_test(test_lamps_in_odd_places),
+      cmocka_unit_test(test_aligned_lights),      cmocka_unit_test(test_strengths),
+      cmocka_unit_test(test_falloff_at_the_lamp), cmocka_unit_test(test_refused),
   };
   return cmocka_run_group_tests_name("numbers_lights", tests, NULL, NULL);
 }

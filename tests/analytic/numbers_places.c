@@ -1,4 +1,5 @@
-/* analytic/numbers_places.c - tiny, huge, far-away and mirrored scenes, far-away eyes and lamps: the pictures they must give. */
+/* analytic/numbers_places.c - tiny, huge, far-away and mirrored scenes, far-away eyes and lamps: the pictures
+ * they must give. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -30,14 +31,17 @@ static void open_scene(stage *set, const scenario *from, size_t index) {
 static void flip_columns(float *pixels) {
   for (int row = 0; row < HEIGHT; row++)
     for (int left = 0; left < WIDTH / 2; left++) {
-      float kept[4], *a = pixels + 4 * (row * WIDTH + left), *b = pixels + 4 * (row * WIDTH + WIDTH - 1 - left);
+      float kept[4], *a = pixels + 4 * (row * WIDTH + left),
+                     *b = pixels + 4 * (row * WIDTH + WIDTH - 1 - left);
       memcpy(kept, a, sizeof kept);
       memcpy(a, b, sizeof kept);
       memcpy(b, kept, sizeof kept);
     }
 }
 
-typedef struct difference { double mean, greatest; } difference;
+typedef struct difference {
+  double mean, greatest;
+} difference;
 
 static difference compare(const float *a, const float *b) {
   difference d = {0, 0};
@@ -49,9 +53,11 @@ static difference compare(const float *a, const float *b) {
   return d;
 }
 
-static void assert_close(const float *expected, const float *pixels, double mean, double greatest, const char *what) {
+static void assert_close(const float *expected, const float *pixels, double mean, double greatest,
+                         const char *what) {
   difference d = compare(expected, pixels);
-  if (!(d.mean <= mean && d.greatest <= greatest)) fail_msg("%s: differs by %.3g, at most %.3g", what, d.mean, d.greatest);
+  if (!(d.mean <= mean && d.greatest <= greatest))
+    fail_msg("%s: differs by %.3g, at most %.3g", what, d.mean, d.greatest);
 }
 
 typedef struct move_case {
@@ -61,8 +67,8 @@ typedef struct move_case {
   double mean, greatest; /* allowed; 0: the same bytes */
 } move_case;
 
-/* Every scene moved in every way. A motion that is no power of two rounds: at the boundary between two slicing directions
- * (light exactly across the view) the other one may be taken, whose picture is as good. */
+/* Every scene moved in every way. A motion that is no power of two rounds: at the boundary between two
+ * slicing directions (light exactly across the view) the other one may be taken, whose picture is as good. */
 static void check_moves(const move_case *cases, size_t case_count, bool mirrored) {
   static float expected[FLOATS], pixels[FLOATS];
   size_t scenes;
@@ -71,7 +77,8 @@ static void check_moves(const move_case *cases, size_t case_count, bool mirrored
     stage set;
     open_scene(&set, &all[i], i);
     stage_render_sheets(&set, expected);
-    bool clipped = set.volumes[0].clipped; /* a clip box follows the volume's transform, which mirrors nothing */
+    bool clipped =
+        set.volumes[0].clipped; /* a clip box follows the volume's transform, which mirrors nothing */
     stage_close(&set);
     for (size_t c = 0; c < case_count && !(mirrored && clipped); c++) {
       char what[100];
@@ -102,10 +109,12 @@ static void test_far_origins(void **state) {
   check_moves(cases, 1, false);
 }
 
-/* A left-handed grid: buffers and sheets lie otherwise on the mirror's other side, as finely as the pixels are. */
+/* A left-handed grid: buffers and sheets lie otherwise on the mirror's other side, as finely as the pixels
+ * are. */
 static void test_mirror(void **state) {
   (void)state;
-  const move_case cases[] = {{"mirrored", motion_of_mirror((vec3){1 / 3.0, 2 / 3.0, -2 / 3.0}), 0, 2e-3, 0.08}};
+  const move_case cases[] = {
+      {"mirrored", motion_of_mirror((vec3){1 / 3.0, 2 / 3.0, -2 / 3.0}), 0, 2e-3, 0.08}};
   check_moves(cases, 1, true);
 }
 
@@ -129,7 +138,8 @@ static void test_far_eyes(void **state) {
       open_scene(&set, scene_named(names[n]), 1);
       stage_render_sheets(&set, expected);
       hl_camera *camera = &set.scene.camera;
-      vec3 target = vec3_of(camera->target), back = vec3_normalise(vec3_subtract(vec3_of(camera->position), target));
+      vec3 target = vec3_of(camera->target),
+           back = vec3_normalise(vec3_subtract(vec3_of(camera->position), target));
       stage_look(&set, vec3_add(target, vec3_scale(back, distance)), target, vec3_of(camera->up));
       stage_render_sheets(&set, pixels);
       assert_close(expected, pixels, 1e-5, 2e-3, "an orthographic camera from afar");
@@ -163,7 +173,8 @@ static void test_far_lamps(void **state) {
         light->position[1] = position.y;
         light->position[2] = position.z;
         stage_render_sheets(&set, pixels);
-        assert_close(expected, pixels, 2e-4, 5e-2, "a lamp from afar"); /* the buffers' pixels lie otherwise */
+        assert_close(expected, pixels, 2e-4, 5e-2,
+                     "a lamp from afar"); /* the buffers' pixels lie otherwise */
         stage_close(&set);
       }
 }
@@ -174,19 +185,27 @@ static void test_beyond_reach(void **state) {
   stage set;
   open_scene(&set, scene_named("balls"), 0);
   set.scene.camera.position[0] = 1e13;
-  stage_refused(&set, "/camera/position: reaches 1e+13 from the volumes, whose smallest voxel edge is 1: use at most 1e12 times "
-                       "that, or a directional light or orthographic camera");
+  stage_refused(&set,
+                "/camera/position: reaches 1e+13 from the volumes, whose smallest voxel edge is 1: use at "
+                "most 1e12 times "
+                "that, or a directional light or orthographic camera");
   set.scene.camera.position[0] = 40;
   set.lights[0].type = HL_LIGHT_POINT;
   set.lights[0].position[2] = 1e14;
-  stage_refused(&set, "/lights/0/position: reaches 1e+14 from the volumes, whose smallest voxel edge is 1: use at most 1e12 times "
-                       "that, or a directional light or orthographic camera");
+  stage_refused(&set,
+                "/lights/0/position: reaches 1e+14 from the volumes, whose smallest voxel edge is 1: use at "
+                "most 1e12 times "
+                "that, or a directional light or orthographic camera");
   set.lights[0].position[2] = 40;
   set.lights[0].intensity = 1e30;
-  stage_refused(&set, "/lights/0/intensity: makes the light's color 1e+30: use an intensity with which it is at most 1e20");
+  stage_refused(
+      &set,
+      "/lights/0/intensity: makes the light's color 1e+30: use an intensity with which it is at most 1e20");
   set.lights[0].intensity = 1;
   set.volumes[0].scale = 1e-20;
-  stage_refused(&set, "/volumes/0/transform: makes the edges of voxels 1e-20 long: give a scale with which they are from 1e-15 to 1e15");
+  stage_refused(&set,
+                "/volumes/0/transform: makes the edges of voxels 1e-20 long: give a scale with which they "
+                "are from 1e-15 to 1e15");
   stage_close(&set);
 }
 
@@ -203,8 +222,10 @@ static void test_too_many_sheets(void **state) {
   assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, &error), HL_OK);
   assert_int_equal(hl_renderer_create(set.context, &renderer, &error), HL_OK);
   assert_int_equal(hl_renderer_render(renderer, scene, pixels, 64, NULL, &error), HL_ERROR_UNSUPPORTED);
-  assert_string_equal(error.message, "/render/sheet_spacing: makes more than 1048576 sheets of the volumes, whose smallest voxel "
-                                     "edge is small beside their size: raise it");
+  assert_string_equal(
+      error.message,
+      "/render/sheet_spacing: makes more than 1048576 sheets of the volumes, whose smallest voxel "
+      "edge is small beside their size: raise it");
   hl_renderer_destroy(renderer);
   hl_scene_release(scene);
   stage_close(&set);
@@ -212,8 +233,9 @@ static void test_too_many_sheets(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_scales),       cmocka_unit_test(test_far_origins), cmocka_unit_test(test_mirror),
-      cmocka_unit_test(test_far_eyes),     cmocka_unit_test(test_far_lamps),   cmocka_unit_test(test_beyond_reach),
+      cmocka_unit_test(test_scales),          cmocka_unit_test(test_far_origins),
+      cmocka_unit_test(test_mirror),          cmocka_unit_test(test_far_eyes),
+      cmocka_unit_test(test_far_lamps),       cmocka_unit_test(test_beyond_reach),
       cmocka_unit_test(test_too_many_sheets),
   };
   return cmocka_run_group_tests_name("numbers_places", tests, NULL, NULL);

@@ -1,8 +1,9 @@
-/* analytic/numbers_voxels.c - voxels that are no numbers, all equal, huge, tiny or alone: the pictures they must give. */
-#include <setjmp.h>
-#include <stdarg.h>
+/* analytic/numbers_voxels.c - voxels that are no numbers, all equal, huge, tiny or alone: the pictures they
+ * must give. */
 #include <float.h>
 #include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +24,8 @@ static void aim(stage *set) {
 }
 
 static void fill_noise(float *voxels) {
-  for (int i = 0; i < VOXELS; i++) voxels[i] = stage_noise(0.9 * (i % GRID), 0.8 * (i / GRID % GRID), 0.7 * (i / GRID / GRID));
+  for (int i = 0; i < VOXELS; i++)
+    voxels[i] = stage_noise(0.9 * (i % GRID), 0.8 * (i / GRID % GRID), 0.7 * (i / GRID / GRID));
 }
 
 static hl_scene_volume *add_cube(stage *set, const float *voxels) {
@@ -46,7 +48,9 @@ static void render_cube_of(hl_voxel_type type, hl_kernel kernel, const float *vo
   stage_render_sheets(&set, pixels);
   stage_close(&set);
 }
-static void render_cube(const float *voxels, float *pixels) { render_cube_of(HL_VOXEL_F32, HL_KERNEL_BSPLINE, voxels, pixels); }
+static void render_cube(const float *voxels, float *pixels) {
+  render_cube_of(HL_VOXEL_F32, HL_KERNEL_BSPLINE, voxels, pixels);
+}
 
 /* They are transparent: the picture is the one with the commonest transparent value in their place. */
 static void test_not_finite(void **state) {
@@ -94,8 +98,10 @@ static void test_all_equal(void **state) {
         stage_eye_ray(&set, i % SIDE, i / SIDE, &origin, &direction);
         double alpha = 1 - pow(0.8, stage_chord((vec3){-4, -4, -4}, (vec3){4, 4, 4}, origin, direction));
         if (!(fabs((double)pixels[4 * i + 3] - alpha) < 1e-3))
-          fail_msg("all voxels %g, kernel %d: alpha %.9g instead of %.9g", (double)values[v], kernel, (double)pixels[4 * i + 3], alpha);
-        for (int c = 0; c < 3; c++) assert_true(pixels[4 * i + c] >= 0 && pixels[4 * i + c] <= 2 * pixels[4 * i + 3]);
+          fail_msg("all voxels %g, kernel %d: alpha %.9g instead of %.9g", (double)values[v], kernel,
+                   (double)pixels[4 * i + 3], alpha);
+        for (int c = 0; c < 3; c++)
+          assert_true(pixels[4 * i + c] >= 0 && pixels[4 * i + c] <= 2 * pixels[4 * i + 3]);
       }
       stage_close(&set);
     }
@@ -125,7 +131,8 @@ static void render_scaled(double by, hl_shading shading, float *pixels) {
   stage_close(&set);
 }
 
-/* The picture does not depend on the data's unit. Below 2^-126 floats have fewer digits: 2^-135 leaves 14 bits. */
+/* The picture does not depend on the data's unit. Below 2^-126 floats have fewer digits: 2^-135 leaves 14
+ * bits. */
 static void test_units_of_data(void **state) {
   (void)state;
   static float expected[FLOATS], pixels[FLOATS];
@@ -136,7 +143,8 @@ static void test_units_of_data(void **state) {
       render_scaled(ldexp(1, exponents[e]), (hl_shading)shading, pixels);
       for (int i = 0; i < FLOATS; i++)
         if (pixels[i] != expected[i])
-          fail_msg("data of 2^%d: %.9g instead of %.9g", exponents[e], (double)pixels[i], (double)expected[i]);
+          fail_msg("data of 2^%d: %.9g instead of %.9g", exponents[e], (double)pixels[i],
+                   (double)expected[i]);
     }
     render_scaled(ldexp(1, -135), (hl_shading)shading, pixels);
     for (int i = 0; i < FLOATS; i++) assert_true(isfinite(pixels[i]) && pixels[i] >= 0);
@@ -161,14 +169,15 @@ static void test_extremes_among_data(void **state) {
 
 /* ---- types ---- */
 
-/* Voxels of nothing and of the most that there is, in clumps: the greatest sums, and slopes, that whole weights have to hold. On
- * average: where a surface turns away from the light a pixel may differ by more. */
+/* Voxels of nothing and of the most that there is, in clumps: the greatest sums, and slopes, that whole
+ * weights have to hold. On average: where a surface turns away from the light a pixel may differ by more. */
 static void test_types_agree(void **state) {
   (void)state;
   static const hl_voxel_type whole[] = {HL_VOXEL_U8, HL_VOXEL_U16};
   static float voxels[VOXELS], pixels[FLOATS], expected[FLOATS];
   for (int i = 0; i < VOXELS; i++)
-    voxels[i] = stage_noise(0.6 * (i % GRID), 0.5 * (i / GRID % GRID), 0.7 * (i / GRID / GRID)) > 0.5f ? 1 : 0;
+    voxels[i] = stage_noise(0.6 * (i % GRID), 0.5 * (i / GRID % GRID), 0.7 * (i / GRID / GRID)) > 0.5f ? 1
+                                                                                                       : 0;
   for (int kernel = HL_KERNEL_BSPLINE; kernel <= HL_KERNEL_LINEAR; kernel++) {
     render_cube_of(HL_VOXEL_F32, (hl_kernel)kernel, voxels, expected);
     for (int type = 0; type < 2; type++) {
@@ -186,8 +195,8 @@ static void test_types_agree(void **state) {
 
 /* ---- one voxel along an axis ---- */
 
-/* A layer is a stack of equal thinner layers: its border values continue. Without shadows, whose buffers are as coarse as
- * voxels are. */
+/* A layer is a stack of equal thinner layers: its border values continue. Without shadows, whose buffers are
+ * as coarse as voxels are. */
 static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading shading, float *pixels) {
   static float voxels[12 * 12 * 12];
   static const hl_opacity_point opacity[] = {{0.2, 0}, {0.5, 0.4}, {1, 0.6}};
@@ -216,7 +225,8 @@ static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading
 
 static void test_one_voxel_thick(void **state) {
   (void)state;
-  static const size_t grids[][3] = {{1, 8, 8}, {8, 1, 8}, {8, 8, 1}, {1, 1, 8}, {8, 1, 1}, {1, 8, 1}, {1, 1, 1}, {1, 2, 3}};
+  static const size_t grids[][3] = {{1, 8, 8}, {8, 1, 8}, {8, 8, 1}, {1, 1, 8},
+                                    {8, 1, 1}, {1, 8, 1}, {1, 1, 1}, {1, 2, 3}};
   static float thin[FLOATS], thick[FLOATS];
   for (size_t g = 0; g < sizeof grids / sizeof *grids; g++)
     for (int axis = 0; axis < 3; axis++)
@@ -257,7 +267,8 @@ static void test_unit_distances_and_spacings(void **state) {
         double alpha = -expm1(log1p(-0.2) * chord / units[u]);
         if (chord > 0 && chord < 1e-4 * spacings[s]) continue; /* within floats of the box's outline */
         if (!(fabs((double)pixels[4 * i + 3] - alpha) < 1e-3)) /* opaque from 1 - 1/2048 on */
-          fail_msg("per %g, spacing %g: alpha %.9g instead of %.9g", units[u], spacings[s], (double)pixels[4 * i + 3], alpha);
+          fail_msg("per %g, spacing %g: alpha %.9g instead of %.9g", units[u], spacings[s],
+                   (double)pixels[4 * i + 3], alpha);
       }
       stage_close(&set);
     }
@@ -271,42 +282,60 @@ static void test_refused(void **state) {
   hl_scene_volume *volume = add_cube(&set, NULL);
   static float voxels[VOXELS] = {FLT_MAX};
   hl_scene_volume *filled = add_cube(&set, voxels);
-  stage_refused(&set, "/volumes/1/file: its voxels reach 3.4e+38, more than the 1e36 that pictures can be computed with: scale "
-                       "them, and mark missing ones by NaN");
+  stage_refused(&set,
+                "/volumes/1/file: its voxels reach 3.4e+38, more than the 1e36 that pictures can be computed "
+                "with: scale "
+                "them, and mark missing ones by NaN");
   hl_volume_release(filled->volume);
   set.scene.volume_count = 1;
   hl_opacity_point points[3] = {{0, 0}, {1, 0.5}, {0.5, 1}};
   hl_transfer_function *function = &volume->transfer_function;
   function->opacity = points;
   function->opacity_count = 3;
-  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/0: 0.5 comes after 1: sort the points by value");
+  stage_refused(&set,
+                "/volumes/0/transfer_function/opacity/2/0: 0.5 comes after 1: sort the points by value");
   points[0].value = points[1].value = points[2].value = 0.5;
-  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/0: 0.5 is there a third time: two points at one value make a step, "
-                       "remove the others");
+  stage_refused(&set,
+                "/volumes/0/transfer_function/opacity/2/0: 0.5 is there a third time: two points at one "
+                "value make a step, "
+                "remove the others");
   points[2].value = NAN;
-  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/0: nan is not a number: give a data value between -1e30 and 1e30");
+  stage_refused(&set,
+                "/volumes/0/transfer_function/opacity/2/0: nan is not a number: give a data value between "
+                "-1e30 and 1e30");
   points[2] = (hl_opacity_point){0.6, 1.5};
-  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/1: 1.5 is out of range: give an opacity from 0 to 1");
+  stage_refused(&set,
+                "/volumes/0/transfer_function/opacity/2/1: 1.5 is out of range: give an opacity from 0 to 1");
   points[2].opacity = NAN;
-  stage_refused(&set, "/volumes/0/transfer_function/opacity/2/1: nan is not a number: give an opacity from 0 to 1");
+  stage_refused(&set,
+                "/volumes/0/transfer_function/opacity/2/1: nan is not a number: give an opacity from 0 to 1");
   points[2].opacity = 1;
   function->unit_distance = 0;
-  stage_refused(&set, "/volumes/0/transfer_function/unit_distance: 0 is not above 0: give the length in world units that the "
-                       "opacities are for, above 0");
+  stage_refused(
+      &set,
+      "/volumes/0/transfer_function/unit_distance: 0 is not above 0: give the length in world units that the "
+      "opacities are for, above 0");
   function->unit_distance = 1;
   set.scene.render.sheet_spacing = 0;
-  stage_refused(&set, "/render/sheet_spacing: 0 is out of range: give voxels between sheets, from 0.01 to 100");
+  stage_refused(&set,
+                "/render/sheet_spacing: 0 is out of range: give voxels between sheets, from 0.01 to 100");
   set.scene.render.sheet_spacing = 1e9;
-  stage_refused(&set, "/render/sheet_spacing: 1e+09 is out of range: give voxels between sheets, from 0.01 to 100");
+  stage_refused(&set,
+                "/render/sheet_spacing: 1e+09 is out of range: give voxels between sheets, from 0.01 to 100");
   stage_close(&set);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_not_finite),      cmocka_unit_test(test_nothing_finite),
-      cmocka_unit_test(test_all_equal),       cmocka_unit_test(test_units_of_data),
-      cmocka_unit_test(test_extremes_among_data), cmocka_unit_test(test_types_agree), cmocka_unit_test(test_one_voxel_thick),
-      cmocka_unit_test(test_unit_distances_and_spacings), cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_not_finite),
+      cmocka_unit_test(test_nothing_finite),
+      cmocka_unit_test(test_all_equal),
+      cmocka_unit_test(test_units_of_data),
+      cmocka_unit_test(test_extremes_among_data),
+      cmocka_unit_test(test_types_agree),
+      cmocka_unit_test(test_one_voxel_thick),
+      cmocka_unit_test(test_unit_distances_and_spacings),
+      cmocka_unit_test(test_refused),
   };
   return cmocka_run_group_tests_name("numbers_voxels", tests, NULL, NULL);
 }

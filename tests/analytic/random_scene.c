@@ -10,7 +10,9 @@
 
 /* ---- numbers: SplitMix64 (Steele, Lea and Flood 2014) ---- */
 
-typedef struct dice { uint64_t state; } dice;
+typedef struct dice {
+  uint64_t state;
+} dice;
 
 static uint64_t draw(dice *d) {
   uint64_t z = d->state += 0x9e3779b97f4a7c15u;
@@ -18,7 +20,9 @@ static uint64_t draw(dice *d) {
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
 }
-static double between(dice *d, double low, double high) { return low + (high - low) * (double)(draw(d) >> 11) * 0x1p-53; }
+static double between(dice *d, double low, double high) {
+  return low + (high - low) * (double)(draw(d) >> 11) * 0x1p-53;
+}
 static int below(dice *d, int count) { return (int)(draw(d) % (uint64_t)count); }
 static bool chance(dice *d, double part) { return between(d, 0, 1) < part; }
 
@@ -62,7 +66,8 @@ static void spoil_voxels(dice *d, size_t count, float *voxels) {
 }
 
 /* Rising, some of them steps. */
-static void draw_points(dice *d, hl_transfer_function *function, hl_opacity_point *opacity, hl_color_point *color) {
+static void draw_points(dice *d, hl_transfer_function *function, hl_opacity_point *opacity,
+                        hl_color_point *color) {
   double value = between(d, -0.2, 0.4), densest = chance(d, 0.3) ? 1 : between(d, 0.05, 0.9);
   int count = 1 + below(d, RANDOM_POINTS), colors = 1 + below(d, RANDOM_POINTS);
   for (int p = 0; p < count; p++) {
@@ -95,7 +100,8 @@ static void draw_grid(dice *d, hl_volume_description *grid, double size) {
   store(grid->origin, vec3_subtract(vec3_scale(direction(d), between(d, 0, size)), middle));
 }
 
-static hl_volume *make_volume(dice *d, hl_context *context, const hl_volume_description *grid, float *voxels) {
+static hl_volume *make_volume(dice *d, hl_context *context, const hl_volume_description *grid,
+                              float *voxels) {
   hl_volume_description description = *grid;
   size_t count = grid->dimensions[0] * grid->dimensions[1] * grid->dimensions[2];
   static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
@@ -103,7 +109,8 @@ static hl_volume *make_volume(dice *d, hl_context *context, const hl_volume_desc
   if (description.type == HL_VOXEL_F32 && chance(d, 0.3)) spoil_voxels(d, count, voxels);
   if (description.type == HL_VOXEL_U8) {
     description.value_scale = 1.0 / 255;
-    for (size_t i = 0; i < count; i++) ((uint8_t *)voxels)[i] = (uint8_t)lrintf(voxels[i] * 255); /* ahead of what is read */
+    for (size_t i = 0; i < count; i++)
+      ((uint8_t *)voxels)[i] = (uint8_t)lrintf(voxels[i] * 255); /* ahead of what is read */
   } else if (description.type == HL_VOXEL_U16) {
     description.value_scale = 1.0 / 65535;
     for (size_t i = 0; i < count; i++) ((uint16_t *)voxels)[i] = (uint16_t)lrintf(voxels[i] * 65535);
@@ -147,7 +154,8 @@ static void draw_volume(dice *d, random_scene *scene, double size) {
   free(voxels);
   draw_points(d, &volume->transfer_function, scene->opacity[index], scene->color[index]);
   volume->shading = chance(d, 0.5) ? HL_SHADING_PHONG : HL_SHADING_NONE;
-  volume->material = (hl_material){between(d, 0, 1), between(d, 0, 1), between(d, 0, 1), between(d, 0, 80), 0};
+  volume->material = (hl_material){between(d, 0, 1), between(d, 0, 1), between(d, 0, 1), between(d, 0, 80),
+                                   0};
   for (int c = 0; c < 3 && chance(d, 0.4); c++) volume->attenuation_color[c] = between(d, 0, 2);
   volume->visible = !chance(d, 0.1);
   volume->casts_shadow = !chance(d, 0.1);
@@ -164,13 +172,19 @@ static void draw_volume(dice *d, random_scene *scene, double size) {
 /* ---- lights ---- */
 
 static void draw_texture(dice *d, float *pixels, double size, hl_light *light) {
-  vec3 way = light->type == HL_LIGHT_DIRECTIONAL ? vec3_of(light->direction) : vec3_scale(vec3_of(light->position), -1);
+  vec3 way = light->type == HL_LIGHT_DIRECTIONAL ? vec3_of(light->direction)
+                                                 : vec3_scale(vec3_of(light->position), -1);
   vec3 along = vec3_normalise(way), u = vec3_perpendicular(along), v = vec3_cross(along, u);
   for (int i = 0; i < RANDOM_TEXTURE * RANDOM_TEXTURE * 3; i++) pixels[i] = (float)between(d, 0, 1.5);
-  light->texture = (hl_light_texture){.pixels = pixels, .width = 1 + below(d, RANDOM_TEXTURE), .height = 1 + below(d, RANDOM_TEXTURE)};
-  store(light->texture.screen_center, vec3_scale(along, light->type == HL_LIGHT_DIRECTIONAL ? 0 : -vec3_length(way) * between(d, 0.2, 0.7)));
-  store(light->texture.screen_right, vec3_scale(vec3_add(u, vec3_scale(along, between(d, -0.4, 0.4))), between(d, 0.3, 1.5) * size));
-  store(light->texture.screen_up, vec3_scale(vec3_add(v, vec3_scale(u, between(d, -0.4, 0.4))), between(d, 0.3, 1.5) * size));
+  light->texture = (hl_light_texture){
+      .pixels = pixels, .width = 1 + below(d, RANDOM_TEXTURE), .height = 1 + below(d, RANDOM_TEXTURE)};
+  store(
+      light->texture.screen_center,
+      vec3_scale(along, light->type == HL_LIGHT_DIRECTIONAL ? 0 : -vec3_length(way) * between(d, 0.2, 0.7)));
+  store(light->texture.screen_right,
+        vec3_scale(vec3_add(u, vec3_scale(along, between(d, -0.4, 0.4))), between(d, 0.3, 1.5) * size));
+  store(light->texture.screen_up,
+        vec3_scale(vec3_add(v, vec3_scale(u, between(d, -0.4, 0.4))), between(d, 0.3, 1.5) * size));
 }
 
 /* Around a middle, in its plane. */
@@ -179,7 +193,8 @@ static void draw_vertices(dice *d, double size, double (*vertices)[3], hl_light 
   int count = 3 + below(d, RANDOM_VERTICES - 2);
   for (int i = 0; i < count; i++) {
     double angle = 2 * HL_PI * i / count, radius = size * between(d, 0.3, 1);
-    store(vertices[i], vec3_add(middle, vec3_add(vec3_scale(u, radius * cos(angle)), vec3_scale(v, radius * sin(angle)))));
+    store(vertices[i],
+          vec3_add(middle, vec3_add(vec3_scale(u, radius * cos(angle)), vec3_scale(v, radius * sin(angle)))));
   }
   light->vertices = (const double(*)[3])vertices;
   light->vertex_count = (size_t)count;
@@ -189,7 +204,8 @@ static void draw_light(dice *d, random_scene *scene, double size) {
   stage *set = &scene->set;
   size_t index = set->scene.light_count++;
   hl_light *light = &set->lights[index];
-  double extent = chance(d, 0.25) ? 0 : size * between(d, 0.05, 1.5), distance = chance(d, 0.2) ? between(d, 0, 2) : between(d, 2, 8);
+  double extent = chance(d, 0.25) ? 0 : size * between(d, 0.05, 1.5),
+         distance = chance(d, 0.2) ? between(d, 0, 2) : between(d, 2, 8);
   hl_light_defaults(light);
   light->type = (hl_light_type)below(d, 6);
   store(light->direction, direction(d));
@@ -199,7 +215,8 @@ static void draw_light(dice *d, random_scene *scene, double size) {
   store(light->edge2, vec3_scale(direction(d), extent * between(d, 0, 1)));
   light->radius = extent / 2;
   light->angular_diameter_deg = chance(d, 0.3) ? 0 : between(d, 0, 40);
-  if (light->type == HL_LIGHT_POLYGON) draw_vertices(d, size * between(d, 0.1, 1), scene->vertices[index], light);
+  if (light->type == HL_LIGHT_POLYGON)
+    draw_vertices(d, size * between(d, 0.1, 1), scene->vertices[index], light);
   if (light->type == HL_LIGHT_SPOT) {
     store(light->direction, vec3_subtract(vec3_scale(direction(d), size / 2), vec3_of(light->position)));
     light->opening_angle_deg = between(d, 5, 150);
@@ -212,7 +229,8 @@ static void draw_light(dice *d, random_scene *scene, double size) {
     light->intensity *= distance * size * distance * size;
   }
   light->shadows = (hl_shadows)below(d, 4);
-  if (light->type != HL_LIGHT_POLYGON && distance > 0.5 && chance(d, 0.2)) draw_texture(d, scene->texture[index], size, light);
+  if (light->type != HL_LIGHT_POLYGON && distance > 0.5 && chance(d, 0.2))
+    draw_texture(d, scene->texture[index], size, light);
 }
 
 /* ---- the rest ---- */

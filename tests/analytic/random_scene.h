@@ -1,4 +1,5 @@
-/* analytic/random_scene.h - small scenes drawn by a number: the same number, the same scene on every machine. */
+/* analytic/random_scene.h - small scenes drawn by a number: the same number, the same scene on every
+ * machine. */
 #ifndef RANDOM_SCENE_H
 #define RANDOM_SCENE_H
 
@@ -15,8 +16,8 @@ typedef struct random_scene {
   double vertices[STAGE_LIGHTS][RANDOM_VERTICES][3];
 } random_scene;
 
-/* One to three volumes of up to ten voxels a side in any orientation, up to four lights of every kind, a camera outside or
- * inside, pictures of 16 to 32 pixels a side. Close it with stage_close(&scene->set). */
+/* One to three volumes of up to ten voxels a side in any orientation, up to four lights of every kind, a
+ * camera outside or inside, pictures of 16 to 32 pixels a side. Close it with stage_close(&scene->set). */
 void random_scene_open(random_scene *scene, uint64_t seed);
 
 #endif

@@ -2,9 +2,10 @@
  *
  *     random_scenes [COUNT [FIRST]]
  *
- * Scene n is the same on every machine: a failure names it, and `random_scenes 1 n` is that scene alone. What is checked:
- * pixels are finite, none is negative, alpha is at most 1; one thread and three give the same bytes; what casts no shadow
- * lets every pixel be as bright or brighter; camera, lights and volumes turned together give the same picture.
+ * Scene n is the same on every machine: a failure names it, and `random_scenes 1 n` is that scene alone. What
+ * is checked: pixels are finite, none is negative, alpha is at most 1; one thread and three give the same
+ * bytes; what casts no shadow lets every pixel be as bright or brighter; camera, lights and volumes turned
+ * together give the same picture.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,8 +20,8 @@
 
 enum { SIDE = 32, FLOATS = SIDE * SIDE * 4 };
 
-/* Means of the difference, as parts of the brightest value; the greatest of 1100 scenes were 0.0029, and 0.0121 where
- * shadows are coarse or a lamp lies within the content. */
+/* Means of the difference, as parts of the brightest value; the greatest of 1100 scenes were 0.0029, and
+ * 0.0121 where shadows are coarse or a lamp lies within the content. */
 static const double MEAN = 0.004, COARSE_MEAN = 0.02;
 enum { SECTOR_SWEEPS = 6 }; /* one for each sector of a lamp within the content */
 
@@ -36,7 +37,8 @@ static hl_status render(stage *set, int threads, float *pixels, int *sweeps, hl_
   set->scene.render.threads = threads;
   hl_status status = hl_scene_create(set->context, &set->scene, &scene, error);
   if (status == HL_OK) status = hl_renderer_create(set->context, &renderer, error);
-  if (status == HL_OK) status = hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set->scene.width, &statistics, error);
+  if (status == HL_OK)
+    status = hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set->scene.width, &statistics, error);
   if (sweeps != NULL) *sweeps = statistics.sweeps;
   hl_renderer_destroy(renderer);
   hl_scene_release(scene);
@@ -54,7 +56,8 @@ static void check_range(uint64_t seed, const float *pixels, size_t floats) {
 static void check_threads(uint64_t seed, stage *set, const float *expected) {
   static float pixels[FLOATS];
   hl_error error = {0};
-  if (render(set, 3, pixels, NULL, &error) != HL_OK) fail_msg("scene %llu: %s", (unsigned long long)seed, error.message);
+  if (render(set, 3, pixels, NULL, &error) != HL_OK)
+    fail_msg("scene %llu: %s", (unsigned long long)seed, error.message);
   if (memcmp(pixels, expected, floats_of(set) * sizeof *pixels) != 0)
     fail_msg("scene %llu: three threads give another picture than one", (unsigned long long)seed);
 }
@@ -64,16 +67,17 @@ static void check_shadows_darken(uint64_t seed, stage *set, const float *shadowe
   static float pixels[FLOATS];
   hl_error error = {0};
   for (size_t v = 0; v < set->scene.volume_count; v++) set->volumes[v].casts_shadow = 0;
-  if (render(set, 1, pixels, NULL, &error) != HL_OK) fail_msg("scene %llu: %s", (unsigned long long)seed, error.message);
+  if (render(set, 1, pixels, NULL, &error) != HL_OK)
+    fail_msg("scene %llu: %s", (unsigned long long)seed, error.message);
   for (size_t i = 0; i < floats_of(set); i++)
     if (!(shadowed[i] <= pixels[i] * (1 + 1e-5f) + 1e-6f))
-      fail_msg("scene %llu: value %zu is %.9g with shadows, %.9g without", (unsigned long long)seed, i, (double)shadowed[i],
-               (double)pixels[i]);
+      fail_msg("scene %llu: value %zu is %.9g with shadows, %.9g without", (unsigned long long)seed, i,
+               (double)shadowed[i], (double)pixels[i]);
 }
 
-/* Buffers and sheets keep their places to the content but not their rasters: pictures differ as their pixels do. Nearest
- * lookups and buffers of a few pixels, where asked for, differ by whole pixels, and so may the first pixels around a lamp
- * within matter. */
+/* Buffers and sheets keep their places to the content but not their rasters: pictures differ as their pixels
+ * do. Nearest lookups and buffers of a few pixels, where asked for, differ by whole pixels, and so may the
+ * first pixels around a lamp within matter. */
 static void check_turned(uint64_t seed, const float *expected) {
   static float pixels[FLOATS];
   static random_scene turned;
@@ -84,7 +88,8 @@ static void check_turned(uint64_t seed, const float *expected) {
   motion by = motion_of_turn((vec3){0.3, -0.5, 0.8}, 37 + (double)(seed % 300));
   stage_move(set, &by, (int)(seed % 2), vertices);
   int sweeps = 0;
-  if (render(set, 1, pixels, &sweeps, &error) != HL_OK) fail_msg("scene %llu, turned: %s", (unsigned long long)seed, error.message);
+  if (render(set, 1, pixels, &sweeps, &error) != HL_OK)
+    fail_msg("scene %llu, turned: %s", (unsigned long long)seed, error.message);
   double mean = 0, brightest = 1, greatest = 0;
   for (size_t i = 0; i < floats_of(set); i++) {
     double off = fabs((double)pixels[i] - (double)expected[i]);
@@ -92,11 +97,12 @@ static void check_turned(uint64_t seed, const float *expected) {
     greatest = fmax(greatest, off);
     mean += off / (double)floats_of(set);
   }
-  bool coarse = sweeps >= SECTOR_SWEEPS || set->scene.render.shadow_resolution > 0 || set->scene.render.shadow_lookup == HL_LOOKUP_NEAREST;
+  bool coarse = sweeps >= SECTOR_SWEEPS || set->scene.render.shadow_resolution > 0 ||
+                set->scene.render.shadow_lookup == HL_LOOKUP_NEAREST;
   double tolerance = coarse ? COARSE_MEAN : MEAN;
   if (getenv("RANDOM_SCENES_VERBOSE") != NULL)
-    printf("# scene %llu turned: mean %.3g greatest %.3g brightest %.3g%s\n", (unsigned long long)seed, mean, greatest, brightest,
-           coarse ? " coarse" : "");
+    printf("# scene %llu turned: mean %.3g greatest %.3g brightest %.3g%s\n", (unsigned long long)seed, mean,
+           greatest, brightest, coarse ? " coarse" : "");
   if (!(mean <= tolerance * brightest))
     fail_msg("scene %llu, turned: differs by %.3g on average", (unsigned long long)seed, mean);
   stage_close(set);

@@ -106,8 +106,8 @@ static void test_ramp_is_exact(void **state) {
     field_make(&f, kernels[kernel]);
     for (int n = 0; n < 200; n++) {
       vec3 p = probe(n);
-      bool inside =
-          p.x > 1 && p.y > 1 && p.z > 1 && p.x < 21 && p.y < 16 && p.z < 12; /* clear of the borders */
+      bool inside = p.x > 1 && p.y > 1 && p.z > 1 && p.x < 21 && p.y < 16 &&
+                    p.z < 12; /* clear of the borders */
       if (!inside) continue;
       assert_near(hl_reference_value(&f.volume, p), 5 + 2 * p.x - 3 * p.y + 0.5 * p.z, 1e-12);
       vec3 gradient = hl_reference_gradient(&f.volume, p);

@@ -51,8 +51,8 @@ static void test_phong_of_a_ramp(void **state) {
   for (int n = 0; n < 8 * 8 * 8; n++) *out++ = (float)(8 - n / 64); /* falls with z: the normal is +z */
   stage set;
   stage_open(&set);
-  hl_scene_volume *ramp =
-      stage_add_grid(&set, (size_t[3]){8, 8, 8}, (double[3]){1, 1, 1}, (vec3){-4, -4, -4}, voxels);
+  hl_scene_volume *ramp = stage_add_grid(&set, (size_t[3]){8, 8, 8}, (double[3]){1, 1, 1}, (vec3){-4, -4, -4},
+                                         voxels);
   stage_set_opacity(&set, ramp, 0.9999, 0.01);
   stage_set_color(&set, ramp, 0.8, 0.4, 0.2);
   ramp->shading = HL_SHADING_PHONG;

@@ -50,12 +50,9 @@ static void *store_voxels(const stage *set, const float *voxels, size_t count, d
   *value_scale = set->type == HL_VOXEL_U8 ? 1.0 / 255 : set->type == HL_VOXEL_U16 ? 1.0 / 65535 : 1;
   for (size_t i = 0; i < count; i++) {
     float value = voxels == NULL ? 1 : voxels[i];
-    if (set->type == HL_VOXEL_U8)
-      ((uint8_t *)stored)[i] = (uint8_t)lround(value / *value_scale);
-    else if (set->type == HL_VOXEL_U16)
-      ((uint16_t *)stored)[i] = (uint16_t)lround(value / *value_scale);
-    else
-      stored[i] = value;
+    if (set->type == HL_VOXEL_U8) ((uint8_t *)stored)[i] = (uint8_t)lround(value / *value_scale);
+    else if (set->type == HL_VOXEL_U16) ((uint16_t *)stored)[i] = (uint16_t)lround(value / *value_scale);
+    else stored[i] = value;
   }
   return stored;
 }
@@ -72,8 +69,8 @@ hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const do
     description.axis[a][a] = spacing[a];
     description.origin[a] = low[a] + spacing[a] / 2;
   }
-  void *stored =
-      store_voxels(set, voxels, dimensions[0] * dimensions[1] * dimensions[2], &description.value_scale);
+  void *stored = store_voxels(set, voxels, dimensions[0] * dimensions[1] * dimensions[2],
+                              &description.value_scale);
   description.type = set->type;
   description.voxels = stored;
   hl_scene_volume *volume = &set->volumes[set->scene.volume_count++];
@@ -197,12 +194,15 @@ static hl_render_statistics render_with(stage *set, hl_renderer *renderer, float
   hl_scene *scene = NULL;
   hl_render_statistics statistics = {.struct_size = sizeof statistics};
   require(hl_scene_create(set->context, &set->scene, &scene, &error), &error);
-  require(hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set->scene.width, &statistics, &error), &error);
+  require(hl_renderer_render(renderer, scene, pixels, 4 * (size_t)set->scene.width, &statistics, &error),
+          &error);
   hl_scene_release(scene);
   return statistics;
 }
 
-void stage_render_with(stage *set, hl_renderer *renderer, float *pixels) { (void)render_with(set, renderer, pixels); }
+void stage_render_with(stage *set, hl_renderer *renderer, float *pixels) {
+  (void)render_with(set, renderer, pixels);
+}
 
 hl_render_statistics stage_render_counted(stage *set, float *pixels) {
   hl_error error = {0};

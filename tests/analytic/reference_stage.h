@@ -1,4 +1,5 @@
-/* analytic/reference_stage.h - small scenes built in code, and their pictures by the reference and by the sheets. */
+/* analytic/reference_stage.h - small scenes built in code, and their pictures by the reference and by the
+ * sheets. */
 #ifndef REFERENCE_STAGE_H
 #define REFERENCE_STAGE_H
 
@@ -36,7 +37,8 @@ hl_light *stage_add_point(stage *set, vec3 position);
 hl_light *stage_add_spot(stage *set, vec3 position, vec3 direction, double opening_deg, double falloff_deg);
 
 /* pixels: [height][width][3], borrowed until the pictures are made. */
-void stage_set_texture(hl_light *light, int width, int height, const float *pixels, vec3 center, vec3 right, vec3 up);
+void stage_set_texture(hl_light *light, int width, int height, const float *pixels, vec3 center, vec3 right,
+                       vec3 up);
 
 void stage_look(stage *set, vec3 position, vec3 target, vec3 up);
 /* The ray through the centre of pixel (x, y), as the scene format defines it. */

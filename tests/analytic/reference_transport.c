@@ -263,8 +263,8 @@ static double disk_below(double s) {
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* Under the edge of a plate that fills x < 0 at height 6 the light on the near side is hidden: hidden(x) is its part.
- * The plate is thin: its two faces give nearly the same profile. */
+/* Under the edge of a plate that fills x < 0 at height 6 the light on the near side is hidden: hidden(x) is
+ * its part. The plate is thin: its two faces give nearly the same profile. */
 static void check_penumbra(stage *set, double (*hidden)(double x), double tolerance) {
   static float pixels[64 * 2 * 4];
   set->scene.render.shadows = HL_SHADOWS_SOFT;
@@ -319,9 +319,7 @@ static void test_penumbra_of_sphere(void **state) {
   stage_close(&set);
 }
 
-static double hidden_of_disk(double x) {
-  return disk_below(edge_on_light(x, cos(0.5), sin(0.5)) / 5);
-}
+static double hidden_of_disk(double x) { return disk_below(edge_on_light(x, cos(0.5), sin(0.5)) / 5); }
 
 static void test_penumbra_of_disk(void **state) {
   (void)state;
@@ -365,7 +363,8 @@ static double hidden_of_polygon(double x) {
 
 static void test_penumbra_of_polygon(void **state) {
   (void)state;
-  static const double outline[][3] = {{-5, -5, 14}, {5, -5, 14}, {5, 0, 14}, {0, 0, 14}, {0, 5, 14}, {-5, 5, 14}};
+  static const double outline[][3] = {{-5, -5, 14}, {5, -5, 14}, {5, 0, 14},
+                                      {0, 0, 14},   {0, 5, 14},  {-5, 5, 14}};
   stage set;
   stage_half_plane(&set);
   hl_light *light = stage_add_point(&set, (vec3){0, 0, 0});

@@ -1,4 +1,5 @@
-/* tests/analytic/render_memory.c - a frame's memory: foretold from above and not far off, and refused before it begins. */
+/* tests/analytic/render_memory.c - a frame's memory: foretold from above and not far off, and refused before
+ * it begins. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -22,7 +23,8 @@ static void open_stage(stage *set, uint64_t limit) {
     for (size_t j = 0; j < EDGE; j++)
       for (size_t i = 0; i < EDGE; i++)
         voxels[(k * EDGE + j) * EDGE + i] = stage_noise((double)i / 5, (double)j / 5, (double)k / 5);
-  stage_add_grid(set, (size_t[3]){EDGE, EDGE, EDGE}, (double[3]){1, 1, 1}, (vec3){-EDGE / 2, -EDGE / 2, -EDGE / 2}, voxels);
+  stage_add_grid(set, (size_t[3]){EDGE, EDGE, EDGE}, (double[3]){1, 1, 1},
+                 (vec3){-EDGE / 2, -EDGE / 2, -EDGE / 2}, voxels);
   stage_look(set, (vec3){60, -160, 90}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
   set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
   set->scene.camera.fovy_deg = 32;
@@ -38,14 +40,15 @@ typedef struct variant {
   bool colored, clipped, layers, maximum;
 } variant;
 
-static const variant variants[] = {{"no shadows", HL_SHADOWS_OFF, 0, 1, false, false, false, false},
-                                   {"hard", HL_SHADOWS_HARD, 0, 2, false, true, false, false},
-                                   {"cascade", HL_SHADOWS_SOFT, HL_SOFT_CASCADE, 1, true, false, false, false},
-                                   {"paper", HL_SHADOWS_SOFT, HL_SOFT_PAPER, 1, false, false, false, false},
-                                   {"sublights", HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS, 1, false, false, false, false},
-                                   {"lamp inside", HL_SHADOWS_HARD, 0, 3, false, false, false, false},
-                                   {"layers", HL_SHADOWS_HARD, 0, 1, false, false, true, false},
-                                   {"maximum", HL_SHADOWS_HARD, 0, 1, false, true, false, true}};
+static const variant variants[] = {
+    {"no shadows", HL_SHADOWS_OFF, 0, 1, false, false, false, false},
+    {"hard", HL_SHADOWS_HARD, 0, 2, false, true, false, false},
+    {"cascade", HL_SHADOWS_SOFT, HL_SOFT_CASCADE, 1, true, false, false, false},
+    {"paper", HL_SHADOWS_SOFT, HL_SOFT_PAPER, 1, false, false, false, false},
+    {"sublights", HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS, 1, false, false, false, false},
+    {"lamp inside", HL_SHADOWS_HARD, 0, 3, false, false, false, false},
+    {"layers", HL_SHADOWS_HARD, 0, 1, false, false, true, false},
+    {"maximum", HL_SHADOWS_HARD, 0, 1, false, true, false, true}};
 
 static void set_up(stage *set, const variant *v) {
   static const vec3 ways[2] = {{0.5, 0.6, -1}, {-1, 0.4, -0.6}};
@@ -65,8 +68,10 @@ static void set_up(stage *set, const variant *v) {
 }
 
 /* Renders one frame; estimate and peak in bytes. */
-static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, uint64_t *peak, hl_error *error) {
-  static float pixels[SIDE * SIDE * 4], picture[SIDE * SIDE * 3], shadow[SIDE * SIDE * 3], depth[SIDE * SIDE], own[SIDE * SIDE * 3];
+static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, uint64_t *peak,
+                        hl_error *error) {
+  static float pixels[SIDE * SIDE * 4], picture[SIDE * SIDE * 3], shadow[SIDE * SIDE * 3], depth[SIDE * SIDE],
+      own[SIDE * SIDE * 3];
   stage set;
   open_stage(&set, limit);
   set_up(&set, v);
@@ -75,9 +80,10 @@ static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, ui
   assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, NULL), HL_OK);
   assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
   hl_light_layers light = {picture, shadow};
-  hl_layers layers = {.struct_size = sizeof layers, .depth_mean = depth, .lights = &light, .light_count = 1, .emission = own};
-  hl_status status =
-      hl_renderer_render_layers(renderer, scene, pixels, SIDE * 4, v->layers ? &layers : NULL, NULL, error);
+  hl_layers layers = {
+      .struct_size = sizeof layers, .depth_mean = depth, .lights = &light, .light_count = 1, .emission = own};
+  hl_status status = hl_renderer_render_layers(renderer, scene, pixels, SIDE * 4, v->layers ? &layers : NULL,
+                                               NULL, error);
   *estimate = hl_renderer_estimate(renderer);
   *peak = hl_context_memory_peak(set.context);
   hl_renderer_destroy(renderer);
@@ -115,6 +121,7 @@ static void frames_are_refused_beforehand(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(estimates_hold), cmocka_unit_test(frames_are_refused_beforehand)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(estimates_hold),
+                                     cmocka_unit_test(frames_are_refused_beforehand)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

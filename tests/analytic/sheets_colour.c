@@ -1,5 +1,5 @@
-/* analytic/sheets_colour.c - what colours come out as: flat shading, emission, three scales. Closed forms, each asked of the
- * sheets and of the reference. */
+/* analytic/sheets_colour.c - what colours come out as: flat shading, emission, three scales. Closed forms,
+ * each asked of the sheets and of the reference. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -12,17 +12,20 @@
 enum { SIDE = 24, PIXELS = SIDE * SIDE };
 
 static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance)) fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
 }
 
-/* A homogeneous slab across the picture, 4 thick; two lights that shine from its two sides, in sweeps of their own. */
+/* A homogeneous slab across the picture, 4 thick; two lights that shine from its two sides, in sweeps of
+ * their own. */
 static hl_scene_volume *open_slab(stage *set, double opacity) {
   stage_open(set);
   set->scene.width = set->scene.height = SIDE;
   set->scene.camera.height = 12;
   set->scene.ambient[0] = 0.3;
   set->scene.ambient[1] = 0.5;
-  hl_scene_volume *slab = stage_add_grid(set, (size_t[3]){16, 16, 4}, (double[3]){1, 1, 1}, (vec3){-8, -8, -2}, NULL);
+  hl_scene_volume *slab = stage_add_grid(set, (size_t[3]){16, 16, 4}, (double[3]){1, 1, 1},
+                                         (vec3){-8, -8, -2}, NULL);
   stage_set_opacity(set, slab, opacity, 1);
   stage_set_color(set, slab, 0.2, 0.5, 0.8);
   stage_look(set, (vec3){3, 2, 30}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
@@ -75,7 +78,8 @@ static void test_flat_casts_and_receives_no_shadow(void **state) {
     for (int flat = 0; flat < 2; flat++) {
       stage set;
       (void)open_slab(&set, 0.9999);
-      hl_scene_volume *plate = stage_add_grid(&set, (size_t[3]){16, 16, 2}, (double[3]){1, 1, 1}, (vec3){-8, -8, 8}, NULL);
+      hl_scene_volume *plate = stage_add_grid(&set, (size_t[3]){16, 16, 2}, (double[3]){1, 1, 1},
+                                              (vec3){-8, -8, 8}, NULL);
       stage_set_opacity(&set, plate, 0.9999, 0.1);
       plate->shading = flat ? HL_SHADING_FLAT : HL_SHADING_NONE;
       plate->visible = 0;
@@ -90,10 +94,12 @@ static void test_flat_casts_and_receives_no_shadow(void **state) {
   }
 }
 
-/* All of a flat volume is its emission layer; lights and ambient light add nothing, and no shadow falls on it. */
+/* All of a flat volume is its emission layer; lights and ambient light add nothing, and no shadow falls on
+ * it. */
 static void test_layers_of_flat_colours(void **state) {
   (void)state;
-  static float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], picture[2][PIXELS * 3], shadow[2][PIXELS * 3];
+  static float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], picture[2][PIXELS * 3],
+      shadow[2][PIXELS * 3];
   for (int reference = 0; reference < 2; reference++) {
     hl_error error = {0};
     hl_scene *scene = NULL;
@@ -101,11 +107,16 @@ static void test_layers_of_flat_colours(void **state) {
     stage set;
     open_slab(&set, 0.4)->shading = HL_SHADING_FLAT;
     const hl_light_layers lights[2] = {{picture[0], shadow[0]}, {picture[1], shadow[1]}};
-    const hl_layers layers = {.struct_size = sizeof layers, .ambient = ambient, .emission = emission, .lights = lights, .light_count = 2};
+    const hl_layers layers = {.struct_size = sizeof layers,
+                              .ambient = ambient,
+                              .emission = emission,
+                              .lights = lights,
+                              .light_count = 2};
     assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, &error), HL_OK);
     assert_int_equal(hl_renderer_create(set.context, &renderer, &error), HL_OK);
-    hl_status status = reference ? hl_reference_render_layers(set.context, scene, NULL, pixels, 4 * SIDE, &layers, &error)
-                                 : hl_renderer_render_layers(renderer, scene, pixels, 4 * SIDE, &layers, NULL, &error);
+    hl_status status =
+        reference ? hl_reference_render_layers(set.context, scene, NULL, pixels, 4 * SIDE, &layers, &error)
+                  : hl_renderer_render_layers(renderer, scene, pixels, 4 * SIDE, &layers, NULL, &error);
     assert_int_equal(status, HL_OK);
     for (int i = 0; i < PIXELS; i++)
       for (int c = 0; c < 3; c++) {
@@ -142,8 +153,10 @@ static void test_emission_of_a_medium(void **state) {
         stage_eye_ray(&set, x, y, &origin, &direction);
         double chord = stage_chord((vec3){-8, -8, -2}, (vec3){8, 8, 2}, origin, direction);
         for (int c = 0; c < 3; c++)
-          assert_near((double)pixels[4 * (y * SIDE + x) + c],
-                      ASKED[c] * (slab->material.emission + 0.6 * set.scene.ambient[c]) * (1 - pow(0.8, chord)), 1e-3);
+          assert_near(
+              (double)pixels[4 * (y * SIDE + x) + c],
+              ASKED[c] * (slab->material.emission + 0.6 * set.scene.ambient[c]) * (1 - pow(0.8, chord)),
+              1e-3);
       }
     stage_close(&set);
   }
@@ -162,7 +175,8 @@ static void test_emission_adds_to_light(void **state) {
     render(&set, reference == 1, both);
     for (int i = 0; i < PIXELS; i++)
       for (int c = 0; c < 3; c++)
-        assert_near((double)both[4 * i + c], (double)lit[4 * i + c] + 0.7 * ASKED[c] * (double)lit[4 * i + 3], 3e-6);
+        assert_near((double)both[4 * i + c], (double)lit[4 * i + c] + 0.7 * ASKED[c] * (double)lit[4 * i + 3],
+                    3e-6);
     stage_close(&set);
   }
 }
@@ -171,7 +185,8 @@ static void test_emission_adds_to_light(void **state) {
 
 static const double STRETCH[3] = {1, 1.5, 0.5};
 
-/* A cut ball in a grid of the given spacing; the clip box is in the file's own world, so it is given in voxels there. */
+/* A cut ball in a grid of the given spacing; the clip box is in the file's own world, so it is given in
+ * voxels there. */
 static hl_scene_volume *add_ball(stage *set, const double spacing[3]) {
   enum { N = 16 };
   static float voxels[N * N * N];
@@ -196,7 +211,8 @@ static hl_scene_volume *add_ball(stage *set, const double spacing[3]) {
   return ball;
 }
 
-/* Spacing 1 with three scales is a grid of that spacing, to the last bit: placement, clip box, normals and shadows. */
+/* Spacing 1 with three scales is a grid of that spacing, to the last bit: placement, clip box, normals and
+ * shadows. */
 static void test_three_scales_are_another_spacing(void **state) {
   (void)state;
   static float pixels[2][PIXELS * 4];

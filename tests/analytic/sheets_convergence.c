@@ -16,10 +16,12 @@ static void stage_blob(stage *set) {
   float *voxels = malloc(N * N * N * sizeof *voxels);
   assert_non_null(voxels);
   for (int i = 0; i < N * N * N; i++) {
-    double x = i % N - 11.2, y = i / N % N - 11.9, z = i / N / N - 11.5, s = fmax(0, 1 - (x * x + 1.3 * y * y + z * z) / 100);
+    double x = i % N - 11.2, y = i / N % N - 11.9, z = i / N / N - 11.5,
+           s = fmax(0, 1 - (x * x + 1.3 * y * y + z * z) / 100);
     voxels[i] = (float)(s * s * s);
   }
-  hl_scene_volume *blob = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-12, -12, -12}, voxels);
+  hl_scene_volume *blob = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                         (vec3){-12, -12, -12}, voxels);
   free(voxels);
   blob->transfer_function.opacity = ramp;
   blob->transfer_function.opacity_count = 2;
@@ -50,9 +52,11 @@ static void check_order(vec3 light, hl_shading shading, double least) {
   stage_add_directional(&set, light);
   set.scene.render.sheet_spacing = 1.0 / 16;
   stage_render_sheets(&set, finest);
-  double coarse = error_at(&set, 2, finest), middle = error_at(&set, 1, finest), fine = error_at(&set, 0.5, finest);
+  double coarse = error_at(&set, 2, finest), middle = error_at(&set, 1, finest),
+         fine = error_at(&set, 0.5, finest);
   print_message("# %s: error %.3g at 2, %.3g at 1, %.3g at 1/2; ratios %.2f, %.2f\n",
-                shading == HL_SHADING_PHONG ? "phong" : "medium", coarse, middle, fine, coarse / middle, middle / fine);
+                shading == HL_SHADING_PHONG ? "phong" : "medium", coarse, middle, fine, coarse / middle,
+                middle / fine);
   assert_true(middle / fine >= least);
   stage_close(&set);
 }
@@ -60,7 +64,8 @@ static void check_order(vec3 light, hl_shading shading, double least) {
 static void test_phong(void **state) {
   (void)state;
   check_order((vec3){0.6, -0.5, -0.7}, HL_SHADING_PHONG, 3.5);
-  check_order((vec3){0.6, -0.5, 0.4}, HL_SHADING_PHONG, 3); /* most of what is seen lies at the kink where N.L = 0 */
+  check_order((vec3){0.6, -0.5, 0.4}, HL_SHADING_PHONG,
+              3); /* most of what is seen lies at the kink where N.L = 0 */
 }
 
 static void test_medium(void **state) {

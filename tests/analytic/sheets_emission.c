@@ -1,5 +1,5 @@
-/* analytic/sheets_emission.c - lights with an image of their own: its shape and colours in penumbrae, against plane
- * geometry and the reference. */
+/* analytic/sheets_emission.c - lights with an image of their own: its shape and colours in penumbrae, against
+ * plane geometry and the reference. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -12,12 +12,14 @@
 enum { WIDE = 160, ROWS = 6, SIDE = 48, SMALL = 16, IMAGE = 32 };
 
 static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance)) fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
 }
 
 /* An opaque floor with its surface at z = 0, which casts nothing, seen from straight above. */
 static void stage_floor(stage *set, int width, int height, double across) {
-  hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1}, (vec3){-20, -20, -2}, NULL);
+  hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
+                                          (vec3){-20, -20, -2}, NULL);
   stage_set_opacity(set, floor, 0.999, 0.01);
   floor->casts_shadow = 0;
   set->scene.render.shadows = HL_SHADOWS_SOFT;
@@ -30,9 +32,10 @@ static void stage_floor(stage *set, int width, int height, double across) {
 
 /* A hidden opaque plate an eighth of a unit thick, its middle at the height. */
 static void add_plate(stage *set, double x0, double x1, double y0, double y1, double height) {
-  hl_scene_volume *plate =
-      stage_add_grid(set, (size_t[3]){(size_t)ceil(x1 - x0), (size_t)ceil(y1 - y0), 1},
-                     (double[3]){(x1 - x0) / ceil(x1 - x0), (y1 - y0) / ceil(y1 - y0), 0.125}, (vec3){x0, y0, height - 0.0625}, NULL);
+  hl_scene_volume *plate = stage_add_grid(
+      set, (size_t[3]){(size_t)ceil(x1 - x0), (size_t)ceil(y1 - y0), 1},
+      (double[3]){(x1 - x0) / ceil(x1 - x0), (y1 - y0) / ceil(y1 - y0), 0.125},
+      (vec3){x0, y0, height - 0.0625}, NULL);
   stage_set_opacity(set, plate, 0.9999, 0.001);
   plate->visible = 0;
 }
@@ -66,8 +69,9 @@ static const float *quarters(void) {
   return pixels;
 }
 
-/* Over the edge of a plate the right half of the light, blue, rises on one side and the left half on the other, each over
- * half the width of eq. (5): light 6 wide at 24, plate at 8; what is seen from x of the light lies right of -2 x. */
+/* Over the edge of a plate the right half of the light, blue, rises on one side and the left half on the
+ * other, each over half the width of eq. (5): light 6 wide at 24, plate at 8; what is seen from x of the
+ * light lies right of -2 x. */
 static void check_two_colors(hl_soft_method method, int samples, bool reference, double tolerance) {
   static float pixels[WIDE * ROWS * 4];
   int wide = reference ? WIDE / 4 : WIDE;
@@ -91,7 +95,8 @@ static void check_two_colors(hl_soft_method method, int samples, bool reference,
     greatest = fmax(greatest, fmax(fabs((double)row[4 * i] - red), fabs((double)row[4 * i + 2] - blue)));
     assert_true(row[4 * i + 1] == 0);
   }
-  print_message("# two colours, method %d%s: greatest error %.4f\n", (int)method, reference ? ", reference" : "", greatest);
+  print_message("# two colours, method %d%s: greatest error %.4f\n", (int)method,
+                reference ? ", reference" : "", greatest);
   assert_true(greatest < tolerance);
   stage_close(&set);
 }
@@ -103,8 +108,8 @@ static void test_two_colors_over_an_edge(void **state) {
   check_two_colors(HL_SOFT_SUBLIGHTS, 8, false, 0.015);
 }
 
-/* A pin hole shows the light upside down, half as large: light 12 wide at 24, hole 1 wide at 8. From the middle of a
- * quarter's picture the hole shows 3 x 3 of the light, of 12 x 12 parts about nine. */
+/* A pin hole shows the light upside down, half as large: light 12 wide at 24, hole 1 wide at 8. From the
+ * middle of a quarter's picture the hole shows 3 x 3 of the light, of 12 x 12 parts about nine. */
 static void render_camera(hl_soft_method method, int samples, const float *image, float *pixels) {
   stage set;
   stage_open(&set);
@@ -132,21 +137,23 @@ static void check_camera(hl_soft_method method, int samples) {
   for (int quarter = 0; quarter < 4; quarter++) {
     /* red, upper left in the image, falls to the lower right */
     const float *at = pixel_at(pixels, quarter % 2 == 0 ? 1.5 : -1.5, quarter / 2 == 0 ? -1.5 : 1.5);
-    print_message("# camera, method %d: quarter %d is %.3f %.3f %.3f\n", (int)method, quarter, (double)at[0], (double)at[1],
-                  (double)at[2]);
+    print_message("# camera, method %d: quarter %d is %.3f %.3f %.3f\n", (int)method, quarter, (double)at[0],
+                  (double)at[1], (double)at[2]);
     for (int c = 0; c < 3; c++) {
       bool lit = quarter == c || quarter == 3;
       assert_near((double)at[c], lit ? 1 : 0, lit ? (method == HL_SOFT_SUBLIGHTS ? 0.2 : 0.05) : 0.02);
     }
   }
-  for (int i = 0; i < SIDE; i++) { /* beyond the picture, its blur by the hole and a twelfth of the light: 3 + 0.75 + 0.5 */
+  for (int i = 0; i < SIDE;
+       i++) { /* beyond the picture, its blur by the hole and a twelfth of the light: 3 + 0.75 + 0.5 */
     double x = fabs(-6 + (i + 0.5) * 12 / SIDE);
-    for (int c = 0; c < 3 && x > 4.25; c++) assert_near((double)pixels[4 * (SIDE * SIDE / 2 + i) + c], 0, 0.03);
+    for (int c = 0; c < 3 && x > 4.25; c++)
+      assert_near((double)pixels[4 * (SIDE * SIDE / 2 + i) + c], 0, 0.03);
   }
 }
 
-/* The paper's convolutions add variances, so that its picture is too small; but they add means rightly: each colour's
- * middle is where it should be, 1.5 from the hole's. */
+/* The paper's convolutions add variances, so that its picture is too small; but they add means rightly: each
+ * colour's middle is where it should be, 1.5 from the hole's. */
 static void check_camera_of_paper(void) {
   static float pixels[SIDE * SIDE * 4];
   double light[2] = {0, 0}, middle[2] = {0, 0};
@@ -157,7 +164,8 @@ static void check_camera_of_paper(void) {
       light[c] += at;
       middle[c] += at * (-6 + (i % SIDE + 0.5) * 12 / SIDE);
     }
-  print_message("# camera of the paper: red around %.3f, blue around %.3f\n", middle[0] / light[0], middle[1] / light[1]);
+  print_message("# camera of the paper: red around %.3f, blue around %.3f\n", middle[0] / light[0],
+                middle[1] / light[1]);
   assert_near(middle[0] / light[0], 1.5, 0.25);
   assert_near(middle[1] / light[1], -1.5, 0.25);
 }
@@ -227,7 +235,8 @@ static void turn_rect(hl_light *light) {
   memcpy(light->edge2, (double[3]){1, 6, -1}, sizeof light->edge2);
 }
 
-/* Lights of every kind, with the colours of a quartered image: right, left, up and down of it are told apart. */
+/* Lights of every kind, with the colours of a quartered image: right, left, up and down of it are told
+ * apart. */
 static hl_light *add_light(stage *set, hl_light_type type) {
   if (type == HL_LIGHT_DIRECTIONAL) {
     hl_light *light = stage_add_directional(set, (vec3){0.2, 0.1, -1});

@@ -1,4 +1,5 @@
-/* analytic/sheets_invariance.c - what must not change a picture: threads, instruction sets, history, interruptions. */
+/* analytic/sheets_invariance.c - what must not change a picture: threads, instruction sets, history,
+ * interruptions. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -17,9 +18,9 @@ enum { MOST_SIDE = 96, MOST_FLOATS = MOST_SIDE * MOST_SIDE * 4 };
 
 typedef struct watch {
   atomic_int allocations;
-  int reports;                /* of the stage "render", in this picture */
+  int reports; /* of the stage "render", in this picture */
   int allocations_at_report;
-  int allocations_in_loop;    /* between two reports of the sheet loop */
+  int allocations_in_loop; /* between two reports of the sheet loop */
   double last_fraction;
   int questions, cancel_after; /* 0: never */
 } watch;
@@ -138,12 +139,15 @@ static hl_renderer *create_renderer(stage *set) {
   return renderer;
 }
 
-static size_t picture_floats(const stage *set) { return (size_t)set->scene.width * (size_t)set->scene.height * 4; }
+static size_t picture_floats(const stage *set) {
+  return (size_t)set->scene.width * (size_t)set->scene.height * 4;
+}
 
 static void assert_same(const float *a, const float *b, size_t floats, const char *what, int setting_index) {
   size_t differing = 0;
   for (size_t i = 0; i < floats; i++) differing += memcmp(&a[i], &b[i], sizeof(float)) != 0;
-  if (differing > 0) fail_msg("%s: %zu of %zu values differ (%s)", what, differing, floats, SETTINGS[setting_index].name);
+  if (differing > 0)
+    fail_msg("%s: %zu of %zu values differ (%s)", what, differing, floats, SETTINGS[setting_index].name);
 }
 
 static void assert_shows_something(const float *pixels, size_t floats) {
@@ -178,7 +182,8 @@ static void test_instruction_sets(void **state) {
   static float scalar[MOST_FLOATS], other[MOST_FLOATS];
   if (hl_cpu_best_instruction_set() == HL_INSTRUCTION_SET_SCALAR) skip();
   for (int index = 0; index < SETTING_COUNT; index++)
-    for (int set_index = HL_INSTRUCTION_SET_SCALAR; set_index <= HL_INSTRUCTION_SET_AVX512_VBMI; set_index++) {
+    for (int set_index = HL_INSTRUCTION_SET_SCALAR; set_index <= HL_INSTRUCTION_SET_AVX512_VBMI;
+         set_index++) {
       if (!hl_cpu_has_instruction_set((hl_instruction_set)set_index)) continue;
       stage set;
       watch w;
@@ -188,12 +193,14 @@ static void test_instruction_sets(void **state) {
       set.scene.render.threads = 1;
       stage_render_sheets(&set, set_index == HL_INSTRUCTION_SET_SCALAR ? scalar : other);
       if (set_index != HL_INSTRUCTION_SET_SCALAR)
-        assert_same(scalar, other, picture_floats(&set), hl_instruction_set_name((hl_instruction_set)set_index), index);
+        assert_same(scalar, other, picture_floats(&set),
+                    hl_instruction_set_name((hl_instruction_set)set_index), index);
       stage_close(&set);
     }
 }
 
-/* Again with the same renderer, with a fresh one, and after another scene of another size has used its buffers. */
+/* Again with the same renderer, with a fresh one, and after another scene of another size has used its
+ * buffers. */
 static void test_history(void **state) {
   (void)state;
   static float first[MOST_FLOATS], again[MOST_FLOATS];
@@ -255,8 +262,8 @@ static void test_sizes(void **state) {
   }
 }
 
-/* A small picture of fine voxels is the mean of a large one: no voxel falls between pixels. 12 pixels over a grid of 36
- * voxels call for three pixels to one. */
+/* A small picture of fine voxels is the mean of a large one: no voxel falls between pixels. 12 pixels over a
+ * grid of 36 voxels call for three pixels to one. */
 static void test_small_pictures_are_averaged(void **state) {
   (void)state;
   enum { WIDTH = 12, HEIGHT = 10, SIDE = 3 };
@@ -285,7 +292,8 @@ static void test_small_pictures_are_averaged(void **state) {
   stage_close(&set);
 }
 
-/* The reference averages as many rays: one ray through each pixel's centre is another picture. Two volumes overlap. */
+/* The reference averages as many rays: one ray through each pixel's centre is another picture. Two volumes
+ * overlap. */
 static void test_reference_of_small_pictures(void **state) {
   (void)state;
   enum { SIDE = 24 };
@@ -314,7 +322,9 @@ static void test_reference_of_small_pictures(void **state) {
       with_mean = fmax(with_mean, fabs((double)sheets[i] - (double)mean[i]));
       with_centres = fmax(with_centres, fabs((double)sheets[i] - (double)centres[i]));
     }
-    print_message("# a small picture against the reference: greatest difference %.4f, of one ray a pixel %.4f\n", with_mean, with_centres);
+    print_message(
+        "# a small picture against the reference: greatest difference %.4f, of one ray a pixel %.4f\n",
+        with_mean, with_centres);
     assert_true(with_mean < 0.01);
     assert_true(with_centres > 0.1);
   }
@@ -368,8 +378,8 @@ static void test_cancel(void **state) {
   }
 }
 
-/* Only the picture's part of each row is written; and a picture of whole tiles made where the caller wants it is that made
- * elsewhere. */
+/* Only the picture's part of each row is written; and a picture of whole tiles made where the caller wants it
+ * is that made elsewhere. */
 static void test_row_stride(void **state) {
   (void)state;
   static _Alignas(64) float packed[MOST_FLOATS];
@@ -397,8 +407,8 @@ static void test_row_stride(void **state) {
   stage_close(&set);
 }
 
-/* With no light but the ambient one, the way that sheets go makes no difference but for what is left out behind opaque matter, 1/2048
- * either way. */
+/* With no light but the ambient one, the way that sheets go makes no difference but for what is left out
+ * behind opaque matter, 1/2048 either way. */
 static void test_order_of_sheets(void **state) {
   (void)state;
   enum { WIDTH = 272, HEIGHT = 200, FLOATS = WIDTH * HEIGHT * 4 };

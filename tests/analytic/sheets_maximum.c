@@ -1,5 +1,5 @@
-/* analytic/sheets_maximum.c - maximum projection: fields whose greatest value along a ray is known, and noise against the
- * reference. Each closed form is asked of both. */
+/* analytic/sheets_maximum.c - maximum projection: fields whose greatest value along a ray is known, and noise
+ * against the reference. Each closed form is asked of both. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -12,7 +12,8 @@
 enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 24 };
 
 static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance)) fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
 }
 
 /* Grey is the value itself, from 0 to 1; values above 0 are shown. */
@@ -34,7 +35,8 @@ static hl_scene_volume *add_field(stage *set, field_function *field) {
   static float voxels[N * N * N];
   for (int i = 0; i < N * N * N; i++)
     voxels[i] = (float)field(i % N - (N - 1) / 2.0, i / N % N - (N - 1) / 2.0, i / N / N - (N - 1) / 2.0);
-  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-N / 2.0, -N / 2.0, -N / 2.0}, voxels);
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                           (vec3){-N / 2.0, -N / 2.0, -N / 2.0}, voxels);
   set_function(volume, ABOVE_ZERO, 2, GREY, 2);
   return volume;
 }
@@ -78,7 +80,8 @@ static bool ends(const stage *set, int pixel, vec3 low, vec3 high, vec3 end[2]) 
   return enter < leave;
 }
 
-/* Clip boxes are honoured, and a perspective eye within the box sees what is before it. Lights do not matter. */
+/* Clip boxes are honoured, and a perspective eye within the box sees what is before it. Lights do not
+ * matter. */
 static void test_ramp_in_a_clip_box(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -86,7 +89,8 @@ static void test_ramp_in_a_clip_box(void **state) {
   for (int k = 0; k < 12; k++) {
     stage set;
     open_maximum(&set);
-    hl_scene_volume *volume = add_field(&set, ramp); /* exact away from the borders, where voxels are repeated */
+    hl_scene_volume *volume = add_field(&set,
+                                        ramp); /* exact away from the borders, where voxels are repeated */
     volume->clipped = 1;
     memcpy(volume->clip_min, &low, sizeof low);
     memcpy(volume->clip_max, &high, sizeof high);
@@ -114,8 +118,8 @@ static void test_ramp_in_a_clip_box(void **state) {
 
 static double blob(double x, double y, double z) { return exp(-(x * x + y * y + z * z) / 50); }
 
-/* The kernel's own widening: a B-spline adds a variance of 1/3 of a voxel, so the blob is (v / (v + 1/3))^1.5 exp(-r^2 / (2 v + 2/3))
- * with v = 25 (derived; beyond it 1e-3). */
+/* The kernel's own widening: a B-spline adds a variance of 1/3 of a voxel, so the blob is (v / (v + 1/3))^1.5
+ * exp(-r^2 / (2 v + 2/3)) with v = 25 (derived; beyond it 1e-3). */
 static void test_blob(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -141,7 +145,8 @@ static void test_blob(void **state) {
 
 /* ---- what the transfer function shows ---- */
 
-/* Values of some range only: the greatest shown one, whatever lies above; the colour of that value exactly. */
+/* Values of some range only: the greatest shown one, whatever lies above; the colour of that value
+ * exactly. */
 static void test_hidden_values_do_not_count(void **state) {
   (void)state;
   static float pixels[PIXELS * 4];
@@ -196,7 +201,8 @@ static void test_the_background_is_not_shown(void **state) {
     for (int i = 0; i < PIXELS; i++) {
       vec3 origin, direction;
       stage_eye_ray(&set, i % SIDE, i / SIDE, &origin, &direction);
-      if (fabs(origin.x) > 11 || fabs(origin.y) > 11 || fabs(origin.x) < 2.5 || fabs(origin.y) < 2.5) continue;
+      if (fabs(origin.x) > 11 || fabs(origin.y) > 11 || fabs(origin.x) < 2.5 || fabs(origin.y) < 2.5)
+        continue;
       double value = steps(origin.x, origin.y, 0);
       assert_true(pixels[4 * i + 3] == (value > 38.5 / 255 ? 1.0f : 0.0f));
       assert_near((double)pixels[4 * i], value > 38.5 / 255 ? value : 0, 1e-4);
@@ -209,11 +215,13 @@ static void test_the_background_is_not_shown(void **state) {
 
 static double shifted_blob(double x, double y, double z) { return blob(x - 4, y + 2, z); }
 
-/* Each volume alone, then of each channel the greatest; hidden volumes count for nothing, and order does not matter. */
+/* Each volume alone, then of each channel the greatest; hidden volumes count for nothing, and order does not
+ * matter. */
 static void test_several_volumes(void **state) {
   (void)state;
   static float pixels[4][PIXELS * 4];
-  static const hl_color_point red[] = {{0, {0, 0.1, 0}}, {1, {1, 0.1, 0}}}, green[] = {{0, {0, 0, 0}}, {1, {0.2, 1, 0}}};
+  static const hl_color_point red[] = {{0, {0, 0.1, 0}}, {1, {1, 0.1, 0}}},
+                              green[] = {{0, {0, 0, 0}}, {1, {0.2, 1, 0}}};
   for (int reference = 0; reference < 2; reference++) {
     for (int k = 0; k < 4; k++) { /* one, the other, both, both the other way round */
       stage set;
@@ -235,7 +243,8 @@ static void test_several_volumes(void **state) {
 /* ---- noise ---- */
 
 static double noise(double x, double y, double z) {
-  uint32_t hash = (uint32_t)(int)(x * 2 + 1000) * 73856093u ^ (uint32_t)(int)(y * 2 + 1000) * 19349663u ^ (uint32_t)(int)(z * 2 + 1000) * 83492791u;
+  uint32_t hash = (uint32_t)(int)(x * 2 + 1000) * 73856093u ^ (uint32_t)(int)(y * 2 + 1000) * 19349663u ^
+                  (uint32_t)(int)(z * 2 + 1000) * 83492791u;
   hash = (hash ^ hash >> 13) * 1274126177u;
   return fmax(0.05, (double)((hash ^ hash >> 16) & 0xffff) / 65535);
 }
@@ -244,10 +253,16 @@ static double noise(double x, double y, double z) {
 static void test_noise_against_the_reference(void **state) {
   (void)state;
   static float sheets[PIXELS * 4], reference[PIXELS * 4];
-  static const struct { hl_kernel kernel; hl_voxel_type type; double spacing, rms, greatest; } cases[] = {
-      {HL_KERNEL_BSPLINE, HL_VOXEL_F32, 1, 0.003, 0.016},      {HL_KERNEL_BSPLINE, HL_VOXEL_U8, 1, 0.003, 0.016},
-      {HL_KERNEL_BSPLINE, HL_VOXEL_F32, 0.25, 0.0006, 0.004},  {HL_KERNEL_GAUSSIAN, HL_VOXEL_U16, 1, 0.0045, 0.03},
-      {HL_KERNEL_LINEAR, HL_VOXEL_F32, 1, 0.03, 0.15},         {HL_KERNEL_LINEAR, HL_VOXEL_F32, 0.1, 0.007, 0.07}};
+  static const struct {
+    hl_kernel kernel;
+    hl_voxel_type type;
+    double spacing, rms, greatest;
+  } cases[] = {{HL_KERNEL_BSPLINE, HL_VOXEL_F32, 1, 0.003, 0.016},
+               {HL_KERNEL_BSPLINE, HL_VOXEL_U8, 1, 0.003, 0.016},
+               {HL_KERNEL_BSPLINE, HL_VOXEL_F32, 0.25, 0.0006, 0.004},
+               {HL_KERNEL_GAUSSIAN, HL_VOXEL_U16, 1, 0.0045, 0.03},
+               {HL_KERNEL_LINEAR, HL_VOXEL_F32, 1, 0.03, 0.15},
+               {HL_KERNEL_LINEAR, HL_VOXEL_F32, 0.1, 0.007, 0.07}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
     stage set;
     open_maximum(&set);
@@ -264,7 +279,8 @@ static void test_noise_against_the_reference(void **state) {
       sum += off * off / (4 * PIXELS);
       greatest = fmax(greatest, off);
     }
-    print_message("# noise, kernel %d, spacing %g: rms %.5f, greatest %.5f\n", (int)cases[n].kernel, cases[n].spacing, sqrt(sum), greatest);
+    print_message("# noise, kernel %d, spacing %g: rms %.5f, greatest %.5f\n", (int)cases[n].kernel,
+                  cases[n].spacing, sqrt(sum), greatest);
     assert_true(sqrt(sum) <= cases[n].rms && greatest <= cases[n].greatest);
     stage_close(&set);
   }
@@ -275,7 +291,8 @@ static void test_noise_against_the_reference(void **state) {
 static void test_same_bytes(void **state) {
   (void)state;
   static float first[PIXELS * 4], other[PIXELS * 4];
-  static const hl_instruction_set sets[] = {HL_INSTRUCTION_SET_SCALAR, HL_INSTRUCTION_SET_AUTO, HL_INSTRUCTION_SET_AUTO};
+  static const hl_instruction_set sets[] = {HL_INSTRUCTION_SET_SCALAR, HL_INSTRUCTION_SET_AUTO,
+                                            HL_INSTRUCTION_SET_AUTO};
   for (int k = 0; k < 3; k++) {
     hl_context_options options;
     hl_context_options_defaults(&options);
@@ -306,10 +323,13 @@ static void test_layers_are_refused(void **state) {
   (void)add_field(&set, blob);
   assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, &error), HL_OK);
   assert_int_equal(hl_renderer_create(set.context, &renderer, &error), HL_OK);
-  assert_int_equal(hl_renderer_render_layers(renderer, scene, pixels, 4 * SIDE, &layers, NULL, &error), HL_ERROR_UNSUPPORTED);
-  assert_int_equal(hl_reference_render_layers(set.context, scene, NULL, pixels, 4 * SIDE, &layers, &error), HL_ERROR_UNSUPPORTED);
-  assert_string_equal(error.message,
-                      "/render/compositing: a maximum projection has no layers: use \"light\", or ask for no layers");
+  assert_int_equal(hl_renderer_render_layers(renderer, scene, pixels, 4 * SIDE, &layers, NULL, &error),
+                   HL_ERROR_UNSUPPORTED);
+  assert_int_equal(hl_reference_render_layers(set.context, scene, NULL, pixels, 4 * SIDE, &layers, &error),
+                   HL_ERROR_UNSUPPORTED);
+  assert_string_equal(
+      error.message,
+      "/render/compositing: a maximum projection has no layers: use \"light\", or ask for no layers");
   hl_renderer_destroy(renderer);
   hl_scene_release(scene);
   stage_close(&set);

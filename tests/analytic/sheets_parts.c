@@ -1,4 +1,5 @@
-/* analytic/sheets_parts.c - a volume in parts looks like the whole: boxes that share faces, copies that overlap, boxes within boxes. */
+/* analytic/sheets_parts.c - a volume in parts looks like the whole: boxes that share faces, copies that
+ * overlap, boxes within boxes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -18,9 +19,9 @@ typedef enum layout { WHOLE, EIGHTHS, SLICES, OVERLAP, NESTED } layout;
 typedef struct setting {
   const char *name;
   hl_light_type light;
-  double size;          /* degrees, or a radius */
+  double size; /* degrees, or a radius */
   hl_soft_method method;
-  bool behind;          /* light from behind the ball */
+  bool behind; /* light from behind the ball */
 } setting;
 
 static const setting SETTINGS[] = {
@@ -34,8 +35,8 @@ static const setting SETTINGS[] = {
 };
 enum { SETTINGS_COUNT = sizeof SETTINGS / sizeof *SETTINGS };
 
-/* A ball with an edge four voxels wide; or waves that fill their grid. All parts reach the outermost faces of the whole: sheets and
- * shadow buffers then lie where they lie for the whole. */
+/* A ball with an edge four voxels wide; or waves that fill their grid. All parts reach the outermost faces of
+ * the whole: sheets and shadow buffers then lie where they lie for the whole. */
 static float *make_voxels(layout layout) {
   float *voxels = malloc((size_t)BALL * BALL * BALL * sizeof *voxels);
   assert_non_null(voxels);
@@ -58,7 +59,8 @@ static void clip(hl_scene_volume *volume, const double low[3], const double high
 }
 
 static hl_scene_volume *add_ball(stage *set, const float *voxels, double opacity) {
-  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){BALL, BALL, BALL}, (double[3]){1, 1, 1}, (vec3){-22, -22, -22}, voxels);
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){BALL, BALL, BALL}, (double[3]){1, 1, 1},
+                                           (vec3){-22, -22, -22}, voxels);
   stage_set_opacity(set, volume, opacity, 1);
   if (opacity < 0.5) return volume;
   volume->transfer_function.opacity = OPAQUE_BALL;
@@ -66,7 +68,8 @@ static hl_scene_volume *add_ball(stage *set, const float *voxels, double opacity
   return volume;
 }
 
-/* Thin matter in slices, half as dense twice, or with a hole that holds a box: 1 - o to the density's power passes. */
+/* Thin matter in slices, half as dense twice, or with a hole that holds a box: 1 - o to the density's power
+ * passes. */
 static void add_thin(stage *set, const float *voxels, layout layout) {
   static const double FACES[5] = {-22, -9, 3, 15, 22};
   if (layout == OVERLAP)
@@ -113,7 +116,8 @@ static void add_light(stage *set, const setting *s) {
   set->scene.render.light_samples = s->method == HL_SOFT_SUBLIGHTS ? 2 : 1;
 }
 
-static void show(const float *voxels, layout layout, double opacity, const setting *s, double spacing, float *pixels) {
+static void show(const float *voxels, layout layout, double opacity, const setting *s, double spacing,
+                 float *pixels) {
   stage set;
   stage_open(&set);
   set.scene.width = set.scene.height = SIDE;
@@ -147,7 +151,8 @@ static void assert_like_whole(layout layout, double opacity) {
     qsort(difference, PIXELS, sizeof *difference, by_size);
     double found = difference[PIXELS - 1 - PIXELS / 1000];
     if (brightest < 0.05 || found > GREATEST)
-      fail_msg("%s, spacing %g: parts differ from the whole by %.5f, which has %.3f", s->name, spacing, found, brightest);
+      fail_msg("%s, spacing %g: parts differ from the whole by %.5f, which has %.3f", s->name, spacing, found,
+               brightest);
   }
   free(voxels);
 }

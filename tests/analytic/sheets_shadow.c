@@ -15,12 +15,13 @@ static void assert_near(double value, double expected, double tolerance) {
     fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
 }
 
-/* An opaque floor with its surface at z = 0, which casts nothing, and a hidden opaque plate half a unit thick; the
- * eye looks straight down. */
+/* An opaque floor with its surface at z = 0, which casts nothing, and a hidden opaque plate half a unit
+ * thick; the eye looks straight down. */
 static void stage_plate(stage *set, vec3 low, double nx, double ny) {
-  hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1}, (vec3){-20, -20, -2}, NULL);
-  hl_scene_volume *plate =
-      stage_add_grid(set, (size_t[3]){(size_t)nx, (size_t)ny, 1}, (double[3]){1, 1, 0.5}, low, NULL);
+  hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
+                                          (vec3){-20, -20, -2}, NULL);
+  hl_scene_volume *plate = stage_add_grid(set, (size_t[3]){(size_t)nx, (size_t)ny, 1}, (double[3]){1, 1, 0.5},
+                                          low, NULL);
   stage_set_opacity(set, floor, 0.999, 0.01);
   stage_set_opacity(set, plate, 0.9999, 0.001);
   floor->casts_shadow = 0;
@@ -28,7 +29,8 @@ static void stage_plate(stage *set, vec3 low, double nx, double ny) {
 }
 
 /* Where brightness along a row first passes a level between two places; world x. */
-static double crossing(const float *row, int count, double left, double pitch, double level, double from, double to) {
+static double crossing(const float *row, int count, double left, double pitch, double level, double from,
+                       double to) {
   for (int x = 0; x + 1 < count; x++) {
     double at = left + (x + 0.5) * pitch, a = row[4 * x], b = row[4 * (x + 1)];
     if (at < from || at > to || (a - level) * (b - level) > 0 || a == b) continue;
@@ -48,8 +50,9 @@ static void open_under_point_light(stage *set) {
   set->scene.camera.height = 24;
 }
 
-/* Similar triangles: seen from a light at height H an edge at height h falls H / (H - h) as far out. The outline is
- * that of the plate's upper face here, which is the nearer to the light. Half of the smallest voxel edge. */
+/* Similar triangles: seen from a light at height H an edge at height h falls H / (H - h) as far out. The
+ * outline is that of the plate's upper face here, which is the nearer to the light. Half of the smallest
+ * voxel edge. */
 static void test_size_under_point_light(void **state) {
   (void)state;
   static float pixels[MOST * 4];
@@ -74,14 +77,15 @@ static void render_hard(stage *set, double spacing, hl_shadow_lookup lookup, flo
   stage_render_sheets(set, pixels);
 }
 
-/* Light along the faces of a cube of haze, seen from the side: what is left falls by exp(-sigma way), and no light that passes beside
- * the cube shines through its faces, wherever the pixels of the buffer lie. */
+/* Light along the faces of a cube of haze, seen from the side: what is left falls by exp(-sigma way), and no
+ * light that passes beside the cube shines through its faces, wherever the pixels of the buffer lie. */
 static void test_light_along_faces(void **state) {
   (void)state;
   static float pixels[MOST * 4];
   stage set;
   stage_open(&set);
-  hl_scene_volume *cube = stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1}, (vec3){-10, -10, -10}, NULL);
+  hl_scene_volume *cube = stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1},
+                                         (vec3){-10, -10, -10}, NULL);
   stage_set_opacity(&set, cube, 0.1, 1);
   stage_add_directional(&set, (vec3){1, 0, 0});
   stage_look(&set, (vec3){0, -50, 0}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
@@ -99,12 +103,15 @@ static void test_light_along_faces(void **state) {
   stage_close(&set);
 }
 
-/* Where sheets lie closer than five sixths of a voxel, hard shadows are read by cubic convolution; elsewhere that would ask for
- * pixels of more than three quarters of a voxel. */
+/* Where sheets lie closer than five sixths of a voxel, hard shadows are read by cubic convolution; elsewhere
+ * that would ask for pixels of more than three quarters of a voxel. */
 static void test_what_auto_reads(void **state) {
   (void)state;
   static float chosen[MOST * 4], cubic[MOST * 4], bilinear[MOST * 4];
-  const struct { double spacing; int cubic; } cases[] = {{0.5, 1}, {0.8, 1}, {0.9, 0}, {1, 0}, {2, 0}};
+  const struct {
+    double spacing;
+    int cubic;
+  } cases[] = {{0.5, 1}, {0.8, 1}, {0.9, 0}, {1, 0}, {2, 0}};
   stage set;
   open_under_point_light(&set);
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -153,12 +160,14 @@ static double disk_width(void) {
   double low = 0, high = 1;
   for (int i = 0; i < 60; i++) {
     double middle = (low + high) / 2;
-    if (disk_below(middle) < 0.9) low = middle; else high = middle;
+    if (disk_below(middle) < 0.9) low = middle;
+    else high = middle;
   }
   return 2 * low;
 }
 
-/* The edge of a plate over x < 0 whose middle is at the height, lit from straight above; its 10 to 90 % width. */
+/* The edge of a plate over x < 0 whose middle is at the height, lit from straight above; its 10 to 90 %
+ * width. */
 static double penumbra(double angle_deg, double height, hl_soft_method method) {
   static float pixels[WIDE * ROWS * 4];
   stage set;
@@ -173,7 +182,8 @@ static double penumbra(double angle_deg, double height, hl_soft_method method) {
   stage_look(&set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
   stage_render_sheets(&set, pixels);
   const float *row = &pixels[4 * WIDE * (ROWS / 2)];
-  double low = crossing(row, WIDE, -8, 16.0 / WIDE, 0.1, -8, 8), high = crossing(row, WIDE, -8, 16.0 / WIDE, 0.9, -8, 8);
+  double low = crossing(row, WIDE, -8, 16.0 / WIDE, 0.1, -8, 8),
+         high = crossing(row, WIDE, -8, 16.0 / WIDE, 0.9, -8, 8);
   double radius = height * tan(angle_deg * HL_PI / 360);
   for (int x = 0; x < WIDE; x++) {
     double at = -8 + (x + 0.5) * 16.0 / WIDE;
@@ -191,20 +201,23 @@ static void test_penumbra_of_cascade(void **state) {
     for (int h = 0; h < 3; h++) {
       double expected = disk_width() * heights[h] * tan(angles[a] * HL_PI / 360);
       double width = penumbra(angles[a], heights[h], HL_SOFT_CASCADE);
-      print_message("# cascade: %2g degrees, height %2g: penumbra %.3f, disk's %.3f\n", angles[a], heights[h], width, expected);
+      print_message("# cascade: %2g degrees, height %2g: penumbra %.3f, disk's %.3f\n", angles[a], heights[h],
+                    width, expected);
       if (expected < 0.3) continue; /* three pixels */
       assert_near(width / expected, 1, 0.15);
     }
 }
 
-/* The paper's convolutions add variances: four times the distance, about twice the width, and narrower than the truth. */
+/* The paper's convolutions add variances: four times the distance, about twice the width, and narrower than
+ * the truth. */
 static void test_penumbra_of_paper(void **state) {
   (void)state;
   static const double angles[] = {15, 30};
   for (int a = 0; a < 2; a++) {
     double near = penumbra(angles[a], 3, HL_SOFT_PAPER), far = penumbra(angles[a], 12, HL_SOFT_PAPER);
     double expected = disk_width() * 12 * tan(angles[a] * HL_PI / 360);
-    print_message("# paper: %2g degrees: penumbra %.3f at 3, %.3f at 12, disk's %.3f there\n", angles[a], near, far, expected);
+    print_message("# paper: %2g degrees: penumbra %.3f at 3, %.3f at 12, disk's %.3f there\n", angles[a],
+                  near, far, expected);
     assert_in_range((int)(100 * far / near), 150, 290);
     assert_true(far < 0.8 * expected);
   }
@@ -212,25 +225,27 @@ static void test_penumbra_of_paper(void **state) {
 
 /* A rect light above the plate's edge, and how wide its penumbra is in pixels. */
 typedef struct rect_case {
-  double across, along;  /* the light's sides against and along the edge */
-  double light, plate;   /* heights */
-  int width;             /* pixels, for 16 units */
+  double across, along; /* the light's sides against and along the edge */
+  double light, plate;  /* heights */
+  int width;            /* pixels, for 16 units */
   double spacing;
 } rect_case;
 
 static const rect_case rect_cases[] = {
-    {1.6, 4, 24, 8, 160, 0.5}, {1.6, 0, 24, 8, 160, 1},    {6, 1, 24, 8, 160, 1},   {6, 6, 24, 8, 320, 0.5},
+    {1.6, 4, 24, 8, 160, 0.5}, {1.6, 0, 24, 8, 160, 1},   {6, 1, 24, 8, 160, 1},   {6, 6, 24, 8, 320, 0.5},
     {6, 12, 24, 8, 160, 0.5},  {10, 3, 30, 15, 320, 0.5}, {10, 8, 30, 15, 320, 1},
 };
 
-/* The 10 to 90 % width of the edge's penumbra as a part of eq. (5)'s: a rect's profile is linear, so 0.8 L dZ / Z. */
+/* The 10 to 90 % width of the edge's penumbra as a part of eq. (5)'s: a rect's profile is linear, so 0.8 L dZ
+ * / Z. */
 static double rect_penumbra(const rect_case *c, hl_soft_method method, int samples) {
   static float pixels[WIDEST * ROWS * 4];
   stage set;
   stage_open(&set);
   stage_plate(&set, (vec3){-20, -20, c->plate - 0.25}, 20, 40);
   /* as far to the right as the plate goes to the left: the light is above the middle of all, or nearly */
-  hl_scene_volume *balance = stage_add_box(&set, (vec3){19, -20, c->plate - 0.25}, (vec3){20, 20, c->plate + 0.25});
+  hl_scene_volume *balance = stage_add_box(&set, (vec3){19, -20, c->plate - 0.25},
+                                           (vec3){20, 20, c->plate + 0.25});
   balance->visible = balance->casts_shadow = 0;
   set.scene.render.shadows = HL_SHADOWS_SOFT;
   set.scene.render.soft_method = method;
@@ -248,10 +263,11 @@ static double rect_penumbra(const rect_case *c, hl_soft_method method, int sampl
   stage_render_sheets(&set, pixels);
   const float *row = &pixels[(size_t)4 * (size_t)c->width * (ROWS / 2)];
   double pitch = 16.0 / c->width, low = crossing(row, c->width, -8, pitch, 0.1, -8, 8);
-  double high = crossing(row, c->width, -8, pitch, 0.9, -8, 8), expected = c->across * c->plate / (c->light - c->plate);
+  double high = crossing(row, c->width, -8, pitch, 0.9, -8, 8),
+         expected = c->across * c->plate / (c->light - c->plate);
   stage_close(&set);
-  print_message("# rect, method %d: %5.1f pixels, spacing %g: %.3f of eq. (5), from %.3f to %.3f\n", (int)method,
-                expected / pitch, c->spacing, (high - low) / (0.8 * expected), low, high);
+  print_message("# rect, method %d: %5.1f pixels, spacing %g: %.3f of eq. (5), from %.3f to %.3f\n",
+                (int)method, expected / pitch, c->spacing, (high - low) / (0.8 * expected), low, high);
   return (high - low) / (0.8 * expected);
 }
 
@@ -278,7 +294,8 @@ static hl_scene_volume *add_blob(stage *set) {
     voxels[i] = (float)fmax(0, 1 - r * r);
   }
   static const hl_opacity_point ramp[] = {{0, 0}, {0.1, 0}, {1, 0.3}};
-  hl_scene_volume *blob = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-12, -12, -12}, voxels);
+  hl_scene_volume *blob = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                         (vec3){-12, -12, -12}, voxels);
   free(voxels);
   blob->transfer_function.opacity = ramp;
   blob->transfer_function.opacity_count = 3;
@@ -297,7 +314,8 @@ static void add_ball_on_floor(stage *set) {
     voxels[i] = (float)fmin(1, fmax(0, 0.5 + 0.5 * fmax(ball, floor)));
   }
   static const hl_opacity_point ramp[] = {{0, 0}, {0.2, 0}, {0.8, 0.9}};
-  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-16, -16, -16}, voxels);
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                           (vec3){-16, -16, -16}, voxels);
   free(voxels);
   volume->transfer_function.opacity = ramp;
   volume->transfer_function.opacity_count = 3;
@@ -317,8 +335,9 @@ static double change(const float *a, const float *b, int pixels) {
   return sqrt(sum / (3 * pixels));
 }
 
-/* At e.l = 0 the slicing direction turns by 90 degrees and the eye's order is reversed; an animation must not show it: of 21
- * pictures a degree apart, no two neighbours differ by more than twice what they do in the middle. */
+/* At e.l = 0 the slicing direction turns by 90 degrees and the eye's order is reversed; an animation must not
+ * show it: of 21 pictures a degree apart, no two neighbours differ by more than twice what they do in the
+ * middle. */
 static void check_turn(void (*add)(stage *set), hl_shadows shadows, const char *name) {
   enum { FRAMES = 21, SIDE = 64 };
   static float frame[2][SIDE * SIDE * 4];

@@ -1,4 +1,5 @@
-/* analytic/sheets_texture.c - where projected images and cones of light fall, how bright and how far, against closed forms. */
+/* analytic/sheets_texture.c - where projected images and cones of light fall, how bright and how far, against
+ * closed forms. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -25,8 +26,8 @@ static float *checker(int count, int squares) {
 
 /* An opaque floor with its surface at z = 0, seen from straight above in pixels of a quarter. */
 static void stage_floor(stage *set) {
-  hl_scene_volume *floor =
-      stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1}, (vec3){-20, -20, -2}, NULL);
+  hl_scene_volume *floor = stage_add_grid(set, (size_t[3]){40, 40, 2}, (double[3]){1, 1, 1},
+                                          (vec3){-20, -20, -2}, NULL);
   stage_set_opacity(set, floor, 0.9999, 0.005);
   floor->casts_shadow = 0;
   set->scene.width = set->scene.height = SIDE;
@@ -34,7 +35,8 @@ static void stage_floor(stage *set) {
   set->scene.render.shadows = HL_SHADOWS_OFF;
 }
 
-/* Where brightness first passes one half after a place; world coordinate along a row or column of the floor's picture. */
+/* Where brightness first passes one half after a place; world coordinate along a row or column of the floor's
+ * picture. */
 static double edge_after(const float *first, int step, double from) {
   for (int i = 0; i + 1 < SIDE; i++) {
     double at = -12 + (i + 0.5) * 0.25, a = first[4 * i * step], b = first[4 * (i + 1) * step];
@@ -43,8 +45,8 @@ static double edge_after(const float *first, int step, double from) {
   return INFINITY;
 }
 
-/* Parallel light at 30 degrees to the floor's normal, the screen across it: squares keep their width along y and are
- * longer by 1 / cos 30 along x. */
+/* Parallel light at 30 degrees to the floor's normal, the screen across it: squares keep their width along y
+ * and are longer by 1 / cos 30 along x. */
 static void test_checker_at_30_degrees(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -54,7 +56,8 @@ static void test_checker_at_30_degrees(void **state) {
   stage_floor(&set);
   double s = 0.5, c = sqrt(0.75);
   hl_light *light = stage_add_directional(&set, (vec3){s, 0, -c});
-  stage_set_texture(light, 256, 256, image, (vec3){-30 * s, 0, 30 * c}, (vec3){8 * c, 0, 8 * s}, (vec3){0, 8, 0});
+  stage_set_texture(light, 256, 256, image, (vec3){-30 * s, 0, 30 * c}, (vec3){8 * c, 0, 8 * s},
+                    (vec3){0, 8, 0});
   for (int shadows = HL_SHADOWS_OFF; shadows <= HL_SHADOWS_HARD; shadows++) {
     set.scene.render.shadows = (hl_shadows)shadows;
     stage_render_sheets(&set, pixels);
@@ -75,8 +78,8 @@ static void test_checker_at_30_degrees(void **state) {
   free(image);
 }
 
-/* A point light above the floor: an edge at height h of the screen falls H / (H - h) as far out. Above itself the same
- * light gives nothing through its screen. */
+/* A point light above the floor: an edge at height h of the screen falls H / (H - h) as far out. Above itself
+ * the same light gives nothing through its screen. */
 static void test_point_light_through_a_screen(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -105,8 +108,9 @@ static void test_point_light_through_a_screen(void **state) {
   free(image);
 }
 
-/* An image finer than the picture is its mean there, at any angle. Over the 3.2 pixels a side that are averaged here,
- * single pixels of -1 and 1 leave at most 1 / 3.2 along a row, and 1 / 3.2^2 of the half between black and white: 0.05. */
+/* An image finer than the picture is its mean there, at any angle. Over the 3.2 pixels a side that are
+ * averaged here, single pixels of -1 and 1 leave at most 1 / 3.2 along a row, and 1 / 3.2^2 of the half
+ * between black and white: 0.05. */
 static void test_fine_images_are_averaged(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -126,8 +130,8 @@ static void test_fine_images_are_averaged(void **state) {
   free(image);
 }
 
-/* Three beams of one colour each cross a translucent cube seen from the side: without attenuation what comes out is what
- * went in, with it exp(-sigma way) of that. */
+/* Three beams of one colour each cross a translucent cube seen from the side: without attenuation what comes
+ * out is what went in, with it exp(-sigma way) of that. */
 static void test_beams_through_a_cube(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -137,8 +141,8 @@ static void test_beams_through_a_cube(void **state) {
     for (int c = 0; c < 3; c++) image[3 * y + c] = y / 10 % 2 == 1 && y / 20 == c;
   stage set;
   stage_open(&set);
-  hl_scene_volume *cube =
-      stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1}, (vec3){-10, -10, -10}, NULL);
+  hl_scene_volume *cube = stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1},
+                                         (vec3){-10, -10, -10}, NULL);
   stage_set_opacity(&set, cube, 0.1, 1);
   double sigma = -log(0.9);
   stage_look(&set, (vec3){0, -50, 0}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
@@ -155,10 +159,12 @@ static void test_beams_through_a_cube(void **state) {
       int y = (int)((12 - (8.75 - (15 + 20 * beam) * 0.25)) / 0.25);
       const float *entry = &pixels[4 * (SIDE * y + first)], *exit = &pixels[4 * (SIDE * y + last)];
       double passed = shadows == HL_SHADOWS_OFF ? 1 : exp(-sigma * (last - first) * 0.25);
-      double entered = (1 - exp(-sigma * 20)) * (shadows == HL_SHADOWS_OFF ? 1 : exp(-sigma * ((first + 0.5) * 0.25 - 2)));
+      double entered = (1 - exp(-sigma * 20)) *
+                       (shadows == HL_SHADOWS_OFF ? 1 : exp(-sigma * ((first + 0.5) * 0.25 - 2)));
       for (int c = 0; c < 3; c++) {
         assert_near((double)entry[c], c == beam ? entered : 0, c == beam ? 0.01 * entered : 1e-4);
-        assert_near((double)exit[c], c == beam ? passed * (double)entry[c] : 0, c == beam ? 0.01 * passed * entered : 1e-4);
+        assert_near((double)exit[c], c == beam ? passed * (double)entry[c] : 0,
+                    c == beam ? 0.01 * passed * entered : 1e-4);
       }
       const float *beside = &pixels[4 * (SIDE * (y + 10) + 48)];
       for (int c = 0; c < 3; c++) assert_true(beside[c] < 1e-4f);
@@ -167,8 +173,8 @@ static void test_beams_through_a_cube(void **state) {
   stage_close(&set);
 }
 
-/* A tilted cone on the floor: brightness is the smooth step of the cosine to the axis at every pixel, with shadows or
- * without, and nothing outside. */
+/* A tilted cone on the floor: brightness is the smooth step of the cosine to the axis at every pixel, with
+ * shadows or without, and nothing outside. */
 static void test_spot_light(void **state) {
   (void)state;
   static float pixels[SIDE * SIDE * 4];
@@ -202,23 +208,25 @@ static double disk_below(double s) {
   return 0.5 + (s * sqrt(1 - s * s) + asin(s)) / HL_PI;
 }
 
-/* Brightness along the floor's middle row is the part of the light's disk that is seen past the screen's edge at `edge`,
- * where the disk is 2 radius wide on the floor. */
+/* Brightness along the floor's middle row is the part of the light's disk that is seen past the screen's edge
+ * at `edge`, where the disk is 2 radius wide on the floor. */
 static void check_screen_edge(stage *set, double edge, double radius) {
   static float pixels[SIDE * SIDE * 4];
   double worst = 0;
   stage_render_sheets(set, pixels);
   for (int x = 0; x < SIDE; x++) {
     double at = -12 + (x + 0.5) * 0.25;
-    if (at > 0) worst = fmax(worst, fabs((double)pixels[4 * (SIDE * 48 + x)] - disk_below((at - edge) / radius)));
+    if (at > 0)
+      worst = fmax(worst, fabs((double)pixels[4 * (SIDE * 48 + x)] - disk_below((at - edge) / radius)));
   }
   print_message("# screen's edge, penumbra %.2f: at most %.4f off the disk's\n", 2 * radius, worst);
-  /* narrow edges are a box's of the disk's variance: 0.5 + (0.866 / 2 + asin 0.866) / pi - 1 = 0.029 off at most; no edge is
-   * sharper than a pixel, 0.25 wide */
+  /* narrow edges are a box's of the disk's variance: 0.5 + (0.866 / 2 + asin 0.866) / pi - 1 = 0.029 off at
+   * most; no edge is sharper than a pixel, 0.25 wide */
   if (2 * radius > 0.3) assert_near(worst, 0, 0.029);
 }
 
-/* The screen as an occluder: its penumbra is the light's disk, scaled by eq. (5), for parallel and near lights. */
+/* The screen as an occluder: its penumbra is the light's disk, scaled by eq. (5), for parallel and near
+ * lights. */
 static void test_screen_edge_of_extended_lights(void **state) {
   (void)state;
   const float white[3] = {1, 1, 1};
@@ -237,7 +245,8 @@ static void test_screen_edge_of_extended_lights(void **state) {
   light->radius = 2;
   for (double height = 2; height <= 20; height += 6) {
     double magnified = 30 / (30 - height);
-    stage_set_texture(light, 1, 1, white, (vec3){20 + 5 / magnified, 0, height}, (vec3){20, 0, 0}, (vec3){0, 40, 0});
+    stage_set_texture(light, 1, 1, white, (vec3){20 + 5 / magnified, 0, height}, (vec3){20, 0, 0},
+                      (vec3){0, 40, 0});
     check_screen_edge(&set, 5, 2 * height / (30 - height));
   }
   stage_close(&set);
@@ -256,8 +265,9 @@ static void test_the_shadow_buffer_follows_what_is_lit(void **state) {
   const float white[3] = {1, 1, 1};
   stage set;
   stage_open(&set);
-  stage_set_opacity(&set, stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1}, (vec3){-10, -10, -10}, NULL),
-                    0.1, 1);
+  stage_set_opacity(
+      &set, stage_add_grid(&set, (size_t[3]){20, 20, 20}, (double[3]){1, 1, 1}, (vec3){-10, -10, -10}, NULL),
+      0.1, 1);
   set.scene.width = set.scene.height = SIDE;
   set.scene.camera.height = 24;
   hl_light *light = stage_add_point(&set, (vec3){5, -8, 40});
@@ -267,7 +277,8 @@ static void test_the_shadow_buffer_follows_what_is_lit(void **state) {
   set.scene.light_count = 0;
   stage_add_spot(&set, (vec3){5, -8, 40}, (vec3){-5, 8, -40}, 12, 2);
   int cone = (int)tiles_filled_for_light(&set);
-  print_message("# tiles filled for a point light: %d, through a screen %d, for a spot %d\n", all, screen, cone);
+  print_message("# tiles filled for a point light: %d, through a screen %d, for a spot %d\n", all, screen,
+                cone);
   assert_in_range(screen, 1, all / 3);
   assert_in_range(cone, 1, all / 3);
   stage_close(&set);

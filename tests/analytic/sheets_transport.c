@@ -1,7 +1,7 @@
 /* analytic/sheets_transport.c - the sheets against closed forms of absorption, emission and shadow.
  *
- * The same questions as reference_transport.c asks of the reference, here of the renderer: pictures of homogeneous
- * boxes, whose every ray has a known value. */
+ * The same questions as reference_transport.c asks of the reference, here of the renderer: pictures of
+ * homogeneous boxes, whose every ray has a known value. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <string.h>
@@ -37,11 +37,13 @@ static hl_scene_volume *stage_homogeneous(stage *set) {
   return box;
 }
 
-/* The ray of pixel (x, y) in the box's own place, before the volume's transform; the parameter stays world length. */
+/* The ray of pixel (x, y) in the box's own place, before the volume's transform; the parameter stays world
+ * length. */
 static void local_ray(const stage *set, int x, int y, vec3 *origin, vec3 *direction) {
   const hl_scene_volume *volume = &set->volumes[0];
   stage_eye_ray(set, x, y, origin, direction);
-  mat3 turn_back = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), -volume->rotate_angle_deg * HL_PI / 180);
+  mat3 turn_back = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)),
+                                 -volume->rotate_angle_deg * HL_PI / 180);
   vec3 moved = vec3_subtract(*origin, vec3_of(volume->translate));
   *origin = vec3_scale(mat3_apply(turn_back, moved), 1 / volume->scale);
   *direction = vec3_scale(mat3_apply(turn_back, *direction), 1 / volume->scale);
@@ -67,7 +69,8 @@ static void check_alpha(stage *set) {
   assert_true(hits > 300);
 }
 
-/* No light, and light from behind, before, the side and askew: the eye must see the same opacity through any sheets. */
+/* No light, and light from behind, before, the side and askew: the eye must see the same opacity through any
+ * sheets. */
 static void check_alpha_through_all_sheets(stage *set) {
   static const vec3 lights[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {0.5, -1, 0.3}};
   static const double spacings[] = {0.5, 1, 2};
@@ -145,18 +148,20 @@ static void test_alpha_of_oblique_grid(void **state) {
 
 /* ---- emission: integral of sigma exp(-tau_eye) exp(-tau_light) ds along the ray ---- */
 
-/* Simpson's rule over the ray's way through the box, the light's way in at each point by stage_chord(). Far finer
- * than what it judges. deepest: the longest way in. */
+/* Simpson's rule over the ray's way through the box, the light's way in at each point by stage_chord(). Far
+ * finer than what it judges. deepest: the longest way in. */
 static double lit_brightness(vec3 origin, vec3 direction, vec3 light, double *deepest) {
   enum { STEPS = 400 };
   *deepest = 0;
   double chord = stage_chord(BOX_LOW, BOX_HIGH, origin, direction), sum = 0;
   if (chord == 0) return 0;
-  double enter = stage_chord((vec3){-1e3, -1e3, -1e3}, (vec3){1e3, 1e3, 1e3}, origin, direction), low = 0, high = enter;
+  double enter = stage_chord((vec3){-1e3, -1e3, -1e3}, (vec3){1e3, 1e3, 1e3}, origin, direction), low = 0,
+         high = enter;
   for (int i = 0; i < 80; i++) { /* the last parameter from which the whole chord still lies ahead */
     double middle = (low + high) / 2;
     vec3 start = vec3_add(origin, vec3_scale(direction, middle));
-    if (stage_chord(BOX_LOW, BOX_HIGH, start, direction) >= chord * (1 - 1e-12)) low = middle; else high = middle;
+    if (stage_chord(BOX_LOW, BOX_HIGH, start, direction) >= chord * (1 - 1e-12)) low = middle;
+    else high = middle;
   }
   for (int i = 0; i <= STEPS; i++) {
     double depth = chord * i / STEPS;
@@ -190,8 +195,7 @@ static void check_lit(stage *set, vec3 light) {
       double error = fabs(pixels[4 * (y * SIDE + x)] - expected);
       if (deepest < slab) /* the ray runs along a lit face, within the slabs that light enters in */
         worst_below_face = fmax(worst_below_face, error);
-      else
-        worst = fmax(worst, error);
+      else worst = fmax(worst, error);
       hits++;
     }
   assert_true(hits > 300);
@@ -199,10 +203,10 @@ static void check_lit(stage *set, vec3 light) {
   assert_near(worst_below_face, 0, 0.015);
 }
 
-/* The three ways that have a formula of their own, in the middle of the box: d the depth, z from the eye's side.
- *     light with the view:     int sigma exp(-2 sigma z) dz = (1 - exp(-2 sigma d)) / 2
- *     light against the view:  int sigma exp(-sigma z) exp(-sigma (d - z)) dz = sigma d exp(-sigma d)
- *     light across the view:   exp(-sigma x) (1 - exp(-sigma d)), x the depth below the lit face */
+/* The three ways that have a formula of their own, in the middle of the box: d the depth, z from the eye's
+ * side. light with the view:     int sigma exp(-2 sigma z) dz = (1 - exp(-2 sigma d)) / 2 light against the
+ * view:  int sigma exp(-sigma z) exp(-sigma (d - z)) dz = sigma d exp(-sigma d) light across the view:
+ * exp(-sigma x) (1 - exp(-sigma d)), x the depth below the lit face */
 static void test_lit_along_axes(void **state) {
   (void)state;
   static const double spacings[] = {0.5, 1, 2}, across[] = {0.005, 0.01, 0.035};
@@ -228,7 +232,8 @@ static void test_lit_along_axes(void **state) {
     stage_render_sheets(&set, pixels);
     for (int x = 0; x < SIDE; x++) {
       double below = (x + 0.5) * 14 / SIDE - 7 - BOX_LOW.x;
-      if (below < spacings[s] * sqrt(2) || below > BOX_HIGH.x - BOX_LOW.x) continue; /* the slabs that light enters in */
+      if (below < spacings[s] * sqrt(2) || below > BOX_HIGH.x - BOX_LOW.x)
+        continue; /* the slabs that light enters in */
       assert_near(row[4 * x], exp(-SIGMA * below) * (1 - exp(-SIGMA * depth)), across[s]);
     }
   }
@@ -237,7 +242,8 @@ static void test_lit_along_axes(void **state) {
 
 /* Within half a per cent of full scale. The boxes' faces cut slabs and shadow pixels: both are fine here. */
 static void check_lit_from_everywhere(stage *set, int resolution) {
-  static const vec3 lights[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {0, -1, 0}, {0.6, 0, -0.8}, {0.48, -0.64, 0.6}, {-0.6, 0.8, 0}};
+  static const vec3 lights[] = {{0, 0, -1},     {0, 0, 1},          {1, 0, 0},     {0, -1, 0},
+                                {0.6, 0, -0.8}, {0.48, -0.64, 0.6}, {-0.6, 0.8, 0}};
   hl_light *light = stage_add_directional(set, lights[0]);
   set->scene.render.sheet_spacing = 0.5;
   set->scene.render.shadow_resolution = resolution;
@@ -290,8 +296,8 @@ static void test_empty_function_gives_zero(void **state) {
   stage_close(&set);
 }
 
-/* A half-transparent block between the light and an opaque wall, both seen from +z; light along +x, the wall's face
- * at x = 2. The block rises above the wall, whose surface so lies well within its shadow. */
+/* A half-transparent block between the light and an opaque wall, both seen from +z; light along +x, the
+ * wall's face at x = 2. The block rises above the wall, whose surface so lies well within its shadow. */
 static void stage_block_and_wall(stage *set, hl_scene_volume **block, hl_scene_volume **wall) {
   *wall = stage_add_grid(set, (size_t[3]){4, 8, 8}, (double[3]){1, 1, 1}, (vec3){2, -4, -4}, NULL);
   *block = stage_add_grid(set, (size_t[3]){2, 8, 9}, (double[3]){1, 1, 1}, (vec3){-3, -4, -4}, NULL);

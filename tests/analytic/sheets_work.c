@@ -1,5 +1,5 @@
-/* analytic/sheets_work.c - work is done for what is seen: what is empty, out of sight or hidden costs next to nothing,
- * counted in pixels reconstructed, which do not depend on the machine. */
+/* analytic/sheets_work.c - work is done for what is seen: what is empty, out of sight or hidden costs next to
+ * nothing, counted in pixels reconstructed, which do not depend on the machine. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -68,12 +68,13 @@ static void test_empty_space(void **state) {
   }
 }
 
-/* A second ball beside the picture, whose shadow passes it by: the same picture, and no more pixels than sheets at
- * other heights make. */
+/* A second ball beside the picture, whose shadow passes it by: the same picture, and no more pixels than
+ * sheets at other heights make. */
 static void test_out_of_sight(void **state) {
   (void)state;
   static float alone[FLOATS], beside[FLOATS];
-  static const double limit[] = {0, 0.006}; /* what hard shadows may err: their buffer's pixels lie elsewhere */
+  static const double limit[] = {0,
+                                 0.006}; /* what hard shadows may err: their buffer's pixels lie elsewhere */
   for (int s = 0; s < 2; s++) {
     hl_render_statistics of[2];
     for (int other = 0; other < 2; other++) {
@@ -112,8 +113,8 @@ static void test_hidden(void **state) {
 
 enum { LARGE = 256 }; /* tiles enough for some to be tried */
 
-/* Light from behind: sheets go back to front for the eye, and what is hidden is found before. The ball that is hidden casts its shadow
- * on the one in front. */
+/* Light from behind: sheets go back to front for the eye, and what is hidden is found before. The ball that
+ * is hidden casts its shadow on the one in front. */
 static void test_hidden_from_light_behind(void **state) {
   (void)state;
   float *pixels = malloc((size_t)LARGE * LARGE * 4 * sizeof *pixels);

@@ -17,7 +17,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   size_t length = (size_t)(end - data);
   memcpy(name, data, length);
   name[length] = 0;
-  if (strlen(name) != length || strchr(name, '/') != NULL || name[0] == '.' || strcmp(name, "v.raw") == 0) return 0;
+  if (strlen(name) != length || strchr(name, '/') != NULL || name[0] == '.' || strcmp(name, "v.raw") == 0)
+    return 0;
   fuzz_load_volume(name, "v.raw", end + 1, size - length - 1);
   return 0;
 }

@@ -1,7 +1,9 @@
-/* tests/fuzz/render.c - fuzz target: whole renders of small random scenes, of every kind of light, shadow and volume.
+/* tests/fuzz/render.c - fuzz target: whole renders of small random scenes, of every kind of light, shadow and
+ * volume.
  *
- * The input's bytes are drawn one by one as choices and numbers, so that most inputs give scenes that the library
- * accepts. A scene that is refused must be refused with a line; a picture must be finite with alpha in [0, 1].
+ * The input's bytes are drawn one by one as choices and numbers, so that most inputs give scenes that the
+ * library accepts. A scene that is refused must be refused with a line; a picture must be finite with alpha
+ * in [0, 1].
  */
 #include <math.h>
 #include <string.h>
@@ -10,7 +12,15 @@
 
 const uint64_t fuzz_memory_limit = 32 << 20;
 
-enum { MOST_SIDE = 8, MOST_EDGE = 7, MOST_VOXELS = MOST_EDGE * MOST_EDGE * MOST_EDGE, MOST_POINTS = 4, MOST_LIGHTS = 3, MOST_VOLUMES = 2, TEXTURE = 3 };
+enum {
+  MOST_SIDE = 8,
+  MOST_EDGE = 7,
+  MOST_VOXELS = MOST_EDGE * MOST_EDGE * MOST_EDGE,
+  MOST_POINTS = 4,
+  MOST_LIGHTS = 3,
+  MOST_VOLUMES = 2,
+  TEXTURE = 3
+};
 
 /* Everything that a description points at. */
 typedef struct scene_parts {
@@ -178,11 +188,13 @@ static void draw_light(fuzz_source *source, scene_parts *parts, int index) {
 
 static void draw_settings(fuzz_source *source, hl_render_settings *render) {
   static const double spacings[] = {0.5, 1, 0.25, 2, 0.7, 10};
-  static const int resolutions[] = {16, 32, 7, 40, 1, 24, 12, 3}; /* auto is up to a million pixels: too slow here */
+  static const int resolutions[] = {16, 32, 7,  40,
+                                    1,  24, 12, 3}; /* auto is up to a million pixels: too slow here */
   render->shadows = (hl_shadows)(1 + fuzz_choice(source, 3));
   render->soft_method = (hl_soft_method)fuzz_choice(source, 3);
   render->light_samples = 1 + fuzz_choice(source, 3);
-  if (render->light_samples == 3 && render->shadows == HL_SHADOWS_OFF) render->compositing = HL_COMPOSITING_MAXIMUM;
+  if (render->light_samples == 3 && render->shadows == HL_SHADOWS_OFF)
+    render->compositing = HL_COMPOSITING_MAXIMUM;
   render->sheet_spacing = spacings[fuzz_choice(source, 6)];
   render->kernel = (hl_kernel)fuzz_choice(source, 3);
   render->reconstruction = (hl_reconstruction)fuzz_choice(source, 3);
@@ -246,8 +258,13 @@ static void render(const hl_scene *scene, bool with_layers) {
   size_t width = (size_t)description->width, count = width * (size_t)description->height;
   hl_light_layers light_layers[MOST_LIGHTS];
   for (int l = 0; l < MOST_LIGHTS; l++) light_layers[l] = (hl_light_layers){lights[l][0], lights[l][1]};
-  hl_layers layers = {.struct_size = sizeof layers, .ambient = planes[0], .depth_first = planes[1], .depth_mean = planes[2],
-                      .normal = planes[3], .lights = light_layers, .light_count = description->light_count};
+  hl_layers layers = {.struct_size = sizeof layers,
+                      .ambient = planes[0],
+                      .depth_first = planes[1],
+                      .depth_mean = planes[2],
+                      .normal = planes[3],
+                      .lights = light_layers,
+                      .light_count = description->light_count};
   hl_renderer *renderer = NULL;
   hl_error error = {0};
   hl_status status = hl_renderer_create(fuzz_context(), &renderer, &error);

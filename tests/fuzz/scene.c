@@ -1,7 +1,7 @@
 /* tests/fuzz/scene.c - fuzz target: scene files, read, written and read again.
  *
- * Scenes reach three files: v.nrrd, t.png and f.json, beside which they stand. Slashes are taken out of the text, so
- * that no other file of the machine takes part.
+ * Scenes reach three files: v.nrrd, t.png and f.json, beside which they stand. Slashes are taken out of the
+ * text, so that no other file of the machine takes part.
  */
 #define _GNU_SOURCE
 #include <stdlib.h>
@@ -16,7 +16,8 @@ static void write_companions(void) {
   static const char volume[] =
       "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 3 3\nencoding: ascii\n\n"
       "0 9 0 9 40 9 0 9 0 9 40 9 40 255 40 9 40 9 0 9 0 9 40 9 0 9 0\n";
-  static const char function[] = "{\"opacity\": [[0, 0], [200, 1]], \"color\": [[0, 1, 0, 0], [200, 0, 1, 1]]}";
+  static const char function[] =
+      "{\"opacity\": [[0, 0], [200, 1]], \"color\": [[0, 1, 0, 0], [200, 0, 1, 1]]}";
   static bool written;
   if (written) return;
   written = true;

@@ -1,4 +1,5 @@
-/* tests/fuzz/seeds.c - writes the first inputs of the volume targets: every kind of file that the loaders know, small.
+/* tests/fuzz/seeds.c - writes the first inputs of the volume targets: every kind of file that the loaders
+ * know, small.
  *
  * usage: seeds CORPUS_FOLDER. What a campaign finds beyond them is added by scripts/fuzz.
  */
@@ -14,11 +15,12 @@ typedef struct seed_kind {
   const char *target, *ending, *second;
 } seed_kind;
 
-static const seed_kind kinds[] = {{"nrrd", ".nrrd", "v.raw"},     {"nrrd", ".nhdr", "v.raw"},  {"metaimage", ".mha", "v.raw"},
-                                  {"metaimage", ".mhd", "v.raw"}, {"nifti", ".nii", NULL},     {"nifti", ".nii.gz", NULL},
-                                  {"nifti", ".hdr", NULL},        {"legacy_vtk", ".vtk", NULL}, {"vti", ".vti", NULL},
-                                  {"raw", ".raw", NULL},          {"raw", ".raw.gz", NULL},    {"raw", ".dat", "v.raw"},
-                                  {"npy", ".npy", NULL}};
+static const seed_kind kinds[] = {
+    {"nrrd", ".nrrd", "v.raw"},     {"nrrd", ".nhdr", "v.raw"},   {"metaimage", ".mha", "v.raw"},
+    {"metaimage", ".mhd", "v.raw"}, {"nifti", ".nii", NULL},      {"nifti", ".nii.gz", NULL},
+    {"nifti", ".hdr", NULL},        {"legacy_vtk", ".vtk", NULL}, {"vti", ".vti", NULL},
+    {"raw", ".raw", NULL},          {"raw", ".raw.gz", NULL},     {"raw", ".dat", "v.raw"},
+    {"npy", ".npy", NULL}};
 
 enum { EVERY = 7 }; /* prime to the samples' periods: one in so many is written */
 

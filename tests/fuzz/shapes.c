@@ -4,7 +4,8 @@
 
 #include "target.h"
 
-/* Where the text says its voxel size, this many bytes bound the grid; else it has SIZE voxels along its longest side. */
+/* Where the text says its voxel size, this many bytes bound the grid; else it has SIZE voxels along its
+ * longest side. */
 const uint64_t fuzz_memory_limit = 128 << 10;
 enum { SIZE = 16 };
 
@@ -20,7 +21,8 @@ static void check_values(hl_volume *volume) {
   REQUIRE(hl_volume_get_info(volume, &info) == HL_OK);
   REQUIRE(info.nonfinite_count == 0);
   REQUIRE(info.range[0] >= -1 && info.range[1] <= 1);
-  for (int a = 0; a < 3; a++) REQUIRE(info.spacing[a] > 0 && isfinite(info.spacing[a]) && isfinite(info.origin[a]));
+  for (int a = 0; a < 3; a++)
+    REQUIRE(info.spacing[a] > 0 && isfinite(info.spacing[a]) && isfinite(info.origin[a]));
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -30,7 +32,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   options.threads = 1;
   hl_volume *volume = NULL;
   hl_error error = {0};
-  hl_status status = hl_volume_from_shapes(fuzz_context(), (const char *)data, size, "shapes", &options, &volume, &error);
+  hl_status status = hl_volume_from_shapes(fuzz_context(), (const char *)data, size, "shapes", &options,
+                                           &volume, &error);
   if (fuzz_check_answer(status, &error, volume != NULL)) check_values(volume);
   hl_volume_release(volume);
   fuzz_check_nothing_held();

@@ -50,7 +50,8 @@ static void remove_folder(void) {
 
 const char *fuzz_folder(void) {
   if (the_folder[0] != 0) return the_folder;
-  strcpy(the_folder, access("/dev/shm", W_OK) == 0 ? "/dev/shm/halflight-fuzz-XXXXXX" : "/tmp/halflight-fuzz-XXXXXX");
+  strcpy(the_folder,
+         access("/dev/shm", W_OK) == 0 ? "/dev/shm/halflight-fuzz-XXXXXX" : "/tmp/halflight-fuzz-XXXXXX");
   REQUIRE(mkdtemp(the_folder) != NULL);
   atexit(remove_folder);
   return the_folder;
@@ -84,12 +85,14 @@ static void check_volume(hl_volume *volume) {
   REQUIRE(counted == voxels);
   REQUIRE(isfinite(info.range[0]) && isfinite(info.range[1]) && isfinite(info.mean));
   REQUIRE(info.range[0] <= info.mean && info.mean <= info.range[1]);
-  double last = hl_volume_value(volume, info.dimensions[0] - 1, info.dimensions[1] - 1, info.dimensions[2] - 1);
+  double last = hl_volume_value(volume, info.dimensions[0] - 1, info.dimensions[1] - 1,
+                                info.dimensions[2] - 1);
   REQUIRE(isnan(last) || (last >= info.range[0] && last <= info.range[1]));
   hl_transfer_function function = {0};
   hl_error error = {0};
   hl_status status = hl_transfer_function_automatic(fuzz_context(), volume, &function, &error);
-  if (fuzz_check_answer(status, &error, function.opacity != NULL)) hl_transfer_function_release(fuzz_context(), &function);
+  if (fuzz_check_answer(status, &error, function.opacity != NULL))
+    hl_transfer_function_release(fuzz_context(), &function);
 }
 
 /* The same content from memory, of other components, at another spacing. */
@@ -117,7 +120,8 @@ void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *
   const uint8_t *second = memmem(data, size, cut, sizeof cut - 1);
   size_t first_size = second == NULL ? size : (size_t)(second - data);
   fuzz_remove_file(1);
-  if (second != NULL) fuzz_write_file(1, second_name, second + sizeof cut - 1, size - first_size - (sizeof cut - 1));
+  if (second != NULL)
+    fuzz_write_file(1, second_name, second + sizeof cut - 1, size - first_size - (sizeof cut - 1));
   const char *path = fuzz_write_file(0, name, data, first_size);
   hl_volume *volume = NULL;
   hl_error error = {0};

@@ -106,15 +106,15 @@ static bool render(golden *run, const char *name, hl_image **image) {
   hl_scene *scene = NULL;
   snprintf(path, sizeof path, "%s/%s.json", run->source_folder, name);
   char *text = read_text(path, &length);
-  bool done =
-      hl_scene_from_json(run->context, text, length, run->volume_folder, path, &scene, &run->error) == HL_OK;
+  bool done = hl_scene_from_json(run->context, text, length, run->volume_folder, path, &scene, &run->error) ==
+              HL_OK;
   free(text);
   if (!done) return false;
   const hl_scene_description *description = hl_scene_describe(scene);
-  done =
-      hl_image_create(run->context, description->width, description->height, image, &run->error) == HL_OK &&
-      hl_renderer_render(run->renderer, scene, hl_image_pixels(*image), 4 * (size_t)description->width, NULL,
-                         &run->error) == HL_OK;
+  done = hl_image_create(run->context, description->width, description->height, image, &run->error) ==
+             HL_OK &&
+         hl_renderer_render(run->renderer, scene, hl_image_pixels(*image), 4 * (size_t)description->width,
+                            NULL, &run->error) == HL_OK;
   hl_scene_release(scene);
   return done;
 }
@@ -219,12 +219,9 @@ int main(int argc, char **argv) {
   golden run = {.source_folder = argc > 1 ? argv[1] : NULL, .volume_folder = "/tmp/halflight-golden-XXXXXX"};
   int first = 2;
   for (; first < argc && argv[first][0] == '-'; first++) {
-    if (strcmp(argv[first], "--update") == 0)
-      run.update = true;
-    else if (strcmp(argv[first], "--keep") == 0 && first + 1 < argc)
-      run.keep_folder = argv[++first];
-    else
-      run.source_folder = NULL;
+    if (strcmp(argv[first], "--update") == 0) run.update = true;
+    else if (strcmp(argv[first], "--keep") == 0 && first + 1 < argc) run.keep_folder = argv[++first];
+    else run.source_folder = NULL;
   }
   if (run.source_folder == NULL) {
     fprintf(stderr, "usage: golden SOURCE_FOLDER [--update] [--keep FOLDER] [NAME ...]\n");
@@ -238,8 +235,7 @@ int main(int argc, char **argv) {
   if (hl_context_create(NULL, &run.context, &run.error) != HL_OK ||
       hl_renderer_create(run.context, &run.renderer, &run.error) != HL_OK)
     printf("Bail out! %s\n", run.error.message);
-  else
-    failures = run_scenes(&run, argv + first, argc - first);
+  else failures = run_scenes(&run, argv + first, argc - first);
   hl_renderer_destroy(run.renderer);
   hl_context_destroy(run.context);
   remove_volumes(run.volume_folder);

@@ -1,5 +1,5 @@
-/* golden/volumes.c - see volumes.h. Only exact arithmetic and sqrt: the voxels are the same on every machine.
- */
+/* golden/volumes.c - see volumes.h. Only exact arithmetic and sqrt: the voxels are the same on every
+ * machine. */
 #include "volumes.h"
 
 #include <math.h>
@@ -17,8 +17,8 @@ static bool write_file(const char *folder, const char *name, const char *header,
   snprintf(path, sizeof path, "%s/%s", folder, name);
   FILE *file = fopen(path, "wb");
   if (file == NULL) return false;
-  bool written =
-      fwrite(header, 1, strlen(header), file) == strlen(header) && fwrite(data, 1, length, file) == length;
+  bool written = fwrite(header, 1, strlen(header), file) == strlen(header) &&
+                 fwrite(data, 1, length, file) == length;
   return fclose(file) == 0 && written;
 }
 
@@ -28,8 +28,8 @@ static bool write_ball(const char *folder) {
   for (int k = 0; k < N; k++)
     for (int j = 0; j < N; j++)
       for (int i = 0; i < N; i++)
-        voxels[k][j][i] =
-            (unsigned char)(255 * clamp((10 - distance(i - 11.5, j - 11.5, k - 11.5)) / 4) + 0.5);
+        voxels[k][j][i] = (unsigned char)(255 * clamp((10 - distance(i - 11.5, j - 11.5, k - 11.5)) / 4) +
+                                          0.5);
   return write_file(folder, "ball_24x24x24_uint8.raw", "", voxels, sizeof voxels);
 }
 

@@ -1,14 +1,16 @@
-/* VolPack's shear-warp on the volume of scripts/peers: frames of a turning camera, without and with its hard shadows.
+/* VolPack's shear-warp on the volume of scripts/peers: frames of a turning camera, without and with its hard
+ * shadows.
  *
  * usage: volpack VOLUME.raw JOB.txt FRAMES OUT
  *
- * JOB.txt has, as words: the size of the picture, the world height that it shows, the camera's right, up and forward axes,
- * the direction in which light travels, and 256 lines of a value's opacity and colour. Prints JSON; pictures go to
- * OUT-off.rgb and OUT-hard.rgb: bytes of linear red, green and blue, bottom row first, where 255 is a colour of 1 in full
- * light.
+ * JOB.txt has, as words: the size of the picture, the world height that it shows, the camera's right, up and
+ * forward axes, the direction in which light travels, and 256 lines of a value's opacity and colour. Prints
+ * JSON; pictures go to OUT-off.rgb and OUT-hard.rgb: bytes of linear red, green and blue, bottom row first,
+ * where 255 is a colour of 1 in full light.
  *
- * Colours depend on the value alone, as in the other renderers of the comparison: where VolPack's examples keep the index of
- * a normal, and tables of shaded normals, a voxel has its value again, and tables are of coloured values. */
+ * Colours depend on the value alone, as in the other renderers of the comparison: where VolPack's examples
+ * keep the index of a normal, and tables of shaded normals, a voxel has its value again, and tables are of
+ * coloured values. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -31,9 +33,7 @@ struct job {
 };
 
 static void check(vpContext *context, vpResult result, const char *what) {
-  if (result == VP_OK) {
-    return;
-  }
+  if (result == VP_OK) { return; }
   fprintf(stderr, "volpack: %s: %s\n", what, vpGetErrorString(vpGetError(context)));
   exit(1);
 }
@@ -64,19 +64,13 @@ static struct job *read_job(const char *path) {
   number(file, &job.height);
   double *axes[] = {job.right, job.up, job.forward, job.light};
   for (int axis = 0; axis < 4; axis++) {
-    for (int i = 0; i < 3; i++) {
-      number(file, &axes[axis][i]);
-    }
+    for (int i = 0; i < 3; i++) { number(file, &axes[axis][i]); }
   }
   for (int value = 0; value < VALUES; value++) {
     double words[4];
-    for (int i = 0; i < 4; i++) {
-      number(file, &words[i]);
-    }
+    for (int i = 0; i < 4; i++) { number(file, &words[i]); }
     job.opacity[value] = (float)words[0];
-    for (int i = 0; i < 3; i++) {
-      job.color[value][i] = (float)(255 * words[1 + i]);
-    }
+    for (int i = 0; i < 3; i++) { job.color[value][i] = (float)(255 * words[1 + i]); }
   }
   fclose(file);
   return &job;
@@ -91,9 +85,7 @@ static struct voxel *read_volume(const char *path) {
     perror(path);
     exit(1);
   }
-  for (size_t i = 0; i < count; i++) {
-    voxels[i] = (struct voxel){.shade = values[i], .value = values[i]};
-  }
+  for (size_t i = 0; i < count; i++) { voxels[i] = (struct voxel){.shade = values[i], .value = values[i]}; }
   free(values);
   fclose(file);
   return voxels;
@@ -123,9 +115,13 @@ static vpContext *classified(struct job *job, struct voxel *voxels, double *clas
   check(context, vpSetVolumeSize(context, SIDE, SIDE, SIDE), "volume size");
   int stride = (int)sizeof *voxels;
   check(context, vpSetVoxelSize(context, stride, 2, 1, 1), "voxel size");
-  check(context, vpSetVoxelField(context, 0, sizeof voxels->shade, offsetof(struct voxel, shade), VALUES - 1), "voxel field");
-  check(context, vpSetVoxelField(context, 1, sizeof voxels->value, offsetof(struct voxel, value), VALUES - 1), "voxel field");
-  check(context, vpSetRawVoxels(context, voxels, SIDE * SIDE * SIDE * stride, stride, SIDE * stride, SIDE * SIDE * stride),
+  check(context, vpSetVoxelField(context, 0, sizeof voxels->shade, offsetof(struct voxel, shade), VALUES - 1),
+        "voxel field");
+  check(context, vpSetVoxelField(context, 1, sizeof voxels->value, offsetof(struct voxel, value), VALUES - 1),
+        "voxel field");
+  check(context,
+        vpSetRawVoxels(context, voxels, SIDE * SIDE * SIDE * stride, stride, SIDE * stride,
+                       SIDE * SIDE * stride),
         "voxels");
   check(context, vpSetClassifierTable(context, 0, 1, job->opacity, sizeof job->opacity), "opacities");
   check(context, vpSetd(context, VP_MIN_VOXEL_OPACITY, 0.002), "least opacity");
@@ -138,12 +134,16 @@ static vpContext *classified(struct job *job, struct voxel *voxels, double *clas
 
 static void lit(vpContext *context, struct job *job, int shadows) {
   if (!shadows) {
-    check(context, vpSetLookupShader(context, 3, 1, 0, &job->color[0][0], sizeof job->color, 0, NULL, 0), "colours");
+    check(context, vpSetLookupShader(context, 3, 1, 0, &job->color[0][0], sizeof job->color, 0, NULL, 0),
+          "colours");
     return;
   }
-  check(context, vpSetShadowLookupShader(context, 3, 1, 0, &job->dark[0][0], sizeof job->dark, 0, NULL, 0,
-                                         &job->color[0][0], sizeof job->color), "colours");
-  check(context, vpSetLight(context, VP_LIGHT0, VP_DIRECTION, job->light[0], job->light[1], job->light[2]), "light");
+  check(context,
+        vpSetShadowLookupShader(context, 3, 1, 0, &job->dark[0][0], sizeof job->dark, 0, NULL, 0,
+                                &job->color[0][0], sizeof job->color),
+        "colours");
+  check(context, vpSetLight(context, VP_LIGHT0, VP_DIRECTION, job->light[0], job->light[1], job->light[2]),
+        "light");
   check(context, vpSetLight(context, VP_LIGHT0, VP_COLOR, 1, 1, 1), "light");
   check(context, vpEnable(context, VP_LIGHT0, 1), "light");
   check(context, vpSeti(context, VP_SHADOW_LIGHT, VP_LIGHT0), "light of shadows");
@@ -185,7 +185,8 @@ int main(int count, char **words) {
     lit(context, job, shadows);
     double first = frame(context, job, 0);
     save(picture, job->size, words[4], shadows ? "hard" : "off");
-    printf("%s\"%s\": {\"first_ms\": %.3f, \"frame_ms\": [", shadows ? ", " : "", shadows ? "hard" : "off", first);
+    printf("%s\"%s\": {\"first_ms\": %.3f, \"frame_ms\": [", shadows ? ", " : "", shadows ? "hard" : "off",
+           first);
     double processor = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
     for (int i = 0; i < frames; i++) {
       printf("%s%.3f", i > 0 ? ", " : "", frame(context, job, 0.02 * (i + 1)));

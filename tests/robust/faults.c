@@ -1,5 +1,6 @@
-/* tests/robust/faults.c - every allocation fails in turn, and every question whether to stop is answered with yes, in all
- * that the library does: a clean status, a line, nothing held, and the same bytes once memory is back. */
+/* tests/robust/faults.c - every allocation fails in turn, and every question whether to stop is answered with
+ * yes, in all that the library does: a clean status, a line, nothing held, and the same bytes once memory is
+ * back. */
 #include "faulty.h"
 #include "small_scenes.h"
 
@@ -102,7 +103,8 @@ static hl_status make_shapes(faulty *f, void *data, hl_error *error) {
   hl_shapes_options_defaults(&options);
   options.size = 16;
   options.threads = 1;
-  hl_status status = hl_volume_from_shapes(f->context, text, strlen(text), "shapes", &options, &volume, error);
+  hl_status status = hl_volume_from_shapes(f->context, text, strlen(text), "shapes", &options, &volume,
+                                           error);
   hl_volume_release(volume);
   return status;
 }
@@ -225,7 +227,8 @@ static hl_volume *make_ball(hl_context *context, int noise) {
 
 static void test_automatic_scenes(void **state) {
   (void)state;
-  static const char function[] = "{\"opacity\": [[0, 0], [255, 1]], \"colormap\": \"bone\", \"range\": [0, 255]}";
+  static const char function[] =
+      "{\"opacity\": [[0, 0], [255, 1]], \"colormap\": \"bone\", \"range\": [0, 255]}";
   static const char foreign[] =
       "[{\"ColorSpace\": \"Lab\", \"Name\": \"x\", \"Points\": [0, 0, 0.5, 0, 1, 1, 0.5, 0],"
       " \"RGBPoints\": [0, 0, 0, 0, 1, 1, 1, 1]}]";
@@ -325,10 +328,16 @@ static hl_status render_once(faulty *f, render_work *work, hl_renderer *renderer
   hl_light_layers lights[3];
   (void)f;
   for (size_t l = 0; l < scene->light_count; l++)
-    lights[l] = (hl_light_layers){.picture = memory + 6 * l * pixels, .shadow = memory + (6 * l + 3) * pixels};
+    lights[l] = (hl_light_layers){.picture = memory + 6 * l * pixels,
+                                  .shadow = memory + (6 * l + 3) * pixels};
   float *rest = memory + 6 * scene->light_count * pixels;
-  hl_layers layers = {.struct_size = sizeof layers, .lights = lights, .light_count = scene->light_count, .ambient = rest,
-                      .depth_first = rest + 3 * pixels, .depth_mean = rest + 4 * pixels, .normal = rest + 5 * pixels};
+  hl_layers layers = {.struct_size = sizeof layers,
+                      .lights = lights,
+                      .light_count = scene->light_count,
+                      .ambient = rest,
+                      .depth_first = rest + 3 * pixels,
+                      .depth_mean = rest + 4 * pixels,
+                      .normal = rest + 5 * pixels};
   return hl_renderer_render_layers(renderer, work->scene, work->pixels, 4 * (size_t)scene->width,
                                    work->layers ? &layers : NULL, NULL, error);
 }
@@ -348,7 +357,8 @@ static hl_status render_again(faulty *f, void *data, hl_error *error) {
   render_work *work = data;
   memset(work->pixels, 0, small_scene_floats(work->scene) * sizeof(float));
   hl_status status = render_once(f, work, work->renderer, error);
-  assert_memory_equal(work->pixels, hl_image_pixels(work->expected), small_scene_floats(work->scene) * sizeof(float));
+  assert_memory_equal(work->pixels, hl_image_pixels(work->expected),
+                      small_scene_floats(work->scene) * sizeof(float));
   return status;
 }
 
@@ -383,10 +393,12 @@ static void test_rendering(void **state) {
   faulty_close(&f);
 }
 
-/* A renderer that has been shown another scene before every frame, so that it must make all its things anew. */
+/* A renderer that has been shown another scene before every frame, so that it must make all its things
+ * anew. */
 static hl_status render_after_another(faulty *f, void *data, hl_error *error) {
   render_work *work = data;
-  long allocations = atomic_exchange(&f->allocations_left, -1), questions = atomic_exchange(&f->questions_left, -1);
+  long allocations = atomic_exchange(&f->allocations_left, -1),
+       questions = atomic_exchange(&f->questions_left, -1);
   assert_int_equal(hl_renderer_render(work->renderer, work->other, work->pixels, 4 * 24, NULL, NULL), HL_OK);
   atomic_store(&f->questions_left, questions);
   atomic_store(&f->allocations_left, allocations);
@@ -451,7 +463,8 @@ static void test_the_context_itself(void **state) {
   faulty_close(&f);
 }
 
-/* The system's allocator takes part where volumes are read and written: zlib stands it, the JSON parser does not. */
+/* The system's allocator takes part where volumes are read and written: zlib stands it, the JSON parser does
+ * not. */
 #ifdef FAULTY_SYSTEM
 enum { TESTS = 2 };
 #else

@@ -34,7 +34,7 @@ static int cancelled(void *user_data) {
   return strikes(f, &f->questions_left, false);
 }
 
-static faulty *at_work;          /* null: the system's allocator does not fail */
+static faulty *at_work; /* null: the system's allocator does not fail */
 static atomic_bool system_struck;
 
 bool faulty_system_strikes(void) {
@@ -69,7 +69,8 @@ static void disarm(faulty *f) {
 }
 
 /* One run with a fault ahead; false if the work came to its end before it. */
-static bool run(faulty *f, faulty_work *work, faulty_work *after, void *data, hl_status expected, bool may_recover) {
+static bool run(faulty *f, faulty_work *work, faulty_work *after, void *data, hl_status expected,
+                bool may_recover) {
   hl_error error = {0};
   uint64_t held = hl_context_memory_held(f->context);
   atomic_store(&f->struck, false);

@@ -1,5 +1,5 @@
-/* tests/robust/faulty_system.c - the system's allocator, which other libraries and the C library use, fails as the context's
- * does. Linked into a program, it takes the place of malloc and its like. */
+/* tests/robust/faulty_system.c - the system's allocator, which other libraries and the C library use, fails
+ * as the context's does. Linked into a program, it takes the place of malloc and its like. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdlib.h>

@@ -1,10 +1,11 @@
-/* tests/robust/frames.c - many frames from one renderer: memory stays where it was, and the same scene gives the same
- * bytes at the end as at the beginning.
+/* tests/robust/frames.c - many frames from one renderer: memory stays where it was, and the same scene gives
+ * the same bytes at the end as at the beginning.
  *
  * usage: frames [--frames N] [--seconds S]     (0 frames: no end but that of time)
  *
- * Without options 200 frames, in TAP. With --seconds a soak: between those frames scenes are drawn in other sizes and from
- * other sides, the renderer is made anew now and then, and a line a minute tells the memory. */
+ * Without options 200 frames, in TAP. With --seconds a soak: between those frames scenes are drawn in other
+ * sizes and from other sides, the renderer is made anew now and then, and a line a minute tells the
+ * memory. */
 #define _GNU_SOURCE
 #include "small_scenes.h"
 
@@ -27,15 +28,15 @@ enum { KEEPS_RELEASED = 0 };
 enum { SCENES = 6 }; /* the others need a file */
 
 typedef struct soak {
-  long frames;          /* asked for; 0: no end */
-  double seconds;       /* asked for; 0: no end */
+  long frames;    /* asked for; 0: no end */
+  double seconds; /* asked for; 0: no end */
   hl_context *context;
   hl_renderer *renderer;
   hl_scene *scenes[SCENES];
   float *first[SCENES]; /* the pictures of the first round */
   float *pixels;
-  uint64_t held_first;  /* by the context after the second round */
-  long resident_first;  /* bytes of the process, likewise */
+  uint64_t held_first; /* by the context after the second round */
+  long resident_first; /* bytes of the process, likewise */
   long done;
 } soak;
 
@@ -54,8 +55,8 @@ static long resident_bytes(void) {
   return pages * sysconf(_SC_PAGESIZE);
 }
 
-/* The system may join the small pages of a block to large ones at any time, which makes what was never written resident,
- * too: here only what frames themselves hold is to be seen. */
+/* The system may join the small pages of a block to large ones at any time, which makes what was never
+ * written resident, too: here only what frames themselves hold is to be seen. */
 static void keep_pages_small(void) { (void)prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0); }
 
 static void give_up(const char *why, const hl_error *error) {
@@ -94,7 +95,8 @@ static void draw(soak *s, size_t n, bool first_round) {
   hl_error error = {0};
   size_t bytes = small_scene_floats(s->scenes[n]) * sizeof(float);
   float *pixels = first_round ? s->first[n] : s->pixels;
-  must(hl_renderer_render(s->renderer, s->scenes[n], pixels, 4 * 24, NULL, &error), small_scenes[n].name, &error);
+  must(hl_renderer_render(s->renderer, s->scenes[n], pixels, 4 * 24, NULL, &error), small_scenes[n].name,
+       &error);
   if (!first_round && memcmp(pixels, s->first[n], bytes) != 0) give_up("the bytes have changed", NULL);
   s->done++;
 }
@@ -106,10 +108,12 @@ static void draw_another(soak *s, long round) {
   hl_scene_description d = *hl_scene_describe(s->scenes[round % SCENES]);
   d.width = 16 + (int)(round * 37 % 113);
   d.height = 16 + (int)(round * 53 % 97);
-  must(hl_camera_frame(&d, (double)(round * 29 % 360), (double)(round * 7 % 120) - 60, 1, &d.camera), "camera", &error);
+  must(hl_camera_frame(&d, (double)(round * 29 % 360), (double)(round * 7 % 120) - 60, 1, &d.camera),
+       "camera", &error);
   must(hl_scene_create(s->context, &d, &scene, &error), "scene", &error);
   float *pixels = calloc((size_t)d.width * (size_t)d.height * 4, sizeof *pixels);
-  must(hl_renderer_render(s->renderer, scene, pixels, 4 * (size_t)d.width, NULL, &error), "another frame", &error);
+  must(hl_renderer_render(s->renderer, scene, pixels, 4 * (size_t)d.width, NULL, &error), "another frame",
+       &error);
   for (int i = 0; i < 4 * d.width * d.height; i++)
     if (!isfinite(pixels[i])) give_up("a pixel is no number", NULL);
   free(pixels);
@@ -118,8 +122,8 @@ static void draw_another(soak *s, long round) {
 }
 
 static void report(const soak *s) {
-  fprintf(stderr, "%8ld frames, held %llu bytes (%llu after the second round), resident %.1f MB (%.1f)\n", s->done,
-          (unsigned long long)hl_context_memory_held(s->context), (unsigned long long)s->held_first,
+  fprintf(stderr, "%8ld frames, held %llu bytes (%llu after the second round), resident %.1f MB (%.1f)\n",
+          s->done, (unsigned long long)hl_context_memory_held(s->context), (unsigned long long)s->held_first,
           (double)resident_bytes() / 1e6, (double)s->resident_first / 1e6);
 }
 
@@ -132,19 +136,21 @@ static void renew(soak *s, uint64_t *held) {
   must(hl_renderer_create(s->context, &s->renderer, &error), "renderer", &error);
 }
 
-/* Buffers are as large as the largest frame needed: where all rounds are alike, what is held is always the same. odd: with
- * a frame in between that is like no other. */
+/* Buffers are as large as the largest frame needed: where all rounds are alike, what is held is always the
+ * same. odd: with a frame in between that is like no other. */
 static void run(soak *s, bool odd) {
   enum { ROUNDS_OF_A_RENDERER = 200 };
   uint64_t held_by_scenes = 0;
   double start = now(), told = start;
-  for (long round = 0; (s->frames == 0 || s->done < s->frames) && (s->seconds == 0 || now() - start < s->seconds); round++) {
+  for (long round = 0;
+       (s->frames == 0 || s->done < s->frames) && (s->seconds == 0 || now() - start < s->seconds); round++) {
     for (size_t n = 0; n < SCENES; n++) draw(s, n, round == 0);
     if (round == 1) {
       s->held_first = hl_context_memory_held(s->context);
       s->resident_first = resident_bytes();
     }
-    if (round > 1 && !odd && hl_context_memory_held(s->context) != s->held_first) give_up("more bytes are held than before", NULL);
+    if (round > 1 && !odd && hl_context_memory_held(s->context) != s->held_first)
+      give_up("more bytes are held than before", NULL);
     if (odd) draw_another(s, round);
     if (odd && round % ROUNDS_OF_A_RENDERER == 0) renew(s, &held_by_scenes);
     if (now() - told < 60) continue;
@@ -165,7 +171,8 @@ int main(int count, char **arguments) {
   keep_pages_small();
   open_soak(&s);
   run(&s, s.seconds > 0);
-  long grown = resident_bytes() - s.resident_first, most_grown = s.seconds > 0 ? 64000000 : 4000000; /* by larger frames */
+  long grown = resident_bytes() - s.resident_first,
+       most_grown = s.seconds > 0 ? 64000000 : 4000000; /* by larger frames */
   if (soaking) report(&s);
   else printf("ok 1 - bytes and memory are the same after %ld frames\n", s.done);
   bool flat = grown < most_grown || KEEPS_RELEASED; /* the system's allocator may keep a little */

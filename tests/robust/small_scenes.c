@@ -5,46 +5,60 @@
 #include <string.h>
 
 #define HEAD "{\"halflight\": 1, \"image\": {\"width\": 24, \"height\": 20}, "
-#define BLOB                                                                                                        \
-  "\"volumes\": [{\"voxel_size\": 1, \"shapes\": [{\"type\": \"sphere\", \"radius\": 5},"                           \
+#define BLOB                                                                              \
+  "\"volumes\": [{\"voxel_size\": 1, \"shapes\": [{\"type\": \"sphere\", \"radius\": 5}," \
   " {\"type\": \"box\", \"size\": [16, 16, 3], \"position\": [0, 0, -8]}]"
-#define SUN "\"lights\": [{\"type\": \"directional\", \"direction\": [0.5, 0.3, -1], \"angular_diameter_deg\": 12}]"
+#define SUN \
+  "\"lights\": [{\"type\": \"directional\", \"direction\": [0.5, 0.3, -1], \"angular_diameter_deg\": 12}]"
 
 const small_scene small_scenes[] = {
     {"cascade", HEAD SUN ", " BLOB "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
-    {"paper", HEAD SUN ", " BLOB "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"soft_method\": \"paper\"}}"},
-    {"sublights", HEAD SUN ", " BLOB "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"soft_method\": \"sublights\", \"light_samples\": 2}}"},
+    {"paper", HEAD SUN
+     ", " BLOB "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"soft_method\": \"paper\"}}"},
+    {"sublights", HEAD SUN ", " BLOB "}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32, "
+                           "\"soft_method\": \"sublights\", \"light_samples\": 2}}"},
     {"splat",
-     HEAD "\"camera\": {\"type\": \"orthographic\"}, \"lights\": [{\"type\": \"point\", \"position\": [20, -20, 30]}], " BLOB
-          ", \"clip\": {\"min\": [-4, -9, -9], \"max\": [9, 9, 9]}}],"
-          " \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"shadows\": \"hard\", \"reconstruction\": \"splat\", \"kernel\": \"gaussian\"}}"},
-    {"lamp",
-     HEAD "\"lights\": [{\"type\": \"point\", \"position\": [0, 0, 0], \"radius\": 1}],"
-          " \"volumes\": [{\"voxel_size\": 1, \"shapes\": [{\"type\": \"sphere\", \"radius\": 8},"
-          " {\"type\": \"sphere\", \"radius\": 4, \"operation\": \"subtract\"}],"
-          " \"transfer_function\": {\"color\": [0.8, 0.6, 0.4], \"opacity\": 0.1}, \"shading\": \"none\"}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
-    {"colors",
-     HEAD "\"lights\": [{\"type\": \"rect\", \"position\": [0, 0, 30], \"edge1\": [6, 0, 0], \"edge2\": [0, 8, 0]},"
-          " {\"type\": \"disk\", \"position\": [25, 0, 10], \"normal\": [-1, 0, 0], \"radius\": 4, \"shadows\": \"off\"},"
-          " {\"type\": \"polygon\", \"vertices\": [[-30, 0, 9], [-30, 6, 9], [-30, 3, 15]], \"falloff\": \"inverse_square\"}],"
-          " \"ambient\": [0.1, 0.2, 0.3], " BLOB ", \"attenuation_color\": [1, 0.5, 0.2]},"
-          " {\"voxel_size\": 1, \"shapes\": [{\"type\": \"torus\", \"radius\": 6, \"tube_radius\": 2}], \"visible\": false},"
-          " {\"voxel_size\": 1, \"shapes\": [{\"type\": \"orbital\", \"n\": 2, \"l\": 1, \"m\": 0, \"radius\": 6}],"
-          " \"transform\": {\"translate\": [3, 0, 4], \"rotate\": {\"axis\": [1, 2, 3], \"angle_deg\": 30}}}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
-    {"slide",
-     HEAD "\"lights\": [{\"type\": \"spot\", \"position\": [0, -40, 40], \"direction\": [0, 1, -1], \"radius\": 2,"
-          " \"texture\": {\"file\": \"slide.png\", \"screen\": {\"center\": [0, -30, 30], \"right\": [5, 0, 0],"
-          " \"up\": [0, 3, 3]}}}], " BLOB ", \"transfer_function\": {\"preset\": \"smoke\"}}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
+     HEAD "\"camera\": {\"type\": \"orthographic\"}, \"lights\": [{\"type\": \"point\", \"position\": [20, "
+          "-20, 30]}], " BLOB ", \"clip\": {\"min\": [-4, -9, -9], \"max\": [9, 9, 9]}}],"
+          " \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"shadows\": \"hard\", "
+          "\"reconstruction\": \"splat\", \"kernel\": \"gaussian\"}}"},
+    {"lamp", HEAD "\"lights\": [{\"type\": \"point\", \"position\": [0, 0, 0], \"radius\": 1}],"
+                  " \"volumes\": [{\"voxel_size\": 1, \"shapes\": [{\"type\": \"sphere\", \"radius\": 8},"
+                  " {\"type\": \"sphere\", \"radius\": 4, \"operation\": \"subtract\"}],"
+                  " \"transfer_function\": {\"color\": [0.8, 0.6, 0.4], \"opacity\": 0.1}, \"shading\": "
+                  "\"none\"}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
+    {"colors", HEAD "\"lights\": [{\"type\": \"rect\", \"position\": [0, 0, 30], \"edge1\": [6, 0, 0], "
+                    "\"edge2\": [0, 8, 0]},"
+                    " {\"type\": \"disk\", \"position\": [25, 0, 10], \"normal\": [-1, 0, 0], \"radius\": 4, "
+                    "\"shadows\": \"off\"},"
+                    " {\"type\": \"polygon\", \"vertices\": [[-30, 0, 9], [-30, 6, 9], [-30, 3, 15]], "
+                    "\"falloff\": \"inverse_square\"}],"
+                    " \"ambient\": [0.1, 0.2, 0.3], " BLOB ", \"attenuation_color\": [1, 0.5, 0.2]},"
+                    " {\"voxel_size\": 1, \"shapes\": [{\"type\": \"torus\", \"radius\": 6, \"tube_radius\": "
+                    "2}], \"visible\": false},"
+                    " {\"voxel_size\": 1, \"shapes\": [{\"type\": \"orbital\", \"n\": 2, \"l\": 1, \"m\": 0, "
+                    "\"radius\": 6}],"
+                    " \"transform\": {\"translate\": [3, 0, 4], \"rotate\": {\"axis\": [1, 2, 3], "
+                    "\"angle_deg\": 30}}}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
+    {"slide", HEAD
+     "\"lights\": [{\"type\": \"spot\", \"position\": [0, -40, 40], \"direction\": [0, 1, -1], \"radius\": 2,"
+     " \"texture\": {\"file\": \"slide.png\", \"screen\": {\"center\": [0, -30, 30], \"right\": [5, 0, 0],"
+     " \"up\": [0, 3, 3]}}}], " BLOB ", \"transfer_function\": {\"preset\": \"smoke\"}}], \"render\": "
+     "{\"threads\": 1, \"shadow_resolution\": 32}}"},
     {"fur",
-     HEAD "\"groups\": {\"ball\": [{\"type\": \"sphere\", \"radius\": 6, \"hypertexture\": {\"amplitude\": 3, \"soft\": 1}}]}, " SUN
+     HEAD "\"groups\": {\"ball\": [{\"type\": \"sphere\", \"radius\": 6, \"hypertexture\": {\"amplitude\": "
+          "3, \"soft\": 1}}]}, " SUN
           ", \"volumes\": [{\"voxel_size\": 1, \"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}],"
-          " \"transfer_function\": {\"opacity\": [[0.2, 0], [0.6, 0.8]], \"colormap\": \"viridis\", \"range\": [0, 1]}}],"
-          " \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"slicing\": \"image-aligned\", \"kernel\": \"linear\", \"sheet_spacing\": 1}}"},
+          " \"transfer_function\": {\"opacity\": [[0.2, 0], [0.6, 0.8]], \"colormap\": \"viridis\", "
+          "\"range\": [0, 1]}}],"
+          " \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"slicing\": \"image-aligned\", "
+          "\"kernel\": \"linear\", \"sheet_spacing\": 1}}"},
     {NULL, NULL}};
 
 const size_t small_scene_count = sizeof small_scenes / sizeof small_scenes[0] - 1;
 
-hl_status small_scene_make(hl_context *context, size_t index, const char *folder, hl_scene **scene, hl_error *error) {
+hl_status small_scene_make(hl_context *context, size_t index, const char *folder, hl_scene **scene,
+                           hl_error *error) {
   const char *json = small_scenes[index].json;
   return hl_scene_from_json(context, json, strlen(json), folder, small_scenes[index].name, scene, error);
 }

@@ -1,10 +1,10 @@
-/* tests/robust/threads.c - contexts, scenes and renderers in several threads at once, in forked processes, cancelled from
- * elsewhere, and with fewer threads than were asked for. */
+/* tests/robust/threads.c - contexts, scenes and renderers in several threads at once, in forked processes,
+ * cancelled from elsewhere, and with fewer threads than were asked for. */
 #define _GNU_SOURCE
 #include "small_scenes.h"
 
-#include <pthread.h>
 #include <errno.h>
+#include <pthread.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -18,7 +18,12 @@
 
 #include <cmocka.h>
 
-enum { THREADS = 4, RENDER_THREADS = 3, FLOATS = 24 * 20 * 4, SCENES = 6 }; /* the last two project images: see faults.c */
+enum {
+  THREADS = 4,
+  RENDER_THREADS = 3,
+  FLOATS = 24 * 20 * 4,
+  SCENES = 6
+}; /* the last two project images: see faults.c */
 
 static float expected[SCENES][FLOATS];
 
@@ -260,10 +265,13 @@ static void test_fork_in_the_middle(void **state) {
 
 static atomic_int threads_left = -1; /* that the system starts; negative: all */
 
-int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *data);
-int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *data);
+int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *),
+                          void *data);
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *),
+                          void *data);
 
-int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *data) {
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *),
+                          void *data) {
   if (atomic_load(&threads_left) == 0) return EAGAIN;
   if (atomic_load(&threads_left) > 0) atomic_fetch_sub(&threads_left, 1);
   return __real_pthread_create(thread, attributes, start, data);
@@ -324,12 +332,16 @@ static void test_signals_go_to_the_program(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_context_for_each_thread),     cmocka_unit_test(test_one_context_for_all),
-      cmocka_unit_test(test_shared_scenes),                 cmocka_unit_test(test_cancelled_from_another_thread),
+      cmocka_unit_test(test_a_context_for_each_thread),
+      cmocka_unit_test(test_one_context_for_all),
+      cmocka_unit_test(test_shared_scenes),
+      cmocka_unit_test(test_cancelled_from_another_thread),
 #ifndef UNDER_THREAD_SANITIZER
-      cmocka_unit_test(test_after_fork),                    cmocka_unit_test(test_fork_in_the_middle),
+      cmocka_unit_test(test_after_fork),
+      cmocka_unit_test(test_fork_in_the_middle),
 #endif
-      cmocka_unit_test(test_fewer_threads),                 cmocka_unit_test(test_signals_go_to_the_program),
+      cmocka_unit_test(test_fewer_threads),
+      cmocka_unit_test(test_signals_go_to_the_program),
   };
   return cmocka_run_group_tests(tests, find_expected, NULL);
 }

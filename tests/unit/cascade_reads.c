@@ -1,4 +1,5 @@
-/* unit/cascade_reads.c - the rows that a cascade's passes find, against every pixel within reach looked at. */
+/* unit/cascade_reads.c - the rows that a cascade's passes find, against every pixel within reach looked
+ * at. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +21,8 @@ static bool is_read(const uint64_t *by_sheet, int first, int last, int x, int y)
 }
 
 /* Whether a tile that is read has a pixel in the rectangle of the buffer's pixels, ends included. */
-static bool any_read(const uint64_t *by_sheet, int first, int last, int left, int top, int right, int bottom) {
+static bool any_read(const uint64_t *by_sheet, int first, int last, int left, int top, int right,
+                     int bottom) {
   for (int y = 0; y < TILES_Y; y++)
     for (int x = 0; x < TILES_X; x++)
       if (x * TILE <= right && (x + 1) * TILE > left && y * TILE <= bottom && (y + 1) * TILE > top &&
@@ -29,9 +31,11 @@ static bool any_read(const uint64_t *by_sheet, int first, int last, int left, in
   return false;
 }
 
-static void check_tile(const cascade_reads *reads, const uint64_t *by_sheet, int first, int last, int scale, int reach, int x, int y) {
+static void check_tile(const cascade_reads *reads, const uint64_t *by_sheet, int first, int last, int scale,
+                       int reach, int x, int y) {
   /* sideways whole tiles of the buffer count */
-  int left = (x * scale - (reach + TILE - 1) / TILE) * TILE, right = ((x + 1) * scale + (reach + TILE - 1) / TILE) * TILE - 1;
+  int left = (x * scale - (reach + TILE - 1) / TILE) * TILE,
+      right = ((x + 1) * scale + (reach + TILE - 1) / TILE) * TILE - 1;
   tile_rows wanted = {TILE, 0};
   for (int row = 0; row < TILE; row += BLOCK) {
     int top = (y * TILE + row) * scale - reach, bottom = (y * TILE + row + BLOCK) * scale - 1 + reach;
@@ -52,7 +56,8 @@ static void test_rows_within_reach(void **state) {
   uint64_t by_sheet[SHEETS * WORDS];
   uint32_t before[(TILES_X + 1) * (TILES_Y + 1)];
   cascade_reads reads = {TILES_X, TILES_Y, before};
-  const occupancy occupancy = {.tiles_x = TILES_X, .tiles_y = TILES_Y, .sheets = SHEETS, .tile_words = WORDS, .by_sheet = by_sheet};
+  const occupancy occupancy = {
+      .tiles_x = TILES_X, .tiles_y = TILES_Y, .sheets = SHEETS, .tile_words = WORDS, .by_sheet = by_sheet};
   const int reaches[] = {0, 1, 4, 15, 16, 17, 40, 300};
   srand(7);
   for (int round = 0; round < 40; round++) {
@@ -66,7 +71,8 @@ static void test_rows_within_reach(void **state) {
     for (int scale = 1; scale <= 8; scale *= 2)
       for (size_t i = 0; i < sizeof reaches / sizeof reaches[0]; i++)
         for (int y = 0; y * scale < TILES_Y; y++)
-          for (int x = 0; x * scale < TILES_X; x++) check_tile(&reads, by_sheet, first, last, scale, reaches[i], x, y);
+          for (int x = 0; x * scale < TILES_X; x++)
+            check_tile(&reads, by_sheet, first, last, scale, reaches[i], x, y);
   }
 }
 
@@ -80,6 +86,7 @@ static void test_everywhere(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rows_within_reach), cmocka_unit_test(test_everywhere)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rows_within_reach),
+                                     cmocka_unit_test(test_everywhere)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* unit/core_reserve.c - blocks lent again and again: which are kept, for whom, and that all are given back. */
+/* unit/core_reserve.c - blocks lent again and again: which are kept, for whom, and that all are given
+ * back. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -67,7 +68,8 @@ static void test_more_than_it_has_places(void **state) {
   (void)state;
   hl_reserve reserve = open_reserve(true);
   void *block[RESERVE_BLOCKS + 3];
-  for (int i = 0; i < RESERVE_BLOCKS + 3; i++) assert_non_null(block[i] = hl_reserve_take(&reserve, LARGE, 1));
+  for (int i = 0; i < RESERVE_BLOCKS + 3; i++)
+    assert_non_null(block[i] = hl_reserve_take(&reserve, LARGE, 1));
   for (int i = 0; i < RESERVE_BLOCKS + 3; i++) hl_reserve_return(&reserve, block[i]);
   assert_int_equal(held(&reserve), (uint64_t)RESERVE_BLOCKS * LARGE);
   release(&reserve);
@@ -85,6 +87,7 @@ static void test_keeps_nothing(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_lends_again), cmocka_unit_test(test_sizes),
-                                     cmocka_unit_test(test_more_than_it_has_places), cmocka_unit_test(test_keeps_nothing)};
+                                     cmocka_unit_test(test_more_than_it_has_places),
+                                     cmocka_unit_test(test_keeps_nothing)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

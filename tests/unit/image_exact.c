@@ -91,7 +91,8 @@ static void encoding_gives_the_file(void **state) {
     size_t encoded_bytes = 0, written_bytes = 0;
     snprintf(path, sizeof path, "%s/a.%s", folder, formats[n]);
     assert_int_equal(hl_image_write(context, image, path, NULL, &error), HL_OK);
-    assert_int_equal(hl_image_encode(context, image, formats[n], NULL, &encoded, &encoded_bytes, &error), HL_OK);
+    assert_int_equal(hl_image_encode(context, image, formats[n], NULL, &encoded, &encoded_bytes, &error),
+                     HL_OK);
     assert_int_equal(hl_file_read(context, path, 1 << 20, &written, &written_bytes, &error), HL_OK);
     assert_int_equal(encoded_bytes, written_bytes);
     assert_memory_equal(encoded, written, written_bytes);
@@ -100,10 +101,12 @@ static void encoding_gives_the_file(void **state) {
   }
   unsigned char *bytes = NULL;
   size_t length = 0;
-  assert_int_equal(hl_image_encode(context, image, "jpg", NULL, &bytes, &length, &error), HL_ERROR_UNSUPPORTED);
+  assert_int_equal(hl_image_encode(context, image, "jpg", NULL, &bytes, &length, &error),
+                   HL_ERROR_UNSUPPORTED);
   float *layer = NULL;
   assert_int_equal(hl_image_add_layer(image, "depth", "Z", &layer, &error), HL_OK);
-  assert_int_equal(hl_image_encode(context, image, "npy", NULL, &bytes, &length, &error), HL_ERROR_UNSUPPORTED);
+  assert_int_equal(hl_image_encode(context, image, "npy", NULL, &bytes, &length, &error),
+                   HL_ERROR_UNSUPPORTED);
   assert_int_equal(hl_image_encode(context, NULL, "npy", NULL, &bytes, &length, &error), HL_ERROR_ARGUMENT);
   assert_null(bytes);
   hl_image_destroy(image);
@@ -148,7 +151,8 @@ static bool holds_text(const unsigned char *bytes, size_t length, const char *te
   return false;
 }
 
-/* Layers become channels of an .exr and files beside an .npy; the picture itself is read back as without them. */
+/* Layers become channels of an .exr and files beside an .npy; the picture itself is read back as without
+ * them. */
 static void pictures_hold_layers(void **state) {
   (void)state;
   enum { W = 19, H = 35 };

@@ -312,7 +312,8 @@ static void encoding_may_run_out_of_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(arguments_are_checked), cmocka_unit_test(layers_are_checked),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(arguments_are_checked),
+                                     cmocka_unit_test(layers_are_checked),
                                      cmocka_unit_test(reading_goes_by_content),
                                      cmocka_unit_test(bad_places_are_named),
                                      cmocka_unit_test(full_device_is_reported),

@@ -113,7 +113,8 @@ static void composites_in_linear_light(void **state) {
   end(&f);
 }
 
-/* 2^stops times the picture's light, and nothing of the background's; whole and other stops, with and without alpha. */
+/* 2^stops times the picture's light, and nothing of the background's; whole and other stops, with and without
+ * alpha. */
 static void exposure_multiplies_the_light(void **state) {
   (void)state;
   static const double stops[] = {0, 1, -2, 0.5, -3.7, 32, -32};
@@ -318,10 +319,8 @@ static void write_other(const char *path, int type, int depth, int interlace, in
     for (int i = 0; i < OTHER_WIDTH * channels; i++) {
       int value = other_sample(i / channels, y, i % channels, depth);
       if (depth == 16) rows[y][2 * i] = (png_byte)(value >> 8);
-      if (depth == 16)
-        rows[y][2 * i + 1] = (png_byte)(value & 255);
-      else
-        rows[y][i * depth / 8] |= (png_byte)(value << (8 - depth - i * depth % 8));
+      if (depth == 16) rows[y][2 * i + 1] = (png_byte)(value & 255);
+      else rows[y][i * depth / 8] |= (png_byte)(value << (8 - depth - i * depth % 8));
     }
   }
   png_write_image(png, rows);
@@ -386,7 +385,8 @@ static void every_kind_is_read(void **state) {
   end(&f);
 }
 
-/* Bytes for a toolkit are those of an 8-bit PNG, with alpha 255 over a background; what lies between rows stays. */
+/* Bytes for a toolkit are those of an 8-bit PNG, with alpha 255 over a background; what lies between rows
+ * stays. */
 static void bytes_are_those_of_a_png(void **unused) {
   (void)unused;
   enum { WIDTH = 37, HEIGHT = 19, STRIDE = 4 * WIDTH + 12 };
@@ -417,7 +417,8 @@ static void bytes_are_those_of_a_png(void **unused) {
   }
   hl_error error = {0};
   assert_int_equal(hl_image_to_srgb8(image, NULL, bytes[0], 4 * WIDTH - 1, &error), HL_ERROR_ARGUMENT);
-  assert_string_equal(error.message, "hl_image_to_srgb8: row_stride is 147, expected 4 x width = 148 at least");
+  assert_string_equal(error.message,
+                      "hl_image_to_srgb8: row_stride is 147, expected 4 x width = 148 at least");
   hl_image_destroy(image);
   end(&f);
 }
@@ -454,7 +455,8 @@ static void scenes_are_found(void **state) {
     memcpy(body + length, between[kind], between_bytes[kind]);
     length += between_bytes[kind];
     bool is_packed = kind == 1 || kind == 3;
-    memcpy(body + length, is_packed ? packed : (const unsigned char *)text, is_packed ? packed_bytes : strlen(text));
+    memcpy(body + length, is_packed ? packed : (const unsigned char *)text,
+           is_packed ? packed_bytes : strlen(text));
     length = make_chunk(file, types[kind], body, length + (is_packed ? packed_bytes : strlen(text)));
     char *found = NULL;
     hl_error error = {0};
@@ -501,7 +503,8 @@ static void scenes_have_limits(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(composites_in_linear_light),
                                      cmocka_unit_test(exposure_multiplies_the_light),
-      cmocka_unit_test(exposure_out_of_range_is_refused), cmocka_unit_test(flat_backgrounds_stay_flat),
+                                     cmocka_unit_test(exposure_out_of_range_is_refused),
+                                     cmocka_unit_test(flat_backgrounds_stay_flat),
                                      cmocka_unit_test(transparent_pictures_keep_colour_and_alpha),
                                      cmocka_unit_test(nan_is_black),
                                      cmocka_unit_test(dither_removes_bands),
@@ -509,6 +512,7 @@ int main(void) {
                                      cmocka_unit_test(scene_is_stored),
                                      cmocka_unit_test(every_kind_is_read),
                                      cmocka_unit_test(bytes_are_those_of_a_png),
-                                     cmocka_unit_test(scenes_are_found), cmocka_unit_test(scenes_have_limits)};
+                                     cmocka_unit_test(scenes_are_found),
+                                     cmocka_unit_test(scenes_have_limits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

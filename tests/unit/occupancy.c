@@ -1,4 +1,5 @@
-/* unit/occupancy.c - tiles and sheets are marked where bricks lie: by bounds in double precision, and by no more than rounding. */
+/* unit/occupancy.c - tiles and sheets are marked where bricks lie: by bounds in double precision, and by no
+ * more than rounding. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -10,10 +11,13 @@
 
 enum { SIDE = 23, ROUNDS = 120, SHEETS = 5, TILES = 3 };
 
-typedef struct marks { bool at[TILES][TILES][SHEETS]; } marks;
+typedef struct marks {
+  bool at[TILES][TILES][SHEETS];
+} marks;
 
 /* What a brick touches, so many pixels and sheets around it included. */
-static void mark(const bench *bench, const footprint_map *map, uint32_t brick, double pixels, double sheets, marks *marks) {
+static void mark(const bench *bench, const footprint_map *map, uint32_t brick, double pixels, double sheets,
+                 marks *marks) {
   int32_t place[3];
   double centre[3], half[3];
   footprint_bounds bounds;
@@ -75,8 +79,9 @@ static void test_bricks_mark_what_they_touch(void **state) {
     vec3 direction = bench_random_direction(&seed), normal = bench_random_normal(direction, &seed);
     bench_look(&bench, direction, normal, pixels[round % 3], distances[round % 4], HL_KERNEL_BSPLINE);
     occupancy o = {0};
-    assert_int_equal(hl_occupancy_build(bench.context, bench.pool, &bench.grid, 1, &bench.view, &bench.sheets, round % 2 ? 1.0 : 0.3,
-                                        hl_hot_scalar.brick_ranges, &o, NULL), HL_OK);
+    assert_int_equal(hl_occupancy_build(bench.context, bench.pool, &bench.grid, 1, &bench.view, &bench.sheets,
+                                        round % 2 ? 1.0 : 0.3, hl_hot_scalar.brick_ranges, &o, NULL),
+                     HL_OK);
     check(&bench, &o, counts);
     hl_occupancy_release(bench.context, &o);
   }

@@ -165,7 +165,10 @@ static void odd_volumes_get_a_scene(void **state) {
   hl_context *context = make_context();
   float constant = 7, two[2] = {0, 1}, holes[8] = {NAN, 1, INFINITY, 2, NAN, 0, 3, -INFINITY},
         nothing[1] = {NAN};
-  const struct { float *values; size_t n[3]; } odd[] = {
+  const struct {
+    float *values;
+    size_t n[3];
+  } odd[] = {
       {&constant, {1, 1, 1}}, {two, {2, 1, 1}}, {two, {1, 1, 2}}, {holes, {2, 2, 2}}, {nothing, {1, 1, 1}}};
   for (size_t o = 0; o < sizeof odd / sizeof *odd; o++) {
     hl_volume_description d;
@@ -228,7 +231,8 @@ static void nan_may_be_the_air(void **state) {
     assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
     assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
     assert_ascending(&f);
-    assert_true(hl_transfer_function_opacity(&f, 0) == 0 && hl_transfer_function_opacity(&f, below ? -3 : 3) > 0.5);
+    assert_true(hl_transfer_function_opacity(&f, 0) == 0 &&
+                hl_transfer_function_opacity(&f, below ? -3 : 3) > 0.5);
     hl_transfer_function_release(context, &f);
     hl_volume_release(volume);
   }
@@ -273,7 +277,10 @@ static void ct_presets_adapt(void **state) {
 
 static void colormaps_have_their_published_colors(void **state) {
   (void)state;
-  const struct { const char *name; double t; int srgb;
+  const struct {
+    const char *name;
+    double t;
+    int srgb;
   } published[] = {{"viridis", 0, 0x440154},   {"viridis", 0.5, 0x21918c}, {"viridis", 1, 0xfde725},
                    {"inferno", 0.5, 0xbc3754}, {"magma", 0.5, 0xb73779},   {"plasma", 0.5, 0xcc4778},
                    {"cividis", 1, 0xfee838},   {"coolwarm", 0, 0x3b4cc0},  {"coolwarm", 1, 0xb40426},
@@ -347,7 +354,7 @@ static void things_stand_upright(void **state) {
   const hl_camera *camera = &hl_scene_describe(scene)->camera;
   vec3 right, up, forward;
   hl_camera_basis(camera, &right, &up, &forward);
-  assert_true(up.y > 0.9);                             /* elevation 20 */
+  assert_true(up.y > 0.9);                              /* elevation 20 */
   assert_true(camera->position[2] < camera->target[2]); /* the knob is on this side */
   hl_scene_release(scene);
   /* A NIfTI file knows: z up, y to the front. */

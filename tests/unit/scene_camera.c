@@ -114,7 +114,8 @@ static hl_volume *scattered(hl_context *context, hl_voxel_type type, unsigned se
   return volume;
 }
 
-/* How far to one side visible voxels reach, of all of them: along a direction, or (perspective) as an angle seen from the eye. */
+/* How far to one side visible voxels reach, of all of them: along a direction, or (perspective) as an angle
+ * seen from the eye. */
 static double greatest_reach(const hl_scene_volume *scene, vec3 along, vec3 forward, const vec3 *eye) {
   const hl_volume *volume = scene->volume;
   affine3 placement = hl_scene_volume_index_to_world(scene);
@@ -126,8 +127,10 @@ static double greatest_reach(const hl_scene_volume *scene, vec3 along, vec3 forw
     bool inside = true;
     for (int a = 0; a < 3; a++) inside = inside && at[a] >= low[a] && at[a] <= high[a];
     double value = hl_volume_value(volume, i, j, k);
-    if (!inside || !isfinite(value) || hl_transfer_function_opacity(&scene->transfer_function, value) < 0.02) continue;
-    vec3 p = affine3_apply(placement, (vec3){at[0], at[1], at[2]}), from = eye != NULL ? vec3_subtract(p, *eye) : p;
+    if (!inside || !isfinite(value) || hl_transfer_function_opacity(&scene->transfer_function, value) < 0.02)
+      continue;
+    vec3 p = affine3_apply(placement, (vec3){at[0], at[1], at[2]}),
+         from = eye != NULL ? vec3_subtract(p, *eye) : p;
     double x = vec3_dot(from, along), z = vec3_dot(from, forward);
     greatest = fmax(greatest, eye != NULL ? atan2(x, z) + asin(radius / hypot(x, z)) : x + radius);
   }
@@ -143,7 +146,11 @@ static void frames_by_the_farthest_voxels(void **state) {
   for (int n = 0; n < 36; n++) {
     hl_scene_volume *scene = &p.scene_volume;
     hl_volume_release(p.volume);
-    p.volume = scene->volume = scattered(p.context, n % 3 == 0 ? HL_VOXEL_U8 : n % 3 == 1 ? HL_VOXEL_U16 : HL_VOXEL_F32, (unsigned)n);
+    p.volume = scene->volume = scattered(p.context,
+                                         n % 3 == 0   ? HL_VOXEL_U8
+                                         : n % 3 == 1 ? HL_VOXEL_U16
+                                                      : HL_VOXEL_F32,
+                                         (unsigned)n);
     scene->transfer_function = (hl_transfer_function){1, points, n % 4 ? 4 : 7, NULL, 0};
     scene->scale = 1 + 0.1 * n;
     scene->rotate_angle_deg = 23 * n;
@@ -152,7 +159,8 @@ static void frames_by_the_farthest_voxels(void **state) {
     memcpy(scene->clip_min, (double[3]){33, 2, -9}, sizeof scene->clip_min);
     memcpy(scene->clip_max, (double[3]){141, 99, 30}, sizeof scene->clip_max);
     p.description.width = p.description.height = 100;
-    hl_camera c = {.type = n % 2 ? HL_CAMERA_ORTHOGRAPHIC : HL_CAMERA_PERSPECTIVE, .fovy_deg = n % 4 ? 30 : 140};
+    hl_camera c = {.type = n % 2 ? HL_CAMERA_ORTHOGRAPHIC : HL_CAMERA_PERSPECTIVE,
+                   .fovy_deg = n % 4 ? 30 : 140};
     assert_int_equal(hl_camera_frame(&p.description, n * 31, n * 5 - 90, 1, &c), HL_OK);
     vec3 right, up, forward;
     assert_true(hl_camera_basis(&c, &right, &up, &forward));
@@ -160,7 +168,8 @@ static void frames_by_the_farthest_voxels(void **state) {
     double reach[4];
     const vec3 along[4] = {right, vec3_scale(right, -1), up, vec3_scale(up, -1)};
     for (int side = 0; side < 4; side++) reach[side] = greatest_reach(scene, along[side], forward, from);
-    double near = -greatest_reach(scene, vec3_scale(forward, -1), forward, NULL), far = greatest_reach(scene, forward, forward, NULL);
+    double near = -greatest_reach(scene, vec3_scale(forward, -1), forward, NULL),
+           far = greatest_reach(scene, forward, forward, NULL);
     assert_near(vec3_dot(vec3_of(c.target), forward), (near + far) / 2, 1e-8);
     if (n % 2) {
       assert_near(vec3_dot(vec3_of(c.target), right), (reach[0] - reach[1]) / 2, 1e-8);
@@ -270,7 +279,8 @@ static hl_volume *bent_bar(hl_context *context, bool specks) {
     for (int j = 0; j < N; j++)
       for (int i = 0; i < N; i++, v++) {
         seed = seed * 1664525u + 1013904223u;
-        bool bar = (i > 8 && i < 50 && abs(j - 20) < 4 && abs(k - 25) < 5) || (abs(i - 12) < 4 && j >= 20 && j < 34 && abs(k - 25) < 5);
+        bool bar = (i > 8 && i < 50 && abs(j - 20) < 4 && abs(k - 25) < 5) ||
+                   (abs(i - 12) < 4 && j >= 20 && j < 34 && abs(k - 25) < 5);
         values[v] = bar ? 1.0f : specks && (seed >> 8) % 8192 == 0 ? 0.6f : 0.0f;
       }
   if (specks) values[(60 * N + 60) * N + 60] = 1.0f;
@@ -291,10 +301,12 @@ static void parts_of_bar(parts *p, bool specks, hl_opacity_point points[2]) {
 static void box_of_bar(const hl_camera *camera, double box[4]) {
   box[0] = box[2] = INFINITY, box[1] = box[3] = -INFINITY;
   for (int corner = 0; corner < 8; corner++) {
-    const double low[2][3] = {{8.5, 16.5, 20.5}, {8.5, 20, 20.5}}, high[2][3] = {{49.5, 23.5, 29.5}, {15.5, 33.5, 29.5}};
+    const double low[2][3] = {{8.5, 16.5, 20.5}, {8.5, 20, 20.5}},
+                 high[2][3] = {{49.5, 23.5, 29.5}, {15.5, 33.5, 29.5}};
     for (int part = 0; part < 2; part++) {
       double x, y;
-      vec3 p = {corner & 1 ? high[part][0] : low[part][0], corner & 2 ? high[part][1] : low[part][1], corner & 4 ? high[part][2] : low[part][2]};
+      vec3 p = {corner & 1 ? high[part][0] : low[part][0], corner & 2 ? high[part][1] : low[part][1],
+                corner & 4 ? high[part][2] : low[part][2]};
       project(camera, 1, p, &x, &y);
       box[0] = fmin(box[0], x), box[1] = fmax(box[1], x), box[2] = fmin(box[2], y), box[3] = fmax(box[3], y);
     }
@@ -319,7 +331,8 @@ static void specks_do_not_count(void **state) {
   }
 }
 
-/* All frames of a turn have one target and one distance and hold everything; the first one is filled and in the middle. */
+/* All frames of a turn have one target and one distance and hold everything; the first one is filled and in
+ * the middle. */
 static void a_turn_keeps_target_and_distance(void **state) {
   (void)state;
   for (int n = 0; n < 8; n++) {
@@ -330,7 +343,9 @@ static void a_turn_keeps_target_and_distance(void **state) {
     hl_camera first = {.type = n % 3 ? HL_CAMERA_PERSPECTIVE : HL_CAMERA_ORTHOGRAPHIC, .fovy_deg = 30};
     const double ups[4][3] = {{0, 0, 1}, {0, -1, 0}, {0.3, 1, 2}, {1, 0, 0}};
     hl_view view;
-    assert_int_equal(hl_view_choose(&p.description, n % 2 ? HL_SIDE_AUTOMATIC : HL_SIDE_ISO, ups[n / 2], &view, NULL), HL_OK);
+    assert_int_equal(
+        hl_view_choose(&p.description, n % 2 ? HL_SIDE_AUTOMATIC : HL_SIDE_ISO, ups[n / 2], &view, NULL),
+        HL_OK);
     assert_int_equal(hl_camera_frame_view(&p.description, &view, 1, &first, NULL), HL_OK);
     box_of_bar(&first, box);
     assert_near(box[0] + box[1], 0, 0.1); /* within 2.5 % of the picture */
@@ -342,7 +357,8 @@ static void a_turn_keeps_target_and_distance(void **state) {
       turned.azimuth_deg += 15 * turn;
       assert_int_equal(hl_camera_turn(&turned, &camera), HL_OK);
       assert_memory_equal(camera.target, first.target, sizeof first.target);
-      assert_near(vec3_length(vec3_subtract(vec3_of(camera.position), vec3_of(camera.target))), distance, 1e-9);
+      assert_near(vec3_length(vec3_subtract(vec3_of(camera.position), vec3_of(camera.target))), distance,
+                  1e-9);
       box_of_bar(&camera, box);
       assert_true(box[0] > -1.04 && box[1] < 1.04 && box[2] > -1.04 && box[3] < 1.04);
     }
@@ -350,7 +366,8 @@ static void a_turn_keeps_target_and_distance(void **state) {
   }
 }
 
-/* A camera tells the view that it was turned to, to the last bit of its angles; up and front are unit and at a right angle. */
+/* A camera tells the view that it was turned to, to the last bit of its angles; up and front are unit and at
+ * a right angle. */
 static void views_are_found_again(void **state) {
   (void)state;
   parts p;
@@ -363,7 +380,8 @@ static void views_are_found_again(void **state) {
     assert_near(vec3_dot(vec3_of(view.up), vec3_of(view.front)), 0, 1e-12);
     view.azimuth_deg = n * 8 - 170;
     view.elevation_deg = n * 4 - 80;
-    p.description.camera = (hl_camera){.position = {3, 50, 2}, .target = {1, 2, 3}, .up = {0, 0, 1}, .fovy_deg = 30};
+    p.description.camera = (hl_camera){
+        .position = {3, 50, 2}, .target = {1, 2, 3}, .up = {0, 0, 1}, .fovy_deg = 30};
     assert_int_equal(hl_camera_turn(&view, &p.description.camera), HL_OK);
     assert_int_equal(hl_view_of_camera(&p.description, &found), HL_OK);
     assert_near(found.azimuth_deg, view.azimuth_deg, 1e-12);
@@ -373,7 +391,8 @@ static void views_are_found_again(void **state) {
   }
   hl_view upside = {.up = {0, 0, 2}, .front = {0, -1, 0}}, any;
   assert_int_equal(hl_camera_turn(&upside, &p.description.camera), HL_ERROR_ARGUMENT);
-  assert_int_equal(hl_view_choose(&p.description, HL_SIDE_FRONT, (double[3]){0, 0, 0}, &any, NULL), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_view_choose(&p.description, HL_SIDE_FRONT, (double[3]){0, 0, 0}, &any, NULL),
+                   HL_ERROR_ARGUMENT);
   assert_int_equal(hl_view_choose(&p.description, (hl_side)9, NULL, &any, NULL), HL_ERROR_ARGUMENT);
   /* An up that is level with an axis, as older scenes have it, is that axis. */
   p.description.camera = (hl_camera){.position = {0, -3, 3}, .up = {0, 0.5, 0.5}, .fovy_deg = 30};
@@ -389,11 +408,16 @@ static void sides_are_the_bodys_own(void **state) {
   parts p;
   parts_make(&p);
   /* direction from the things to the eye */
-  static const struct { hl_space space; hl_side side; double eye[3]; } cases[] = {
-      {HL_SPACE_UNKNOWN, HL_SIDE_FRONT, {0, -1, 0}}, {HL_SPACE_UNKNOWN, HL_SIDE_LEFT, {-1, 0, 0}}, {HL_SPACE_UNKNOWN, HL_SIDE_RIGHT, {1, 0, 0}},
-      {HL_SPACE_UNKNOWN, HL_SIDE_TOP, {0, 0, 1}},    {HL_SPACE_RAS, HL_SIDE_FRONT, {0, 1, 0}},     {HL_SPACE_RAS, HL_SIDE_LEFT, {-1, 0, 0}},
-      {HL_SPACE_RAS, HL_SIDE_BACK, {0, -1, 0}},      {HL_SPACE_LPS, HL_SIDE_FRONT, {0, -1, 0}},    {HL_SPACE_LPS, HL_SIDE_LEFT, {1, 0, 0}},
-      {HL_SPACE_LPS, HL_SIDE_BOTTOM, {0, 0, -1}},    {HL_SPACE_LAS, HL_SIDE_FRONT, {0, 1, 0}},     {HL_SPACE_LAS, HL_SIDE_RIGHT, {-1, 0, 0}}};
+  static const struct {
+    hl_space space;
+    hl_side side;
+    double eye[3];
+  } cases[] = {{HL_SPACE_UNKNOWN, HL_SIDE_FRONT, {0, -1, 0}}, {HL_SPACE_UNKNOWN, HL_SIDE_LEFT, {-1, 0, 0}},
+               {HL_SPACE_UNKNOWN, HL_SIDE_RIGHT, {1, 0, 0}},  {HL_SPACE_UNKNOWN, HL_SIDE_TOP, {0, 0, 1}},
+               {HL_SPACE_RAS, HL_SIDE_FRONT, {0, 1, 0}},      {HL_SPACE_RAS, HL_SIDE_LEFT, {-1, 0, 0}},
+               {HL_SPACE_RAS, HL_SIDE_BACK, {0, -1, 0}},      {HL_SPACE_LPS, HL_SIDE_FRONT, {0, -1, 0}},
+               {HL_SPACE_LPS, HL_SIDE_LEFT, {1, 0, 0}},       {HL_SPACE_LPS, HL_SIDE_BOTTOM, {0, 0, -1}},
+               {HL_SPACE_LAS, HL_SIDE_FRONT, {0, 1, 0}},      {HL_SPACE_LAS, HL_SIDE_RIGHT, {-1, 0, 0}}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
     hl_volume_description d;
     hl_volume_description_defaults(&d);
@@ -430,12 +454,14 @@ static void roll_turns_the_picture(void **state) {
   parts_release(&p);
 }
 
-/* A light in camera axes is the same as one whose places in the world were found by hand, for every type of light. */
+/* A light in camera axes is the same as one whose places in the world were found by hand, for every type of
+ * light. */
 static void lights_go_with_the_camera(void **state) {
   (void)state;
   parts p;
   parts_make(&p);
-  p.description.camera = (hl_camera){.position = {10, -20, 7}, .target = {1, 2, 3}, .up = {0, 0.2, 1}, .fovy_deg = 30};
+  p.description.camera = (hl_camera){
+      .position = {10, -20, 7}, .target = {1, 2, 3}, .up = {0, 0.2, 1}, .fovy_deg = 30};
   vec3 right, up, forward;
   hl_camera_basis(&p.description.camera, &right, &up, &forward);
   const double vertices[3][3] = {{0, 0, 5}, {1, 0, 5}, {0, 1, 6}};
@@ -468,7 +494,8 @@ static void lights_go_with_the_camera(void **state) {
   double beside[3], world[3];
   hl_light_direction_beside(-40, 45, beside);
   hl_light_direction(&p.description.camera, -40, 45, world);
-  vec3 by_hand = vec3_add(vec3_add(vec3_scale(right, beside[0]), vec3_scale(up, beside[1])), vec3_scale(forward, -beside[2]));
+  vec3 by_hand = vec3_add(vec3_add(vec3_scale(right, beside[0]), vec3_scale(up, beside[1])),
+                          vec3_scale(forward, -beside[2]));
   assert_near(vec3_length(vec3_subtract(by_hand, vec3_of(world))), 0, 1e-12);
   hl_scene_release(scene);
   lights[1].position[0] = 1e14; /* beyond reach of voxels a unit wide */

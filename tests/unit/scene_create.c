@@ -41,7 +41,8 @@ static void copies_a_lights_own_image(void **state) {
   assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
   p.glow[7] = 0;
   const hl_light_emission *emission = &hl_scene_describe(scene)->lights[0].emission;
-  assert_true(emission->pixels[7] == 3 && emission->pixels[0] == 0 && emission->width == 2 && emission->up[2] == 1);
+  assert_true(emission->pixels[7] == 3 && emission->pixels[0] == 0 && emission->width == 2 &&
+              emission->up[2] == 1);
   assert_string_equal(emission->file, "glow.png");
   hl_scene_release(scene);
   parts_release(&p);
@@ -88,7 +89,8 @@ typedef struct refusal {
   void (*spoil)(parts *p);
 } refusal;
 
-#define SPOIL(name, statement) static void name(parts *p) { statement; }
+#define SPOIL(name, statement) \
+  static void name(parts *p) { statement; }
 SPOIL(width_zero, p->description.width = 0)
 SPOIL(height_huge, p->description.height = 40000)
 SPOIL(background_bright, p->description.background[1] = 255)
@@ -122,8 +124,10 @@ static void make_polygon(parts *p, const double (*vertices)[3], size_t count) {
   p->light.vertices = vertices;
   p->light.vertex_count = count;
 }
-static const double line[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, bent[][3] = {{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}},
-                    crossed[][3] = {{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 3, 0}}, infinite[][3] = {{0, 0, 0}, {1, INFINITY, 0}, {1, 1, 0}};
+static const double line[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+                    bent[][3] = {{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}},
+                    crossed[][3] = {{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 3, 0}},
+                    infinite[][3] = {{0, 0, 0}, {1, INFINITY, 0}, {1, 1, 0}};
 SPOIL(polygon_null, make_polygon(p, NULL, 3))
 SPOIL(polygon_two, make_polygon(p, line, 2))
 SPOIL(polygon_line, make_polygon(p, line, 3))
@@ -221,36 +225,46 @@ static const refusal refusals[] = {
      light_radius},
     {"/lights/0/radius: nan is not a number: give a length in world units, 0 for a point", HL_ERROR_INPUT,
      light_radius_nan},
-    {"/lights/0/opening_angle_deg: 180 is out of range: give the cone's full angle in degrees, from 0.01 to 179",
+    {"/lights/0/opening_angle_deg: 180 is out of range: give the cone's full angle in degrees, from 0.01 to "
+     "179",
      HL_ERROR_INPUT, spot_wide},
-    {"/lights/0/opening_angle_deg: nan is not a number: give the cone's full angle in degrees, from 0.01 to 179",
+    {"/lights/0/opening_angle_deg: nan is not a number: give the cone's full angle in degrees, from 0.01 to "
+     "179",
      HL_ERROR_INPUT, spot_nan},
-    {"/lights/0/falloff_angle_deg: 21 is out of range: give the width of the cone's smooth edge in degrees, from 0 to "
+    {"/lights/0/falloff_angle_deg: 21 is out of range: give the width of the cone's smooth edge in degrees, "
+     "from 0 to "
      "half the opening angle",
      HL_ERROR_INPUT, spot_edge},
     {"/lights/0/direction: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT,
      spot_direction},
-    {"/lights/0/edge2/1: nan is not a number: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT, light_edge},
-    {"/lights/0/normal: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT, light_normal},
-    {"/lights/0/radius: -2 is negative: give a length in world units, 0 for a point", HL_ERROR_INPUT, light_disk_radius},
+    {"/lights/0/edge2/1: nan is not a number: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT,
+     light_edge},
+    {"/lights/0/normal: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT,
+     light_normal},
+    {"/lights/0/radius: -2 is negative: give a length in world units, 0 for a point", HL_ERROR_INPUT,
+     light_disk_radius},
     {"/lights/0/vertices: is null but its count is 3", HL_ERROR_ARGUMENT, polygon_null},
     {"/lights/0/vertices: has 2 entries: give three points or more", HL_ERROR_INPUT, polygon_two},
     {"/lights/0/vertices: span no area: move one off the line, or use a rect light with an edge of no length",
      HL_ERROR_INPUT, polygon_line},
-    {"/lights/0/vertices: do not lie in one plane: move them, or use several lights", HL_ERROR_INPUT, polygon_bent},
-    {"/lights/0/vertices: go around an outline that crosses itself: give them in order around it", HL_ERROR_INPUT,
-     polygon_crossed},
+    {"/lights/0/vertices: do not lie in one plane: move them, or use several lights", HL_ERROR_INPUT,
+     polygon_bent},
+    {"/lights/0/vertices: go around an outline that crosses itself: give them in order around it",
+     HL_ERROR_INPUT, polygon_crossed},
     {"/lights/0/vertices/1/1: inf is out of range: give a coordinate between -1e15 and 1e15", HL_ERROR_INPUT,
      polygon_infinite},
     {"/lights/0/color/2: -0.1 is negative: give linear RGB, none below 0", HL_ERROR_INPUT, light_color},
     {"/lights/0/intensity: -3 is negative: give a factor, 0 or more", HL_ERROR_INPUT, light_intensity},
     {"/lights/0/shadows: 9 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,
      light_shadows},
-    {"/lights/0/texture/width: 0 is out of range: give an image of at most 32768 pixels a side, 67108864 in all",
+    {"/lights/0/texture/width: 0 is out of range: give an image of at most 32768 pixels a side, 67108864 in "
+     "all",
      HL_ERROR_INPUT, texture_width},
-    {"/lights/0/texture/height: 40000 is out of range: give an image of at most 32768 pixels a side, 67108864 in all",
+    {"/lights/0/texture/height: 40000 is out of range: give an image of at most 32768 pixels a side, "
+     "67108864 in all",
      HL_ERROR_INPUT, texture_height},
-    {"/lights/0/texture: has 32768 x 32768 pixels: give an image of at most 32768 pixels a side, 67108864 in all",
+    {"/lights/0/texture: has 32768 x 32768 pixels: give an image of at most 32768 pixels a side, 67108864 in "
+     "all",
      HL_ERROR_INPUT, texture_vast},
     {"/lights/0/texture/file: pixel (1, 0) has nan in channel 1: give linear RGB from 0 to 1e6",
      HL_ERROR_INPUT, texture_nan},
@@ -260,31 +274,39 @@ static const refusal refusals[] = {
      HL_ERROR_INPUT, screen_nan},
     {"/lights/0/texture/screen/right: has no length: give the direction as three numbers, not all 0",
      HL_ERROR_INPUT, screen_narrow},
-    {"/lights/0/texture/screen/up: lies along right: give two directions that span the screen", HL_ERROR_INPUT,
-     screen_flat},
-    {"/lights/0/texture/screen/center: the light's rays run along the screen, not through it: turn or move the "
+    {"/lights/0/texture/screen/up: lies along right: give two directions that span the screen",
+     HL_ERROR_INPUT, screen_flat},
+    {"/lights/0/texture/screen/center: the light's rays run along the screen, not through it: turn or move "
+     "the "
      "screen",
      HL_ERROR_INPUT, screen_edge_on},
-    {"/lights/0/emission/width: 0 is out of range: give an image of at most 32768 pixels a side, 67108864 in all",
+    {"/lights/0/emission/width: 0 is out of range: give an image of at most 32768 pixels a side, 67108864 in "
+     "all",
      HL_ERROR_INPUT, emission_width},
     {"/lights/0/emission/file: pixel (1, 0) has nan in channel 2: give linear RGB from 0 to 1e6",
      HL_ERROR_INPUT, emission_nan},
-    {"/lights/0/emission/up: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT, emission_up},
-    {"/lights/0/emission: is beside a texture: a light has an image of its own or projects one, use two lights",
+    {"/lights/0/emission/up: has no length: give the direction as three numbers, not all 0", HL_ERROR_INPUT,
+     emission_up},
+    {"/lights/0/emission: is beside a texture: a light has an image of its own or projects one, use two "
+     "lights",
      HL_ERROR_INPUT, emission_beside_texture},
-    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges", HL_ERROR_INPUT,
-     emission_on_line},
-    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges", HL_ERROR_INPUT,
-     emission_on_point},
-    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges", HL_ERROR_INPUT,
-     emission_on_sharp_light},
+    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges",
+     HL_ERROR_INPUT, emission_on_line},
+    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges",
+     HL_ERROR_INPUT, emission_on_point},
+    {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges",
+     HL_ERROR_INPUT, emission_on_sharp_light},
     {"/volumes: is empty: name at least one volume", HL_ERROR_INPUT, volumes_none},
     {"/volumes/0/volume: is null: give a volume", HL_ERROR_ARGUMENT, volume_null},
     {"/volumes/0/transform/scale: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, scale_zero},
-    {"/render/compositing: 2 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, compositing_unknown},
-    {"/volumes/0/transform/scale/1: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, axis_scale_zero},
-    {"/image/exposure: nan is not a number: give stops from -32 to 32: each doubles the light", HL_ERROR_INPUT, exposure_nan},
-    {"/volumes/0/material/emission: -1 is negative: give the part of the colour that shines by itself, from 0 to 1e6",
+    {"/render/compositing: 2 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,
+     compositing_unknown},
+    {"/volumes/0/transform/scale/1: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT,
+     axis_scale_zero},
+    {"/image/exposure: nan is not a number: give stops from -32 to 32: each doubles the light",
+     HL_ERROR_INPUT, exposure_nan},
+    {"/volumes/0/material/emission: -1 is negative: give the part of the colour that shines by itself, from "
+     "0 to 1e6",
      HL_ERROR_INPUT, emission_negative},
     {"/volumes/0/transform/rotate/axis: has no length: give the direction as three numbers, not all 0",
      HL_ERROR_INPUT, axis_zero},
@@ -351,7 +373,8 @@ static void refuses_with_the_place_and_the_mend(void **state) {
   }
 }
 
-/* A rect's moments are known, a polygon of the same outline has the same; so has one with a corner cut in and out again. */
+/* A rect's moments are known, a polygon of the same outline has the same; so has one with a corner cut in and
+ * out again. */
 static void shapes_have_their_moments(void **state) {
   (void)state;
   static const double outline[][3] = {{-1, -3, 5}, {3, -3, 5}, {3, 1, 5}, {3, 3, 5}, {-1, 3, 5}};
@@ -459,8 +482,8 @@ static void empty_value_is_the_commonest_transparent_one(void **state) {
                    none[] = {{0, 0.5}};
   sv.transfer_function = (hl_transfer_function){1, low, 2, NULL, 0};
   assert_true(hl_scene_volume_empty_value(&sv) == 0);
-  sv.transfer_function =
-      (hl_transfer_function){1, band, 4, NULL, 0}; /* zero is opaque: the wall is the surroundings */
+  sv.transfer_function = (hl_transfer_function){1, band, 4, NULL,
+                                                0}; /* zero is opaque: the wall is the surroundings */
   assert_near(hl_scene_volume_empty_value(&sv), 5, 0.2);
   assert_true(hl_transfer_function_opacity(&sv.transfer_function, hl_scene_volume_empty_value(&sv)) == 0);
   sv.transfer_function = (hl_transfer_function){1, none, 1, NULL, 0};

@@ -88,7 +88,8 @@ static void assert_round_trip(hl_context *context, const hl_scene *scene) {
   assert_string_equal(text, again);
   const hl_scene_description *a = hl_scene_describe(scene), *b = hl_scene_describe(second);
   assert_memory_equal(&a->camera.position, &b->camera.position, sizeof a->camera.position);
-  assert_memory_equal(&a->render, &b->render, offsetof(hl_render_settings, compositing)); /* padding follows */
+  assert_memory_equal(&a->render, &b->render,
+                      offsetof(hl_render_settings, compositing)); /* padding follows */
   assert_true(a->render.compositing == b->render.compositing && a->exposure == b->exposure);
   for (size_t l = 0; l < a->light_count; l++)
     assert_memory_equal(a->lights[l].color, b->lights[l].color, sizeof a->lights[l].color);
@@ -143,7 +144,8 @@ static void shapes_are_made_once(void **state) {
   static const char text[] =
       "{\"halflight\": 1, \"groups\": {\"ball\": [{\"type\": \"sphere\", \"radius\": 3}]}, \"volumes\": ["
       "{\"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 1},"
-      "{\"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 1, \"transform\": {\"scale\": 2}},"
+      "{\"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 1, \"transform\": "
+      "{\"scale\": 2}},"
       "{\"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 2}]}";
   hl_context *context = make_context();
   hl_scene *scene = NULL, *changed = NULL;
@@ -156,8 +158,9 @@ static void shapes_are_made_once(void **state) {
   assert_true(hl_transfer_function_opacity(f, 0.5) > 0.4 && hl_transfer_function_opacity(f, 0.3) == 0);
 
   hl_scene_volume volume = d.volumes[0];
-  volume.shapes = "{\"groups\": {\"ball\": [{\"type\": \"sphere\", \"radius\": 3}]},"
-                  " \"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 1}";
+  volume.shapes =
+      "{\"groups\": {\"ball\": [{\"type\": \"sphere\", \"radius\": 3}]},"
+      " \"shapes\": [{\"type\": \"group\", \"name\": \"ball\"}], \"voxel_size\": 1}";
   d.volumes = &volume;
   d.volume_count = 1;
   hl_error error = {0};
@@ -182,8 +185,8 @@ static void shapes_are_made_once(void **state) {
 /* The names that the schema lists are the library's, in its order. */
 static void assert_enumeration(const json_t *schema, const char *key, const char *(*name_at)(size_t index)) {
   const json_t *function = json_object_get(json_object_get(schema, "$defs"), "transfer_function");
-  const json_t *names =
-      json_object_get(json_object_get(json_object_get(function, "properties"), key), "enum");
+  const json_t *names = json_object_get(json_object_get(json_object_get(function, "properties"), key),
+                                        "enum");
   size_t count = 0;
   for (; name_at(count) != NULL; count++)
     assert_string_equal(json_string_value(json_array_get(names, count)), name_at(count));
@@ -193,8 +196,8 @@ static void assert_enumeration(const json_t *schema, const char *key, const char
 
 static void the_schema_knows_all_names(void **state) {
   (void)state;
-  json_t *schema =
-      json_load_file(HALFLIGHT_SOURCE "/share/halflight.schema.json", JSON_REJECT_DUPLICATES, NULL);
+  json_t *schema = json_load_file(HALFLIGHT_SOURCE "/share/halflight.schema.json", JSON_REJECT_DUPLICATES,
+                                  NULL);
   assert_non_null(schema);
   assert_enumeration(schema, "colormap", hl_colormap_name);
   assert_enumeration(schema, "preset", hl_preset_name);
@@ -203,7 +206,10 @@ static void the_schema_knows_all_names(void **state) {
 
 static void syntax_errors_have_line_and_column(void **state) {
   (void)state;
-  const struct { const char *text; int line, column; const char *message;
+  const struct {
+    const char *text;
+    int line, column;
+    const char *message;
   } faults[] = {
       {"{\n  \"halflight\": 1,\n  // a comment\n}", 3, 3,
        "S:3:3: string or '}' expected near '/': JSON has no comments, remove them"},
@@ -212,7 +218,8 @@ static void syntax_errors_have_line_and_column(void **state) {
       {"", 1, 0, "S:1:0: '[' or '{' expected near end of file"},
       {"{\"a\": 1,\n \"a\": 2}", 2, 4, "S:2:4: duplicate object key near '\"a\"': remove one of the two"},
       {"{\"a\": NaN}", 1, 9, "S:1:9: invalid token near 'NaN': JSON has no NaN, give a number"},
-      {"{\"a\": 1e999}", 1, 11, "S:1:11: real number overflow near '1e999': give a number that a double holds"},
+      {"{\"a\": 1e999}", 1, 11,
+       "S:1:11: real number overflow near '1e999': give a number that a double holds"},
       {"{\"a\": 1} x", 1, 10, "S:1:10: end of file expected near 'x'"},
   };
   hl_context *context = make_context();
@@ -256,7 +263,7 @@ static void defaults_are_the_documented_ones(void **state) {
   assert_true(d->render.shadows == HL_SHADOWS_SOFT && d->render.soft_method == HL_SOFT_CASCADE);
   assert_true(d->render.sheet_spacing == 0.5 && d->render.shadow_resolution == 0 &&
               d->render.light_samples == 4);
-  assert_ptr_equal(d->volumes[0].volume, d->volumes[1].volume); /* one file, loaded once */
+  assert_ptr_equal(d->volumes[0].volume, d->volumes[1].volume);   /* one file, loaded once */
   assert_true(d->volumes[0].transfer_function.opacity_count > 1); /* automatic */
   assert_true(d->volumes[1].transfer_function.opacity_count == 1 &&
               d->volumes[1].transfer_function.unit_distance == 1);
@@ -271,9 +278,10 @@ static void colors_alone_keep_opacity(void **state) {
   hl_context *context = make_context();
   hl_scene *plain = NULL, *colored = NULL;
   const char *a = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}]}";
-  const char *b = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\", "
-                  "\"transfer_function\": {\"file\": "
-                  "\"colors.json\"}}]}";
+  const char *b =
+      "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\", "
+      "\"transfer_function\": {\"file\": "
+      "\"colors.json\"}}]}";
   assert_int_equal(read_text(context, a, &plain, NULL), HL_OK);
   assert_int_equal(read_text(context, b, &colored, NULL), HL_OK);
   const hl_transfer_function *f = &hl_scene_describe(plain)->volumes[0].transfer_function;
@@ -306,21 +314,24 @@ static void files_are_relative_to_the_scene_file(void **state) {
   hl_context_destroy(context);
 }
 
-/* Decoded to linear light, over black; the name as it opens from here, and the screen, survive a round trip. */
+/* Decoded to linear light, over black; the name as it opens from here, and the screen, survive a round
+ * trip. */
 static void textures_are_read_linear(void **state) {
   (void)state;
   hl_context *context = make_context();
   hl_scene *scene = NULL;
   char path[300];
-  const char *text = "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}], \"lights\": [{\"texture\": "
-                     "{\"file\": \"slide.png\", \"screen\": {\"center\": [0.1, 2, 9], \"right\": [3, 0, 1], \"up\": [0, "
-                     "2, -0.0]}}}]}";
+  const char *text =
+      "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}], \"lights\": [{\"texture\": "
+      "{\"file\": \"slide.png\", \"screen\": {\"center\": [0.1, 2, 9], \"right\": [3, 0, 1], \"up\": [0, "
+      "2, -0.0]}}}]}";
   assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
   const hl_light_texture *texture = &hl_scene_describe(scene)->lights[0].texture;
   const float expected[6] = {1, 0, 0, 0.5f, 0.5f, 0.5f};
   assert_true(texture->width == 2 && texture->height == 1);
   for (int i = 0; i < 6; i++) assert_near(texture->pixels[i], expected[i], 1e-4f);
-  assert_true(texture->screen_center[0] == 0.1 && texture->screen_right[2] == 1 && texture->screen_up[1] == 2);
+  assert_true(texture->screen_center[0] == 0.1 && texture->screen_right[2] == 1 &&
+              texture->screen_up[1] == 2);
   snprintf(path, sizeof path, "%s/slide.png", folder);
   assert_string_equal(texture->file, path);
   assert_round_trip(context, scene);
@@ -329,7 +340,8 @@ static void textures_are_read_linear(void **state) {
   hl_context_destroy(context);
 }
 
-/* The image on a light's own surface is read likewise, and survives a round trip; a rect says which way is up itself. */
+/* The image on a light's own surface is read likewise, and survives a round trip; a rect says which way is up
+ * itself. */
 static void emissions_are_read_linear(void **state) {
   (void)state;
   static const char *const lights[] = {
@@ -340,7 +352,9 @@ static void emissions_are_read_linear(void **state) {
   for (int l = 0; l < 2; l++) {
     hl_scene *scene = NULL;
     char text[400], path[300];
-    snprintf(text, sizeof text, "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}], \"lights\": [%s]}", lights[l]);
+    snprintf(text, sizeof text,
+             "{\"halflight\": 1, \"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}], \"lights\": [%s]}",
+             lights[l]);
     assert_int_equal(read_text(context, text, &scene, NULL), HL_OK);
     const hl_light_emission *emission = &hl_scene_describe(scene)->lights[0].emission;
     assert_true(emission->width == 2 && emission->height == 1);
@@ -366,8 +380,9 @@ static void textures_from_memory_cannot_be_written(void **state) {
   hl_error error = {0};
   assert_int_equal(hl_scene_create(p.context, &p.description, &scene, NULL), HL_OK);
   assert_int_equal(hl_scene_to_json(p.context, scene, &text, &error), HL_ERROR_ARGUMENT);
-  assert_string_equal(error.message, "/lights/0/texture/file: the image came from memory: write it to a file and name "
-                                     "that in the scene");
+  assert_string_equal(error.message,
+                      "/lights/0/texture/file: the image came from memory: write it to a file and name "
+                      "that in the scene");
   hl_scene_release(scene);
   parts_release(&p);
 }
@@ -440,8 +455,10 @@ static void damaged_scenes_are_answered(void **state) {
       " \"clip\": {\"min\": [0, 0, 0], \"max\": [2, 3, 2]}, \"transfer_function\": {\"opacity\": [[0, 0], "
       "[9, 0.5]], \"colormap\": \"hot\"}}], \"lights\": [{\"type\": \"point\", \"radius\": 0.5}]}",
       "{\"halflight\": 1, \"groups\": {\"a\": [{\"type\": \"box\", \"size\": [2, 3, 2]}]}, \"volumes\": [{"
-      "\"shapes\": [{\"type\": \"group\", \"name\": \"a\", \"scale\": 2}, {\"type\": \"cone\", \"from\": [0, 0, 1], "
-      "\"to\": [0, 3, 0], \"radius\": 2, \"blend\": 1, \"operation\": \"add\", \"hypertexture\": {\"soft\": 1}}], "
+      "\"shapes\": [{\"type\": \"group\", \"name\": \"a\", \"scale\": 2}, {\"type\": \"cone\", \"from\": [0, "
+      "0, 1], "
+      "\"to\": [0, 3, 0], \"radius\": 2, \"blend\": 1, \"operation\": \"add\", \"hypertexture\": {\"soft\": "
+      "1}}], "
       "\"voxel_size\": 1, \"transfer_function\": {\"color\": [1, 0, 0], \"opacity\": 0.5}}]}"};
   hl_context *context = make_context();
   srand(3);

@@ -55,7 +55,9 @@ static void halflights_own(void **state) {
 
 static void paraview_color_spaces(void **state) {
   (void)state;
-  const struct { const char *name; double color[3][3];
+  const struct {
+    const char *name;
+    double color[3][3];
   } spaces[] = {
       {"RGB", {{0.35, 0.227451, 0.601961}, {0.468627, 0.156863, 0.450981}, {0.646568, 0.05098, 0.22451}}},
       {"Lab",
@@ -143,7 +145,9 @@ static void slicer_presets(void **state) {
 
 static void refusals_name_the_place(void **state) {
   (void)state;
-  const struct { const char *text, *message; hl_status status;
+  const struct {
+    const char *text, *message;
+    hl_status status;
   } faults[] = {
       {"[]", "/: has 0 elements: give 1", HL_ERROR_INPUT},
       {"[{\"Name\": \"x\"}]", "/0/RGBPoints: is missing: a ParaView colour map needs it", HL_ERROR_INPUT},
@@ -188,7 +192,7 @@ static void refusals_name_the_place(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(halflights_own),        cmocka_unit_test(paraview_color_spaces),
+      cmocka_unit_test(halflights_own),          cmocka_unit_test(paraview_color_spaces),
       cmocka_unit_test(paraview_opacities_ease), cmocka_unit_test(slicer_presets),
       cmocka_unit_test(refusals_name_the_place),
   };

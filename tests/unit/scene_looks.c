@@ -1,4 +1,5 @@
-/* tests/unit/scene_looks.c - what volumes are taken for, and how they are then shown: colours, labels, lights. */
+/* tests/unit/scene_looks.c - what volumes are taken for, and how they are then shown: colours, labels,
+ * lights. */
 #include "scene/exposure.h"
 #include "scene/looks.h"
 #include "scene_parts.h"
@@ -7,7 +8,9 @@ enum { N = 48, COUNT = N * N * N };
 
 static float values[COUNT];
 
-static double distance(int i, int j, int k, double x, double y, double z) { return hypot(hypot(i - x, j - y), k - z); }
+static double distance(int i, int j, int k, double x, double y, double z) {
+  return hypot(hypot(i - x, j - y), k - z);
+}
 
 /* values[] = each(i, j, k) */
 static void fill(double (*each)(int i, int j, int k)) {
@@ -22,17 +25,22 @@ static double noise(int i, int j, int k) { /* -0.5..0.5 */
 
 /* A body in Hounsfield units: air, skin and muscle, a bone; and a casting of metal in their place. */
 static double body(int i, int j, int k) {
-  double r = distance(i, j, k, 24, 23, 25), soft = 1 / (1 + exp((r - 17) / 0.6)), bone = 1 / (1 + exp((r - 6) / 0.6));
+  double r = distance(i, j, k, 24, 23, 25), soft = 1 / (1 + exp((r - 17) / 0.6)),
+         bone = 1 / (1 + exp((r - 6) / 0.6));
   return -1000 + 1040 * soft + 900 * bone + 60 * noise(i, j, k);
 }
 
-static double casting(int i, int j, int k) { return body(i, j, k) > -400 ? 2400 + 60 * noise(i, j, k) : -1000 + 60 * noise(i, j, k); }
+static double casting(int i, int j, int k) {
+  return body(i, j, k) > -400 ? 2400 + 60 * noise(i, j, k) : -1000 + 60 * noise(i, j, k);
+}
 
 static double eight_bits(int i, int j, int k) { return floor((body(i, j, k) + 1100) / 8.3); }
 
 /* Cut out by a program: all else is 0. */
 static double cut_out(int i, int j, int k) {
-  return distance(i, j, k, 24, 23, 25) < 17 ? 100 + 40 * (distance(i, j, k, 24, 23, 25) < 11) + 30 * noise(i, j, k) : 0;
+  return distance(i, j, k, 24, 23, 25) < 17
+             ? 100 + 40 * (distance(i, j, k, 24, 23, 25) < 11) + 30 * noise(i, j, k)
+             : 0;
 }
 
 static double twigs(int i, int j, int k) { /* a few thin rods in noisy air */
@@ -54,13 +62,15 @@ static double ball_of_bytes(int i, int j, int k) {
 /* Waves of many directions that fill the grid, about a mean. */
 static double waves(int i, int j, int k) {
   double sum = 0;
-  for (int n = 1; n <= 12; n++) sum += sin(0.05 * n * i + 2.1 * n) * sin(0.37 * n + 0.06 * (13 - n) * j) * sin(0.045 * n * k + n);
+  for (int n = 1; n <= 12; n++)
+    sum += sin(0.05 * n * i + 2.1 * n) * sin(0.37 * n + 0.06 * (13 - n) * j) * sin(0.045 * n * k + n);
   return sum;
 }
 static double density(int i, int j, int k) { return 20 + waves(i, j, k); }
 static double gradient(int i, int j, int k) { return 300 + 2 * i + 0.1 * j + 0.01 * k; }
 static double orbital(int i, int j, int k) { /* saturated lobes on nothing */
-  double lobe = 3 * exp(-pow(distance(i, j, k, 15, 24, 24) / 7, 2)) - 3 * exp(-pow(distance(i, j, k, 33, 24, 24) / 7, 2));
+  double lobe = 3 * exp(-pow(distance(i, j, k, 15, 24, 24) / 7, 2)) -
+                3 * exp(-pow(distance(i, j, k, 33, 24, 24) / 7, 2));
   return fabs(lobe) < 0.05 ? 0 : fmax(-1, fmin(1, lobe));
 }
 
@@ -75,12 +85,23 @@ static const char *guess(hl_context *context, double (*each)(int, int, int), con
 
 static void kinds_are_told_apart(void **state) {
   (void)state;
-  static const struct { double (*each)(int, int, int); const char *file, *kind;
-  } cases[] = {{body, NULL, "scanned body"},       {casting, NULL, "scanned matter"},   {eight_bits, NULL, "scanned matter"},
-               {eight_bits, "a.nii.gz", "scanned body"}, {cut_out, "a.nii", "scanned brain"}, {cut_out, NULL, "scanned matter"},
-               {twigs, "tree.nii", "scanned matter"}, {regions, NULL, "labels"},         {mask, NULL, "scanned matter"},
-               {waves, NULL, "signed field"},      {density, NULL, "flow"},             {gradient, NULL, "flow"},
-               {orbital, NULL, "signed field"},    {ball_of_bytes, NULL, "scanned matter"}};
+  static const struct {
+    double (*each)(int, int, int);
+    const char *file, *kind;
+  } cases[] = {{body, NULL, "scanned body"},
+               {casting, NULL, "scanned matter"},
+               {eight_bits, NULL, "scanned matter"},
+               {eight_bits, "a.nii.gz", "scanned body"},
+               {cut_out, "a.nii", "scanned brain"},
+               {cut_out, NULL, "scanned matter"},
+               {twigs, "tree.nii", "scanned matter"},
+               {regions, NULL, "labels"},
+               {mask, NULL, "scanned matter"},
+               {waves, NULL, "signed field"},
+               {density, NULL, "flow"},
+               {gradient, NULL, "flow"},
+               {orbital, NULL, "signed field"},
+               {ball_of_bytes, NULL, "scanned matter"}};
   hl_context *context = make_context();
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
     const char *kind = guess(context, cases[n].each, cases[n].file);
@@ -113,7 +134,8 @@ static void skin_is_for_bodies(void **state) {
   hl_context_destroy(context);
 }
 
-/* Every label has a colour of its own up to half way to the next; only close to its number there is matter. */
+/* Every label has a colour of its own up to half way to the next; only close to its number there is
+ * matter. */
 static void labels_have_colors_of_their_own(void **state) {
   (void)state;
   static const double labels[] = {3, 17, 42, 1001};
@@ -130,14 +152,16 @@ static void labels_have_colors_of_their_own(void **state) {
     hl_transfer_function_color(&f, labels[n] - 0.49 * (labels[n] - before), near);
     assert_memory_equal(here, near, sizeof here);
     hl_transfer_function_color(&f, before, other);
-    if (n > 0) assert_true(fabs(here[0] - other[0]) + fabs(here[1] - other[1]) + fabs(here[2] - other[2]) > 0.3);
+    if (n > 0)
+      assert_true(fabs(here[0] - other[0]) + fabs(here[1] - other[1]) + fabs(here[2] - other[2]) > 0.3);
   }
   hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
   hl_context_destroy(context);
 }
 
-/* What is common in a flow is clear, its extremes are not; where all values are equally common, all are seen. */
+/* What is common in a flow is clear, its extremes are not; where all values are equally common, all are
+ * seen. */
 static void flows_show_their_extremes(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -146,7 +170,8 @@ static void flows_show_their_extremes(void **state) {
   hl_volume *volume = make_volume(context, N, values);
   assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
   assert_true(hl_transfer_function_opacity(&f, 20) == 0);
-  assert_true(hl_transfer_function_opacity(&f, volume->minimum) > 0.2 && hl_transfer_function_opacity(&f, volume->maximum) > 0.2);
+  assert_true(hl_transfer_function_opacity(&f, volume->minimum) > 0.2 &&
+              hl_transfer_function_opacity(&f, volume->maximum) > 0.2);
   hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
   fill(gradient);
@@ -161,8 +186,9 @@ static void flows_show_their_extremes(void **state) {
   hl_context_destroy(context);
 }
 
-/* A matt ball in the light of a lamp at the eye is as bright as its colour in its middle: the factor is 0.871 (240 of 255)
- * over colour times intensity. Ambient light adds up with it, the part that is left takes from it. */
+/* A matt ball in the light of a lamp at the eye is as bright as its colour in its middle: the factor is 0.871
+ * (240 of 255) over colour times intensity. Ambient light adds up with it, the part that is left takes from
+ * it. */
 static void lights_are_fitted(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -181,15 +207,18 @@ static void lights_are_fitted(void **state) {
   memset(&p.light.texture, 0, sizeof p.light.texture);
   assert_int_equal(hl_camera_frame(&p.description, 30, 20, 1, &p.description.camera), HL_OK);
   hl_light_direction(&p.description.camera, 0, 0, p.light.direction);
-  static const struct { double color, intensity, ambient, left, factor;
-  } cases[] = {{1, 1, 0, 1, 0.871}, {0.5, 1, 0, 1, 1.742}, {0.5, 2, 0, 1, 0.871}, {0.5, 1, 1, 1, 0.871}, {1, 1, 0, 0.5, 1.742},
-               {0.1, 1, 0, 1, 2}};
+  static const struct {
+    double color, intensity, ambient, left, factor;
+  } cases[] = {{1, 1, 0, 1, 0.871},   {0.5, 1, 0, 1, 1.742}, {0.5, 2, 0, 1, 0.871},
+               {0.5, 1, 1, 1, 0.871}, {1, 1, 0, 0.5, 1.742}, {0.1, 1, 0, 1, 2}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
     double factor = 0;
-    for (int c = 0; c < 3; c++) p.color[0].color[c] = cases[n].color, p.description.ambient[c] = cases[n].ambient;
+    for (int c = 0; c < 3; c++)
+      p.color[0].color[c] = cases[n].color, p.description.ambient[c] = cases[n].ambient;
     p.light.intensity = cases[n].intensity;
     assert_int_equal(hl_scene_exposure(&p.description, 0, cases[n].left, &factor, NULL), HL_OK);
-    if (fabs(factor / cases[n].factor - 1) > 0.04) fail_msg("case %zu: %g in place of %g", n, factor, cases[n].factor);
+    if (fabs(factor / cases[n].factor - 1) > 0.04)
+      fail_msg("case %zu: %g in place of %g", n, factor, cases[n].factor);
   }
   hl_volume_release(volume);
   hl_volume_release(p.volume);

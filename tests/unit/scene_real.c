@@ -15,7 +15,10 @@ static const char *data_folder(void) {
 /* Real volumes: hardly any of the border is visible, something is, and little of it is not in the picture. */
 static void real_volumes(void **state) {
   (void)state;
-  static const struct { const char *file; hl_data_kind kind; double border;
+  static const struct {
+    const char *file;
+    hl_data_kind kind;
+    double border;
   } sets[] = {{"bonsai/bonsai.nrrd", HL_DATA_SURFACES, 0.2},
               {"boston_teapot/boston_teapot.nrrd", HL_DATA_SURFACES, 0.01},
               {"bucky/Bucky_32x32x32_uint8.raw", HL_DATA_FIELD, 0.08},
@@ -60,8 +63,8 @@ static void real_volumes(void **state) {
       else high = true;
     }
     for (size_t s = 0; s < sample.border_count; s++)
-      seen_border +=
-          hl_transfer_function_opacity(&f, sample.low + sample.range * (double)sample.border[s]) >= 0.02;
+      seen_border += hl_transfer_function_opacity(&f, sample.low + sample.range * (double)sample.border[s]) >=
+                     0.02;
     double part = (double)seen / (double)sample.count,
            border = (double)seen_border / (double)sample.border_count;
     if (a.kind != sets[n].kind || border > sets[n].border || part < 0.005 || part > 0.5)

@@ -1,5 +1,5 @@
-/* unit/shadow_lookup.c - how a shadow buffer is read between its pixels, as the baseline builds it. simd_equal.c holds the other
- * instruction sets to it. */
+/* unit/shadow_lookup.c - how a shadow buffer is read between its pixels, as the baseline builds it.
+ * simd_equal.c holds the other instruction sets to it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,16 +19,21 @@ static double plane(double u, double v) { return 0.2 + 0.006 * u + 0.011 * v; }
 static double square(double u, double v) { return 0.1 + 0.0003 * u * u - 0.0002 * u * v + 0.0005 * v * v; }
 static double edge(double u, double v) { return u + 0.3 * v < 20 ? 0 : 1; }
 
-static shadow_map map_of_buffer(void) { return (shadow_map){.stride = STRIDE, .width = SIDE, .height = SIDE}; }
+static shadow_map map_of_buffer(void) {
+  return (shadow_map){.stride = STRIDE, .width = SIDE, .height = SIDE};
+}
 
 /* Pixel (0,0). */
 static const float *fill(float *pixels, surface *of) {
   for (int y = -MARGIN; y < SIDE + MARGIN; y++)
-    for (int x = -MARGIN; x < SIDE + MARGIN; x++) pixels[(y + MARGIN) * STRIDE + x + MARGIN] = (float)of(x + 0.5, y + 0.5);
+    for (int x = -MARGIN; x < SIDE + MARGIN; x++)
+      pixels[(y + MARGIN) * STRIDE + x + MARGIN] = (float)of(x + 0.5, y + 0.5);
   return pixels + MARGIN * STRIDE + MARGIN;
 }
 
-typedef struct places { lanes u, v; } places;
+typedef struct places {
+  lanes u, v;
+} places;
 
 static places some_places(uint64_t *state, float from, float to) {
   places at;
@@ -82,7 +87,8 @@ static void test_light_stays_light(void **state) {
       assert_true(cubic[lane] >= 0 && cubic[lane] <= 1);
       between += cubic[lane] > 0.01f && cubic[lane] < 0.99f;
       if (u <= 0 || v <= 0 || u >= SIDE || v >= SIDE) assert_true(cubic[lane] == 1);
-      else if (edge(u - 2.2, v - 2.2) == edge(u + 2.2, v + 2.2)) assert_true(fabs((double)cubic[lane] - edge(u, v)) < 1e-6);
+      else if (edge(u - 2.2, v - 2.2) == edge(u + 2.2, v + 2.2))
+        assert_true(fabs((double)cubic[lane] - edge(u, v)) < 1e-6);
     }
   }
   assert_true(between > 100);
@@ -127,13 +133,14 @@ static void test_short_squares(void **state) {
     lanes_gather_short_squares(table, STRIDE, squares, active, square);
     for (int lane = 0; lane < LANES; lane++)
       for (int i = 0; i < 4 && (active >> lane & 1) != 0; i++)
-        assert_int_equal(square[i][lane], table[(squares.row[lane] + i / 2) * STRIDE + squares.column[lane] + i % 2]);
+        assert_int_equal(square[i][lane],
+                         table[(squares.row[lane] + i / 2) * STRIDE + squares.column[lane] + i % 2]);
   }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_cubic_keeps_squares), cmocka_unit_test(test_light_stays_light),
-                                     cmocka_unit_test(test_cubic_stays_within),
-                                     cmocka_unit_test(test_short_squares)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_cubic_keeps_squares), cmocka_unit_test(test_light_stays_light),
+      cmocka_unit_test(test_cubic_stays_within), cmocka_unit_test(test_short_squares)};
   return cmocka_run_group_tests_name("shadow_lookup", tests, NULL, NULL);
 }

@@ -22,8 +22,8 @@ static hl_volume *make(hl_context *context, const char *text, int size, int thre
 /* Cubic B-spline weights of the taps at -1 .. 2 and their derivatives, at t in [0, 1). */
 static void bspline(double t, double weight[4], double slope[4]) {
   double s = 1 - t;
-  const double w[4] = {s * s * s / 6, (4 - 6 * t * t + 3 * t * t * t) / 6, (4 - 6 * s * s + 3 * s * s * s) / 6,
-                       t * t * t / 6};
+  const double w[4] = {s * s * s / 6, (4 - 6 * t * t + 3 * t * t * t) / 6,
+                       (4 - 6 * s * s + 3 * s * s * s) / 6, t * t * t / 6};
   const double d[4] = {-s * s / 2, (-12 * t + 9 * t * t) / 6, (12 * s - 9 * s * s) / 6, t * t / 2};
   memcpy(weight, w, sizeof w);
   memcpy(slope, d, sizeof d);
@@ -91,7 +91,10 @@ static vec3 random_direction(uint32_t *state) {
 static void a_sphere_faces_outwards(void **state) {
   (void)state;
   hl_context *context = make_context();
-  hl_volume *volume = make(context, "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 20, \"position\": [0.3, -0.2, 0.7]}], \"voxel_size\": 1}", 0, 1);
+  hl_volume *volume = make(context,
+                           "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 20, \"position\": [0.3, -0.2, "
+                           "0.7]}], \"voxel_size\": 1}",
+                           0, 1);
   uint32_t seed = 1;
   for (int n = 0; n < 2000; n++) {
     vec3 normal = random_direction(&seed), centre = {0.3, -0.2, 0.7};
@@ -174,9 +177,12 @@ static void threads_do_not_matter(void **state) {
 static void a_seed_gives_the_same_bytes(void **state) {
   (void)state;
   static const char text[] =
-      "{\"shapes\": [{\"type\": \"group\", \"scale\": 1.3, \"rotate\": {\"axis\": [1, 2, 3], \"angle_deg\": 40},"
-      " \"shapes\": [{\"type\": \"sphere\", \"radius\": 8}, {\"type\": \"torus\", \"radius\": 9, \"tube_radius\": 2}],"
-      " \"hypertexture\": {\"frequency\": 0.31, \"octaves\": 5, \"bias\": 0.4, \"gain\": 0.7, \"amplitude\": 4,"
+      "{\"shapes\": [{\"type\": \"group\", \"scale\": 1.3, \"rotate\": {\"axis\": [1, 2, 3], \"angle_deg\": "
+      "40},"
+      " \"shapes\": [{\"type\": \"sphere\", \"radius\": 8}, {\"type\": \"torus\", \"radius\": 9, "
+      "\"tube_radius\": 2}],"
+      " \"hypertexture\": {\"frequency\": 0.31, \"octaves\": 5, \"bias\": 0.4, \"gain\": 0.7, \"amplitude\": "
+      "4,"
       " \"soft\": 3, \"seed\": 7}}], \"voxel_size\": 1}";
   hl_context *context = make_context();
   hl_volume *volume = make(context, text, 0, 2);
@@ -195,8 +201,14 @@ static void a_seed_gives_the_same_bytes(void **state) {
 static void orbitals_are_hydrogens(void **state) {
   (void)state;
   hl_context *context = make_context();
-  hl_volume *p = make(context, "{\"shapes\": [{\"type\": \"orbital\", \"n\": 2, \"l\": 1, \"m\": 0, \"radius\": 32}], \"voxel_size\": 1}", 0, 1);
-  hl_volume *s = make(context, "{\"shapes\": [{\"type\": \"orbital\", \"n\": 1, \"l\": 0, \"m\": 0, \"radius\": 24}], \"voxel_size\": 1}", 0, 1);
+  hl_volume *p = make(context,
+                      "{\"shapes\": [{\"type\": \"orbital\", \"n\": 2, \"l\": 1, \"m\": 0, \"radius\": 32}], "
+                      "\"voxel_size\": 1}",
+                      0, 1);
+  hl_volume *s = make(context,
+                      "{\"shapes\": [{\"type\": \"orbital\", \"n\": 1, \"l\": 0, \"m\": 0, \"radius\": 24}], "
+                      "\"voxel_size\": 1}",
+                      0, 1);
   double a = 2, scale = 4 * exp(-1); /* the greatest |z| e^(-|z| / 4) of whole z is at 4 */
   uint32_t seed = 3;
   for (int n = 0; n < 500; n++) {
@@ -206,7 +218,8 @@ static void orbitals_are_hydrogens(void **state) {
     double r = vec3_length(at);
     if (r >= 24) continue;
     to_index(p, at, index);
-    double value = hl_volume_value(p, (size_t)lround(index[0]), (size_t)lround(index[1]), (size_t)lround(index[2]));
+    double value = hl_volume_value(p, (size_t)lround(index[0]), (size_t)lround(index[1]),
+                                   (size_t)lround(index[2]));
     assert_float_equal(value, at.z * exp(-r / (2 * a)) / scale, 1e-6);
     to_index(s, at, index);
     value = hl_volume_value(s, (size_t)lround(index[0]), (size_t)lround(index[1]), (size_t)lround(index[2]));
@@ -219,11 +232,13 @@ static void orbitals_are_hydrogens(void **state) {
   hl_context_destroy(context);
 }
 
-/* Wave functions of different quantum numbers are orthogonal: the sum of their product over the grid vanishes. */
+/* Wave functions of different quantum numbers are orthogonal: the sum of their product over the grid
+ * vanishes. */
 static void orbitals_are_orthogonal(void **state) {
   (void)state;
   hl_context *context = make_context();
-  static const int numbers[][3] = {{3, 2, 0}, {3, 2, 1}, {3, 2, -2}, {3, 1, 0}, {3, 0, 0}, {4, 2, 0}, {4, 3, -3}};
+  static const int numbers[][3] = {{3, 2, 0}, {3, 2, 1}, {3, 2, -2}, {3, 1, 0},
+                                   {3, 0, 0}, {4, 2, 0}, {4, 3, -3}};
   enum { COUNT = sizeof numbers / sizeof *numbers };
   hl_shape shape[COUNT];
   double product[COUNT][COUNT] = {{0}};
@@ -284,7 +299,9 @@ static void noise_is_perlins(void **state) {
     double h = 1e-4, sum = 0;
     for (int a = 0; a < 3; a++) {
       vec3 step = {a == 0 ? h : 0, a == 1 ? h : 0, a == 2 ? h : 0};
-      double slope = (hl_noise_at(&noise, vec3_add(whole, step)) - hl_noise_at(&noise, vec3_subtract(whole, step))) / (2 * h);
+      double slope = (hl_noise_at(&noise, vec3_add(whole, step)) -
+                      hl_noise_at(&noise, vec3_subtract(whole, step))) /
+                     (2 * h);
       assert_float_equal(fabs(slope), round(fabs(slope)), 1e-6);
       sum += fabs(slope);
     }
@@ -318,11 +335,18 @@ static void bounds_hold(void **state) {
     shapes[n].end = (size_t)n + 1;
   }
   shapes[0].type = HL_SHAPE_GROUP, shapes[0].end = 3, shapes[0].scale = 1.5, shapes[0].rotate_angle_deg = 20;
-  shapes[0].texture = (hl_hypertexture){.pattern = HL_PATTERN_TURBULENCE, .frequency = 0.4, .octaves = 3,
-                                        .bias = 0.4, .gain = 0.6, .amplitude = 3, .soft = 2};
+  shapes[0].texture = (hl_hypertexture){.pattern = HL_PATTERN_TURBULENCE,
+                                        .frequency = 0.4,
+                                        .octaves = 3,
+                                        .bias = 0.4,
+                                        .gain = 0.6,
+                                        .amplitude = 3,
+                                        .soft = 2};
   shapes[1].type = HL_SHAPE_SPHERE, shapes[1].radius = 6;
-  shapes[2].type = HL_SHAPE_CONE, shapes[2].radius = 5, shapes[2].end_radius = 1, shapes[2].to[2] = 12, shapes[2].blend = 3;
-  shapes[3].type = HL_SHAPE_BOX, shapes[3].operation = HL_SHAPE_SUBTRACT, shapes[3].size[0] = 30, shapes[3].blend = 2;
+  shapes[2].type = HL_SHAPE_CONE, shapes[2].radius = 5, shapes[2].end_radius = 1, shapes[2].to[2] = 12,
+  shapes[2].blend = 3;
+  shapes[3].type = HL_SHAPE_BOX, shapes[3].operation = HL_SHAPE_SUBTRACT, shapes[3].size[0] = 30,
+  shapes[3].blend = 2;
   shapes[3].size[1] = 4, shapes[3].size[2] = 4;
   shapes[4].type = HL_SHAPE_TORUS, shapes[4].radius = 14, shapes[4].tube_radius = 2;
   shapes[5].type = HL_SHAPE_SPHERE, shapes[5].radius = 15, shapes[5].operation = HL_SHAPE_INTERSECT;
@@ -362,7 +386,8 @@ static void distances_are_euclidean(void **state) {
   assert_float_equal(hl_shapes_distance(&list, NULL, (vec3){1, 1, 3}), 3, 1e-12);
   assert_float_equal(hl_shapes_distance(&list, NULL, (vec3){1, 1, -3}), 1, 1e-12);
   s.from[2] = -3, s.to[2] = 3, s.radius = 2, s.end_radius = 2;
-  const hl_shape_type round[] = {HL_SHAPE_CYLINDER, HL_SHAPE_CONE}; /* a cone of two equal ends is a cylinder */
+  const hl_shape_type round[] = {HL_SHAPE_CYLINDER,
+                                 HL_SHAPE_CONE}; /* a cone of two equal ends is a cylinder */
   for (int n = 0; n < 2; n++) {
     s.type = round[n];
     assert_float_equal(hl_shapes_distance(&list, NULL, (vec3){3, 4, 0}), 3, 1e-12);
@@ -393,15 +418,18 @@ static void limits_and_cancelling_are_kept(void **state) {
   static const char text[] = "{\"shapes\": [{\"type\": \"sphere\", \"radius\": 100}], \"voxel_size\": 1}";
   hl_volume *volume = NULL;
   hl_error error = {0};
-  assert_int_equal(hl_volume_from_shapes(context, text, strlen(text), "S", NULL, &volume, &error), HL_ERROR_MEMORY);
+  assert_int_equal(hl_volume_from_shapes(context, text, strlen(text), "S", NULL, &volume, &error),
+                   HL_ERROR_MEMORY);
   assert_null(volume);
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_shapes_options options;
   hl_shapes_options_defaults(&options);
   options.size = 15;
-  assert_int_equal(hl_volume_from_shapes(context, text, strlen(text), "S", &options, &volume, &error), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_volume_from_shapes(context, text, strlen(text), "S", &options, &volume, &error),
+                   HL_ERROR_ARGUMENT);
   options.struct_size = 1;
-  assert_int_equal(hl_volume_from_shapes(context, text, strlen(text), "S", &options, &volume, &error), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_volume_from_shapes(context, text, strlen(text), "S", &options, &volume, &error),
+                   HL_ERROR_ARGUMENT);
   assert_int_equal(hl_volume_from_shapes(context, "{}", 2, "S", NULL, &volume, &error), HL_ERROR_INPUT);
   assert_string_equal(error.message, "S: /shapes: is missing: give a list of shapes");
   hl_context_destroy(context);
@@ -409,12 +437,18 @@ static void limits_and_cancelling_are_kept(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(distances_are_euclidean),    cmocka_unit_test(bounds_hold),
-      cmocka_unit_test(a_sphere_faces_outwards),    cmocka_unit_test(a_tilted_box_is_flat),
-      cmocka_unit_test(the_grid_is_empty_at_its_faces), cmocka_unit_test(threads_do_not_matter),
-      cmocka_unit_test(a_seed_gives_the_same_bytes), cmocka_unit_test(orbitals_are_hydrogens),
-      cmocka_unit_test(orbitals_are_orthogonal),    cmocka_unit_test(elementary_functions_are_right),
-      cmocka_unit_test(noise_is_perlins),           cmocka_unit_test(bias_and_gain_are_perlins),
+      cmocka_unit_test(distances_are_euclidean),
+      cmocka_unit_test(bounds_hold),
+      cmocka_unit_test(a_sphere_faces_outwards),
+      cmocka_unit_test(a_tilted_box_is_flat),
+      cmocka_unit_test(the_grid_is_empty_at_its_faces),
+      cmocka_unit_test(threads_do_not_matter),
+      cmocka_unit_test(a_seed_gives_the_same_bytes),
+      cmocka_unit_test(orbitals_are_hydrogens),
+      cmocka_unit_test(orbitals_are_orthogonal),
+      cmocka_unit_test(elementary_functions_are_right),
+      cmocka_unit_test(noise_is_perlins),
+      cmocka_unit_test(bias_and_gain_are_perlins),
       cmocka_unit_test(limits_and_cancelling_are_kept),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -62,10 +62,14 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
   bench->color = (hl_color_point){0, {1, 1, 1}};
   bench->scene.transfer_function = (hl_transfer_function){1, &bench->opacity, 1, &bench->color, 1};
   affine3 placement = {axes, vec3_scale(middle, -1)};
-  require(hl_grid_create(bench->context, bench->pool, &hl_hot_functions(hl_cpu_best_instruction_set())->grid, hl_kernel_get(HL_KERNEL_BSPLINE), &bench->scene, placement,
-                         hl_scene_volume_empty_value(&bench->scene), &bench->grid, &error), &error);
-  require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error), &error);
-  hl_grid_mark_relevant(&bench->grid, &hl_hot_functions(hl_cpu_best_instruction_set())->grid, &bench->classifier, bench->pool);
+  require(hl_grid_create(bench->context, bench->pool, &hl_hot_functions(hl_cpu_best_instruction_set())->grid,
+                         hl_kernel_get(HL_KERNEL_BSPLINE), &bench->scene, placement,
+                         hl_scene_volume_empty_value(&bench->scene), &bench->grid, &error),
+          &error);
+  require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error),
+          &error);
+  hl_grid_mark_relevant(&bench->grid, &hl_hot_functions(hl_cpu_best_instruction_set())->grid,
+                        &bench->classifier, bench->pool);
 }
 
 void bench_show(bench *bench, const hl_opacity_point *opacity, size_t count) {
@@ -73,7 +77,8 @@ void bench_show(bench *bench, const hl_opacity_point *opacity, size_t count) {
   hl_classifier_release(bench->context, &bench->classifier);
   bench->scene.transfer_function.opacity = opacity;
   bench->scene.transfer_function.opacity_count = count;
-  require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error), &error);
+  require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error),
+          &error);
   hl_grid_mark_relevant(&bench->grid, &hl_hot_scalar.grid, &bench->classifier, bench->pool);
 }
 
@@ -93,12 +98,14 @@ void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double 
   assert_true(hl_view_finish(view));
   bench->sheets = (sheet_stack){normal, -0.7, 1.0 / 3, BENCH_SHEETS};
   hl_voxel_lists_release(bench->context, &bench->lists);
-  require(hl_voxel_lists_build(bench->context, bench->pool, &bench->grid, hl_kernel_get(which), view, &bench->sheets,
-                               &bench->lists, &error), &error);
+  require(hl_voxel_lists_build(bench->context, bench->pool, &bench->grid, hl_kernel_get(which), view,
+                               &bench->sheets, &bench->lists, &error),
+          &error);
 }
 
 fill_source bench_source(const bench *bench, hl_kernel which, int sheet) {
-  fill_source source = {.grid = &bench->grid, .kernel = hl_kernel_get(which), .lists = &bench->lists, .sheet = sheet};
+  fill_source source = {
+      .grid = &bench->grid, .kernel = hl_kernel_get(which), .lists = &bench->lists, .sheet = sheet};
   hl_view_sheet_rays(&bench->view, bench->sheets.normal, bench->sheets.first + sheet * bench->sheets.spacing,
                      bench->grid.frame_to_index, &source.rays);
   return source;
@@ -111,8 +118,9 @@ slab_run bench_run(const bench *bench, double beside) {
     run.high[axis] = (float)(bench->grid.box_high[axis] - beside);
   }
   for (int sheet = 0; sheet <= RUN_SLABS; sheet++)
-    hl_view_sheet_rays(&bench->view, bench->sheets.normal, bench->sheets.first + sheet * bench->sheets.spacing,
-                       bench->grid.frame_to_index, &run.rays[sheet]);
+    hl_view_sheet_rays(&bench->view, bench->sheets.normal,
+                       bench->sheets.first + sheet * bench->sheets.spacing, bench->grid.frame_to_index,
+                       &run.rays[sheet]);
   return run;
 }
 

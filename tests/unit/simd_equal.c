@@ -1,4 +1,5 @@
-/* unit/simd_equal.c - every hot function on every instruction set that the machine has: the scalar table's bits.
+/* unit/simd_equal.c - every hot function on every instruction set that the machine has: the scalar table's
+ * bits.
  *
  *     simd_equal [--time]
  *
@@ -18,7 +19,13 @@
 #include "core/cpu.h"
 #include "sheet_bench.h"
 
-enum { ROUNDS = 40, SETS = 3, TIMED = 100, TIMED_RUNS = 5, FIELD = 256 /* floats a row and rows, margins included */ };
+enum {
+  ROUNDS = 40,
+  SETS = 3,
+  TIMED = 100,
+  TIMED_RUNS = 5,
+  FIELD = 256 /* floats a row and rows, margins included */
+};
 
 typedef struct contender {
   const hot_functions *hot;
@@ -81,7 +88,8 @@ static void compare(const char *function, const trial *trial) {
   for (int i = 0; i < count; i++) {
     memcpy(trial->output, before, trial->size);
     trial->call(list[i].hot, trial->state);
-    if (memcmp(expected, trial->output, trial->size) != 0) fail_msg("%s: %s differs from scalar", function, list[i].name);
+    if (memcmp(expected, trial->output, trial->size) != 0)
+      fail_msg("%s: %s differs from scalar", function, list[i].name);
   }
   free(before);
   free(expected);
@@ -129,7 +137,9 @@ static void test_bound_rows(void **unused) {
   for (int storage = 0; storage < 3; storage++)
     for (int round = 0; round < ROUNDS; round++) {
       static bound_state state;
-      state = (bound_state){.storage = storage, .row_count = 1 + round % 9, .count = round == 0 ? 600 : 1 + (size_t)(599 * bench_random(&seed))};
+      state = (bound_state){.storage = storage,
+                            .row_count = 1 + round % 9,
+                            .count = round == 0 ? 600 : 1 + (size_t)(599 * bench_random(&seed))};
       fill_salted(&data[0][0], 9 * 600, &seed, -5, 5); /* read as bytes and halves too */
       for (int r = 0; r < 9; r++) state.rows[r] = data[r];
       trial trial = {call_bound_rows, &state, state.out, sizeof state.out};
@@ -191,7 +201,8 @@ static void test_brick_bits(void **unused) {
     state.grid = (grid){.voxels = voxels, .storage = (hl_storage)(round % 3), .dimension = {16, 13, 17}};
     if (round % 4 == 3) state.grid.dimension[round / 4 % 3] = 1 + round % 5;
     for (int axis = 0; axis < 3; axis++)
-      state.brick[axis] = round < 3 ? 1 : (int32_t)(bench_random(&seed) * (state.grid.dimension[axis] / HL_BRICK_CELLS + 1));
+      state.brick[axis] =
+          round < 3 ? 1 : (int32_t)(bench_random(&seed) * (state.grid.dimension[axis] / HL_BRICK_CELLS + 1));
     state.sign = round % 2 ? 1 : -1;
     state.level = state.sign * (round % 3 == 0 ? 128.0f : round % 3 == 1 ? 32768.0f : 0.5f);
     trial trial = {call_brick_bits, &state, &state.out, sizeof state.out};
@@ -206,13 +217,18 @@ typedef struct fill_state {
   slab_run run;
   int gather, tile_x, tile_y;
   uint32_t need, others;
-  struct { float density[TILE_PIXELS]; filled_blocks filled; relevant_blocks relevant; } out;
+  struct {
+    float density[TILE_PIXELS];
+    filled_blocks filled;
+    relevant_blocks relevant;
+  } out;
 } fill_state;
 
 static void call_fill(const hot_functions *hot, void *state) {
   fill_state *s = state;
   fill_tile_function *fill = s->gather ? hot->gather_tile : hot->splat_tile;
-  hot->relevant_blocks_tile(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), s->need, &s->out.relevant);
+  hot->relevant_blocks_tile(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), s->need,
+                            &s->out.relevant);
   s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->others, s->out.density);
 }
 
@@ -227,7 +243,8 @@ static void spoil_rays(sheet_rays *rays, int round) {
 static void spread_bits(grid *grid, uint32_t *seed) {
   for (size_t brick = 0; brick < hl_grid_bricks(grid); brick++) {
     double kind = bench_random(seed);
-    uint64_t random = (uint64_t)(4294967296.0 * bench_random(seed)) << 32 | (uint64_t)(4294967296.0 * bench_random(seed));
+    uint64_t random = (uint64_t)(4294967296.0 * bench_random(seed)) << 32 |
+                      (uint64_t)(4294967296.0 * bench_random(seed));
     grid->cell_bits[brick] = kind < 0.3 ? 0 : kind < 0.6 ? UINT64_MAX : random;
   }
   grid->cell_bits_tell = true;
@@ -245,16 +262,23 @@ static void check_fill(const size_t n[3], hl_storage storage, uint32_t seed) {
   for (int round = 0; round < ROUNDS; round++) {
     vec3 direction = bench_random_direction(&seed), normal = bench_random_normal(direction, &seed);
     hl_kernel which = (hl_kernel)(round % 3);
-    double pixel = round % 9 == 8 ? 3 : 0.3 + 0.2 * (round / 3 % 5); /* blocks as wide as a window or as two bricks, and wider */
+    double pixel = round % 9 == 8
+                       ? 3
+                       : 0.3 + 0.2 * (round / 3 %
+                                      5); /* blocks as wide as a window or as two bricks, and wider */
     bench_look(&bench, direction, normal, pixel, round % 2 ? 12 : 0, which);
     spread_bits(&bench.grid, &seed);
     for (int gather = 0; gather < 2; gather++) {
       static fill_state state;
       state = (fill_state){.source = bench_source(&bench, which, round % 5),
-                           .run = bench_run(&bench, 0.5), .gather = gather, .tile_x = round == 0 ? 1 : round % 3,
-                           .tile_y = round == 0 ? 1 : round / 3 % 3, .need = round % 4 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(&seed))};
+                           .run = bench_run(&bench, 0.5),
+                           .gather = gather,
+                           .tile_x = round == 0 ? 1 : round % 3,
+                           .tile_y = round == 0 ? 1 : round / 3 % 3,
+                           .need = round % 4 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(&seed))};
       if (round == 0) state.need = ALL_BLOCKS;
-      if (round % 2 == 1) state.need &= (uint32_t)(65536 * bench_random(&seed)), state.others = ALL_BLOCKS & ~state.need;
+      if (round % 2 == 1)
+        state.need &= (uint32_t)(65536 * bench_random(&seed)), state.others = ALL_BLOCKS & ~state.need;
       spoil_rays(&state.source.rays, round);
       spoil_rays(&state.run.rays[round / 8 % (RUN_SLABS + 1)], round);
       trial trial = {call_fill, &state, &state.out, sizeof state.out};
@@ -332,7 +356,8 @@ static void test_brick_ranges(void **unused) {
       state.view.first[i] = (int32_t)(4 * bench_random(&seed));
       state.view.last[i] = state.view.first[i] + (int32_t)(40 * bench_random(&seed));
       for (int brick = 0; brick < BRICKS_AT_ONCE; brick++)
-        state.place[i][brick] = (int32_t)(bench_random(&seed) * (state.grid.dimension[i] / HL_BRICK_CELLS + 1));
+        state.place[i][brick] = (int32_t)(bench_random(&seed) *
+                                          (state.grid.dimension[i] / HL_BRICK_CELLS + 1));
     }
     if (round % 16 == 15) state.view.view[round % 3][0] = NAN;
     trial trial = {call_ranges, &state, &state.out, sizeof state.out};
@@ -352,9 +377,11 @@ static bench gradient_bench[GRADIENT_GRIDS];
 static void open_gradient_grids(void) {
   static float voxels[9 * 10 * 11];
   uint32_t seed = 7;
-  for (size_t i = 0; i < 9 * 10 * 11; i++) voxels[i] = random_between(&seed, 0, 1); /* read as bytes and halves too */
+  for (size_t i = 0; i < 9 * 10 * 11; i++)
+    voxels[i] = random_between(&seed, 0, 1); /* read as bytes and halves too */
   for (int i = 0; i < GRADIENT_GRIDS; i++)
-    bench_open(&gradient_bench[i], (size_t[3]){9, 10, i == 3 ? 3 : 11}, i == 3 ? HL_STORAGE_F32 : (hl_storage)i, voxels,
+    bench_open(&gradient_bench[i], (size_t[3]){9, 10, i == 3 ? 3 : 11},
+               i == 3 ? HL_STORAGE_F32 : (hl_storage)i, voxels,
                mat3_from_columns((vec3){1, 0, 0}, (vec3){0, 1, 0}, (vec3){0, 0, 1}));
 }
 
@@ -387,7 +414,11 @@ typedef struct attenuate_state {
   attenuate_job job;
   attenuate_volume volumes[2];
   float density[2][4][TILE_PIXELS];
-  struct { float field[2 * HL_CHANNELS][TILE][TILE]; attenuated_blocks blocks; uint32_t lit; } out;
+  struct {
+    float field[2 * HL_CHANNELS][TILE][TILE];
+    attenuated_blocks blocks;
+    uint32_t lit;
+  } out;
 } attenuate_state;
 
 static void call_attenuate(const hot_functions *hot, void *state) {
@@ -402,8 +433,16 @@ static void call_lit_blocks(const hot_functions *hot, void *state) {
 
 static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
   memset(s, 0, sizeof *s);
-  s->job = (attenuate_job){.rays = random_rays(seed, round), .path = 1, .height = 1, .spacing = 0.5f, .volumes = s->volumes,
-                           .volume_count = 1 + round % 2, .channels = round % 3 ? 3 : 1, .stride = TILE, .moment_stride = TILE, .place = 0.7f};
+  s->job = (attenuate_job){.rays = random_rays(seed, round),
+                           .path = 1,
+                           .height = 1,
+                           .spacing = 0.5f,
+                           .volumes = s->volumes,
+                           .volume_count = 1 + round % 2,
+                           .channels = round % 3 ? 3 : 1,
+                           .stride = TILE,
+                           .moment_stride = TILE,
+                           .place = 0.7f};
   for (int c = 0; c < HL_CHANNELS; c++) {
     s->job.transmittance[c] = &s->out.field[c][0][0];
     s->job.moment[c] = round % 4 ? &s->out.field[HL_CHANNELS + c][0][0] : NULL;
@@ -412,9 +451,13 @@ static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
     fill_salted(s->density[v][0], 2 * TILE_PIXELS, seed, -0.1, 1.1);
     fill_salted(s->density[v][2], 2 * TILE_PIXELS, seed, 0, 2);
     if (round % 8 == 3) s->density[v][0][v] = NAN;
-    s->volumes[v] = (attenuate_volume){&classifier_bench.classifier, s->density[v][0], s->density[v][1],
-                                       v == round % 3 ? s->density[v][2] : NULL, v == round % 3 ? s->density[v][3] : NULL,
-                                       round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), {0, 0.5f, 1},
+    s->volumes[v] = (attenuate_volume){&classifier_bench.classifier,
+                                       s->density[v][0],
+                                       s->density[v][1],
+                                       v == round % 3 ? s->density[v][2] : NULL,
+                                       v == round % 3 ? s->density[v][3] : NULL,
+                                       round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)),
+                                       {0, 0.5f, 1},
                                        round % 5 == 4};
   }
   for (int c = 0; c < 2 * HL_CHANNELS; c++) {
@@ -456,7 +499,12 @@ typedef struct field_state {
   float a[FIELD][FIELD], b[FIELD][FIELD];
   field_pixel lacking[FIELD][FIELD], thin[FIELD][FIELD]; /* whole numbers of a and b */
   part_pixel shade[FIELD][FIELD];
-  struct { float pixels[FIELD][FIELD]; field_pixel lacking[FIELD][FIELD]; int lit; unsigned char touched[4]; } out;
+  struct {
+    float pixels[FIELD][FIELD];
+    field_pixel lacking[FIELD][FIELD];
+    int lit;
+    unsigned char touched[4];
+  } out;
 } field_state;
 
 static void call_field(const hot_functions *hot, void *state) {
@@ -484,8 +532,11 @@ static void call_field(const hot_functions *hot, void *state) {
 
 static void test_fields(void **unused) {
   (void)unused;
-  static const char *const names[] = {"blur_rows_tile", "blur_columns_tile", "add_tile", "add_half_tile", "add_double_tile", "field_blur_tile", "left_tile", "absorbed_tile", "sublight_tile",
-                                      "double_tile", "image_tile", "field_image_tile", "part_tile", "half_pixel_tile", "sublight_row", "sublight_lit"};
+  static const char *const names[] = {
+      "blur_rows_tile",  "blur_columns_tile", "add_tile",     "add_half_tile",
+      "add_double_tile", "field_blur_tile",   "left_tile",    "absorbed_tile",
+      "sublight_tile",   "double_tile",       "image_tile",   "field_image_tile",
+      "part_tile",       "half_pixel_tile",   "sublight_row", "sublight_lit"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -496,26 +547,58 @@ static void test_fields(void **unused) {
       (&s.lacking[0][0])[i] = (field_pixel)((&s.a[0][0])[i] * (round % 4 ? FIELD_ONE : 65535));
       (&s.thin[0][0])[i] = (field_pixel)((&s.b[0][0])[i] * FIELD_ONE);
     }
-    field_pixel *lacking = &s.lacking[MARGIN][MARGIN], *thin = &s.thin[MARGIN][MARGIN], *out = &s.out.lacking[MARGIN][MARGIN];
+    field_pixel *lacking = &s.lacking[MARGIN][MARGIN], *thin = &s.thin[MARGIN][MARGIN],
+                *out = &s.out.lacking[MARGIN][MARGIN];
     s.blur = (blur_job){&s.a[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], FIELD, FIELD,
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
     s.field = (field_job){lacking, thin, out, FIELD, FIELD, round % 2 ? thin + 3 * FIELD : NULL, ALL_ROWS};
     /* what both read and write: the light in pixels, what was lacked and the older light in rows below */
-    s.left = (left_job){.lacking = lacking, .lacked = &s.out.pixels[MARGIN + 2 * TILE][MARGIN], .to = &s.out.pixels[MARGIN][MARGIN],
-                        .older = &s.out.pixels[MARGIN + 4 * TILE][MARGIN], .stride = FIELD, .stride_to = FIELD,
-                        .kept = round & 1, .again = round >> 1 & 1};
-    s.absorbed = (absorbed_job){&s.a[MARGIN][MARGIN], &s.b[MARGIN][MARGIN], &s.out.pixels[MARGIN][MARGIN], 0.8f,
-                                out + 16 * FIELD, out + 32 * FIELD, out + 48 * FIELD, out + 64 * FIELD, FIELD, FIELD};
-    s.part = (part_job){lacking, thin, {out, out + 16 * FIELD}, {out + 32 * FIELD, out + 48 * FIELD}, FIELD,
+    s.left = (left_job){.lacking = lacking,
+                        .lacked = &s.out.pixels[MARGIN + 2 * TILE][MARGIN],
+                        .to = &s.out.pixels[MARGIN][MARGIN],
+                        .older = &s.out.pixels[MARGIN + 4 * TILE][MARGIN],
+                        .stride = FIELD,
+                        .stride_to = FIELD,
+                        .kept = round & 1,
+                        .again = round >> 1 & 1};
+    s.absorbed = (absorbed_job){&s.a[MARGIN][MARGIN],
+                                &s.b[MARGIN][MARGIN],
+                                &s.out.pixels[MARGIN][MARGIN],
+                                0.8f,
+                                out + 16 * FIELD,
+                                out + 32 * FIELD,
+                                out + 48 * FIELD,
+                                out + 64 * FIELD,
+                                FIELD,
+                                FIELD};
+    s.part = (part_job){lacking,
+                        thin,
+                        {out, out + 16 * FIELD},
+                        {out + 32 * FIELD, out + 48 * FIELD},
+                        FIELD,
                         random_between(&seed, 0, 1)};
-    s.field_blur = (field_blur_job){lacking, round % 3 ? thin : NULL, round % 2 ? thin + 3 * FIELD : NULL, out,
-                                    FIELD, hl_blur_box(random_between(&seed, 1, 90)),
-                                    hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH)), ALL_ROWS};
-    s.sublight = (sublight_job){.slab_stride = FIELD, .slab_width = 60, .slab_height = 50, .stride = FIELD,
-                                .rows = s.rows, .slab_tiles_x = 4, .slab_tiles_y = 4, .tiles_x = 4,
-                                .carry = random_between(&seed, 0.01f, 0.99f), .channels = 1 + 2 * (round % 2)};
+    s.field_blur = (field_blur_job){lacking,
+                                    round % 3 ? thin : NULL,
+                                    round % 2 ? thin + 3 * FIELD : NULL,
+                                    out,
+                                    FIELD,
+                                    hl_blur_box(random_between(&seed, 1, 90)),
+                                    hl_blur_box(random_between(&seed, 1, 2 * BLUR_GREATEST_REACH)),
+                                    ALL_ROWS};
+    s.sublight = (sublight_job){.slab_stride = FIELD,
+                                .slab_width = 60,
+                                .slab_height = 50,
+                                .stride = FIELD,
+                                .rows = s.rows,
+                                .slab_tiles_x = 4,
+                                .slab_tiles_y = 4,
+                                .tiles_x = 4,
+                                .carry = random_between(&seed, 0.01f, 0.99f),
+                                .channels = 1 + 2 * (round % 2)};
     for (int axis = 0; axis < 2; axis++) {
-      s.sublight.scale[axis] = round % 3 == 0 ? 1 : random_between(&seed, round % 3 == 1 ? 0.8f : 0.3f, round % 3 == 1 ? 1.25f : 3);
+      s.sublight.scale[axis] = round % 3 == 0 ? 1
+                                              : random_between(&seed, round % 3 == 1 ? 0.8f : 0.3f,
+                                                               round % 3 == 1 ? 1.25f : 3);
       s.sublight.shift[axis] = random_between(&seed, -20, 20);
       s.sublight.half[axis] = (int)(2 * s.sublight.shift[axis]);
     }
@@ -525,17 +608,30 @@ static void test_fields(void **unused) {
     }
     s.dark = s.sublight;
     for (int c = 0; c < HL_CHANNELS; c++) s.dark.left[c] = &s.shade[0][0];
-    for (int i = 0; i < FIELD * FIELD; i++) (&s.shade[0][0])[i] = random_between(&seed, 0, 1) < 0.95f ? 0 : (part_pixel)random_between(&seed, 60, 68);
+    for (int i = 0; i < FIELD * FIELD; i++)
+      (&s.shade[0][0])[i] = random_between(&seed, 0, 1) < 0.95f ? 0
+                                                                : (part_pixel)random_between(&seed, 60, 68);
     for (int i = 0; i < 16; i++) s.rows[i] = (uint64_t)random_between(&seed, 0, 65535) * 0x1000100010001u;
-    for (int i = 0; i < 4; i++) s.lit[i] = random_between(&seed, 0, 1) < 0.3f ? 0 : (uint16_t)random_between(&seed, 1, 65535);
+    for (int i = 0; i < 4; i++)
+      s.lit[i] = random_between(&seed, 0, 1) < 0.3f ? 0 : (uint16_t)random_between(&seed, 1, 65535);
     s.half_pixel = (half_pixel_job){.slab = &s.a[MARGIN][MARGIN], .slab_stride = FIELD};
     for (int i = 1; i < SLAB_IMAGES; i++) s.half_pixel.moved[i] = &s.out.pixels[MARGIN + 16 * i][MARGIN];
-    s.image = (image_job){.from = &s.a[MARGIN][MARGIN], .to = &s.out.pixels[MARGIN][MARGIN], .stride = FIELD,
-                          .count = 1 + round % 40, .offset = s.offset, .weight = &s.b[MARGIN + 30][MARGIN]};
-    s.field_image = (field_image_job){.from = lacking, .thin = thin, .to = out, .stride = FIELD, .count = 1 + round % 40,
-                                      .offset = s.offset, .weight = &s.b[MARGIN + 30][MARGIN]};
+    s.image = (image_job){.from = &s.a[MARGIN][MARGIN],
+                          .to = &s.out.pixels[MARGIN][MARGIN],
+                          .stride = FIELD,
+                          .count = 1 + round % 40,
+                          .offset = s.offset,
+                          .weight = &s.b[MARGIN + 30][MARGIN]};
+    s.field_image = (field_image_job){.from = lacking,
+                                      .thin = thin,
+                                      .to = out,
+                                      .stride = FIELD,
+                                      .count = 1 + round % 40,
+                                      .offset = s.offset,
+                                      .weight = &s.b[MARGIN + 30][MARGIN]};
     for (int i = 0; i < 40; i++)
-      s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD + (ptrdiff_t)random_between(&seed, -20, 20);
+      s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD +
+                    (ptrdiff_t)random_between(&seed, -20, 20);
     for (s.which = 0; s.which < 16; s.which++) {
       trial trial = {call_field, &s, &s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
@@ -558,7 +654,11 @@ typedef struct shade_state {
   float cut[2][TILE_PIXELS];
   float buffer[HL_CHANNELS][64][64];
   part_pixel left[HL_CHANNELS][64][64]; /* whole numbers of buffer */
-  struct { float pixels[4 * TILE_PIXELS]; uint64_t samples; uint32_t open; } out;
+  struct {
+    float pixels[4 * TILE_PIXELS];
+    uint64_t samples;
+    uint32_t open;
+  } out;
 } shade_state;
 
 static void call_shade(const hot_functions *hot, void *state) {
@@ -566,14 +666,16 @@ static void call_shade(const hot_functions *hot, void *state) {
   s->out.samples = 0;
   _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
   shade_tile_function *function = s->covers ? hot->cover_tile : hot->shade_tile;
-  s->out.open = function(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels, &s->out.samples);
+  s->out.open = function(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels,
+                         &s->out.samples);
 }
 
 /* steepest: pixels that places lie apart at most, for each unit. */
 static shadow_map random_map(uint32_t *seed, double steepest) {
   shadow_map map = {.stride = 64, .width = 60, .height = 50};
   for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 4; column++) map.rows[row][column] = random_between(seed, -steepest, steepest);
+    for (int column = 0; column < 4; column++)
+      map.rows[row][column] = random_between(seed, -steepest, steepest);
   map.rows[0][3] = 10;
   map.rows[1][3] = map.rows[2][3] = 250;
   return map;
@@ -581,14 +683,24 @@ static shadow_map random_map(uint32_t *seed, double steepest) {
 
 static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
   fill_salted(&s->buffer[0][0][0], sizeof s->buffer / 4, seed, 0, 1);
-  for (int i = 0; i < HL_CHANNELS * 64 * 64; i++) (&s->left[0][0][0])[i] = (part_pixel)((&s->buffer[0][0][0])[i] * PART_ONE);
+  for (int i = 0; i < HL_CHANNELS * 64 * 64; i++)
+    (&s->left[0][0][0])[i] = (part_pixel)((&s->buffer[0][0][0])[i] * PART_ONE);
   for (int i = 0; i < 3; i++) {
     shade_light *light = &s->lights[i];
     vec3 towards = bench_random_direction(seed);
-    *light = (shade_light){.parallel = (round + i) % 2, .towards = {(float)towards.x, (float)towards.y, (float)towards.z},
-                           .position = {3, -2, (float)i}, .color = {1, 0.5f, salted(seed, 0, 1)}, .inverse_square = i == 1,
-                           .shadowed = i < 2, .path = 0.7f, .lookup = &s->lookups[i], .parts = s->parts[i], .part_count = round % 4,
-                           .channels = s->job.channels, .nearest = round % 5 == 4, .cubic = round / 4 % 2};
+    *light = (shade_light){.parallel = (round + i) % 2,
+                           .towards = {(float)towards.x, (float)towards.y, (float)towards.z},
+                           .position = {3, -2, (float)i},
+                           .color = {1, 0.5f, salted(seed, 0, 1)},
+                           .inverse_square = i == 1,
+                           .shadowed = i < 2,
+                           .path = 0.7f,
+                           .lookup = &s->lookups[i],
+                           .parts = s->parts[i],
+                           .part_count = round % 4,
+                           .channels = s->job.channels,
+                           .nearest = round % 5 == 4,
+                           .cubic = round / 4 % 2};
     s->lookups[i].map = random_map(seed, 9);
     s->lookups[i].young = 0.3f;
     for (int c = 0; c < HL_CHANNELS; c++) {
@@ -596,49 +708,81 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
       s->lookups[i].older[c] = round % 2 ? &s->buffer[c][9][7] : NULL;
     }
     for (int part = 0; part < 3; part++) {
-      s->parts[i][part] = (part_lookup){.map = random_map(seed, part == 0 ? 9 : 2), .weight = {1, 0.7f, salted(seed, 0, 1)}};
+      s->parts[i][part] = (part_lookup){.map = random_map(seed, part == 0 ? 9 : 2),
+                                        .weight = {1, 0.7f, salted(seed, 0, 1)}};
       for (int c = 0; c < HL_CHANNELS; c++) s->parts[i][part].left[c] = &s->left[c][2][2];
     }
     if (round % 4 == 3) light->cone = (light_cone){{-light->towards[0], 0.6f, -light->towards[2]}, 0.3f, 4};
     if ((round + i) % 3 == 0) {
-      light->screen = (light_screen){.pixels = &s->buffer[0][0][0], .width = 1 + round % 30, .height = 20, .sharpness = {1, 2.5f}};
+      light->screen = (light_screen){
+          .pixels = &s->buffer[0][0][0], .width = 1 + round % 30, .height = 20, .sharpness = {1, 2.5f}};
       for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 4; column++) light->screen.map[row][column] = random_between(seed, -1, 9);
+        for (int column = 0; column < 4; column++)
+          light->screen.map[row][column] = random_between(seed, -1, 9);
       light->screen.level_count = round % 4;
       light->screen.first = 0.05f;
       light->screen.edge[0] = 0.3f;
       light->screen.parallel = round % 2;
       light->screen.beyond[i] = 1;
       for (int l = 0; l < light->screen.level_count; l++)
-        light->screen.level[l] = (screen_level){&s->buffer[0][0][0] + 99 * l, 20 + l, 15, {0.7f, 1}, {2.5f, 3}};
+        light->screen.level[l] = (screen_level){
+            &s->buffer[0][0][0] + 99 * l, 20 + l, 15, {0.7f, 1}, {2.5f, 3}};
     }
   }
 }
 
 static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   memset(s, 0, sizeof *s);
-  s->job = (shade_job){.rays = random_rays(seed, round), .through = {0.1f, 0.2f, 0.5f}, .towards_eye = {0, 0.6f, -0.8f},
-                       .normal = {0, 0, 1}, .path = 0.6f, .height = 1, .spacing = 0.5f, .back_to_front = round % 4 == 2,
-                       .lights = s->lights, .light_count = round % 4,
-                       .ambient = {0.1f, 0.2f, 0}, .emission = 1, .channels = round % 3 ? 3 : 1};
+  s->job = (shade_job){.rays = random_rays(seed, round),
+                       .through = {0.1f, 0.2f, 0.5f},
+                       .towards_eye = {0, 0.6f, -0.8f},
+                       .normal = {0, 0, 1},
+                       .path = 0.6f,
+                       .height = 1,
+                       .spacing = 0.5f,
+                       .back_to_front = round % 4 == 2,
+                       .lights = s->lights,
+                       .light_count = round % 4,
+                       .ambient = {0.1f, 0.2f, 0},
+                       .emission = 1,
+                       .channels = round % 3 ? 3 : 1};
   s->patch_count = 1 + round % 2;
   if (round == 0) s->job.light_count = 2;
   set_up_lights(s, seed, round);
   for (int v = 0; v < 2; v++) {
     fill_salted(s->density[2 * v], 2 * TILE_PIXELS, seed, -0.1, 1.1);
     if (round % 8 == 3) s->density[2 * v][20] = NAN;
-    s->volumes[v] = (shade_volume){&classifier_bench.classifier, &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
+    s->volumes[v] = (shade_volume){&classifier_bench.classifier,
+                                   &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
                                    hl_kernel_get((hl_kernel)(round % 3)),
-                                   (round + v) % 2, (round + v) % 7 != 6, v == 0, (round + v) % 6 != 5, round % 4 ? 0.9f : 20, 0.5f, 0.8f, 0.3f, 25,
-                                   round % 3 ? 0.4f : 0, {1, 0.5f, 0},
-                                   {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}}, {-0.5f, -0.5f, -0.5f},
-                                   {8.5f, 9.5f, 10.5f}, NULL, v};
-    s->patches[v] = (shade_patch){&s->volumes[v], s->density[2 * v], s->density[2 * v + 1],
-                                  round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)), v == round % 3 ? s->cut[0] : NULL, v == round % 3 ? s->cut[1] : NULL, round % 5 == 4};
+                                   (round + v) % 2,
+                                   (round + v) % 7 != 6,
+                                   v == 0,
+                                   (round + v) % 6 != 5,
+                                   round % 4 ? 0.9f : 20,
+                                   0.5f,
+                                   0.8f,
+                                   0.3f,
+                                   25,
+                                   round % 3 ? 0.4f : 0,
+                                   {1, 0.5f, 0},
+                                   {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}},
+                                   {-0.5f, -0.5f, -0.5f},
+                                   {8.5f, 9.5f, 10.5f},
+                                   NULL,
+                                   v};
+    s->patches[v] = (shade_patch){&s->volumes[v],
+                                  s->density[2 * v],
+                                  s->density[2 * v + 1],
+                                  round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)),
+                                  v == round % 3 ? s->cut[0] : NULL,
+                                  v == round % 3 ? s->cut[1] : NULL,
+                                  round % 5 == 4};
   }
   fill_salted(s->cut[0], TILE_PIXELS, seed, 0, 1);
   fill_salted(s->cut[1], TILE_PIXELS, seed, 0.5, 2);
-  for (int i = 0; i < 4 * TILE_PIXELS; i++) s->out.pixels[i] = random_between(seed, 0, round % 5 ? 1 : 1.0005);
+  for (int i = 0; i < 4 * TILE_PIXELS; i++)
+    s->out.pixels[i] = random_between(seed, 0, round % 5 ? 1 : 1.0005);
   s->blocks = round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed));
 }
 
@@ -658,14 +802,18 @@ static void test_shade(void **unused) {
 typedef struct maximum_state {
   shade_state shade;
   float shown[CLASSIFIER_ENTRIES + 2][4];
-  struct { float values[2 * MAXIMUM_ROWS * TILE_PIXELS]; uint64_t samples; uint32_t open; } out;
+  struct {
+    float values[2 * MAXIMUM_ROWS * TILE_PIXELS];
+    uint64_t samples;
+    uint32_t open;
+  } out;
 } maximum_state;
 
 static void call_maximum(const hot_functions *hot, void *state) {
   maximum_state *s = state;
   s->out.samples = 0;
-  s->out.open = hot->maximum_tile(&s->shade.job, s->shade.patches, s->shade.patch_count, 0, 0, s->shade.blocks, NULL,
-                                  s->out.values, &s->out.samples);
+  s->out.open = hot->maximum_tile(&s->shade.job, s->shade.patches, s->shade.patch_count, 0, 0,
+                                  s->shade.blocks, NULL, s->out.values, &s->out.samples);
 }
 
 static void test_maximum(void **unused) {
@@ -683,14 +831,16 @@ static void test_maximum(void **unused) {
       state.shown[entry][SHOWN_BELOW] = entry % 7 == 0 ? -1 : (float)entry - 1;
     }
     for (int i = 0; i < 2 * MAXIMUM_ROWS * TILE_PIXELS; i++)
-      state.out.values[i] = i / TILE_PIXELS % MAXIMUM_ROWS == MAXIMUM_SHEET ? (i % 3 ? 6 : -1)
-                                                                            : random_between(&seed, -1, CLASSIFIER_ENTRIES);
+      state.out.values[i] = i / TILE_PIXELS % MAXIMUM_ROWS == MAXIMUM_SHEET
+                                ? (i % 3 ? 6 : -1)
+                                : random_between(&seed, -1, CLASSIFIER_ENTRIES);
     trial trial = {call_maximum, &state, &state.out, sizeof state.out};
     try_it("maximum_tile", &trial, round);
   }
 }
 
-/* One volume has code of its own: a second one that has nothing in the tile changes nothing, rounding apart. */
+/* One volume has code of its own: a second one that has nothing in the tile changes nothing, rounding
+ * apart. */
 static void test_shade_beside_nothing(void **unused) {
   (void)unused;
   static shade_state alone, beside;
@@ -723,9 +873,16 @@ int main(int argc, char **argv) {
     return 0;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_bound_cells), cmocka_unit_test(test_brick_bits), cmocka_unit_test(test_fill),   cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_bound_rows),
+      cmocka_unit_test(test_bound_cells),
+      cmocka_unit_test(test_brick_bits),
+      cmocka_unit_test(test_fill),
+      cmocka_unit_test(test_coverage),
       cmocka_unit_test(test_brick_ranges),
-      cmocka_unit_test(test_light),      cmocka_unit_test(test_fields), cmocka_unit_test(test_shade), cmocka_unit_test(test_maximum),
+      cmocka_unit_test(test_light),
+      cmocka_unit_test(test_fields),
+      cmocka_unit_test(test_shade),
+      cmocka_unit_test(test_maximum),
       cmocka_unit_test(test_shade_beside_nothing),
   };
   return cmocka_run_group_tests_name("simd_equal", tests, open_classifier, close_classifier);

@@ -1,5 +1,6 @@
-/* unit/simd_lanes.c - what of lanes.h and packing.h the compiler's vectors do not have, as the baseline builds it: arithmetic against the C
- * library's in floats and doubles, every choice of lanes. simd_equal.c holds the other instruction sets to it. */
+/* unit/simd_lanes.c - what of lanes.h and packing.h the compiler's vectors do not have, as the baseline
+ * builds it: arithmetic against the C library's in floats and doubles, every choice of lanes. simd_equal.c
+ * holds the other instruction sets to it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,12 +31,14 @@ static void assert_same(float found, float wanted, float a, float b, float c) {
   memcpy(&bits[0], &found, sizeof found);
   memcpy(&bits[1], &wanted, sizeof wanted);
   if (bits[0] == bits[1] || (found != found && wanted != wanted)) return;
-  fail_msg("fma(%a, %a, %a) is %a instead of %a", (double)a, (double)b, (double)c, (double)found, (double)wanted);
+  fail_msg("fma(%a, %a, %a) is %a instead of %a", (double)a, (double)b, (double)c, (double)found,
+           (double)wanted);
 }
 
 static void assert_fma(lanes a, lanes b, lanes c) {
   lanes found = lanes_fma(a, b, c);
-  for (int lane = 0; lane < LANES; lane++) assert_same(found[lane], fmaf(a[lane], b[lane], c[lane]), a[lane], b[lane], c[lane]);
+  for (int lane = 0; lane < LANES; lane++)
+    assert_same(found[lane], fmaf(a[lane], b[lane], c[lane]), a[lane], b[lane], c[lane]);
 }
 
 /* Any floats, none of them left out: infinite ones, subnormal ones, no numbers. */
@@ -49,24 +52,31 @@ static void test_fma_of_any(void **state) {
       b[lane] = float_of_bits(next_random(&random));
       c[lane] = float_of_bits(next_random(&random));
       /* one in two: a sum in which both parts matter */
-      if (lane % 2 == 0) c[lane] = a[lane] * b[lane] * ldexpf(one_to_two(&random), (int)(next_random(&random) % 60) - 30);
+      if (lane % 2 == 0)
+        c[lane] = a[lane] * b[lane] * ldexpf(one_to_two(&random), (int)(next_random(&random) % 60) - 30);
     }
     assert_fma(a, b, c);
   }
 }
 
-/* Sums in the middle between two floats, and as near it as doubles do not tell: where rounding twice goes wrong. */
+/* Sums in the middle between two floats, and as near it as doubles do not tell: where rounding twice goes
+ * wrong. */
 static void test_fma_near_the_middle(void **state) {
   (void)state;
   uint64_t random = 2;
   for (int i = 0; i < 100000; i++) {
     lanes a, b, c;
     for (int lane = 0; lane < LANES; lane++) {
-      int subnormal = i % 2, scale = subnormal ? -149 : (int)(next_random(&random) % 200) - 100, half = (scale - 1) / 2;
-      float sign = next_random(&random) % 2 == 0 ? 1.0f : -1.0f, odd = (float)((next_random(&random) & 0x7fffff) | 0x800000);
+      int subnormal = i % 2, scale = subnormal ? -149 : (int)(next_random(&random) % 200) - 100,
+          half = (scale - 1) / 2;
+      float sign = next_random(&random) % 2 == 0 ? 1.0f : -1.0f,
+            odd = (float)((next_random(&random) & 0x7fffff) | 0x800000);
       float little = (float)(next_random(&random) % 4) * 0x1p-23f;
       if (subnormal) odd = (float)(next_random(&random) & 0x3ff);
-      c[lane] = sign * ldexpf(odd, scale); /* its last bit is 2^scale; a b is half of it, or less by one part in 2^46 or so */
+      c[lane] =
+          sign *
+          ldexpf(odd,
+                 scale); /* its last bit is 2^scale; a b is half of it, or less by one part in 2^46 or so */
       a[lane] = ldexpf(1.0f + little, half);
       b[lane] = ldexpf(next_random(&random) % 2 == 0 ? 1.0f - little : little - 1.0f, scale - 1 - half);
     }
@@ -99,7 +109,8 @@ static void test_powers(void **state) {
     lanes found = lanes_exp2(x), log = lanes_log2(found);
     for (int lane = 0; lane < LANES; lane++) {
       worst = fmax(worst, fabs((double)found[lane] / exp2((double)x[lane]) - 1));
-      worst_log = fmax(worst_log, fabs((double)log[lane] - log2((double)found[lane])) / fmax(1, fabs((double)x[lane])));
+      worst_log = fmax(worst_log,
+                       fabs((double)log[lane] - log2((double)found[lane])) / fmax(1, fabs((double)x[lane])));
     }
   }
   assert_true(worst < 2e-7);
@@ -107,7 +118,8 @@ static void test_powers(void **state) {
   assert_true(lanes_exp_negative(lanes_set(0))[0] == 1.0f);
 }
 
-/* Each choice of lanes moves together to where it is told, in its order, leaves the other lanes, and comes back. */
+/* Each choice of lanes moves together to where it is told, in its order, leaves the other lanes, and comes
+ * back. */
 static void test_packing(void **state) {
   (void)state;
   lanes x, into;
@@ -133,8 +145,8 @@ static void test_packing(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_fma_of_any), cmocka_unit_test(test_fma_near_the_middle),
-                                     cmocka_unit_test(test_fma_that_cancels), cmocka_unit_test(test_powers),
-                                     cmocka_unit_test(test_packing)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_fma_of_any), cmocka_unit_test(test_fma_near_the_middle),
+      cmocka_unit_test(test_fma_that_cancels), cmocka_unit_test(test_powers), cmocka_unit_test(test_packing)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,8 +29,8 @@ static void fill_sheet(const fill_source *source, fill_tile_function *fill, floa
     fill(source, tile % SIDE_TILES, tile / SIDE_TILES, ALL_BLOCKS, 0, density);
     for (int i = 0; i < TILE_PIXELS; i++) {
       int block = i / BLOCK_PIXELS, lane = i % BLOCK_PIXELS;
-      sheet[tile / SIDE_TILES * TILE + block / 4 * BLOCK + lane / 4][tile % SIDE_TILES * TILE + block % 4 * BLOCK + lane % 4] =
-          density[i];
+      sheet[tile / SIDE_TILES * TILE + block / 4 * BLOCK + lane / 4]
+           [tile % SIDE_TILES * TILE + block % 4 * BLOCK + lane % 4] = density[i];
     }
   }
 }
@@ -105,7 +105,9 @@ static void check_agreement(const size_t n[3], hl_storage storage, uint32_t seed
     u16[i] = (uint16_t)(65536 * f32[i]);
     u8[i] = (uint8_t)(256 * f32[i]);
   }
-  const void *voxels = storage == HL_STORAGE_U8 ? (void *)u8 : storage == HL_STORAGE_U16 ? (void *)u16 : (void *)f32;
+  const void *voxels = storage == HL_STORAGE_U8    ? (void *)u8
+                       : storage == HL_STORAGE_U16 ? (void *)u16
+                                                   : (void *)f32;
   double scale = storage == HL_STORAGE_U8 ? 255 : storage == HL_STORAGE_U16 ? 65535 : 1;
   bench bench;
   bench_open(&bench, n, storage, voxels, bench_oblique_axes());
@@ -125,7 +127,8 @@ static void check_agreement(const size_t n[3], hl_storage storage, uint32_t seed
 
 static void test_splat_equals_gather(void **state) {
   (void)state;
-  static const size_t sizes[][3] = {{11, 9, 13}, {4, 4, 4}, {5, 3, 7}, {1, 9, 8}, {12, 1, 2}, {1, 1, 1}, {2, 2, 2}, {1, 1, 20}};
+  static const size_t sizes[][3] = {{11, 9, 13}, {4, 4, 4}, {5, 3, 7}, {1, 9, 8},
+                                    {12, 1, 2},  {1, 1, 1}, {2, 2, 2}, {1, 1, 20}};
   for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
     for (int storage = HL_STORAGE_U8; storage <= HL_STORAGE_F32; storage++)
       check_agreement(sizes[s], (hl_storage)storage, (uint32_t)(31 * s + 5));
@@ -145,7 +148,8 @@ static void test_other_blocks_are_left_alone(void **state) {
     for (int i = 0; i < TILE_PIXELS; i++) density[i] = -7;
     fill_tile_function *fill = way == 0 ? hl_hot_scalar.splat_tile : hl_hot_scalar.gather_tile;
     assert_int_equal(fill(&source, 1, 1, 0x8421, 0, density).filled, 0x8421);
-    for (int i = 0; i < TILE_PIXELS; i++) assert_true((density[i] == -7) == !(0x8421 >> (i / BLOCK_PIXELS) & 1));
+    for (int i = 0; i < TILE_PIXELS; i++)
+      assert_true((density[i] == -7) == !(0x8421 >> (i / BLOCK_PIXELS) & 1));
   }
   bench_close(&bench);
 }
@@ -155,7 +159,8 @@ static void test_other_blocks_are_left_alone(void **state) {
 enum { NOISE_SIDE = 14 };
 
 static void fill_noise(uint8_t *voxels, uint32_t seed) {
-  for (int i = 0; i < NOISE_SIDE * NOISE_SIDE * NOISE_SIDE; i++) voxels[i] = (uint8_t)(256 * bench_random(&seed));
+  for (int i = 0; i < NOISE_SIDE * NOISE_SIDE * NOISE_SIDE; i++)
+    voxels[i] = (uint8_t)(256 * bench_random(&seed));
 }
 
 static int32_t cell_pair(const grid *grid, double at, int axis) {
@@ -170,7 +175,8 @@ static void test_cells_bound_the_reconstruction(void **state) {
   static float sheet[SIDE][SIDE];
   fill_noise(voxels, 71);
   bench bench;
-  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, bench_oblique_axes());
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels,
+             bench_oblique_axes());
   const grid *grid = &bench.grid;
   uint32_t seed = 5;
   double width = 0;
@@ -244,7 +250,8 @@ static long check_cells(const bench *bench) {
         hl_cell_bounds_at(grid, (const int32_t[3]){x, y, z}, &low, &high);
         assert_true(low == (float)extremes[0] && high == (float)extremes[1]);
         size_t brick = place_of(grid->brick_count, x / 2, y / 2, z / 2);
-        if (!grid->relevant[brick] || !hl_classifier_span_visible(&bench->classifier, grid, low, high)) continue;
+        if (!grid->relevant[brick] || !hl_classifier_span_visible(&bench->classifier, grid, low, high))
+          continue;
         visible[0][place_of(count, x, y, z)] = visible[1][brick] = 1;
         shown++;
       }
@@ -269,7 +276,8 @@ static void test_cells_are_what_their_voxels_say(void **state) {
     const size_t *size = sizes[n];
     uint32_t seed = 90 + (uint32_t)n;
     for (size_t v = 0; v < size[0] * size[1] * size[2]; v++) {
-      bool grainy = v % size[0] < size[0] / 2 && v / size[0] / size[1] <= size[2] / 2, full = v % size[0] == size[0] - 1;
+      bool grainy = v % size[0] < size[0] / 2 && v / size[0] / size[1] <= size[2] / 2,
+           full = v % size[0] == size[0] - 1;
       voxels[v] = grainy && bench_random(&seed) < 0.1 ? (uint8_t)(256 * bench_random(&seed)) : full ? 200 : 7;
     }
     bench bench;
@@ -278,9 +286,12 @@ static void test_cells_are_what_their_voxels_say(void **state) {
     hl_grid_release(bench.context, &bench.grid);
     bench.scene.transfer_function.opacity = ramp;
     bench.scene.transfer_function.opacity_count = 2;
-    assert_int_equal(hl_grid_create(bench.context, bench.pool, &hl_hot_scalar.grid, hl_kernel_get(HL_KERNEL_LINEAR), &bench.scene,
-                                    affine3_identity(), 7, &bench.grid, NULL), HL_OK);
-    assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL), HL_OK);
+    assert_int_equal(
+        hl_grid_create(bench.context, bench.pool, &hl_hot_scalar.grid, hl_kernel_get(HL_KERNEL_LINEAR),
+                       &bench.scene, affine3_identity(), 7, &bench.grid, NULL),
+        HL_OK);
+    assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL),
+                     HL_OK);
     hl_grid_mark_relevant(&bench.grid, &hl_hot_scalar.grid, &bench.classifier, bench.pool);
     assert_true(check_cells(&bench) > 0);
     bench_close(&bench);
@@ -291,15 +302,20 @@ static void test_cells_are_what_their_voxels_say(void **state) {
 
 static double held_voxel(const grid *grid, int32_t x, int32_t y, int32_t z) {
   int32_t at[3] = {x, y, z};
-  for (int axis = 0; axis < 3; axis++) at[axis] = at[axis] < 0 ? 0 : at[axis] >= grid->dimension[axis] ? grid->dimension[axis] - 1 : at[axis];
+  for (int axis = 0; axis < 3; axis++)
+    at[axis] = at[axis] < 0 ? 0 : at[axis] >= grid->dimension[axis] ? grid->dimension[axis] - 1 : at[axis];
   size_t place = place_of(grid->dimension, at[0], at[1], at[2]);
   return grid->storage == HL_STORAGE_U8    ? ((const uint8_t *)grid->voxels)[place]
          : grid->storage == HL_STORAGE_U16 ? ((const uint16_t *)grid->voxels)[place]
                                            : (double)((const float *)grid->voxels)[place];
 }
 
-/* Weights of four voxels in the Bezier points of the cubic B-spline's span between the second and the third. */
-static const double bezier[4][4] = {{1 / 6.0, 4 / 6.0, 1 / 6.0, 0}, {0, 2 / 3.0, 1 / 3.0, 0}, {0, 1 / 3.0, 2 / 3.0, 0}, {0, 1 / 6.0, 4 / 6.0, 1 / 6.0}};
+/* Weights of four voxels in the Bezier points of the cubic B-spline's span between the second and the
+ * third. */
+static const double bezier[4][4] = {{1 / 6.0, 4 / 6.0, 1 / 6.0, 0},
+                                    {0, 2 / 3.0, 1 / 3.0, 0},
+                                    {0, 1 / 3.0, 2 / 3.0, 0},
+                                    {0, 1 / 6.0, 4 / 6.0, 1 / 6.0}};
 
 /* The greatest Bezier point of a span, of four values. */
 static double greatest_of_span(const double value[4]) {
@@ -319,7 +335,8 @@ static double bound_of_cell(const grid *grid, const int32_t floor[3], double sig
     double along_y[4];
     for (int b = 0; b < 4; b++) {
       double along_z[4];
-      for (int c = 0; c < 4; c++) along_z[c] = sign * held_voxel(grid, floor[0] - 1 + a, floor[1] - 1 + b, floor[2] - 1 + c);
+      for (int c = 0; c < 4; c++)
+        along_z[c] = sign * held_voxel(grid, floor[0] - 1 + a, floor[1] - 1 + b, floor[2] - 1 + c);
       along_y[b] = greatest_of_span(along_z);
     }
     across[a] = greatest_of_span(along_y);
@@ -340,14 +357,17 @@ static double value_in_cell(const grid *grid, const int32_t floor[3], const doub
   return sum;
 }
 
-typedef struct bit_counts { long set, clear, near; } bit_counts;
+typedef struct bit_counts {
+  long set, clear, near;
+} bit_counts;
 
-/* Of every cell: a bit where its bound shows, and none where it does not, but for what rounding may blur; and no point without
- * a bit shows. */
+/* Of every cell: a bit where its bound shows, and none where it does not, but for what rounding may blur; and
+ * no point without a bit shows. */
 static bit_counts check_bits(const bench *bench, uint32_t *seed) {
   const grid *grid = &bench->grid;
   const classifier *classifier = &bench->classifier;
-  double sign = classifier->scale > 0 ? 1 : -1, scale = (double)classifier->scale, blur = 0.2; /* table entries */
+  double sign = classifier->scale > 0 ? 1 : -1, scale = (double)classifier->scale,
+         blur = 0.2; /* table entries */
   bit_counts counts = {0};
   for (int32_t z = -1; z < grid->dimension[2]; z++)
     for (int32_t y = -1; y < grid->dimension[1]; y++)
@@ -356,9 +376,11 @@ static bit_counts check_bits(const bench *bench, uint32_t *seed) {
         uint64_t word = grid->cell_bits[place_of(grid->brick_count, (x + 1) / 4, (y + 1) / 4, (z + 1) / 4)];
         bool bit = word >> ((x + 1) % 4 + 4 * ((y + 1) % 4) + 16 * ((z + 1) % 4)) & 1;
         double greatest = bound_of_cell(grid, floor, sign) * sign;
-        double above = (greatest - (double)grid->empty) * scale + (double)classifier->offset - (double)classifier->first_visible;
+        double above = (greatest - (double)grid->empty) * scale + (double)classifier->offset -
+                       (double)classifier->first_visible;
         if (fabs(above) > blur && bit != (above > 0))
-          fail_msg("the bit of cell (%d, %d, %d) is %d, its bound lies %g above what shows", x, y, z, bit, above);
+          fail_msg("the bit of cell (%d, %d, %d) is %d, its bound lies %g above what shows", x, y, z, bit,
+                   above);
         counts.near += fabs(above) <= blur;
         counts.set += bit;
         counts.clear += !bit;
@@ -371,17 +393,22 @@ static bit_counts check_bits(const bench *bench, uint32_t *seed) {
   return counts;
 }
 
-/* A grid of noise in places, or of a plane or a ball, with a transfer function that shows what lies above or, where stored
- * values fall as data rise, below a value. */
+/* A grid of noise in places, or of a plane or a ball, with a transfer function that shows what lies above or,
+ * where stored values fall as data rise, below a value. */
 static void open_bits(bench *bench, const size_t size[3], int which, bool falling, void *voxels) {
   static hl_opacity_point ramp[2];
   hl_storage storage = (hl_storage)(which % 3);
   static const double greatest[] = {255, 65535, 2};
   uint32_t seed = 60 + (uint32_t)which;
   for (size_t v = 0; v < size[0] * size[1] * size[2]; v++) {
-    double x = (double)(v % size[0]), y = (double)(v / size[0] % size[1]), z = (double)(v / size[0] / size[1]);
-    double noise = x < 6 || bench_random(&seed) < 0.3 ? bench_random(&seed) : 0.1, ball = 1 - hypot(hypot(x - 7, y - 6), z - 8) / 14;
-    double value = (which / 3 == 0 ? noise : which / 3 == 1 ? (x + y / 2 + z / 4) / 40 : fmax(ball, 0)) * greatest[storage];
+    double x = (double)(v % size[0]), y = (double)(v / size[0] % size[1]),
+           z = (double)(v / size[0] / size[1]);
+    double noise = x < 6 || bench_random(&seed) < 0.3 ? bench_random(&seed) : 0.1,
+           ball = 1 - hypot(hypot(x - 7, y - 6), z - 8) / 14;
+    double value = (which / 3 == 0   ? noise
+                    : which / 3 == 1 ? (x + y / 2 + z / 4) / 40
+                                     : fmax(ball, 0)) *
+                   greatest[storage];
     if (storage == HL_STORAGE_U8) ((uint8_t *)voxels)[v] = (uint8_t)value;
     if (storage == HL_STORAGE_U16) ((uint16_t *)voxels)[v] = (uint16_t)value;
     if (storage == HL_STORAGE_F32) ((float *)voxels)[v] = (float)(value - 0.5);
@@ -422,7 +449,8 @@ static void test_relevant_blocks_miss_nothing(void **state) {
   static float sheet[SIDE][SIDE];
   fill_noise(voxels, 72);
   bench bench;
-  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, bench_oblique_axes());
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels,
+             bench_oblique_axes());
   bench_show(&bench, ramp, 2);
   uint32_t seed = 6;
   long shown = 0, left_out = 0, left_out_by_bits = 0;
@@ -459,30 +487,34 @@ static void test_relevant_blocks_miss_nothing(void **state) {
   bench_close(&bench);
 }
 
-/* The rays of all pixels in the blocks that matter stay in the box through slabs that are said to be whole. */
+/* The rays of all pixels in the blocks that matter stay in the box through slabs that are said to be
+ * whole. */
 static void test_whole_slabs_are_not_cut(void **state) {
   (void)state;
   static uint8_t voxels[NOISE_SIDE * NOISE_SIDE * NOISE_SIDE];
   fill_noise(voxels, 73);
   bench bench;
-  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels, bench_oblique_axes());
+  bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels,
+             bench_oblique_axes());
   uint32_t seed = 8;
   long whole = 0, cut = 0;
   for (int round = 0; round < 2 * ORIENTATIONS; round++) {
     look_at_random(&bench, &seed, round, 0.2, HL_KERNEL_BSPLINE);
     slab_run run = bench_run(&bench, 0);
     box_rays rays;
-    hl_box_rays(&bench.view, bench.sheets.normal, bench.sheets.first, bench.grid.frame_to_index, bench.grid.box_low,
-                bench.grid.box_high, &rays);
+    hl_box_rays(&bench.view, bench.sheets.normal, bench.sheets.first, bench.grid.frame_to_index,
+                bench.grid.box_low, bench.grid.box_high, &rays);
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
       relevant_blocks found = {0};
       _Alignas(64) float enter[TILE_PIXELS], leave[TILE_PIXELS];
       hl_hot_scalar.coverage_tile(&rays, tile % SIDE_TILES, tile / SIDE_TILES, enter, leave);
-      hl_hot_scalar.relevant_blocks_tile(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1, ALL_BLOCKS, &found);
+      hl_hot_scalar.relevant_blocks_tile(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1,
+                                         ALL_BLOCKS, &found);
       for (int slab = 0; slab < RUN_SLABS; slab++)
         for (int i = 0; i < TILE_PIXELS; i++) {
           if (!(found.blocks[slab] >> (i / BLOCK_PIXELS) & 1)) continue;
-          bool inside = enter[i] <= slab * bench.sheets.spacing && leave[i] >= (slab + 1) * bench.sheets.spacing;
+          bool inside = enter[i] <= slab * bench.sheets.spacing &&
+                        leave[i] >= (slab + 1) * bench.sheets.spacing;
           if (found.whole >> slab & 1) assert_true(inside);
           whole += found.whole >> slab & 1;
           cut += !inside;
@@ -531,7 +563,8 @@ static void test_projection_inverts_rays(void **state) {
       double at_u = 60 * bench_random(&seed) - 10, at_v = 50 * bench_random(&seed) - 10, uv[2];
       vec3 start, way;
       hl_view_ray(&view, at_u, at_v, &start, &way);
-      assert_true(hl_view_project(&view, vec3_add(start, vec3_scale(way, 0.1 + 30 * bench_random(&seed))), uv));
+      assert_true(
+          hl_view_project(&view, vec3_add(start, vec3_scale(way, 0.1 + 30 * bench_random(&seed))), uv));
       assert_near(uv[0], at_u, 1e-9);
       assert_near(uv[1], at_v, 1e-9);
       if (view.perspective) assert_false(hl_view_project(&view, vec3_add(start, vec3_scale(way, -1)), uv));

@@ -1,4 +1,5 @@
-/* unit/sublights_lit.c - the blocks of a slab that parts of a light reach, against every one of the parts' blocks looked at. */
+/* unit/sublights_lit.c - the blocks of a slab that parts of a light reach, against every one of the parts'
+ * blocks looked at. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +10,13 @@
 
 #include "light/sublights.h"
 
-enum { PARTS = 3, PART_TILES = 5, SLAB_TILES = 4, SLAB_BLOCKS = SLAB_TILES * 4, PART_BLOCKS = PART_TILES * 4 };
+enum {
+  PARTS = 3,
+  PART_TILES = 5,
+  SLAB_TILES = 4,
+  SLAB_BLOCKS = SLAB_TILES * 4,
+  PART_BLOCKS = PART_TILES * 4
+};
 
 typedef struct lit_case {
   sublights sublights;
@@ -26,8 +33,9 @@ static double random_between(uint32_t *seed, double low, double high) {
 }
 
 static void make_case(lit_case *c, uint32_t *seed) {
-  *c = (lit_case){.sublights = {.count = PARTS, .channels = 1, .tiles_x = PART_TILES, .tiles_y = PART_TILES, .slabs = 1},
-                  .slab = {.tiles_x = SLAB_TILES, .tiles_y = SLAB_TILES}};
+  *c = (lit_case){
+      .sublights = {.count = PARTS, .channels = 1, .tiles_x = PART_TILES, .tiles_y = PART_TILES, .slabs = 1},
+      .slab = {.tiles_x = SLAB_TILES, .tiles_y = SLAB_TILES}};
   c->sublights.parts = c->parts;
   c->sublights.found = c->found;
   c->slab.tile_lit = c->tile_lit;
@@ -42,11 +50,14 @@ static void make_case(lit_case *c, uint32_t *seed) {
       part->far.shift[axis] = part->near.shift[axis] + random_between(seed, -3, 3);
     }
     for (int tile = 0; tile < PART_TILES * PART_TILES; tile++)
-      c->flags[i][tile] = random_between(seed, 0, 1) < 0.7 ? 0 : (uint16_t)(1u << (int)random_between(seed, 0, 15.99));
+      c->flags[i][tile] = random_between(seed, 0, 1) < 0.7
+                              ? 0
+                              : (uint16_t)(1u << (int)random_between(seed, 0, 15.99));
   }
 }
 
-/* Whether pixels of the slab, some more around its block, lie over a lit block of the part at one of its places. */
+/* Whether pixels of the slab, some more around its block, lie over a lit block of the part at one of its
+ * places. */
 static bool is_under(const sublight *part, const part_place *place, int x, int y, double around) {
   for (int row = 0; row < PART_BLOCKS; row++)
     for (int column = 0; column < PART_BLOCKS; column++) {
@@ -64,7 +75,8 @@ static bool is_under(const sublight *part, const part_place *place, int x, int y
 
 static bool is_lit(const lit_case *c, int x, int y, double around) {
   for (int i = 0; i < PARTS; i++)
-    if (c->parts[i].reaches && (is_under(&c->parts[i], &c->parts[i].near, x, y, around) || is_under(&c->parts[i], &c->parts[i].far, x, y, around)))
+    if (c->parts[i].reaches && (is_under(&c->parts[i], &c->parts[i].near, x, y, around) ||
+                                is_under(&c->parts[i], &c->parts[i].far, x, y, around)))
       return true;
   return false;
 }
@@ -76,12 +88,13 @@ static void test_against_all_blocks(void **state) {
   for (int round = 0; round < 200; round++) {
     lit_case c;
     make_case(&c, &seed);
-    for (size_t tile = 0; tile < SLAB_TILES * SLAB_TILES; tile++) hl_sublights_find_lit(&c.sublights, &c.slab, tile);
+    for (size_t tile = 0; tile < SLAB_TILES * SLAB_TILES; tile++)
+      hl_sublights_find_lit(&c.sublights, &c.slab, tile);
     for (int y = 0; y < SLAB_BLOCKS; y++)
       for (int x = 0; x < SLAB_BLOCKS; x++) {
         bool found = c.tile_lit[y / 4 * SLAB_TILES + x / 4] >> (y % 4 * 4 + x % 4) & 1;
         if (is_lit(&c, x, y, 1.9)) assert_true(found); /* half pixels are made of two on either side */
-        if (found) assert_true(is_lit(&c, x, y, 12)); /* near and far together, and whole blocks */
+        if (found) assert_true(is_lit(&c, x, y, 12));  /* near and far together, and whole blocks */
         lit += found;
         dark += !found;
       }
@@ -110,6 +123,7 @@ static void test_when_it_is_found(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_against_all_blocks), cmocka_unit_test(test_when_it_is_found)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_against_all_blocks),
+                                     cmocka_unit_test(test_when_it_is_found)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* tests/unit/volume_arrays.c - which array and component is read, what is told, and the other options of loading. */
+/* tests/unit/volume_arrays.c - which array and component is read, what is told, and the other options of
+ * loading. */
 #include "volume_files.h"
 
 #include <math.h>
@@ -40,7 +41,8 @@ static hl_volume_load_options load_options(const char *array, int component) {
 }
 
 /* Loads a file's content from memory. */
-static hl_volume *load(hl_context *context, const byte_buffer *file, const char *array, int component, hl_error *error) {
+static hl_volume *load(hl_context *context, const byte_buffer *file, const char *array, int component,
+                       hl_error *error) {
   hl_volume_load_options options = load_options(array, component);
   options.bytes = file->data;
   options.byte_count = file->length;
@@ -52,8 +54,10 @@ static hl_volume *load(hl_context *context, const byte_buffer *file, const char 
 
 static const char two_arrays[] =
     "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><PointData Scalars=\"b\">"
-    "<DataArray type=\"UInt8\" Name=\"a\">1 2 3 4 5 6 7 8</DataArray><DataArray type=\"Int16\" Name=\"b\">9 10 11 12 13 14 15 16"
-    "</DataArray><DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"3\">3 4 0 0 0 1 0 0 2 0 0 3 0 0 4 0 0 5 0 0 6 2 3 6"
+    "<DataArray type=\"UInt8\" Name=\"a\">1 2 3 4 5 6 7 8</DataArray><DataArray type=\"Int16\" Name=\"b\">9 "
+    "10 11 12 13 14 15 16"
+    "</DataArray><DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"3\">3 4 0 0 0 1 0 0 2 0 0 3 0 0 "
+    "4 0 0 5 0 0 6 2 3 6"
     "</DataArray></PointData></ImageData></VTKFile>";
 
 static void test_arrays_are_chosen_by_name(void **state) {
@@ -71,7 +75,8 @@ static void test_arrays_are_chosen_by_name(void **state) {
   hl_volume_array array = {.struct_size = sizeof array};
   assert_int_equal(hl_volume_array_count(volume), 3);
   assert_int_equal(hl_volume_get_array(volume, 1, &array), HL_OK);
-  assert_true(array.chosen && strcmp(array.name, "b") == 0 && array.type == HL_VOXEL_I16 && array.component == 0);
+  assert_true(array.chosen && strcmp(array.name, "b") == 0 && array.type == HL_VOXEL_I16 &&
+              array.component == 0);
   assert_int_equal(hl_volume_get_array(volume, 2, &array), HL_OK);
   assert_true(!array.chosen && array.components == 3 && array.type == HL_VOXEL_F32 && !array.of_cells);
   assert_int_equal(hl_volume_get_array(volume, 3, &array), HL_ERROR_ARGUMENT);
@@ -127,8 +132,9 @@ static void test_series(void **state) {
   told t = {0};
   hl_context *context = make_context(&t);
   byte_buffer file = {.length = 0};
-  add_text(&file, "NDims = 4\nDimSize = 2 1 1 3\nElementType = MET_CHAR\nElementToIntensityFunctionSlope = 0.5\n"
-                  "ElementToIntensityFunctionOffset = 1\nElementDataFile = LOCAL\n");
+  add_text(&file,
+           "NDims = 4\nDimSize = 2 1 1 3\nElementType = MET_CHAR\nElementToIntensityFunctionSlope = 0.5\n"
+           "ElementToIntensityFunctionOffset = 1\nElementDataFile = LOCAL\n");
   add(&file, (const signed char[]){2, 4, 6, -8, 10, -12}, 6);
   hl_error error = {0};
   for (int step = 0; step < 3; step++) {
@@ -163,7 +169,8 @@ static void test_large_components(void **state) {
                                     : "sizes: 300 150 2 4\nkinds: domain domain domain time");
     for (int c = 0; c < STEPS; c++)
       for (int n = 0; n < W * H; n++)
-        bytes[head + (side_by_side ? STEPS * n + c : c * W * H + n)] = (unsigned char)(n * 7 + n / 255 + 50 * c);
+        bytes[head + (side_by_side ? STEPS * n + c : c * W * H + n)] = (unsigned char)(n * 7 + n / 255 +
+                                                                                       50 * c);
     for (int c = 0; c < STEPS; c++) {
       hl_volume_load_options options = load_options(NULL, c);
       options.bytes = bytes;
@@ -171,7 +178,8 @@ static void test_large_components(void **state) {
       hl_volume *volume = NULL;
       assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, NULL), HL_OK);
       for (size_t n = 0; n < W * H; n += 97)
-        assert_true(hl_volume_value(volume, n % W, n / W % (H / 2), n / W / (H / 2)) == (unsigned char)(n * 7 + n / 255 + 50 * (size_t)c));
+        assert_true(hl_volume_value(volume, n % W, n / W % (H / 2), n / W / (H / 2)) ==
+                    (unsigned char)(n * 7 + n / 255 + 50 * (size_t)c));
       hl_volume_release(volume);
     }
   }
@@ -184,8 +192,9 @@ static void test_spacing_takes_the_place_of_the_files(void **state) {
   told t = {0};
   hl_context *context = make_context(&t);
   byte_buffer file = {.length = 0};
-  add_text(&file, "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 3\nsizes: 2 1 1\n"
-                  "space directions: (0,3,0) (1,0,0) (0,0,1)\nspace origin: (5,6,7)\n\n12");
+  add_text(&file,
+           "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 3\nsizes: 2 1 1\n"
+           "space directions: (0,3,0) (1,0,0) (0,0,1)\nspace origin: (5,6,7)\n\n12");
   hl_volume_load_options options = load_options(NULL, HL_COMPONENT_DEFAULT);
   options.bytes = file.data;
   options.byte_count = file.length;
@@ -216,8 +225,9 @@ static void test_values_of_half_floats(void **state) {
   static const struct {
     unsigned bits;
     double value;
-  } halves[] = {{0x0001, 0x1p-24}, {0x03ff, 0x3ffp-24}, {0x0400, 0x1p-14}, {0x3c00, 1}, {0x7bff, 65504}, {0xc000, -2},
-                {0x8000, 0}, {0x3555, 0.333251953125}, {0x7c00, INFINITY}, {0x7e00, NAN}};
+  } halves[] = {{0x0001, 0x1p-24},  {0x03ff, 0x3ffp-24}, {0x0400, 0x1p-14}, {0x3c00, 1},
+                {0x7bff, 65504},    {0xc000, -2},        {0x8000, 0},       {0x3555, 0.333251953125},
+                {0x7c00, INFINITY}, {0x7e00, NAN}};
   enum { COUNT = sizeof halves / sizeof *halves };
   byte_buffer file = {.length = 0};
   for (int n = 0; n < COUNT; n++) add_integer(&file, halves[n].bits, 2, false);
@@ -237,9 +247,10 @@ static void test_values_of_half_floats(void **state) {
 /* A pipe is read once: up to the first array of one component, or of the wanted name. */
 static void test_a_pipe_is_read_once(void **state) {
   (void)state;
-  static const char vtk[] = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 1 1\nPOINT_DATA 2\n"
-                            "VECTORS v float\n3 4 0 1 2 2\nSCALARS p short\nLOOKUP_TABLE default\n7 8\n"
-                            "SCALARS q short\nLOOKUP_TABLE default\n9 10\n";
+  static const char vtk[] =
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 1 1\nPOINT_DATA 2\n"
+      "VECTORS v float\n3 4 0 1 2 2\nSCALARS p short\nLOOKUP_TABLE default\n7 8\n"
+      "SCALARS q short\nLOOKUP_TABLE default\n9 10\n";
   static const struct {
     const char *array;
     double first;
@@ -266,10 +277,12 @@ static void test_a_pipe_is_read_once(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_arrays_are_chosen_by_name), cmocka_unit_test(test_components),
-      cmocka_unit_test(test_series), cmocka_unit_test(test_large_components),
-      cmocka_unit_test(test_spacing_takes_the_place_of_the_files), cmocka_unit_test(test_values_of_half_floats),
-      cmocka_unit_test(test_a_pipe_is_read_once)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_arrays_are_chosen_by_name),
+                                     cmocka_unit_test(test_components),
+                                     cmocka_unit_test(test_series),
+                                     cmocka_unit_test(test_large_components),
+                                     cmocka_unit_test(test_spacing_takes_the_place_of_the_files),
+                                     cmocka_unit_test(test_values_of_half_floats),
+                                     cmocka_unit_test(test_a_pipe_is_read_once)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

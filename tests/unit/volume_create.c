@@ -88,7 +88,9 @@ static double write_value(hl_voxel_type type, size_t n, unsigned char *place) {
     case HL_VOXEL_F16: { /* a whole number: sign, exponent + 15, ten bits of fraction */
       int size = abs(value), exponent = 0;
       while (size >> (exponent + 1) != 0) exponent++;
-      unsigned bits = size == 0 ? 0 : (unsigned)(exponent + 15) << 10 | ((unsigned)size << 10 >> exponent & 0x3ff);
+      unsigned bits = size == 0
+                          ? 0
+                          : (unsigned)(exponent + 15) << 10 | ((unsigned)size << 10 >> exponent & 0x3ff);
       uint16_t v = (uint16_t)(bits | (value < 0 ? 0x8000u : 0));
       memcpy(place, &v, 2);
       return value;

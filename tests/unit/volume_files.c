@@ -59,7 +59,8 @@ void add_integer(byte_buffer *target, uint64_t value, size_t length, bool big_en
 
 static void add_float(byte_buffer *target, double value, size_t length, bool big_endian) {
   uint64_t bits;
-  if (length == 2) { /* of numbers that binary16 holds: the float's exponent and first ten bits of its fraction */
+  if (length ==
+      2) { /* of numbers that binary16 holds: the float's exponent and first ten bits of its fraction */
     float narrow = (float)value;
     uint32_t wide;
     memcpy(&wide, &narrow, 4);
@@ -79,8 +80,7 @@ void add_voxels(byte_buffer *target, hl_voxel_type type, bool big_endian) {
   for (int n = 0; n < VOXELS; n++)
     if (type == HL_VOXEL_F16 || type == HL_VOXEL_F32 || type == HL_VOXEL_F64)
       add_float(target, voxel_value(type, n), hl_voxel_type_bytes(type), big_endian);
-    else
-      add_integer(target, (uint64_t)(int64_t)voxel_value(type, n), hl_voxel_type_bytes(type), big_endian);
+    else add_integer(target, (uint64_t)(int64_t)voxel_value(type, n), hl_voxel_type_bytes(type), big_endian);
 }
 
 void add_voxels_as_text(byte_buffer *target, hl_voxel_type type, const char *separator) {
@@ -133,14 +133,13 @@ static void raw_samples(sample_function *function, void *data) {
   for (size_t t = 0; t < TYPES; t++)
     for (int big = 0; big < 2; big++)
       for (int gzip = 0; gzip < 2; gzip++) {
-        volume_sample made = begin_sample(all_types[t], "a4x4_3x2x2_%s%s.raw%s", hl_voxel_type_name(all_types[t]),
-                                   big ? "_be" : "", gzip ? ".gz" : "");
+        volume_sample made = begin_sample(all_types[t], "a4x4_3x2x2_%s%s.raw%s",
+                                          hl_voxel_type_name(all_types[t]), big ? "_be" : "",
+                                          gzip ? ".gz" : "");
         byte_buffer voxels = {.length = 0};
         add_voxels(&voxels, made.type, big);
-        if (gzip)
-          add_compressed(&made.file, voxels.data, voxels.length, true);
-        else
-          made.file = voxels;
+        if (gzip) add_compressed(&made.file, voxels.data, voxels.length, true);
+        else made.file = voxels;
         function(&made, data);
       }
   volume_sample made = begin_sample(HL_VOXEL_U16, "described.dat");
@@ -205,7 +204,7 @@ static void nrrd_samples(sample_function *function, void *data) {
         bool big = variant & 1, detached = variant & 2;
         size_t line_end = (t + e + (size_t)variant) % 3;
         volume_sample made = begin_sample(all_types[t], "%s_%s_%zu_%d.%s", hl_voxel_type_name(all_types[t]),
-                                   encodings[e], line_end, big, detached ? "nhdr" : "nrrd");
+                                          encodings[e], line_end, big, detached ? "nhdr" : "nrrd");
         add_nrrd_header(&made, line_ends[line_end], encodings[e], big);
         if (detached) {
           strcpy(made.other_name, "detached data");
@@ -276,7 +275,7 @@ static void meta_samples(sample_function *function, void *data) {
       bool big = variant & 1, detached = variant & 2;
       int coding = variant / 4; /* 0 raw, 1 zlib, 2 text */
       volume_sample made = begin_sample(all_types[t], "%s_%d.%s", hl_voxel_type_name(all_types[t]), variant,
-                                 detached ? "mhd" : "mha");
+                                        detached ? "mhd" : "mha");
       byte_buffer voxels = {.length = 0}, *target = detached ? &made.other : &made.file;
       add_text(&made.file,
                "ObjectType = Image\nNDims = 3\nBinaryData = %s\n%s = %s\nCompressedData = %s\n"
@@ -345,10 +344,8 @@ static void add_nifti_header(byte_buffer *file, int version, hl_voxel_type type,
   static const double steps[4] = {-1, 0.5, 2, 3};
   for (int n = 0; n < 4; n++) put_float(file, pixdim + (size_t)n * real, steps[n], real, big);
   double offset = pair ? 0 : (double)size + 4;
-  if (old)
-    put_float(file, 108, offset, 4, big);
-  else
-    put(file, 168, (uint64_t)offset, 8, big);
+  if (old) put_float(file, 108, offset, 4, big);
+  else put(file, 168, (uint64_t)offset, 8, big);
   put_float(file, old ? 112 : 176, slope, real, big);
   put_float(file, old ? 116 : 184, intercept, real, big);
   put(file, old ? 252 : 344, place == PLACE_QFORM || place == PLACE_BOTH, old ? 2 : 4, big);
@@ -381,8 +378,8 @@ static void nifti_samples(sample_function *function, void *data) {
       bool big = variant & 1;
       int version = variant & 2 ? 2 : 1, kind = variant / 4;
       nifti_place place = (nifti_place)((t + (size_t)variant) % 4);
-      volume_sample made =
-          begin_sample(all_types[t], "%s_%d%s", hl_voxel_type_name(all_types[t]), variant, endings[kind]);
+      volume_sample made = begin_sample(all_types[t], "%s_%d%s", hl_voxel_type_name(all_types[t]), variant,
+                                        endings[kind]);
       bool pair = kind >= 2, scaled = t % 3 == 0;
       made.scale = scaled ? 0.5 : 1;
       made.shift = scaled ? -3 : 0;
@@ -505,10 +502,8 @@ static void legacy_samples(sample_function *function, void *data) {
                kind == 1 ? "\n" : "", kind == 1 ? "ASPECT_RATIO" : "SPACING");
       if (kind == 2) { /* data sets may begin with fields and cell data */
         add_text(&made.file, "FIELD FieldData 1\ntime 1 1 short\n");
-        if (text)
-          add_text(&made.file, "7\n");
-        else
-          add_text(&made.file, "%c%c\n", 0, 7);
+        if (text) add_text(&made.file, "7\n");
+        else add_text(&made.file, "%c%c\n", 0, 7);
         add_text(&made.file,
                  "METADATA\nINFORMATION 0\n\nCELL_DATA 2\nSCALARS c unsigned_char 2\nLOOKUP_TABLE default\n");
         add_text(&made.file, "%s", text ? "1 2 3 4\n" : "abcd\n");
@@ -522,10 +517,8 @@ static void legacy_samples(sample_function *function, void *data) {
         add_text(&made.file, "density 1 12 %s\n", names[made.type]);
       }
       made.is_text = text;
-      if (text)
-        add_voxels_as_text(&made.file, made.type, " ");
-      else
-        add_voxels(&made.file, made.type, true);
+      if (text) add_voxels_as_text(&made.file, made.type, " ");
+      else add_voxels(&made.file, made.type, true);
       add_text(&made.file, "\nMETADATA\nINFORMATION 0\n\n");
       made.axis[0][0] = 0.5;
       made.axis[2][2] = 3;

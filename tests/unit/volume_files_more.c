@@ -1,4 +1,5 @@
-/* tests/unit/volume_files_more.c - samples of volume_files.h: NumPy arrays, and voxels of several components. */
+/* tests/unit/volume_files_more.c - samples of volume_files.h: NumPy arrays, and voxels of several
+ * components. */
 #include "volume_files.h"
 
 #include <stdio.h>
@@ -14,10 +15,14 @@ static const struct {
                    {HL_VOXEL_F16, "f2"}, {HL_VOXEL_F32, "f4"}, {HL_VOXEL_F64, "f8"}};
 
 /* version: 1 to 3; the text is padded to 64 bytes as NumPy does. */
-static void add_numpy_header(byte_buffer *file, int version, const char *type, bool big, bool fortran, const char *shape) {
+static void add_numpy_header(byte_buffer *file, int version, const char *type, bool big, bool fortran,
+                             const char *shape) {
   char text[200];
   int length = snprintf(text, sizeof text, "{'descr': '%s%s', 'fortran_order': %s, 'shape': %s, }",
-                        type[1] == '1' ? "|" : big ? ">" : "<", type, fortran ? "True" : "False", shape);
+                        type[1] == '1' ? "|"
+                        : big          ? ">"
+                                       : "<",
+                        type, fortran ? "True" : "False", shape);
   size_t before = version == 1 ? 10 : 12, whole = (before + (size_t)length + 1 + 63) / 64 * 64;
   add(file, "\x93NUMPY", 6);
   add_integer(file, (uint64_t)version, 2, false);
@@ -58,9 +63,11 @@ static void add_components(byte_buffer *file, hl_voxel_type type, size_t compone
   size_t bytes = hl_voxel_type_bytes(type);
   add_voxels(&voxels, type, false);
   for (size_t n = 0; n < VOXELS * components; n++) {
-    size_t voxel = side_by_side ? n / components : n % VOXELS, component = side_by_side ? n % components : n / VOXELS;
+    size_t voxel = side_by_side ? n / components : n % VOXELS,
+           component = side_by_side ? n % components : n / VOXELS;
     if (component == 0) add(file, voxels.data + voxel * bytes, bytes);
-    else for (size_t b = 0; b < bytes; b++) add_integer(file, 77 + component, 1, false);
+    else
+      for (size_t b = 0; b < bytes; b++) add_integer(file, 77 + component, 1, false);
   }
 }
 
@@ -69,12 +76,11 @@ static void nrrd_components(sample_function *function, void *data) {
     const char *fields;
     bool side_by_side;
     size_t components;
-  } layouts[] = {
-      {"dimension: 4\nsizes: 5 3 2 2\nkinds: vector domain domain domain\n", true, 5},
-      {"dimension: 4\nsizes: 3 2 2 5\nkinds: domain domain domain list\n", false, 5},
-      {"dimension: 4\nsizes: 5 3 2 2\nkinds: time space space space\n", true, 5},
-      {"dimension: 4\nsizes: 5 3 2 2\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\n", true, 5},
-      {"dimension: 5\nsizes: 2 2 3 2 2\nkinds: vector vector domain domain domain\n", true, 4}};
+  } layouts[] = {{"dimension: 4\nsizes: 5 3 2 2\nkinds: vector domain domain domain\n", true, 5},
+                 {"dimension: 4\nsizes: 3 2 2 5\nkinds: domain domain domain list\n", false, 5},
+                 {"dimension: 4\nsizes: 5 3 2 2\nkinds: time space space space\n", true, 5},
+                 {"dimension: 4\nsizes: 5 3 2 2\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\n", true, 5},
+                 {"dimension: 5\nsizes: 2 2 3 2 2\nkinds: vector vector domain domain domain\n", true, 4}};
   for (size_t n = 0; n < sizeof layouts / sizeof *layouts; n++) {
     volume_sample made = begin_sample(HL_VOXEL_I16, "components_%zu.nrrd", n);
     add_text(&made.file, "NRRD0005\ntype: short\nendian: little\nencoding: raw\n%s\n", layouts[n].fields);
@@ -83,7 +89,9 @@ static void nrrd_components(sample_function *function, void *data) {
   }
   /* a component axis between those of the grid */
   volume_sample made = begin_sample(HL_VOXEL_U8, "components_within.nrrd");
-  add_text(&made.file, "NRRD0005\ntype: uchar\nencoding: raw\ndimension: 4\nsizes: 3 2 4 2\nkinds: domain domain vector domain\n\n");
+  add_text(&made.file,
+           "NRRD0005\ntype: uchar\nencoding: raw\ndimension: 4\nsizes: 3 2 4 2\nkinds: domain domain vector "
+           "domain\n\n");
   byte_buffer voxels = {.length = 0};
   add_voxels(&voxels, HL_VOXEL_U8, false);
   for (size_t k = 0; k < NK; k++)
@@ -97,35 +105,47 @@ static void nrrd_components(sample_function *function, void *data) {
 
 static void meta_components(sample_function *function, void *data) {
   volume_sample made = begin_sample(HL_VOXEL_I16, "channels.mha");
-  add_text(&made.file, "NDims = 3\nDimSize = 3 2 2\nElementNumberOfChannels = %d\nElementType = MET_SHORT\nElementDataFile = LOCAL\n",
+  add_text(&made.file,
+           "NDims = 3\nDimSize = 3 2 2\nElementNumberOfChannels = %d\nElementType = "
+           "MET_SHORT\nElementDataFile = LOCAL\n",
            COMPONENTS);
   add_components(&made.file, made.type, COMPONENTS, true);
   function(&made, data);
   volume_sample series = begin_sample(HL_VOXEL_F32, "series.mha");
-  add_text(&series.file, "NDims = 4\nDimSize = 3 2 2 %d\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n", COMPONENTS);
+  add_text(&series.file, "NDims = 4\nDimSize = 3 2 2 %d\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n",
+           COMPONENTS);
   add_components(&series.file, series.type, COMPONENTS, false);
   function(&series, data);
 }
 
 static void vtk_components(sample_function *function, void *data) {
-  for (int first = 0; first < 2; first++) { /* the volume before and after a vector; and one that is not understood */
+  for (int first = 0; first < 2;
+       first++) { /* the volume before and after a vector; and one that is not understood */
     /* Cut before its scalars, a file of vectors is whole: the type keeps the second out of that test. */
     volume_sample made = begin_sample(first ? HL_VOXEL_U16 : HL_VOXEL_U8, "vectors_%d.vtk", first);
-    add_text(&made.file, "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nPOINT_DATA 12\n");
+    add_text(&made.file,
+             "# vtk DataFile Version 3.0\nt\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nPOINT_DATA "
+             "12\n");
     if (first) add_text(&made.file, "VECTORS v char\n123123123123123123123123123123123123\n");
-    add_text(&made.file, "SCALARS density %s\nLOOKUP_TABLE default\n", first ? "unsigned_short" : "unsigned_char");
+    add_text(&made.file, "SCALARS density %s\nLOOKUP_TABLE default\n",
+             first ? "unsigned_short" : "unsigned_char");
     add_voxels(&made.file, made.type, true);
     if (!first) add_text(&made.file, "\nNORMALS n char\n123123123123123123123123123123123123");
     add_text(&made.file, "\nSCALARS other unsigned_char\nLOOKUP_TABLE default\n123456789012\nGLOBAL_IDS x\n");
     function(&made, data);
   }
   volume_sample made = begin_sample(HL_VOXEL_U8, "arrays.vti");
-  add_text(&made.file, "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 2 0 1 0 1\"><CellData><DataArray type=\"UInt8\" "
-                       "Name=\"c\">1 2</DataArray></CellData><PointData><DataArray type=\"String\" Name=\"s\">1</DataArray>"
-                       "<DataArray type=\"UInt8\" Name=\"v\" NumberOfComponents=\"3\">1</DataArray>"
-                       "<DataArray type=\"UInt8\" Name=\"density\">");
+  add_text(
+      &made.file,
+      "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 2 0 1 0 1\"><CellData><DataArray "
+      "type=\"UInt8\" "
+      "Name=\"c\">1 2</DataArray></CellData><PointData><DataArray type=\"String\" Name=\"s\">1</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"v\" NumberOfComponents=\"3\">1</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"density\">");
   add_voxels_as_text(&made.file, HL_VOXEL_U8, " ");
-  add_text(&made.file, "</DataArray><DataArray type=\"UInt8\" Name=\"d\">7</DataArray></PointData></ImageData></VTKFile>");
+  add_text(
+      &made.file,
+      "</DataArray><DataArray type=\"UInt8\" Name=\"d\">7</DataArray></PointData></ImageData></VTKFile>");
   made.is_text = true;
   function(&made, data);
 }

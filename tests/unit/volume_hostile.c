@@ -18,8 +18,8 @@
 /* At least the 257 bytes of a header whose length is "\1\1". */
 #define SPACES_64 "                                                                "
 #define LONG_LINE SPACES_64 SPACES_64 SPACES_64 SPACES_64 SPACES_64
-#define NPY "\x93NUMPY\1.\1\1{'descr': '<f4', 'fortran_order': False, "
-#define TWELVE     "123456789012"
+#define NPY       "\x93NUMPY\1.\1\1{'descr': '<f4', 'fortran_order': False, "
+#define TWELVE    "123456789012"
 
 typedef struct malformed {
   const char *name, *content;
@@ -107,10 +107,14 @@ static const malformed files[] = {
      HL_ERROR_INPUT, "promises 36 bytes"},
     {"series.nrrd", NRRD "dimension: 4\nsizes: 7 2 2 7\ntype: uchar\nencoding: raw\n\n", HL_ERROR_INPUT,
      "promises 196 bytes"},
-    {"apart.nrrd", NRRD "dimension: 5\nsizes: 3 2 2 2 3\ntype: uchar\nencoding: raw\n"
-                   "kinds: vector domain domain domain list\n\n", HL_ERROR_UNSUPPORTED, "do not follow each other"},
-    {"components.nrrd", NRRD "dimension: 5\nsizes: 3 2 2 18446744073709551615 9\ntype: uchar\nencoding: raw\n"
-                   "kinds: domain domain domain vector vector\n\n", HL_ERROR_INPUT, "promises 18446744073709551615 bytes"},
+    {"apart.nrrd",
+     NRRD "dimension: 5\nsizes: 3 2 2 2 3\ntype: uchar\nencoding: raw\n"
+          "kinds: vector domain domain domain list\n\n",
+     HL_ERROR_UNSUPPORTED, "do not follow each other"},
+    {"components.nrrd",
+     NRRD "dimension: 5\nsizes: 3 2 2 18446744073709551615 9\ntype: uchar\nencoding: raw\n"
+          "kinds: domain domain domain vector vector\n\n",
+     HL_ERROR_INPUT, "promises 18446744073709551615 bytes"},
     /* MetaImage */
     {"dims.mha", "NDims = 11\n", HL_ERROR_INPUT, "line 1: NDims cannot be \"11\""},
     {"size.mha", "NDims = 3\nDimSize = 3 2\n", HL_ERROR_INPUT, "line 2: DimSize cannot be \"3 2\""},
@@ -131,7 +135,8 @@ static const malformed files[] = {
     {"time.mha", "NDims = 4\nDimSize = 3 2 2 5\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n",
      HL_ERROR_INPUT, "promises 60 bytes"},
     {"both.mha",
-     "NDims = 4\nDimSize = 3 2 2 5\nElementNumberOfChannels = 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n",
+     "NDims = 4\nDimSize = 3 2 2 5\nElementNumberOfChannels = 3\nElementType = MET_UCHAR\nElementDataFile = "
+     "LOCAL\n",
      HL_ERROR_UNSUPPORTED, "3 channels in each of 5 volumes"},
     {"list.mhd", META "ElementType = MET_UCHAR\nElementDataFile = LIST\na.raw\n", HL_ERROR_UNSUPPORTED,
      "several files"},
@@ -145,17 +150,21 @@ static const malformed files[] = {
     {"version.npy", "\x93NUMPY\4.\1\1", HL_ERROR_UNSUPPORTED, "version 4 of the format"},
     {"length.npy", "\x93NUMPY\1.\1a{", HL_ERROR_INPUT, "the file ends here"},
     {"list.npy", "\x93NUMPY\1.\1\1[1, 2]" LONG_LINE, HL_ERROR_INPUT, "begins with '{'"},
-    {"record.npy", "\x93NUMPY\1.\1\1{'descr': [('a', '<f4')]}" LONG_LINE, HL_ERROR_UNSUPPORTED, "one plain type"},
-    {"object.npy", "\x93NUMPY\1.\1\1{'descr': '|O'}" LONG_LINE, HL_ERROR_UNSUPPORTED, "not elements of type \"|O\""},
+    {"record.npy", "\x93NUMPY\1.\1\1{'descr': [('a', '<f4')]}" LONG_LINE, HL_ERROR_UNSUPPORTED,
+     "one plain type"},
+    {"object.npy", "\x93NUMPY\1.\1\1{'descr': '|O'}" LONG_LINE, HL_ERROR_UNSUPPORTED,
+     "not elements of type \"|O\""},
     {"key.npy", "\x93NUMPY\1.\1\1{'order': 1}" LONG_LINE, HL_ERROR_INPUT, "not \"order\""},
     {"order.npy", "\x93NUMPY\1.\1\1{'fortran_order': Perhaps}" LONG_LINE, HL_ERROR_INPUT, "True or False"},
-    {"lacks.npy", "\x93NUMPY\1.\1\1{'descr': '<f4', 'shape': (2, 2, 2)}" LONG_LINE, HL_ERROR_INPUT, "lacks fortran_order"},
+    {"lacks.npy", "\x93NUMPY\1.\1\1{'descr': '<f4', 'shape': (2, 2, 2)}" LONG_LINE, HL_ERROR_INPUT,
+     "lacks fortran_order"},
     {"shape.npy", NPY "'shape': (2, -2, 2)}" LONG_LINE, HL_ERROR_INPUT, "expected a count"},
     {"line.npy", NPY "'shape': (8,)}" LONG_LINE, HL_ERROR_UNSUPPORTED, "1 axes"},
     {"five.npy", NPY "'shape': (2, 2, 2, 2, 2)}" LONG_LINE, HL_ERROR_UNSUPPORTED, "more than four axes"},
     {"zero.npy", NPY "'shape': (2, 0, 2)}" LONG_LINE, HL_ERROR_INPUT, "has a zero"},
     {"none.npy", NPY "'shape': (2, 2, 2, 0)}" LONG_LINE, HL_ERROR_INPUT, "has a zero"},
-    {"vast.npy", NPY "'shape': (99999999999, 99999999999, 2)}" LONG_LINE, HL_ERROR_INPUT, "beyond any memory"},
+    {"vast.npy", NPY "'shape': (99999999999, 99999999999, 2)}" LONG_LINE, HL_ERROR_INPUT,
+     "beyond any memory"},
     {"promise.npy", NPY "'shape': (999, 999, 999)}" LONG_LINE, HL_ERROR_INPUT, "promises 3988011996 bytes"},
     /* legacy VTK */
     {"coding.vtk", "# vtk DataFile Version 3.0\nt\nMORSE\n", HL_ERROR_INPUT,
@@ -173,7 +182,8 @@ static const malformed files[] = {
     {"scalars.vtk", VTK "POINT_DATA 12\nSCALARS a\n", HL_ERROR_INPUT, "expected \"SCALARS name type"},
     {"rgb.vtk", VTK "POINT_DATA 1\nSCALARS a char 3\nLOOKUP_TABLE default\n1 2 3\n", HL_ERROR_INPUT,
      "POINT_DATA has 1 values"},
-    {"vectors.vtk", VTK "POINT_DATA 12\nVECTORS v float\n", HL_ERROR_INPUT, "promises 71 bytes of voxels as text"},
+    {"vectors.vtk", VTK "POINT_DATA 12\nVECTORS v float\n", HL_ERROR_INPUT,
+     "promises 71 bytes of voxels as text"},
     {"pairs.vtk", VTK "POINT_DATA 12\nPAIRS v float\n", HL_ERROR_UNSUPPORTED, "\"PAIRS\" is not read"},
     {"field.vtk", VTK "POINT_DATA 12\nFIELD f many\n", HL_ERROR_INPUT, "expected \"FIELD name number\""},
     {"array.vtk", VTK "POINT_DATA 12\nFIELD f 1\na 1\n", HL_ERROR_INPUT,
@@ -208,7 +218,8 @@ static const malformed files[] = {
     {"rgb.vti", IMAGE "<DataArray type=\"Int8\" NumberOfComponents=\"3\">1</DataArray>", HL_ERROR_INPUT,
      "ends before </VTKFile>"},
     {"rgb_whole.vti",
-     IMAGE "<DataArray type=\"Int8\" NumberOfComponents=\"3\">1</DataArray></PointData></ImageData></VTKFile>",
+     IMAGE
+     "<DataArray type=\"Int8\" NumberOfComponents=\"3\">1</DataArray></PointData></ImageData></VTKFile>",
      HL_ERROR_INPUT, "promises 71 bytes of voxels as text"},
     {"offset.vti", IMAGE "<DataArray type=\"Int8\" format=\"appended\"/>", HL_ERROR_INPUT, "offset"},
     {"appended.vti", IMAGE "<DataArray type=\"Int8\" format=\"appended\" offset=\"0\"/></PointData>",

@@ -135,10 +135,8 @@ static void test_progress_and_cancelling(void **unused) {
     hl_status status = hl_volume_load(context, path, &volume, NULL);
     assert_int_equal(status, cancel_at > 0 ? HL_ERROR_CANCELLED : HL_OK);
     assert_true(seen.ordered);
-    if (cancel_at == 0)
-      assert_true(seen.calls >= 4 && seen.last == 1);
-    else
-      assert_int_equal(seen.calls, cancel_at);
+    if (cancel_at == 0) assert_true(seen.calls >= 4 && seen.last == 1);
+    else assert_int_equal(seen.calls, cancel_at);
     hl_volume_release(volume);
     assert_int_equal(hl_context_memory_held(context), 0);
     hl_context_destroy(context);
@@ -167,8 +165,9 @@ static void put_bytes(byte_buffer *file, size_t place, const void *from, size_t 
   memcpy(file->data + place, from, length);
 }
 
-/* A half turn about (1, 1, 0), whose halves of a quaternion are floats: 1 - b b - c c is 5e-8 in place of 0. Below 1e-7 it
- * counts as 0, as in nifti_quatern_to_mat44() of nifti1_io.c; kept, it would turn the volume by .03 degrees. */
+/* A half turn about (1, 1, 0), whose halves of a quaternion are floats: 1 - b b - c c is 5e-8 in place of 0.
+ * Below 1e-7 it counts as 0, as in nifti_quatern_to_mat44() of nifti1_io.c; kept, it would turn the volume by
+ * .03 degrees. */
 static void test_half_turn_of_nifti(void **unused) {
   (void)unused;
   static const int16_t dimensions[] = {3, 2, 2, 2}, u8 = 2, bits = 8, has_qform = 1;
@@ -197,7 +196,8 @@ static void test_half_turn_of_nifti(void **unused) {
   static const double expected[3][3] = {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
   for (int row = 0; row < 3; row++)
     for (int axis = 0; axis < 3; axis++)
-      assert_true(fabs(info.direction[row][axis] - expected[row][axis]) < (expected[row][axis] == 0 ? 1e-300 : 1e-15));
+      assert_true(fabs(info.direction[row][axis] - expected[row][axis]) <
+                  (expected[row][axis] == 0 ? 1e-300 : 1e-15));
   hl_volume_release(volume);
   hl_context_destroy(context);
   remove_folder(folder);

@@ -51,7 +51,8 @@ static hl_volume *make_volume(hl_context *context, hl_voxel_type type, double sc
   d.value_scale = scale;
   d.value_offset = scale - 1;
   d.voxels = bytes;
-  const double axes[3][3] = {{0.3, 0.1, 0}, {0, 1 / 3.0, 0.25}, {0.1, 0, -2}}, origin[3] = {-1e-3, 7, 1 / 7.0};
+  const double axes[3][3] = {{0.3, 0.1, 0}, {0, 1 / 3.0, 0.25}, {0.1, 0, -2}},
+               origin[3] = {-1e-3, 7, 1 / 7.0};
   memcpy(d.axis, axes, sizeof axes);
   memcpy(d.origin, origin, sizeof origin);
   hl_volume *volume = NULL;
