@@ -326,8 +326,9 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *contex
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume,
                                                                 const hl_transfer_function *function,
                                                                 double range[2], hl_error *error);
-/* Reads Halflight's own JSON object, ParaView's .json colour maps or Slicer's .vp.json. A file with colours
- * alone gives no opacity points (opacity null): take them from elsewhere. */
+/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps or
+ * Slicer's .vp.json. A file with colours alone gives no opacity points (opacity null): take them from
+ * elsewhere. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load(hl_context *context, const char *path,
                                                           hl_transfer_function *function, hl_error *error);
 HL_API void hl_transfer_function_release(hl_context *context, hl_transfer_function *function);

@@ -11,28 +11,13 @@
 
 enum info_option { INFO_JSON, INFO_ARRAY, INFO_COMPONENT, INFO_MAX_MEMORY, INFO_OPTION_COUNT };
 
-static const cli_choice magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
-
 static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_JSON] = {.name = "json",
                    .kind = OPTION_SWITCH,
                    .group = "Options",
                    .help = "as JSON, with 256 histogram bins"},
-    [INFO_ARRAY] =
-        {.name = "array",
-         .kind = OPTION_TEXT,
-         .argument = "NAME",
-         .help = "of the file's arrays this one (default: the active\none, else the first of one component)"},
-    [INFO_COMPONENT] = {.name = "component",
-                        .kind = OPTION_NUMBERS,
-                        .argument = "N|magnitude",
-                        .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or "
-                                "their magnitude\n(default: the only one; of 2 or 3 the magnitude,\nelse 0)",
-                        .choices = magnitudes,
-                        .count = 1,
-                        .whole = true,
-                        .low = 0,
-                        .high = 1e9},
+    [INFO_ARRAY] = INPUT_OPTION_ARRAY(NULL),
+    [INFO_COMPONENT] = INPUT_OPTION_COMPONENT,
     [INFO_MAX_MEMORY] =
         {.name = "max-memory",
          .kind = OPTION_BYTES,

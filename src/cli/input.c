@@ -17,6 +17,8 @@
 
 #define STANDARD_INPUT "/dev/stdin" /* what a scene calls it: rendered again, it reads it again */
 
+const cli_choice input_magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
+
 const char *input_base_name(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash != NULL ? slash + 1 : path;

@@ -23,6 +23,22 @@ typedef struct cli_input {
   size_t length;
 } cli_input;
 
+/* The rows of --array and --component in a subcommand's table of options; heading: see cli_option.group. */
+#define INPUT_OPTION_ARRAY(heading)                                                                     \
+  {                                                                                                     \
+    .name = "array", .kind = OPTION_TEXT, .argument = "NAME", .group = (heading),                       \
+    .help = "of the file's arrays this one (default: the active\none, else the first of one component)" \
+  }
+#define INPUT_OPTION_COMPONENT                                                                         \
+  {                                                                                                    \
+    .name = "component", .kind = OPTION_NUMBERS, .argument = "N|magnitude",                            \
+    .help =                                                                                            \
+        "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude\n" \
+        "(default: the only one; of 2 or 3 the magnitude,\nelse 0)",                                   \
+    .choices = input_magnitudes, .count = 1, .whole = true, .low = 0, .high = 1e9                      \
+  }
+extern const cli_choice input_magnitudes[];
+
 /* The part of a path after its last slash. */
 const char *input_base_name(const char *path);
 

@@ -184,6 +184,10 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   if (meant != NULL)
     return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s?", name, command->name,
                 meant);
+  const char *json = strcmp(command->name, "render") == 0 ? scene_setting_of(name) : NULL;
+  if (json != NULL)
+    return fail(EXIT_CODE_USAGE,
+                "unknown option '--%s' of render: a scene says %s; --print-scene writes a scene", name, json);
   return fail(EXIT_CODE_USAGE, "unknown option '%s' of %s: see 'halflight help %s'", argument, command->name,
               command->name);
 }

@@ -85,6 +85,10 @@ void options_print_help(const cli_command *command);
  * is known. */
 const char *synonym_of(const char *word, const cli_command *command);
 
+/* The setting that a word names and that only a scene has, as the scene writes it ("emission" -> its JSON
+ * with an example); null: none is known. */
+const char *scene_setting_of(const char *word);
+
 /* A colour as OPTION_COLOR takes it, as linear RGB: numbers between low and high are linear already, #rgb,
  * #rrggbb and CSS names are sRGB. False if text is none. */
 bool parse_color(const char *text, double low, double high, double color[3]);

@@ -2,12 +2,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "input.h"
 #include "output.h"
 #include "render.h"
 
 static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
 static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {NULL, 0}};
-static const cli_choice magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
 static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
 static const cli_choice sides[] = {
     {"front", HL_SIDE_FRONT}, {"back", HL_SIDE_BACK},     {"left", HL_SIDE_LEFT}, {"right", HL_SIDE_RIGHT},
@@ -149,23 +149,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_SWITCH,
                       .help = "parallel projection, the same framing"},
 
-    [RENDER_ARRAY] =
-        {.name = "array",
-         .kind = OPTION_TEXT,
-         .argument = "NAME",
-         .group = "Volume files",
-         .help = "of the file's arrays this one (default: the active\none, else the first of one component)"},
-    [RENDER_COMPONENT] = {.name = "component",
-                          .kind = OPTION_NUMBERS,
-                          .argument = "N|magnitude",
-                          .help =
-                              "of several values per voxel, or volumes of a\nseries, this one, from 0; or "
-                              "their magnitude\n(default: the only one; of 2 or 3 the magnitude,\nelse 0)",
-                          .choices = magnitudes,
-                          .count = 1,
-                          .whole = true,
-                          .low = 0,
-                          .high = 1e9},
+    [RENDER_ARRAY] = INPUT_OPTION_ARRAY("Volume files"),
+    [RENDER_COMPONENT] = INPUT_OPTION_COMPONENT,
     [RENDER_SPACING] = {.name = "spacing",
                         .kind = OPTION_NUMBERS,
                         .argument = "SX,SY,SZ",
@@ -187,9 +172,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
         {.name = "tf",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]FILE|PRESET",
-         .help = "transfer function: a JSON file (Halflight's,\nParaView's, Slicer's .vp.json) or a preset,\n"
-                 "see 'halflight help presets'; of volume NAME\nalone (again for others; default: chosen "
-                 "from the\ndata)",
+         .help = "transfer function: a JSON file (Halflight's, a\nscene's first, ParaView's, Slicer's "
+                 ".vp.json) or "
+                 "a\npreset, see 'halflight help presets'; of volume NAME\nalone (again for others; default: "
+                 "chosen from the\ndata)",
          .repeatable = true},
     [RENDER_COLORMAP] =
         {.name = "colormap",

@@ -1,7 +1,8 @@
 /* cli/synonyms.c - what people type who know ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba or a
  * plotting library.
  *
- * A word leads to the option that does the same; a subcommand that lacks this option offers nothing.
+ * A word leads to the option that does the same; a subcommand that lacks this option offers nothing. Settings
+ * that only scenes have lead to what the scene writes.
  */
 #include <string.h>
 
@@ -84,5 +85,28 @@ const char *synonym_of(const char *word, const cli_command *command) {
   if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
   for (size_t n = 0; n < sizeof meanings / sizeof *meanings; n++)
     if (has_word(meanings[n].words, word) && takes(command, meanings[n].option)) return meanings[n].option;
+  return NULL;
+}
+
+/* words: separated by blanks, in lower case */
+static const struct {
+  const char *json, *words;
+} settings[] = {
+    {"\"material\": { \"emission\": 1 } in a volume", "emission emissive glow luminance self-illumination"},
+    {"\"material\": { \"specular\": 0 } in a volume", "specular specularity gloss highlights"},
+    {"\"material\": { \"diffuse\": 0.7 } in a volume", "diffuse albedo"},
+    {"\"material\": { \"shininess\": 32 } in a volume", "shininess roughness specular-power"},
+    {"\"unit_distance\": 1 in a transfer function",
+     "unit-distance opacity-unit-distance opacity-scale density density-scale extinction"},
+    {"\"color\": [1, 0.5, 0.2] in a light", "light-color light-colour"},
+    {"\"intensity\": 1 in a light", "light-intensity light-strength energy"},
+    {"\"target\" in \"camera\"", "target look-at lookat focal-point center centre"},
+    {"\"position\" in \"camera\"", "eye eye-position position"},
+};
+
+const char *scene_setting_of(const char *word) {
+  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
+  for (size_t n = 0; n < sizeof settings / sizeof *settings; n++)
+    if (has_word(settings[n].words, word)) return settings[n].json;
   return NULL;
 }

@@ -236,8 +236,22 @@ static hl_status read_slicer(hl_json_reader *reader, const json_t *root, hl_tran
   return status;
 }
 
+/* The transfer function of a scene's first volume. One that the scene leaves to be chosen depends on the
+ * voxels, which are not read here. */
+static hl_status read_of_scene(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
+  const json_t *volume = json_array_get(json_object_get(root, "volumes"), 0);
+  const json_t *value = json_object_get(volume, "transfer_function");
+  hl_json_enter(reader, "volumes/0/transfer_function");
+  if (value == NULL || json_object_get(value, "preset") != NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
+                        "the scene leaves its points to be chosen from the voxels: "
+                        "write them, as 'halflight render SCENE --print-scene' does");
+  return hl_json_read_transfer_function(reader, value, (hl_function_subject){.volume = NULL}, function);
+}
+
 static hl_status read_any(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
   if (json_is_array(root)) return read_paraview(reader, root, function);
+  if (json_object_get(root, "volumes") != NULL) return read_of_scene(reader, root, function);
   if (json_object_get(root, "volumeProperties") != NULL) return read_slicer(reader, root, function);
   return hl_json_read_transfer_function(reader, root, (hl_function_subject){.volume = NULL}, function);
 }
