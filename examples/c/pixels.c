@@ -80,8 +80,8 @@ int main(int argc, char **argv) {
   hl_error error;
   hl_context *context = NULL;
   uint8_t *bytes = NULL;
-  size_t stride;
-  int width, height, done;
+  size_t stride = 0;
+  int width = 0, height = 0, done;
   if (argc != 3) {
     fprintf(stderr, "usage: pixels VOLUME PICTURE.ppm\n");
     return 2;

@@ -87,6 +87,9 @@ hl_status render_look_function(cli_host *host, const cli_value *values, const hl
                                hl_transfer_function *function, hl_error *error);
 void render_change_look(const cli_value *values, bool bare, hl_scene_description *description);
 
+/* Whether the picture is a maximum projection: --look decides, else the scene. */
+bool render_is_maximum(const cli_value *values, const hl_scene_description *description);
+
 /* Says which options were given that light alone makes seen, where there is none; true where there is
  * none. */
 bool render_warn_of_no_light(const cli_value *values, const hl_scene_description *description);

@@ -209,16 +209,28 @@ static int replace(const hl_transfer_function *loaded, hl_transfer_function *fun
   return exit_code;
 }
 
-/* range: null: the values that are seen. */
-static int color_by_name(cli_host *host, const char *name, const hl_volume *volume, const double *range,
+/* One colour for all values. With ramp, for maximum projections, from black to this colour, linearly from
+ * range[0] to range[1]. The points are the function's own copies. */
+static int color_plainly(const double color[3], bool ramp, const double range[2],
                          hl_transfer_function *function) {
+  hl_color_point points[2] = {{range[0], {0}}, {range[1], {0}}};
+  for (int c = 0; c < 3; c++) points[1].color[c] = color[c];
+  const hl_transfer_function colors = {.color = ramp ? points : points + 1, .color_count = ramp ? 2 : 1};
+  return replace(&colors, function);
+}
+
+/* name: a colormap or a colour. range: null: the values that are seen. */
+static int color_by_name(cli_host *host, const char *name, const hl_volume *volume, const double *range,
+                         bool maximum, hl_transfer_function *function) {
   hl_transfer_function colors = {0};
   hl_error error = {0};
-  double seen[2];
-  if (!is_known(name, colormap_name))
-    return refuse_name("colormap", name, "colormap", "colormaps", colormap_name);
+  double seen[2], color[3];
+  bool known = is_known(name, colormap_name);
+  if (!known && !parse_color(name, 0, 1, color))
+    return refuse_name("colormap", name, "colormap and no colour", "colormaps", colormap_name);
   hl_status status = hl_transfer_function_seen_range(volume, function, seen, &error);
   if (range == NULL) range = seen;
+  if (status == HL_OK && !known) return color_plainly(color, maximum, range, function);
   if (status == HL_OK)
     status = hl_transfer_function_colormap(host->context, name, range[0], range[1], &colors, &error);
   if (status != HL_OK) return host_fail(host, PHASE_CHANGE, status, &error);
@@ -253,6 +265,7 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
     exit_code = make_opaque_from(host, volume->volume, values[RENDER_THRESHOLD].number[0], function);
   if (exit_code == EXIT_CODE_OK && colormap != NULL)
     exit_code = color_by_name(host, colormap, volume->volume,
-                              values[RENDER_RANGE].given ? values[RENDER_RANGE].number : NULL, function);
+                              values[RENDER_RANGE].given ? values[RENDER_RANGE].number : NULL,
+                              render_is_maximum(values, description), function);
   return exit_code;
 }

@@ -43,6 +43,11 @@ void render_change_look(const cli_value *values, bool bare, hl_scene_description
   for (int c = 0; c < 3 && bare && look->on_black; c++) description->background[c] = 0;
 }
 
+bool render_is_maximum(const cli_value *values, const hl_scene_description *description) {
+  const look *look = look_of(values);
+  return (look != NULL ? look->compositing : description->render.compositing) == HL_COMPOSITING_MAXIMUM;
+}
+
 /* What light alone changes. */
 static const enum render_option of_light[] = {
     RENDER_LIGHT,         RENDER_LIGHT_SIZE,    RENDER_SHADOWS,

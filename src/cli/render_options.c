@@ -180,8 +180,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_COLORMAP] =
         {.name = "colormap",
          .kind = OPTION_TEXT,
-         .argument = "[NAME=]MAP",
-         .help = "colours over the values that are seen,\nsee 'halflight help colormaps'; NAME as for --tf",
+         .argument = "[NAME=]MAP|COLOR",
+         .help = "colours over the values that are seen, see\n'halflight help colormaps'; or one colour (of a"
+                 "\nmaximum projection from black to it), as\n#rrggbb or a CSS name; NAME as for --tf",
          .repeatable = true},
     [RENDER_RANGE] = {.name = "range",
                       .kind = OPTION_NUMBERS,

@@ -16,14 +16,13 @@
 #include "scene/labels.h"
 #include "scene/sample.h"
 
-#define BINS   32   /* of the histogram whose shape is looked at */
-#define ROUGH  0.65 /* between simulations and turbulence or noise */
-#define SMOOTH 0.18 /* smoother than any scanner's pictures */
-#define FOG \
-  0.4 /* least roughness of smoke on a fine grid: 0.50 to 0.58 at 200 to 320 voxels, fields 0.1 to 0.3 */
-#define NOISY 1.2   /* rougher than a simulation's turbulence; white noise has 1.7 */
-#define TAIL  0.005 /* part of the voxels beyond a flow's ends */
-#define FLOOR 0.002 /* least mean of the background, as a part of top */
+#define BINS   32    /* of the histogram whose shape is looked at */
+#define ROUGH  0.65  /* between simulations and turbulence or noise */
+#define SMOOTH 0.18  /* smoother than any scanner's pictures */
+#define FOG    0.4   /* least roughness of smoke on fine grids (made of 200 to 320 voxels: 0.50 to 0.58) */
+#define NOISY  1.2   /* rougher than a simulation's turbulence; white noise has 1.7 */
+#define TAIL   0.005 /* part of the voxels beyond a flow's ends */
+#define FLOOR  0.002 /* least mean of the background, as a part of top */
 
 typedef struct distances {
   float *values; /* owned; ascending; [count]; relative */
