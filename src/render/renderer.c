@@ -151,10 +151,27 @@ static double pixel_at_content(const frame *frame, double middle_depth) {
   return edge * fmax(nearest, middle_depth / 3);
 }
 
+/* The volume of a box that hl_frame_content wrote the corners of; above 0 where the box is flat. */
+static double box_volume(const vec3 corners[8]) {
+  vec3 x = vec3_subtract(corners[1], corners[0]), y = vec3_subtract(corners[2], corners[0]),
+       z = vec3_subtract(corners[4], corners[0]);
+  return fmax(fabs(vec3_dot(vec3_cross(x, y), z)), 1e-300);
+}
+
+/* The mean of the volumes' boxes' centres, each weighted by the box's volume (derived: sum V c over the parts
+ * of a box is V c of the box). It stays where it is when a volume is cut into parts, as far as the visible
+ * boxes of the parts fill that of the whole. Sheets of near lights follow it: it gives a light's direction.
+ */
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
-  for (int i = 0; i < frame->point_count; i++) sum = vec3_add(sum, frame->points[i]);
-  return frame->point_count == 0 ? sum : vec3_scale(sum, 1.0 / frame->point_count);
+  double volumes = 0;
+  for (int i = 0; i < frame->point_count; i += 8) {
+    double volume = box_volume(frame->points + i);
+    vec3 centre = vec3_scale(vec3_add(frame->points[i], frame->points[i + 7]), 0.5);
+    sum = vec3_add(sum, vec3_scale(centre, volume));
+    volumes += volume;
+  }
+  return frame->point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
 }
 
 /* e: towards the middle of the content where the eye is outside of it, else straight ahead. */

@@ -96,8 +96,8 @@ static void add_parts(stage *set, const float *voxels, layout layout, double opa
   for (int part = 0; part < 8 && layout == EIGHTHS; part++) {
     double low[3], high[3];
     for (int a = 0; a < 3; a++) {
-      low[a] = part >> a & 1 ? 0.45 : -22;
-      high[a] = part >> a & 1 ? 22 : 0.45;
+      low[a] = part >> a & 1 ? 0.55 : -22;
+      high[a] = part >> a & 1 ? 22 : 0.55;
     }
     clip(add_ball(set, voxels, opacity), low, high);
   }
