@@ -2,7 +2,6 @@
 #include "light/light_image.h"
 
 #include "core/memory.h"
-#include "light/cascade_field.h"
 #include "scene/light_shape.h"
 
 /* Samples of the image along either side of a cell. */
@@ -158,8 +157,7 @@ bool hl_light_image_colored(const hl_light *light) {
 
 void hl_light_image_steps(const light_image *image, double width, int step[2]) {
   for (int axis = 0; axis < 2; axis++)
-    step[axis] = (int)fmin(fmax(1, ceil(image->range[axis] * width / IMAGE_SIDE)),
-                           2 * BLUR_GREATEST_REACH - 4);
+    step[axis] = (int)fmin(fmax(1, ceil(image->range[axis] * width / IMAGE_SIDE)), IMAGE_GREATEST_STEP);
 }
 
 /* Each cell falls on the four taps around it, by its distances to them. */

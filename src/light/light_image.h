@@ -8,12 +8,13 @@
 #define HL_LIGHT_LIGHT_IMAGE_H
 
 #include "light/light_extent.h"
-#include "light/shadow_buffer.h"
+#include "splat/view.h"
 
 enum {
   IMAGE_SIDE = 12,
   IMAGE_CELLS = IMAGE_SIDE * IMAGE_SIDE,
-  IMAGE_TAPS = (IMAGE_SIDE + 3) * (IMAGE_SIDE + 3)
+  IMAGE_TAPS = (IMAGE_SIDE + 3) * (IMAGE_SIDE + 3),
+  IMAGE_GREATEST_STEP = 88 /* pixels from tap to tap: as far as boxes blur (cascade_image.c) */
 };
 
 /* Where a cell's light comes from on the plane that shadows are seen on, in units of the light's width there;

@@ -6,6 +6,8 @@
 
 #include "light/light_sector.h"
 
+enum { HL_CHANNELS = 3 }; /* R, G, B */
+
 typedef struct light_source {
   bool parallel;
   vec3 direction; /* unit, the way light travels: parallel, a spot light's axis, or from the

@@ -36,14 +36,14 @@ uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *l
 }
 
 uint64_t hl_sweeps_bytes(const sweep_bytes *sweeps, int count, bool with_layers) {
-  uint64_t buffers = 0, passing = 0, cascades[FRAME_LIGHTS] = {0};
+  uint64_t buffers = 0, passing = 0, memory[FRAME_LIGHTS] = {0};
   for (int s = 0; s < count; s++) {
     buffers += sweeps[s].buffers;
     if (sweeps[s].passing > passing) passing = sweeps[s].passing;
     for (int i = 0; i < FRAME_LIGHTS; i++)
-      if (sweeps[s].cascades[i] > cascades[i]) cascades[i] = sweeps[s].cascades[i];
+      if (sweeps[s].memory[i] > memory[i]) memory[i] = sweeps[s].memory[i];
   }
-  for (int i = 0; i < FRAME_LIGHTS; i++) buffers += cascades[i];
+  for (int i = 0; i < FRAME_LIGHTS; i++) buffers += memory[i];
   uint64_t white = with_layers ? (CLASSIFIER_ENTRIES + 2) * 4 * sizeof(float) : 0; /* a table of ones */
   return buffers + passing + white + SMALL_PARTS;
 }

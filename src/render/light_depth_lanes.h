@@ -9,8 +9,8 @@
 #ifndef HL_RENDER_LIGHT_DEPTH_LANES_H
 #define HL_RENDER_LIGHT_DEPTH_LANES_H
 
-#include "light/shadow_lookup_lanes.h"
 #include "render/pack_lanes.h"
+#include "shadow/shadow_lookup_lanes.h"
 
 typedef struct color_lanes {
   lanes c[3];

@@ -21,9 +21,9 @@ struct hl_renderer {
   shadow_buffer
       *buffers; /* owned; [buffer_count]; one per light of a frame, of which a scene's light is some */
   size_t buffer_count;
-  cascade_memory cascades[FRAME_LIGHTS]; /* owned; of a sweep's lights */
-  hl_reserve reserve;                    /* owned; what frames and sweeps give back */
-  uint64_t estimate;                     /* bytes; see render/estimate.h */
+  shadow_memory shadow_memory[FRAME_LIGHTS]; /* owned; of a sweep's lights */
+  hl_reserve reserve;                        /* owned; what frames and sweeps give back */
+  uint64_t estimate;                         /* bytes; see render/estimate.h */
 };
 
 uint64_t hl_renderer_estimate(const hl_renderer *renderer) { return renderer->estimate; }
@@ -50,8 +50,8 @@ static void release_buffers(hl_renderer *renderer) {
     hl_shadow_buffer_release(renderer->context, &renderer->buffers[i]);
   hl_release(renderer->context, renderer->buffers);
   for (int i = 0; i < FRAME_LIGHTS; i++) {
-    hl_release(renderer->context, renderer->cascades[i].pixels);
-    renderer->cascades[i] = (cascade_memory){0};
+    hl_release(renderer->context, renderer->shadow_memory[i].planes);
+    renderer->shadow_memory[i] = (shadow_memory){0};
   }
   renderer->buffers = NULL;
   renderer->buffer_count = 0;
@@ -402,7 +402,7 @@ static uint64_t kept_buffers(const hl_renderer *renderer) {
   uint64_t bytes = 0;
   for (size_t i = 0; i < renderer->buffer_count; i++)
     bytes += renderer->buffers[i].capacity * sizeof(float) + renderer->buffers[i].tile_capacity * 4;
-  for (int i = 0; i < FRAME_LIGHTS; i++) bytes += renderer->cascades[i].capacity * sizeof(float);
+  for (int i = 0; i < FRAME_LIGHTS; i++) bytes += renderer->shadow_memory[i].capacity;
   return bytes;
 }
 
@@ -433,7 +433,7 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
                            int index, hl_render_statistics *statistics, hl_error *error) {
   sweep sweep = sweep_of(renderer, scene, work, index);
   hl_status status = sweep.geometry->back_to_front ? hl_sweep_find_hidden(&sweep, statistics, error) : HL_OK;
-  if (status == HL_OK) status = hl_sweep_begin(&sweep, renderer->buffers, renderer->cascades, error);
+  if (status == HL_OK) status = hl_sweep_begin(&sweep, renderer->buffers, renderer->shadow_memory, error);
   if (status == HL_OK) status = hl_sweep_run(&sweep, error);
   if (status == HL_OK) hl_sweep_count(&sweep, statistics);
   hl_sweep_end(&sweep);

@@ -6,11 +6,11 @@
 #ifndef HL_RENDER_SHADE_H
 #define HL_RENDER_SHADE_H
 
-#include "light/attenuate.h"
 #include "light/light_cone.h"
 #include "light/light_screen.h"
 #include "light/light_sector.h"
-#include "light/shadow_lookup.h"
+#include "shadow/attenuate.h"
+#include "shadow/shadow_lookup.h"
 
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 

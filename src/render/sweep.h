@@ -8,11 +8,9 @@
 #include <halflight/render.h>
 
 #include "core/reserve.h"
-#include "light/soft_cascade.h"
-#include "light/soft_paper.h"
-#include "light/sublights.h"
 #include "render/frame.h"
 #include "render/layers.h"
+#include "shadow/shadow_method.h"
 #include "simd/hot.h"
 
 /* A volume made ready: kept between frames while its voxels and transfer function stay. */
@@ -68,15 +66,10 @@ typedef struct view_sheets {
 /* One light of a sweep with its buffer. */
 typedef struct sweep_light {
   const light_source *source;
-  shadow_buffer *buffer; /* null: no shadows */
-  view_sheets sheets;
-  bool cubic;          /* buffer is read by cubic convolution */
+  light_shadow shadow;
+  view_sheets sheets;  /* of the shadow buffer's view */
   light_screen screen; /* the image that the light projects */
   light_image *image;  /* owned; the image on the light itself; null: none */
-  soft_paper paper;    /* by the source's soft method */
-  soft_cascade cascade;
-  sublights sublights;  /* with these, buffer holds one slab at a time */
-  shadow_lookup lookup; /* without: of buffer */
 } sweep_light;
 
 /* One thread's, on lines of the cache of its own. */
@@ -148,7 +141,7 @@ uint32_t hl_sweep_cover(const sweep *sweep, const shade_patch *patches, int patc
 
 /* Steps 1 and 2, and memory. buffers: one per light of the sweep, kept by the caller between frames; so is
  * memory, [FRAME_LIGHTS], which sweeps share in turn. */
-hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error);
+hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
 /* All blocks of the picture are open. */
 void hl_sweep_open(sweep *sweep);
 /* Raises statistics by what the steps took. */
@@ -157,8 +150,8 @@ void hl_sweep_end(sweep *sweep);
 
 /* What hl_sweep_begin would hold, bytes. */
 typedef struct sweep_bytes {
-  uint64_t buffers;                /* of the lights; they stay */
-  uint64_t cascades[FRAME_LIGHTS]; /* sweeps share them in turn */
+  uint64_t buffers;              /* of the lights; they stay */
+  uint64_t memory[FRAME_LIGHTS]; /* of methods of shadows; sweeps share it in turn */
   uint64_t passing; /* what the sweep gives back; slides and the lists of splatted voxels apart */
 } sweep_bytes;
 
@@ -182,9 +175,8 @@ void hl_sweep_layers_sheet(sweep *sweep);
 void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile,
                           uint32_t blocks, int worker, void *scratch);
 
-/* A view's sheets (view_sheets.c). spare: pixels around what bricks touch that count as touched:
- * PIXEL_TO_SPARE at least. What fails half-way is released by hl_view_sheets_end. */
-enum { PIXEL_TO_SPARE = 1 };
+/* A view's sheets (view_sheets.c). spare: as hl_occupancy_build has it. What fails half-way is released by
+ * hl_view_sheets_end. */
 hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spare, view_sheets *sheets,
                                hl_error *error);
 void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets);

@@ -4,16 +4,6 @@
 #include "render/clock.h"
 #include "render/sweep.h"
 
-/* Pixels of shadow buffers are as coarse as adds little to the error that the sheets leave (measured against
- * the reference, docs/performance.md): three quarters of their distance, three quarters of a voxel at most
- * and three tenths at least; and somewhat coarser than the image's. */
-static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
-static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4, PART_PIXEL_PER_IMAGE_PIXEL = 1.5;
-/* Read by cubic convolution, shadows lose no more on pixels larger by that part of a voxel than bilinear
- * look-ups do on these. */
-static const double CUBIC_LARGER = 1.0 / 8;
-enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
-
 static hl_status allocate_image(sweep *sweep, hl_error *error) {
   sweep->tiles_x = sweep->image.occupancy.tiles_x;
   sweep->tiles_y = sweep->image.occupancy.tiles_y;
@@ -37,146 +27,49 @@ void hl_sweep_open(sweep *sweep) {
   }
 }
 
-/* Penumbrae reach beyond what casts them by half their width, blurs in several steps further: the widest of
- * this sweep, in the soft buffer's units. */
-static double penumbra_margin(const sweep *sweep, const light_source *source, const sheet_light *seen) {
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  double width = fmax(seen->width_u, seen->width_v), depth = sheets->spacing * sheets->count;
-  if (source->parallel) return width * depth;
-  double nearest = fmax(sheets->first - vec3_dot(source->position, sheets->normal), 0);
-  return width * (1 / nearest - 1 / (nearest + depth));
-}
-
-/* What the sheets' distance allows, in voxels. */
-static double pixel_of_sheets(const sweep *sweep) {
-  double of_sheets = SHADOW_PIXEL_PER_SPACING * sweep->geometry->sheets.spacing / sweep->frame->voxel;
-  return fmin(fmax(of_sheets, LEAST_SHADOW_PIXEL), GREATEST_SHADOW_PIXEL);
-}
-
-/* Hard shadows where larger pixels do not exceed the greatest; the paper's as the paper has it. image: of the
- * light, null where it is even; the penumbrae of others have edges of their own. */
-static bool is_read_cubic(const sweep *sweep, const light_source *source, const light_image *image) {
-  hl_shadow_lookup lookup = sweep->scene->render.shadow_lookup;
-  bool soft = source->shadows == HL_SHADOWS_SOFT;
-  if (soft && source->soft_method == HL_SOFT_SUBLIGHTS) return false;
-  if (lookup != HL_LOOKUP_AUTO) return lookup == HL_LOOKUP_CUBIC;
-  if (soft) return source->soft_method == HL_SOFT_CASCADE && image == NULL;
-  return pixel_of_sheets(sweep) + CUBIC_LARGER <= GREATEST_SHADOW_PIXEL;
-}
-
-/* A bilinear look-up weighs two pixels by their distances p and 1 - p: a variance of p (1 - p), 1/6 on
- * average. Cubic convolution has none. */
-static double lookup_variance(bool cubic) { return cubic ? 0 : 1.0 / 6; }
-
-static double shadow_pixel(const sweep *sweep, const light_source *source, bool cubic) {
+/* seen: [seen_count] corners of what the eye sees. image: null where the light is even. */
+static shadow_setup setup_of_light(const sweep *sweep, const light_source *source, light_image *image,
+                                   const vec3 *seen, int seen_count) {
   const frame *frame = sweep->frame;
-  double pixel = (pixel_of_sheets(sweep) + (cubic ? CUBIC_LARGER : 0)) * frame->voxel;
-  if (source->shadows != HL_SHADOWS_SOFT)
-    return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->pixel,
-                fmin(pixel, GREATEST_SHADOW_PIXEL * frame->voxel));
-  if (source->soft_method == HL_SOFT_SUBLIGHTS)
-    return fmin(PART_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel);
-  /* a pixel on the sheets is narrower seen along the light: as large as a hard shadow's there */
-  double slant = source->parallel ? fabs(vec3_dot(source->direction, sweep->geometry->sheets.normal)) : 1;
-  return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * frame->middle_pixel, pixel / sqrt(fmax(slant, 0.5)));
+  return (shadow_setup){.context = sweep->context,
+                        .pool = sweep->pool,
+                        .reserve = sweep->reserve,
+                        .hot = sweep->hot,
+                        .settings = &sweep->scene->render,
+                        .source = source,
+                        .image = image == NULL || image->even ? NULL : image,
+                        .sheets = &sweep->geometry->sheets,
+                        .eye = &frame->eye,
+                        .channels = sweep->channels,
+                        .voxel = frame->voxel,
+                        .pixel = frame->pixel,
+                        .middle_pixel = frame->middle_pixel,
+                        .picture_pixels = (size_t)frame->width * (size_t)frame->height,
+                        .seen = seen,
+                        .seen_count = seen_count,
+                        .content = frame->points,
+                        .content_count = frame->point_count};
 }
 
-/* Places the buffer: perpendicular to the light for hard shadows; parallel to the sheets for soft ones,
- * around the middle and along the axes of the light as they see it. False where nothing of the content is in
- * the picture. */
-static bool place_buffer(const sweep *sweep, const light_source *source, bool cubic, vec3 *points,
-                         shadow_extent *extent, sheet_light *seen, view *view) {
-  size_t greatest = (size_t)sweep->frame->width * (size_t)sweep->frame->height *
-                    SHADOW_PIXELS_PER_IMAGE_PIXEL;
-  *extent = (shadow_extent){
-      .points = points,
-      .point_count = hl_frame_visible_points(sweep->frame, points),
-      .pixel = shadow_pixel(sweep, source, cubic),
-      .resolution = sweep->scene->render.shadow_resolution,
-      .greatest_pixels = greatest < LEAST_SHADOW_PIXELS ? LEAST_SHADOW_PIXELS : greatest,
-      .content = sweep->frame->points,
-      .content_count = sweep->frame->point_count};
-  if (extent->point_count == 0) return false;
-  if (source->shadows != HL_SHADOWS_SOFT) {
-    hl_shadow_view(source, source->direction, extent, view);
-    return true;
+/* One light's part of hl_sweep_bytes; as begin_light takes it. */
+static hl_status add_light_bytes(const sweep *sweep, int index, light_image *image, vec3 *points,
+                                 sweep_bytes *bytes, hl_error *error) {
+  light_shadow shadow;
+  shadow_setup setup = setup_of_light(sweep, &sweep->frame->lights[sweep->geometry->light[index]], image,
+                                      points, hl_frame_visible_points(sweep->frame, points));
+  hl_status status = hl_light_shadow_plan(&shadow, &setup, error);
+  if (status == HL_OK && shadow.method != NULL) {
+    const view *view = &shadow.plan.view;
+    shadow_bytes of_method = hl_light_shadow_bytes(&shadow);
+    bytes->buffers += hl_light_shadow_buffer_bytes(&shadow);
+    bytes->memory[index] = of_method.kept;
+    bytes->passing += of_method.passing + shadow.method->state_bytes + (image != NULL ? sizeof *image : 0) +
+                      hl_view_sheets_bytes(sweep, view, shadow.plan.spare) +
+                      (uint64_t)hl_tiles(view->width) * (uint64_t)hl_tiles(view->height) *
+                          sizeof *sweep->tasks;
   }
-  light_source middle = *source;
-  *seen = hl_light_on_sheets(source, sweep->geometry->sheets.normal);
-  extent->margin = penumbra_margin(sweep, source, seen);
-  if (source->soft_method == HL_SOFT_SUBLIGHTS) extent->u = seen->u;
-  if (source->soft_method == HL_SOFT_CASCADE) {
-    extent->u = seen->u;
-    if (source->parallel) middle.direction = vec3_normalise(seen->middle);
-    else middle.position = seen->middle;
-  }
-  hl_shadow_view(&middle, sweep->geometry->sheets.normal, extent, view);
-  return true;
-}
-
-/* The greatest tangent of a view's rays against the sheets' normal (a quadrangle's rays meet a sheet in one:
- * corners are farthest). Infinite where some rays run along the sheets. */
-static double steepest_tangent(const view *view, vec3 normal) {
-  double greatest = 0, first = 0;
-  for (int corner = 0; corner < 4; corner++) {
-    vec3 start, way;
-    hl_view_ray(view, corner % 2 * view->width, corner / 2 * view->height, &start, &way);
-    double climb = vec3_dot(way, normal);
-    if (corner == 0) first = climb;
-    if (!(climb * first > 0)) return INFINITY;
-    greatest = fmax(greatest, vec3_length(vec3_subtract(way, vec3_scale(normal, climb))) / fabs(climb));
-  }
-  return greatest;
-}
-
-/* A cascade keeps its buffer where it is looked up. What is seen of a brick is looked up in the middle of the
- * slab, up to half a slab further along the eye's ray: derived, in a buffer parallel to the sheets that is
- * half their distance times the difference of the two rays' tangents away. Near a light within the content a
- * tile must do. */
-static double look_up_spare(const sweep *sweep, const light_source *source, bool cubic, const view *view) {
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  if (source->shadows != HL_SHADOWS_SOFT || source->soft_method != HL_SOFT_CASCADE) return PIXEL_TO_SPARE;
-  double nearest = 1, pixel = fmin(vec3_length(view->du), vec3_length(view->dv));
-  if (view->perspective) nearest = fmax(sheets->first - vec3_dot(view->origin, sheets->normal), 1e-9 * pixel);
-  double tangents = steepest_tangent(&sweep->frame->eye, sheets->normal) +
-                    steepest_tangent(view, sheets->normal);
-  int taps = cubic ? 2 * PIXEL_TO_SPARE : PIXEL_TO_SPARE;
-  return taps + fmin(0.5 * sheets->spacing * tangents / (pixel * nearest), TILE);
-}
-
-/* One light's part of hl_sweep_bytes; as begin_light takes it. image: null where penumbrae are even. */
-static void add_light_bytes(const sweep *sweep, int index, const light_image *image, vec3 *points,
-                            sweep_bytes *bytes) {
-  const light_source *source = &sweep->frame->lights[sweep->geometry->light[index]];
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  double last = sheets->first + (sheets->count - 1) * sheets->spacing;
-  view view;
-  shadow_extent extent;
-  sheet_light seen = {0};
-  bool cubic = is_read_cubic(sweep, source, image);
-  if (source->shadows == HL_SHADOWS_OFF || !place_buffer(sweep, source, cubic, points, &extent, &seen, &view))
-    return;
-  bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
-  bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
-  int reach = soft && source->soft_method == HL_SOFT_SUBLIGHTS ? SUBLIGHT_REACH : 0;
-  if (paper) {
-    soft_paper begun;
-    light_image seen_image = image != NULL ? *image : (light_image){0};
-    hl_soft_paper_begin(&begun, source, sheets->normal, sheets->first, &view,
-                        image != NULL ? &seen_image : NULL);
-    reach = hl_soft_paper_reach(&begun, sheets->first, sheets->spacing, sheets->count);
-  }
-  uint64_t tiles = (uint64_t)hl_tiles(view.width) * (uint64_t)hl_tiles(view.height), passing = 0;
-  bytes->buffers += hl_shadow_buffer_bytes(&view, sweep->channels, paper || cascade, reach);
-  bytes->passing += hl_view_sheets_bytes(sweep, &view, look_up_spare(sweep, source, cubic, &view));
-  bytes->passing += tiles * sizeof *sweep->tasks + (image != NULL ? sizeof *image : 0);
-  if (soft && source->soft_method == HL_SOFT_SUBLIGHTS)
-    bytes->passing += hl_sublights_bytes(source, image, sweep->scene->render.light_samples, sheets->normal,
-                                         &extent, sweep->channels, &view, reach);
-  if (soft && source->soft_method == HL_SOFT_CASCADE)
-    hl_soft_cascade_bytes(&seen, image, sheets->normal, sheets->first, last, vec3_length(view.du), &view,
-                          sweep->channels, &bytes->cascades[index], &passing);
-  bytes->passing += passing;
+  hl_light_shadow_end(&shadow);
+  return status;
 }
 
 sweep_bytes hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads) {
@@ -187,60 +80,33 @@ sweep_bytes hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads) {
                    (uint64_t)threads * (uint64_t)sweep->volume_count * a_grid;
   if (sweep->geometry->back_to_front) bytes.passing += tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
-    light_image *image = NULL; /* without memory for one, hl_sweep_begin tells */
+    light_image *image = NULL;
     hl_status status = hl_light_image_create(sweep->context, &sweep->frame->lights[sweep->geometry->light[i]],
                                              &image, NULL);
-    add_light_bytes(sweep, i, status != HL_OK || image == NULL || image->even ? NULL : image, points, &bytes);
+    /* without memory for these hl_sweep_begin fails */
+    if (status == HL_OK) (void)add_light_bytes(sweep, i, image, points, &bytes, NULL);
     hl_release(sweep->context, image);
   }
   return bytes;
 }
 
 static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source,
-                             shadow_buffer *buffer, cascade_memory *memory, vec3 *points, hl_error *error) {
+                             shadow_buffer *buffer, shadow_memory *memory, vec3 *points, hl_error *error) {
+  const frame *frame = sweep->frame;
   light->source = source;
   hl_status status = hl_light_image_create(sweep->context, source, &light->image, error);
-  if (status != HL_OK) return status;
-  light_image *image = light->image == NULL || light->image->even ? NULL : light->image;
-  light->cubic = is_read_cubic(sweep, source, image);
-  status = hl_light_screen_create(sweep->context, source, sweep->frame->points, sweep->frame->point_count,
-                                  sweep->frame->middle, sweep->frame->middle_pixel, &light->screen, error);
-  view view;
-  shadow_extent extent;
-  sheet_light seen = {0};
-  if (status != HL_OK || source->shadows == HL_SHADOWS_OFF ||
-      !place_buffer(sweep, source, light->cubic, points, &extent, &seen, &view))
-    return status;
-  light->buffer = buffer;
-  double edge = vec3_length(view.du);
-  bool soft = source->shadows == HL_SHADOWS_SOFT, paper = soft && source->soft_method == HL_SOFT_PAPER;
-  bool cascade = soft && source->soft_method == HL_SOFT_CASCADE;
-  int reach = soft && source->soft_method == HL_SOFT_SUBLIGHTS ? SUBLIGHT_REACH : 0;
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  if (paper) {
-    hl_soft_paper_begin(&light->paper, source, sheets->normal, sheets->first, &view, image);
-    reach = hl_soft_paper_reach(&light->paper, sheets->first, sheets->spacing, sheets->count);
-  }
-  status = hl_shadow_buffer_reset(sweep->context, sweep->pool, buffer, &view, sweep->channels,
-                                  paper || cascade, reach, error);
-  light->lookup.map = hl_map_of_view(&view);
-  light->lookup.map.stride = buffer->stride;
-  for (int c = 0; c < sweep->channels; c++) {
-    light->lookup.transmittance[c] = buffer->transmittance[c];
-    light->lookup.older[c] = cascade ? buffer->second[c] : NULL;
-  }
-  double last = sheets->first + (sheets->count - 1) * sheets->spacing;
-  if (status == HL_OK && soft && source->soft_method == HL_SOFT_SUBLIGHTS)
-    status = hl_sublights_begin(sweep->reserve, sweep->pool, &light->sublights, source, image,
-                                sweep->scene->render.light_samples, sheets->normal, &extent, buffer, error);
-  if (cascade && image != NULL) hl_light_image_see(source, &seen, sheets->normal, image);
-  if (status == HL_OK && cascade)
-    status = hl_soft_cascade_begin(sweep->context, sweep->pool, memory, &light->cascade, &seen, image,
-                                   sheets->normal, sheets->first, last, edge, lookup_variance(light->cubic),
-                                   buffer, error);
   if (status == HL_OK)
-    status = hl_view_sheets_begin(sweep, &view, look_up_spare(sweep, source, light->cubic, &view),
-                                  &light->sheets, error);
+    status = hl_light_screen_create(sweep->context, source, frame->points, frame->point_count, frame->middle,
+                                    frame->middle_pixel, &light->screen, error);
+  if (status != HL_OK) return status;
+  light_shadow *shadow = &light->shadow;
+  shadow_setup setup = setup_of_light(sweep, source, light->image, points,
+                                      hl_frame_visible_points(frame, points));
+  status = hl_light_shadow_plan(shadow, &setup, error);
+  if (status != HL_OK || shadow->method == NULL) return status;
+  status = hl_light_shadow_begin(shadow, buffer, memory, error);
+  if (status == HL_OK)
+    status = hl_view_sheets_begin(sweep, &shadow->plan.view, shadow->plan.spare, &light->sheets, error);
   return status;
 }
 
@@ -310,13 +176,13 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   double spacing = sweep->geometry->sheets.spacing;
   *light = (shade_light){
       .parallel = from->source->parallel,
-      .shadowed = from->buffer != NULL,
+      .shadowed = from->shadow.method != NULL,
       .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
       .screen = from->screen,
       .share = hl_light_share(from->source->sectors, from->source->sector),
       .cone = hl_light_cone(from->source, sweep->frame->middle, sweep->frame->middle_pixel),
       .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST,
-      .cubic = from->cubic};
+      .cubic = from->shadow.plan.cubic};
   vec3_store(light->towards, vec3_scale(from->source->direction, -1));
   vec3_store(light->position, from->source->position);
   for (int c = 0; c < 3; c++)
@@ -325,11 +191,11 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   light->path = (float)spacing;
   if (from->source->parallel)
     light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
-  if (from->buffer == NULL) return;
-  light->channels = from->buffer->channels;
-  light->lookup = &from->lookup;
-  light->parts = from->sublights.lookups;
-  light->part_count = from->sublights.count;
+  if (from->shadow.method == NULL) return;
+  light->channels = from->shadow.buffer->channels;
+  light->lookup = &from->shadow.lookup;
+  light->parts = from->shadow.sublights;
+  light->part_count = from->shadow.sublight_count;
 }
 
 static void set_up_jobs(sweep *sweep) {
@@ -358,7 +224,7 @@ static void set_up_jobs(sweep *sweep) {
     attenuate_job *job = &sweep->attenuate[i];
     *job = (attenuate_job){
         .path = sweep->shade_lights[i].path, .spacing = (float)spacing, .channels = sweep->channels};
-    if (sweep->lights[i].buffer != NULL) job->stride = sweep->lights[i].buffer->stride;
+    if (sweep->lights[i].shadow.method != NULL) job->stride = sweep->lights[i].shadow.buffer->stride;
   }
 }
 
@@ -380,11 +246,12 @@ static double least_climb(const sweep *sweep, const light_source *source) {
 static double longest_way(const sweep *sweep) {
   double least = 1;
   for (int i = 0; i < sweep->geometry->light_count; i++)
-    if (sweep->lights[i].buffer != NULL) least = fmin(least, least_climb(sweep, sweep->lights[i].source));
+    if (sweep->lights[i].shadow.method != NULL)
+      least = fmin(least, least_climb(sweep, sweep->lights[i].source));
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
-hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, cascade_memory *memory, hl_error *error) {
+hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
   double start = hl_clock_seconds();
   hl_status status = hl_view_sheets_begin(sweep, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image, error);
   if (status == HL_OK) status = allocate_image(sweep, error);
@@ -415,8 +282,7 @@ void hl_sweep_end(sweep *sweep) {
     hl_view_sheets_end(sweep, &light->sheets);
     hl_light_screen_release(context, &light->screen);
     hl_release(context, light->image);
-    hl_soft_cascade_release(context, sweep->pool, &light->cascade);
-    hl_sublights_release(sweep->reserve, &light->sublights);
+    hl_light_shadow_end(&light->shadow);
   }
   hl_view_sheets_end(sweep, &sweep->image);
   void *owned[] = {sweep->open,    sweep->tasks,           sweep->shade_volumes, sweep->shade_patches,

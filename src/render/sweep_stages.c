@@ -114,6 +114,11 @@ static void shade_task(void *data, size_t index, int worker) {
   for (int task = (int)index * TILES_A_TASK; task < end; task++) shade_one(sweep, sweep->tasks[task], worker);
 }
 
+static void prepare_lookup(light_shadow *shadow, int sheet) {
+  if (shadow->method != NULL && shadow->method->before_shading != NULL)
+    shadow->method->before_shading(shadow, sheet);
+}
+
 void hl_sweep_shade(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
   const sheet_stack *sheets = &sweep->geometry->sheets;
@@ -125,9 +130,7 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
                      &sweep->shade.rays);
   sweep->shade.height = (float)(sheet * sheets->spacing);
   sweep->shade.sheet = sheet;
-  for (int i = 0; i < sweep->geometry->light_count; i++)
-    if (sweep->lights[i].cascade.level_count > 0)
-      sweep->lights[i].lookup.young = hl_soft_cascade_age(&sweep->lights[i].cascade, sheets, sheet);
+  for (int i = 0; i < sweep->geometry->light_count; i++) prepare_lookup(&sweep->lights[i].shadow, sheet);
   hl_sweep_layers_sheet(sweep);
   hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task,
               sweep);
@@ -165,8 +168,9 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
 /* Step 17 for one tile of a light's shadow buffer. */
 static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uint32_t need,
                                  const attenuate_volume *volumes, int count) {
-  sweep_light *light = &sweep->lights[light_index];
-  shadow_buffer *buffer = light->buffer;
+  light_shadow *shadow = &sweep->lights[light_index].shadow;
+  const shadow_method *method = shadow->method;
+  shadow_buffer *buffer = shadow->buffer;
   attenuate_job job = sweep->attenuate[light_index];
   int tile_x = (int)(tile % (size_t)buffer->tiles_x), tile_y = (int)(tile / (size_t)buffer->tiles_x);
   job.volumes = volumes;
@@ -174,24 +178,21 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   for (int c = 0; c < job.channels; c++)
     job.transmittance[c] = buffer->transmittance[c] + (size_t)tile_y * TILE * buffer->stride +
                            (size_t)tile_x * TILE;
-  bool cascade = light->cascade.level_count > 0;
-  for (int c = 0; c < job.channels && cascade; c++)
-    job.older[c] = buffer->second[c] + (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
-  if (cascade) hl_soft_cascade_count(&light->cascade, tile, &job);
+  if (method->before_tile != NULL) method->before_tile(shadow, tile, &job);
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
   attenuated_blocks blocks = sweep->hot->attenuate_tile(&job, tile_x, tile_y);
-  if (light->sublights.count == 0) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
+  if (method->find_lit == NULL) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
   if (blocks.taken == 0) return;
   buffer->tile_touched[tile] = 1;
-  if (cascade) light->cascade.touched[tile] = 1;
+  if (method->after_tile != NULL) method->after_tile(shadow, tile);
 }
 
 static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker) {
   sweep_counts *counts = &sweep->counts[worker];
-  sweep_light *light = &sweep->lights[light_index];
-  if (light->sublights.count > 0) hl_sublights_find_lit(&light->sublights, light->buffer, tile);
-  uint32_t need = light->buffer->tile_lit[tile];
+  light_shadow *shadow = &sweep->lights[light_index].shadow;
+  if (shadow->method->find_lit != NULL) shadow->method->find_lit(shadow, tile);
+  uint32_t need = shadow->buffer->tile_lit[tile];
   counts->pixels_skipped_light += hl_pixels_of_blocks(ALL_BLOCKS & ~need);
   if (need == 0) {
     counts->skipped_light++;
@@ -225,20 +226,20 @@ static bool is_beyond(const sweep *sweep, const light_source *source, int sheet)
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
 }
 
-/* Of the slab that it lies in itself, the part beyond it. Penumbrae begin with the next slab. */
-static bool is_reached(const sweep *sweep, const light_source *source, int sheet) {
-  return is_beyond(sweep, source, source->shadows == HL_SHADOWS_SOFT ? sheet : sheet + 1);
+static bool is_reached(const sweep *sweep, const light_shadow *shadow, int sheet) {
+  return is_beyond(sweep, shadow->setup.source, sheet + 1 - shadow->method->first_slab);
 }
 
 static void reach_sheet(sweep *sweep, int light_index, int sheet) {
   sweep_light *light = &sweep->lights[light_index];
   attenuate_job *job = &sweep->attenuate[light_index];
   const sheet_stack *sheets = &sweep->geometry->sheets;
-  hl_view_sheets_reach(sweep, &light->buffer->view, sheet, &light->sheets);
-  hl_view_sheet_rays(&light->buffer->view, sheets->normal, hl_sheet_height(sheets, sheet), affine3_identity(),
-                     &job->rays);
+  light_shadow *shadow = &light->shadow;
+  const view *view = &shadow->buffer->view;
+  hl_view_sheets_reach(sweep, view, sheet, &light->sheets);
+  hl_view_sheet_rays(view, sheets->normal, hl_sheet_height(sheets, sheet), affine3_identity(), &job->rays);
   job->height = (float)(sheet * sheets->spacing);
-  if (light->cascade.level_count > 0) hl_soft_cascade_reach(&light->cascade, sheets, sheet);
+  if (shadow->method->before_slab != NULL) shadow->method->before_slab(shadow, sheet);
 }
 
 void hl_sweep_attenuate(sweep *sweep, int sheet) {
@@ -246,9 +247,9 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
   sweep->sheet = sheet;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     int count = 0;
-    if (sweep->lights[i].buffer != NULL) {
+    if (sweep->lights[i].shadow.method != NULL) {
       reach_sheet(sweep, i, sheet);
-      if (is_reached(sweep, sweep->lights[i].source, sheet))
+      if (is_reached(sweep, &sweep->lights[i].shadow, sheet))
         count = list_tiles(&sweep->lights[i].sheets.occupancy, sheet, sweep->tasks + sweep->task_start[i]);
     }
     sweep->task_start[i + 1] = sweep->task_start[i] + count;
@@ -261,28 +262,11 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
 
 void hl_sweep_soften(sweep *sweep, int sheet) {
   double start = hl_clock_seconds();
-  const hot_functions *hot = sweep->hot;
-  const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile,
-                               hot->image_tile};
-  const cascade_functions cascade = {
-      hot->lit_blocks_tile, hot->field_blur_tile, hot->add_tile,  hot->add_half_tile, hot->add_double_tile,
-      hot->left_tile,       hot->absorbed_tile,   hot->part_tile, hot->double_tile,   hot->field_image_tile};
-  const sublight_functions parts = {hot->sublight_tile, hot->sublight_row, hot->sublight_lit,
-                                    hot->half_pixel_tile};
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     sweep_light *light = &sweep->lights[i];
-    if (light->buffer == NULL || light->source->shadows != HL_SHADOWS_SOFT) continue;
-    if (!is_beyond(sweep, light->source, sheet)) continue;
-    if (light->source->soft_method == HL_SOFT_PAPER)
-      hl_soft_paper_convolve(&light->paper, light->buffer,
-                             hl_sheet_height(&sweep->geometry->sheets, sheet + 1), sweep->pool, &blur);
-    else if (sheet > 0 && light->source->soft_method == HL_SOFT_SUBLIGHTS)
-      hl_sublights_advance(&light->sublights, light->buffer, sweep->geometry->sheets.normal,
-                           hl_sheet_height(&sweep->geometry->sheets, sheet - 1),
-                           hl_sheet_height(&sweep->geometry->sheets, sheet), sweep->pool, &parts);
-    else if (sheet > 0)
-      hl_soft_cascade_advance(&light->cascade, light->buffer, &light->sheets.occupancy,
-                              &sweep->geometry->sheets, sheet, sweep->pool, &cascade);
+    light_shadow *shadow = &light->shadow;
+    if (shadow->method != NULL && shadow->method->advance != NULL && is_beyond(sweep, light->source, sheet))
+      shadow->method->advance(shadow, &light->sheets.occupancy, sheet);
   }
   sweep->seconds_soften += hl_clock_seconds() - start;
 }

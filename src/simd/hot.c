@@ -1,14 +1,14 @@
 /* simd/hot.c - compiled once for each instruction set; HL_HOT_TABLE names the table it fills. */
 #include "simd/hot.h"
 
-#include "light/blur_lanes.h"
-#include "light/cascade_lanes.h"
-#include "light/sublight_lanes.h"
-#include "light/sublight_shift_lanes.h"
 #include "render/cover_lanes.h"
 #include "render/maximum_lanes.h"
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
+#include "shadow/blur_lanes.h"
+#include "shadow_cascade/cascade_lanes.h"
+#include "shadow_sublights/sublight_lanes.h"
+#include "shadow_sublights/sublight_shift_lanes.h"
 #include "splat/bounds_lanes.h"
 #include "splat/brick_ranges_lanes.h"
 #include "splat/cell_bits_lanes.h"

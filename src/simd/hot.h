@@ -5,11 +5,11 @@
 #ifndef HL_SIMD_HOT_H
 #define HL_SIMD_HOT_H
 
-#include "light/attenuate.h"
-#include "light/blur.h"
-#include "light/cascade_field.h"
-#include "light/sublight_field.h"
 #include "render/shade.h"
+#include "shadow/attenuate.h"
+#include "shadow/blur.h"
+#include "shadow_cascade/cascade_field.h"
+#include "shadow_sublights/sublight_field.h"
 #include "splat/brick_ranges.h"
 #include "splat/bricks.h"
 #include "splat/coverage.h"

@@ -40,8 +40,10 @@ typedef struct occupancy {
   uint64_t *by_sheet;    /* owned; [words * 64][tile_words]; bit = tile, all grids together */
 } occupancy;
 
+enum { PIXEL_TO_SPARE = 1 };
+
 /* Builds an empty occupancy for a view of width x height pixels. spare: pixels around each brick that it
- * touches too. What fails half-way is released as usual. */
+ * touches too, PIXEL_TO_SPARE at least. What fails half-way is released as usual. */
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, const grid *grids, int grid_count,
                              const view *view, const sheet_stack *sheets, double spare,
                              brick_ranges_function *ranges, occupancy *occupancy, hl_error *error);

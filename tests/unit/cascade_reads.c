@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "light/cascade_reads.h"
+#include "shadow_cascade/cascade_reads.h"
 
 enum { TILES_X = 13, TILES_Y = 9, SHEETS = 3, WORDS = (TILES_X * TILES_Y + 63) / 64 };
 

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "light/shadow_lookup_lanes.h"
+#include "shadow/shadow_lookup_lanes.h"
 
 enum { SIDE = 32, MARGIN = 4, STRIDE = SIDE + 2 * MARGIN };
 

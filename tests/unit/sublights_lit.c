@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "light/sublights.h"
+#include "shadow_sublights/sublights.h"
 
 enum {
   PARTS = 3,

@@ -1,0 +1,50 @@
+/* shadow/attenuate.h - step 17: the extinction from one sheet to the next, seen from the light, composited
+ * into the shadow buffer. */
+#ifndef HL_SHADOW_ATTENUATE_H
+#define HL_SHADOW_ATTENUATE_H
+
+#include "light/light_source.h"
+#include "splat/classify.h"
+#include "splat/fill.h"
+
+/* One volume's part in a tile. On lines of the cache of its own: threads write theirs side by side. */
+typedef struct attenuate_volume {
+  _Alignas(64) const classifier *classifier;
+  const float *density;       /* [256], block-major; on this sheet */
+  const float *before;        /* [256], block-major; on the sheet before */
+  const float *enter, *leave; /* [256], block-major; null: the box does not cut anything visible */
+  uint32_t blocks;            /* blocks with density on either */
+  float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
+  int whole;                  /* the box does not cut the slab here */
+} attenuate_volume;
+
+typedef struct attenuate_job {
+  sheet_rays rays;       /* light pixels -> frame space */
+  float path;            /* parallel light: sheet spacing / |l.h|; point light: sheet spacing */
+  float height, spacing; /* of the sheet above the first, and to the one before; frame units */
+  const attenuate_volume *volumes;
+  int volume_count;
+  int channels;                      /* 1: attenuation is grey; 3 */
+  float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
+  float *older[HL_CHANNELS];         /* as transmittance, multiplied alike; null: none */
+  size_t stride;
+  float *moment[HL_CHANNELS]; /* the tile's first pixel; rows moment_stride apart; null: none. Raised by what
+                                 the slab takes of the light, times place */
+  size_t moment_stride;
+  float place;
+} attenuate_job;
+
+/* Blocks of a tile, a bit each. */
+typedef struct attenuated_blocks {
+  uint32_t lit;   /* of those where volumes have density, the ones that light still reaches */
+  uint32_t taken; /* where some light was taken */
+} attenuated_blocks;
+
+/* Multiplies the tile's transmittance by exp(-sum of extinction * path) where volumes have density. */
+typedef attenuated_blocks attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
+
+/* The blocks of a tile that light reaches. transmittance: the tile's first pixel of each channel. */
+typedef uint32_t lit_blocks_function(const float *const transmittance[HL_CHANNELS], int channels,
+                                     size_t stride);
+
+#endif

@@ -1,0 +1,125 @@
+/* shadow/attenuate_lanes.h - classification and compositing of light pixels (step 17), sixteen at a time. */
+#ifndef HL_SHADOW_ATTENUATE_LANES_H
+#define HL_SHADOW_ATTENUATE_LANES_H
+
+#include "shadow/attenuate.h"
+#include "splat/classify_lanes.h"
+#include "splat/coverage_lanes.h"
+
+/* Pixels of the shadow buffer that get less than this of the light are done: 1/4 of a step of 8 bits. */
+static const float DARK = 1.0f / 1024;
+
+/* Lanes whose sheet does not lie behind the view's origin by more than `reach`, a height. */
+LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach) {
+  return lanes_add_scaled(climb * rays->step, lanes_abs(climb), reach) > 0.0f;
+}
+
+/* Length of the rays' way through one sheet: spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|); 0 behind the
+ * view's origin. */
+LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
+  if (!rays->perspective) return lanes_set(path);
+  lanes3 w = rays_directions(rays, u, v);
+  lanes climb = rays_climb(rays, u, v);
+  lanes length = lanes_sqrt(dot3(w, w)) / lanes_abs(climb) * path;
+  return lanes_keep(is_ahead(rays, climb, 0), length);
+}
+
+/* The part of the slab before the sheet that lies in the volume's box, block by block. whole: all of it
+ * does. */
+LANES_INLINE covered_part covered_block(const float *enter, const float *leave, int whole, int block,
+                                        float height, float spacing) {
+  if (enter == NULL) return (covered_part){lanes_set(0), lanes_set(1.0f)};
+  if (whole) return covered(lanes_set(-1e30f), lanes_set(1e30f), height, spacing);
+  return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height,
+                 spacing);
+}
+
+/* The blocks of a tile with a pixel that some light reaches. */
+static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], int channels, size_t stride) {
+  uint32_t lit = 0;
+  for (int block = 0; block < TILE_BLOCKS; block++) {
+    lanes greatest = lanes_set(0);
+    for (int c = 0; c < channels; c++)
+      greatest = lanes_max(
+          greatest, lanes_load_block(
+                        transmittance[c] + (size_t)(block / 4 * BLOCK) * stride + block % 4 * BLOCK, stride));
+    lit |= (uint32_t)(lanes_bits(greatest >= DARK) != 0) << block;
+  }
+  return lit;
+}
+
+/* Density runs linearly through the slab: the ends of its covered part in the tables. */
+LANES_INLINE void cut_way(covered_part part, table_place *a, table_place *b) {
+  lanes from = a->x, way = b->x - a->x;
+  *a = place_of_coordinate(lanes_fma(way, part.begin, from));
+  *b = place_of_coordinate(lanes_fma(way, lanes_min(part.begin + part.length, lanes_set(1.0f)), from));
+}
+
+typedef struct attenuated_block {
+  int taken, lit;
+} attenuated_block;
+
+/* Whether it took any light, and whether it left enough. */
+LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
+                                              int tile_x, int tile_y, int block) {
+  lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int i = 0; i < volume_count; i++) {
+    const attenuate_volume *volume = &job->volumes[i];
+    if (volume_count > 1 && (volume->blocks >> block & 1) == 0) continue;
+    table_place a = classify_place(volume->classifier, lanes_load(volume->before + block * BLOCK_PIXELS));
+    table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
+    if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
+    covered_part part = covered_block(volume->enter, volume->leave, volume->whole, block, job->height,
+                                      job->spacing);
+    if (volume->enter != NULL) cut_way(part, &a, &b);
+    lanes extinction = sums_of_way(volume->classifier, a, b).extinction * part.length;
+    for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
+  }
+  lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
+  if (lanes_bits(any > 0.0f) == 0) return (attenuated_block){0, 1};
+  int x = block % 4 * BLOCK, y = block / 4 * BLOCK;
+  lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x),
+                                  block_v(tile_y * TILE + y));
+  lanes greatest = lanes_set(0);
+  for (int c = 0; c < channels; c++) {
+    float *at = job->transmittance[c] + (size_t)y * job->stride + x;
+    lanes passing = lanes_exp_negative(depth[c] * path);
+    lanes before = lanes_load_block(at, job->stride), after = before * passing;
+    lanes_store_block(at, job->stride, after);
+    greatest = lanes_max(greatest, after);
+    if (job->older[c] != NULL) {
+      float *older = job->older[c] + (size_t)y * job->stride + x;
+      lanes left = lanes_load_block(older, job->stride) * passing;
+      lanes_store_block(older, job->stride, left);
+      greatest = lanes_max(greatest, left);
+    }
+    if (job->moment[c] == NULL) continue;
+    float *moment = job->moment[c] + (size_t)y * job->moment_stride + x;
+    lanes_store_block(
+        moment, job->moment_stride,
+        lanes_add_scaled(lanes_load_block(moment, job->moment_stride), before - after, job->place));
+  }
+  return (attenuated_block){1, lanes_bits(greatest >= DARK) != 0};
+}
+
+LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int volume_count, int channels,
+                                                 int tile_x, int tile_y) {
+  uint32_t left = 0;
+  attenuated_blocks blocks = {0, 0};
+  for (int i = 0; i < volume_count; i++) left |= job->volumes[i].blocks;
+  for (; left != 0; left &= left - 1) {
+    int at = __builtin_ctz(left);
+    attenuated_block block = attenuate_block(job, volume_count, channels, tile_x, tile_y, at);
+    blocks.taken |= (uint32_t)block.taken << at;
+    blocks.lit |= (uint32_t)block.lit << at;
+  }
+  return blocks;
+}
+
+/* Most often there is one volume, and its shadows are grey: no loops over volumes and colours. */
+static attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
+  if (job->volume_count == 1 && job->channels == 1) return attenuate_volumes(job, 1, 1, tile_x, tile_y);
+  return attenuate_volumes(job, job->volume_count, job->channels, tile_x, tile_y);
+}
+
+#endif

@@ -1,0 +1,55 @@
+/* shadow/blur.h - centred box blur of a shadow buffer, tile by tile: along rows, then along columns. */
+#ifndef HL_SHADOW_BLUR_H
+#define HL_SHADOW_BLUR_H
+
+#include <stddef.h>
+
+#include "shadow/attenuate.h"
+
+/* A box of width 2 reach + 1 + 2 edge pixels: whole weights out to reach, weight edge (0 to 1) one
+ * further. */
+typedef struct blur_box {
+  int reach;
+  float edge;
+  float scale; /* 1 / width */
+} blur_box;
+
+typedef struct blur_job {
+  const float *from; /* pixel (0,0); rows stride apart; readable reach + 1 pixels beyond the tiles */
+  float *to;         /* pixel (0,0); rows stride_to apart */
+  size_t stride, stride_to;
+  blur_box box;
+} blur_job;
+
+typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
+
+enum { BLUR_GREATEST_REACH = 46 };
+
+/* As far as BLUR_GREATEST_REACH allows. */
+blur_box hl_blur_box_of_variance(double variance);
+
+/* Weighted sums of a field's pixels around each pixel: a penumbra by its taps (light_image.h). */
+typedef struct image_job {
+  const float *from; /* pixel (0,0); rows stride apart */
+  float *to;
+  size_t stride;
+  int count;
+  const ptrdiff_t *offset; /* [count]; from a pixel to the one that is weighed */
+  const float *weight;     /* [count] */
+} image_job;
+typedef void image_tile_function(const image_job *job, int tile_x, int tile_y);
+
+/* What a soft method needs of the instruction set. */
+typedef struct blur_functions {
+  blur_tile_function *rows, *columns;
+  lit_blocks_function *lit_blocks;
+  image_tile_function *image; /* to = sum of from */
+} blur_functions;
+
+/* The box of the given width in pixels (at least 1): even whole widths become centred by half weights. */
+static inline blur_box hl_blur_box(float width) {
+  int reach = (int)((width - 1) / 2);
+  return (blur_box){reach, (width - 1) / 2 - (float)reach, 1 / width};
+}
+
+#endif

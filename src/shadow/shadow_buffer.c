@@ -1,0 +1,210 @@
+/* shadow/shadow_buffer.c - place, size and memory of shadow buffers. */
+#include "shadow/shadow_buffer.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "light/lit_region.h"
+#include "shadow/shadow_lookup.h"
+
+/* Tangent of the widest angle that a point light's buffer covers. */
+static const double WIDEST = 6;
+enum { GREATEST_SIDE = 8192, BORDER_PIXELS = 2 };
+
+static void bound_points(const view *unit, const light_source *source, const vec3 *points, int count,
+                         double low[2], double high[2]) {
+  low[0] = low[1] = INFINITY;
+  high[0] = high[1] = -INFINITY;
+  for (int i = 0; i < count; i++) {
+    double uv[2];
+    bool in_front = hl_view_project(unit, points[i], uv);
+    for (int axis = 0; axis < 2; axis++) {
+      if (!in_front) { /* beside or behind a light near the volume: as wide as the buffer goes */
+        low[axis] = -WIDEST;
+        high[axis] = WIDEST;
+        continue;
+      }
+      low[axis] = fmin(low[axis], uv[axis]);
+      high[axis] = fmax(high[axis], uv[axis]);
+    }
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    if (source->parallel) continue;
+    low[axis] = fmax(low[axis], -WIDEST);
+    high[axis] = fmin(high[axis], WIDEST);
+    if (!(high[axis] > low[axis])) high[axis] = low[axis] + 1e-3;
+  }
+}
+
+/* What is to be lit, and around it what casts penumbrae onto it, as far as there is anything. */
+static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent,
+                         double low[2], double high[2]) {
+  double content_low[2], content_high[2];
+  bound_points(unit, source, extent->points, extent->point_count, low, high);
+  if (!(extent->margin > 0)) return;
+  bound_points(unit, source, extent->content, extent->content_count, content_low, content_high);
+  for (int axis = 0; axis < 2; axis++) {
+    low[axis] = fmin(low[axis], fmax(low[axis] - extent->margin, content_low[axis]));
+    high[axis] = fmax(high[axis], fmin(high[axis] + extent->margin, content_high[axis]));
+  }
+}
+
+/* Pixel edge in the units of the unit view: world for parallel light, at distance 1 for a point light, whose
+ * pixels grow with distance and must still be small enough at the far side. */
+static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent,
+                         const double size[2]) {
+  double pixel = extent->pixel;
+  if (!source->parallel) {
+    double farthest = 0;
+    for (int i = 0; i < extent->point_count; i++)
+      farthest = fmax(farthest, vec3_dot(normal, vec3_subtract(extent->points[i], source->position)));
+    pixel = farthest > 0 ? pixel / farthest : pixel;
+  }
+  double longer = fmax(size[0], size[1]);
+  if (extent->resolution > 0) pixel = longer / extent->resolution;
+  pixel = fmax(pixel, longer / GREATEST_SIDE);
+  return fmax(pixel, sqrt(size[0] * size[1] / (double)extent->greatest_pixels));
+}
+
+/* A buffer's pixels along one axis. */
+typedef struct pixel_row {
+  int count;
+  double start, pixel;
+} pixel_row;
+
+static pixel_row row_around(double low, double high, double size, double pixel) {
+  int count = (int)ceil((size + 2 * BORDER_PIXELS * pixel) / pixel);
+  if (count > GREATEST_SIDE) count = GREATEST_SIDE;
+  return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
+}
+
+/* Pixels a little smaller, so that the first and the last one but the borders' have their middles just inside
+ * the bounds: light that runs along a box's face and is read beside it is then not mixed with what passes
+ * outside. Soft shadows' are square, and so are those of what is thinner than this part of one. */
+static const double LEAST_FITTED = 0.25;
+
+static pixel_row row_between(double low, double size, double pixel) {
+  const double inside = 1e-3 * fmin(pixel, size);
+  int steps = (int)ceil((size - 2 * inside) / pixel);
+  if (steps > GREATEST_SIDE - 2 * BORDER_PIXELS - 1) steps = GREATEST_SIDE - 2 * BORDER_PIXELS - 1;
+  pixel = (size - 2 * inside) / steps;
+  return (pixel_row){steps + 1 + 2 * BORDER_PIXELS, low + inside - (BORDER_PIXELS + 0.5) * pixel, pixel};
+}
+
+void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view) {
+  double low[2], high[2], size[2];
+  vec3 tilt = vec3_subtract(source->direction,
+                            vec3_scale(plane_normal, vec3_dot(source->direction, plane_normal)));
+  vec3 u = vec3_length(tilt) > 1e-3 ? vec3_normalise(tilt) : vec3_perpendicular(plane_normal);
+  if (vec3_length(extent->u) > 0) u = extent->u;
+  vec3 v = vec3_cross(plane_normal, u), zero = {0, 0, 0};
+  view->perspective = !source->parallel;
+  view->origin = source->position;
+  view->direction = source->direction;
+  view->corner = source->parallel ? zero : plane_normal;
+  view->du = u;
+  view->dv = v;
+  hl_view_finish(view);
+  bound_buffer(view, source, extent, low, high);
+  hl_lit_region(view, source, low, high);
+  for (int axis = 0; axis < 2; axis++) size[axis] = fmax(high[axis] - low[axis], 1e-9);
+  double pixel = pixel_edge(source, plane_normal, extent, size);
+  pixel_row row[2];
+  for (int axis = 0; axis < 2; axis++)
+    row[axis] = source->shadows == HL_SHADOWS_SOFT || size[axis] < LEAST_FITTED * pixel
+                    ? row_around(low[axis], high[axis], size[axis], pixel)
+                    : row_between(low[axis], size[axis], pixel);
+  view->width = row[0].count;
+  view->height = row[1].count;
+  view->corner = vec3_add(view->corner, vec3_add(vec3_scale(u, row[0].start), vec3_scale(v, row[1].start)));
+  view->du = vec3_scale(u, row[0].pixel);
+  view->dv = vec3_scale(v, row[1].pixel);
+  hl_view_finish(view);
+}
+
+static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floats, size_t tiles,
+                         hl_error *error) {
+  if (buffer->capacity < floats) {
+    hl_release(context, buffer->memory);
+    buffer->memory = hl_allocate(context, floats, sizeof(float));
+    buffer->capacity = buffer->memory == NULL ? 0 : floats;
+  }
+  if (buffer->tile_capacity < tiles) {
+    hl_release(context, buffer->tile_lit);
+    hl_release(context, buffer->tile_touched);
+    buffer->tile_lit = hl_allocate(context, tiles, sizeof(uint16_t));
+    buffer->tile_touched = hl_allocate(context, tiles, 2);
+    buffer->tile_capacity = buffer->tile_lit == NULL || buffer->tile_touched == NULL ? 0 : tiles;
+  }
+  if (buffer->capacity == 0 || buffer->tile_capacity == 0)
+    return hl_fail_memory(error, floats * sizeof(float) + tiles * 4, "a shadow buffer");
+  return HL_OK;
+}
+
+static size_t lay_out(const view *view, int reach, shadow_buffer *buffer) {
+  size_t margin = ((size_t)reach + 1 + TILE) / TILE * TILE;
+  buffer->view = *view;
+  buffer->tiles_x = hl_tiles(view->width);
+  buffer->tiles_y = hl_tiles(view->height);
+  buffer->stride = (size_t)buffer->tiles_x * TILE + 2 * margin;
+  buffer->plane = ((size_t)buffer->tiles_y * TILE + 2 * margin) * buffer->stride;
+  return margin;
+}
+
+uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach) {
+  shadow_buffer buffer = {0};
+  (void)lay_out(view, reach, &buffer);
+  uint64_t tiles = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y;
+  return buffer.plane * (uint64_t)channels * (second ? 2 : 1) * sizeof(float) + tiles * 4;
+}
+
+hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view,
+                                 int channels, bool second, int reach, hl_error *error) {
+  size_t margin = lay_out(view, reach, buffer);
+  buffer->channels = channels;
+  buffer->origin = margin * buffer->stride + margin;
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y,
+         planes = (size_t)channels * (second ? 2 : 1);
+  hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);
+  if (status != HL_OK) return status;
+  hl_pool_fill(pool, buffer->memory, planes * buffer->plane, 1);
+  for (size_t tile = 0; tile < tiles; tile++) buffer->tile_lit[tile] = ALL_BLOCKS;
+  memset(buffer->tile_touched, 0, 2 * tiles);
+  for (int c = 0; c < HL_CHANNELS; c++) {
+    bool used = c < channels;
+    buffer->transmittance[c] = used ? buffer->memory + (size_t)c * buffer->plane + buffer->origin : NULL;
+    buffer->second[c] = used && second ? buffer->transmittance[c] + (size_t)channels * buffer->plane : NULL;
+  }
+  return HL_OK;
+}
+
+static uint16_t lit_blocks_of(const shadow_buffer *buffer, float *const planes[HL_CHANNELS], int x, int y,
+                              lit_blocks_function *lit_blocks) {
+  const float *transmittance[HL_CHANNELS] = {NULL, NULL, NULL};
+  for (int c = 0; c < buffer->channels; c++)
+    transmittance[c] = planes[c] + (size_t)y * TILE * buffer->stride + (size_t)x * TILE;
+  return (uint16_t)lit_blocks(transmittance, buffer->channels, buffer->stride);
+}
+
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
+                               lit_blocks_function *lit_blocks) {
+  uint16_t lit = lit_blocks_of(buffer, buffer->transmittance, x, y, lit_blocks);
+  if (both) lit |= lit_blocks_of(buffer, buffer->second, x, y, lit_blocks);
+  buffer->tile_lit[y * buffer->tiles_x + x] = lit;
+}
+
+shadow_map hl_map_of_view(const view *view) {
+  shadow_map map = {.width = view->width, .height = view->height};
+  double rows[3][4];
+  hl_view_homogeneous(view, affine3_identity(), rows);
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 4; column++) map.rows[row][column] = (float)rows[row][column];
+  return map;
+}
+
+void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer) {
+  hl_release(context, buffer->memory);
+  hl_release(context, buffer->tile_lit);
+  hl_release(context, buffer->tile_touched);
+  *buffer = (shadow_buffer){0};
+}

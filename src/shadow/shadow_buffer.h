@@ -1,0 +1,58 @@
+/* shadow/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the current sheet.
+ *
+ * Perpendicular to the light's axis for hard shadows, parallel to the sheets for soft ones (fig. 17). Its
+ * pixels are little larger than the image's where the volume is. Around it light is unattenuated: a margin of
+ * ones, which blurs read. */
+#ifndef HL_SHADOW_SHADOW_BUFFER_H
+#define HL_SHADOW_SHADOW_BUFFER_H
+
+#include "core/pool.h"
+#include "light/light_source.h"
+#include "shadow/attenuate.h"
+#include "splat/occupancy.h"
+
+typedef struct shadow_buffer {
+  view view;
+  int channels; /* 1: grey attenuation; 3: R, G, B */
+  int tiles_x, tiles_y;
+  size_t stride;                     /* floats from row to row */
+  size_t plane;                      /* floats of one channel, margins included */
+  size_t origin;                     /* offset of pixel (0,0) in a plane */
+  float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory */
+  float *second[HL_CHANNELS];  /* pixel (0,0); in memory; null: none. The paper's soft shadows: between two
+                                  blurs. The  cascade's: what light receivers fade from, see soft_cascade.h */
+  float *memory;               /* owned; all planes */
+  size_t capacity;             /* floats in memory */
+  uint16_t *tile_lit;          /* owned; [tiles]; blocks that light still reaches */
+  unsigned char *tile_touched; /* owned; [2][tiles]; 1 where some transmittance is below 1 */
+  size_t tile_capacity;
+} shadow_buffer;
+
+/* What decides a buffer's place and size. */
+typedef struct shadow_extent {
+  const vec3 *points; /* corners of all that is to be lit or to cast shadows; frame space */
+  int point_count;
+  double pixel;           /* wanted edge of a pixel at the volume, frame units */
+  int resolution;         /* pixels along the longer side; 0: by pixel */
+  size_t greatest_pixels; /* limit of width * height */
+  double margin;       /* around the points, for penumbrae: frame units; at distance 1 where not parallel */
+  const vec3 *content; /* corners of all there is: the margin ends there; frame space */
+  int content_count;
+  vec3 u; /* unit: along the buffer's rows; zero: along the light's tilt */
+} shadow_extent;
+
+/* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
+void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view);
+
+/* (Re)allocates for the view and sets all transmittances to 1. second: whether a second set of planes is
+ * needed. reach: pixels that blurs read beyond a tile. */
+hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view,
+                                 int channels, bool second, int reach, hl_error *error);
+/* The bytes that it then holds. */
+uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach);
+/* Finds a tile's tile_lit anew after a blur. both: what the second planes hold is light, too. */
+void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
+                               lit_blocks_function *lit_blocks);
+void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
+
+#endif

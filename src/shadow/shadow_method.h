@@ -1,0 +1,145 @@
+/* shadow/shadow_method.h - what a sweep asks of a method of shadows.
+ *
+ * A method keeps the shadow buffer of one light in lock-step with the picture. It is a table of functions in
+ * a folder of its own, src/shadow_NAME/; shadow_methods.c lists the tables and chooses one for a light. The
+ * sweep calls, for each light that casts shadows:
+ *
+ *     plan                once: where the buffer lies, how fine it is, how it is read
+ *     begin               once: the method's memory; the buffer holds full light
+ *     for each sheet, of the slab between it and the sheet before
+ *       before_shading      what the picture looks up in this slab
+ *       before_slab
+ *       for each tile       find_lit, before_tile, after_tile around the composite of the slab's matter
+ *       advance             the buffer goes on to the sheet
+ *     end                 once, after a failure too
+ *
+ * Functions that a method has no use for are null. */
+#ifndef HL_SHADOW_SHADOW_METHOD_H
+#define HL_SHADOW_SHADOW_METHOD_H
+
+#include "core/reserve.h"
+#include "light/light_extent.h"
+#include "light/light_image.h"
+#include "shadow/shadow_lookup.h"
+#include "simd/hot.h"
+
+/* What all methods are given: one light of one sweep. Borrowed; it must outlive the method. */
+typedef struct shadow_setup {
+  hl_context *context;
+  hl_pool *pool;
+  hl_reserve *reserve; /* of blocks for one sweep */
+  const hot_functions *hot;
+  const hl_render_settings *settings;
+  const light_source *source;
+  light_image *image; /* on the light itself; null where the light is even. The method places its cells */
+  const sheet_stack *sheets;
+  const view *eye;
+  int channels;          /* of attenuation: 1 or 3 */
+  double voxel;          /* the smallest edge of a voxel, frame units */
+  double pixel;          /* edge of a picture's pixel where the content is nearest, frame units */
+  double middle_pixel;   /* the same at the content's middle */
+  size_t picture_pixels; /* how many the frame has */
+  const vec3 *seen; /* [seen_count]; corners of what the eye sees, frame space; for plan and begin only */
+  int seen_count;
+  const vec3 *content; /* [content_count]; corners of all content, frame space */
+  int content_count;
+} shadow_setup;
+
+/* What a method decides about its buffer. */
+typedef struct shadow_plan {
+  shadow_extent extent; /* what the buffer covers */
+  sheet_light seen;     /* of soft methods: the light as the sheets see it */
+  view view;            /* of the buffer */
+  bool cubic;           /* the buffer is read by cubic convolution */
+  bool second;          /* the buffer has second planes */
+  int reach;            /* pixels beyond a tile that the method reads */
+  double spare;         /* pixels around what bricks touch that the picture may look up */
+} shadow_plan;
+
+/* Planes that a method may keep from frame to frame. The renderer owns them. */
+typedef struct shadow_memory {
+  void *planes;    /* owned; [capacity] */
+  size_t capacity; /* bytes */
+  bool zeros;      /* all of them; not while a method has them, nor after one that was cancelled */
+} shadow_memory;
+
+typedef struct shadow_method shadow_method;
+
+/* One light's shadows in one sweep. */
+typedef struct light_shadow {
+  const shadow_method *method; /* null: the light casts no shadows, or lights nothing that is seen */
+  shadow_setup setup;
+  shadow_plan plan;
+  shadow_buffer *buffer;        /* the renderer's */
+  shadow_lookup lookup;         /* how the picture reads the buffer */
+  const part_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
+  int sublight_count;
+  void *state; /* owned; method->state_bytes */
+} light_shadow;
+
+/* Bytes that a method holds besides the buffer. */
+typedef struct shadow_bytes {
+  uint64_t kept;    /* in a shadow_memory */
+  uint64_t passing; /* until the sweep ends */
+} shadow_bytes;
+
+struct shadow_method {
+  const char *name;
+  size_t state_bytes; /* of light_shadow.state, zeros before plan */
+  int first_slab; /* 0: of the slab that a point light lies in, the part beyond it counts; 1: from the next
+                     slab on */
+  void (*plan)(light_shadow *shadow);
+  shadow_bytes (*bytes)(const light_shadow *shadow);
+  hl_status (*begin)(light_shadow *shadow, shadow_memory *memory, hl_error *error);
+  void (*before_shading)(light_shadow *shadow, int sheet);
+  void (*before_slab)(light_shadow *shadow, int sheet);
+  /* Finds buffer->tile_lit of a tile; null: the sweep keeps it. One task has a tile. */
+  void (*find_lit)(light_shadow *shadow, size_t tile);
+  void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
+  /* The slab took some of the tile's light. */
+  void (*after_tile)(light_shadow *shadow, size_t tile);
+  void (*advance)(light_shadow *shadow, const occupancy *occupancy, int sheet);
+  void (*end)(light_shadow *shadow);
+};
+
+/* The method for a light: by its shadows and soft method; null where it casts none. */
+const shadow_method *hl_shadow_method(const light_source *source);
+
+/* ---- for the sweep (light_shadow.c) ---- */
+
+/* Chooses and plans. shadow->method is null afterwards where there is nothing to do. */
+hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
+/* After plan: the bytes of the buffer, which stays, and of the method. */
+uint64_t hl_light_shadow_buffer_bytes(const light_shadow *shadow);
+shadow_bytes hl_light_shadow_bytes(const light_shadow *shadow);
+/* After plan: buffer and memory are the renderer's. */
+hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, shadow_memory *memory,
+                                hl_error *error);
+/* After plan or begin, or of zeros. */
+void hl_light_shadow_end(light_shadow *shadow);
+
+/* ---- for methods (shadow_plan.c) ---- */
+
+/* Edge of a buffer's pixel that the sheets' distance allows, frame units; cubic convolution allows a larger
+ * one. */
+double hl_shadow_pixel(const shadow_setup *setup, bool cubic);
+/* Whether hard shadows, or soft ones of an even light, are best read by cubic convolution. */
+bool hl_cubic_is_better(const shadow_setup *setup);
+/* A buffer parallel to the sheets: plan->seen, and an extent with room for penumbrae. pixel: frame units. */
+void hl_plan_soft(light_shadow *shadow, double pixel);
+/* Edges of a buffer's pixel, frame units: where light is looked up as it is, and where the method blurs it.
+ */
+double hl_sharp_pixel(const shadow_setup *setup, bool cubic);
+double hl_blurred_pixel(const shadow_setup *setup, bool cubic);
+/* An extent around what is seen. pixel: frame units. */
+shadow_extent hl_extent_of_seen(const shadow_setup *setup, double pixel);
+
+/* The last sheet's height. */
+static inline double hl_last_height(const sheet_stack *sheets) {
+  return hl_sheet_height(sheets, sheets->count - 1);
+}
+
+/* The tables, one a folder. */
+extern const shadow_method hl_shadow_hard, hl_shadow_paper, hl_shadow_cascade, hl_shadow_sublights;
+
+#endif

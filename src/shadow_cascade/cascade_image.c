@@ -1,0 +1,197 @@
+/* shadow_cascade/cascade_image.c - a cascade's groups through a light with an image: each by its own kernel.
+ *
+ * Boxes may be blurred step by step, since of them variances alone matter. An image must be whole in every
+ * penumbra: what group o absorbed is weighed at once by the taps of the image, scaled to w(o -> r)
+ * (light_image.h), far groups first: s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel (derived
+ * as in soft_cascade.h; without thin matter it is the sum over groups of K(G), which is the light's mean of
+ * what its cells see). Nothing is kept from one receiver to the next; far groups are coarse. */
+#include "shadow_cascade/cascade_passes.h"
+
+#include <string.h>
+
+_Static_assert(IMAGE_GREATEST_STEP == 2 * BLUR_GREATEST_REACH - 4, "a box can blur by a step");
+
+typedef struct image_pass {
+  const soft_cascade *cascade;
+  cascade_level *level;
+  const cascade_group *group;
+  double width; /* of the group's penumbra, pixels of the level */
+  int step[2];
+  bool averaged; /* pre holds the group's means over step pixels */
+  int reach;     /* of the taps and the means, tiles */
+  const cascade_functions *functions;
+} image_pass;
+
+/* What a level adds its groups to. */
+static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_level *level, int channel) {
+  return level == &cascade->level[0] ? &cascade->shade[channel] : &level->sum[0][channel];
+}
+
+/* What is read of a row of tiles: by the next slabs, or for the next finer level, which weighs neighbouring
+ * pixels. */
+static read_row row_read(const soft_cascade *cascade, const cascade_level *level, size_t y) {
+  return hl_cascade_read_row(&cascade->reads, level->scale, (int)y,
+                             hl_cascade_doubling_reach(level->scale, 1));
+}
+
+/* ---- the sum of the farther levels ---- */
+
+static bool any_near(const cascade_level *level, const cascade_field *field, int x, int y, int reach) {
+  return !hl_cascade_all_zeros(level, field, x - reach, x + reach, y - reach, y + reach);
+}
+
+typedef struct start_task {
+  const soft_cascade *cascade;
+  const cascade_level *level, *farther; /* farther: null where nothing lies there */
+  const cascade_functions *functions;
+} start_task;
+
+static void start_tile(const start_task *task, const cascade_field *from, const cascade_field *to, int x,
+                       int y) {
+  const cascade_level *level = task->level, *farther = task->farther;
+  int ratio = farther == NULL ? 1 : farther->scale / level->scale;
+  if (farther == NULL || !any_near(farther, from, x / ratio, y / ratio, ratio - 1)) {
+    hl_cascade_clear_tile(level, to, x, y);
+    return;
+  }
+  field_job job = {.a = from->pixels,
+                   .to = to->pixels,
+                   .stride_in = farther->stride,
+                   .stride = level->stride,
+                   .rows = ALL_ROWS};
+  size_t at = (size_t)y * TILE * level->stride + (size_t)x * TILE;
+  int above_zero = ratio == 1 || task->functions->double_tile(&job, x, y);
+  for (size_t row = 0; row < TILE && ratio == 1; row++)
+    memcpy(to->pixels + at + row * level->stride, from->pixels + at + row * level->stride,
+           TILE * sizeof(field_pixel));
+  to->zeros[y * level->tiles_x + x] = !above_zero;
+}
+
+static void start_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const start_task *task = data;
+  const cascade_level *level = task->level;
+  const read_row read = row_read(task->cascade, level, index);
+  for (int x = 0; x < level->tiles_x; x++) {
+    if (!hl_cascade_is_read(&read, &read.all, x)) continue;
+    for (int c = 0; c < task->cascade->channels; c++)
+      start_tile(task, task->farther == NULL ? NULL : sum_of(task->cascade, task->farther, c),
+                 sum_of(task->cascade, level, c), x, (int)index);
+  }
+}
+
+/* ---- a group ---- */
+
+/* Means over step pixels, of what was absorbed and of what thin matter took of it. */
+static void average_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const image_pass *pass = data;
+  const cascade_level *level = pass->level;
+  for (int c = 0; c < pass->cascade->channels; c++) {
+    const cascade_field *from[2] = {&pass->group->absorbed[c], &pass->group->thin[c]};
+    for (int i = 0; i < 2; i++) {
+      const cascade_field *to = &level->mean[i][c];
+      field_blur_job job = {.from = from[i]->pixels,
+                            .to = to->pixels,
+                            .stride = level->stride,
+                            .u = hl_blur_box((float)pass->step[0]),
+                            .v = hl_blur_box((float)pass->step[1]),
+                            .rows = ALL_ROWS};
+      for (int x = 0; x < level->tiles_x; x++) {
+        if (!any_near(level, from[i], x, (int)index, 1)) {
+          hl_cascade_clear_tile(level, to, x, (int)index);
+          continue;
+        }
+        to->zeros[index * (size_t)level->tiles_x + (size_t)x] = !pass->functions->blur_add(&job, x,
+                                                                                           (int)index);
+      }
+    }
+  }
+}
+
+/* Taps that look beyond the level's zeros see nothing. Returns how many are left. */
+static int offsets_of(const cascade_level *level, const image_taps *taps, int x, int y, ptrdiff_t *offset,
+                      int *kept) {
+  int count = 0;
+  for (int i = 0; i < taps->count; i++) {
+    int left = x * TILE + taps->x[i], top = y * TILE + taps->y[i];
+    if (left <= -TILE || top <= -TILE || left >= level->tiles_x * TILE || top >= level->tiles_y * TILE)
+      continue;
+    offset[count] = (ptrdiff_t)taps->y[i] * (ptrdiff_t)level->stride + taps->x[i];
+    kept[count++] = i;
+  }
+  return count;
+}
+
+static void add_tile(const image_pass *pass, const image_taps *taps, int x, int y) {
+  const cascade_level *level = pass->level;
+  ptrdiff_t offset[IMAGE_TAPS];
+  int kept[IMAGE_TAPS], count = offsets_of(level, taps, x, y, offset, kept);
+  for (int c = 0; c < pass->cascade->channels; c++) {
+    const cascade_field *to = sum_of(pass->cascade, level, c);
+    const cascade_field *from = pass->averaged ? &level->mean[0][c] : &pass->group->absorbed[c];
+    const cascade_field *thin = pass->averaged ? &level->mean[1][c] : &pass->group->thin[c];
+    if (!any_near(level, from, x, y, pass->reach)) continue;
+    float weight[IMAGE_TAPS];
+    for (int i = 0; i < count; i++) weight[i] = taps->weight[c][kept[i]];
+    field_image_job job = {.from = from->pixels,
+                           .thin = thin->pixels,
+                           .to = to->pixels,
+                           .stride = level->stride,
+                           .count = count,
+                           .offset = offset,
+                           .weight = weight};
+    to->zeros[y * level->tiles_x + x] = !pass->functions->image_add(&job, x, y);
+  }
+}
+
+static void add_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const image_pass *pass = data;
+  const soft_cascade *cascade = pass->cascade;
+  const cascade_level *level = pass->level;
+  image_taps taps;
+  bool known = false;
+  const read_row read = row_read(cascade, level, index);
+  for (int x = 0; x < level->tiles_x; x++) {
+    if (!hl_cascade_is_read(&read, &read.all, x)) continue;
+    const double slope[2] = {
+        cascade->slope_start[0] + cascade->slope_step[0] * (x + 0.5) * TILE * level->scale,
+        cascade->slope_start[1] + cascade->slope_step[1] * ((double)index + 0.5) * TILE * level->scale};
+    if (!known || cascade->image->tilted)
+      hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
+    known = true;
+    add_tile(pass, &taps, x, (int)index);
+  }
+}
+
+static void add_group(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
+                      double receiver, const cascade_crew *crew) {
+  image_pass pass = {.cascade = cascade,
+                     .level = level,
+                     .group = group,
+                     .functions = crew->functions,
+                     .width = fmax(receiver - group->omega, 0) / level->scale};
+  hl_light_image_steps(cascade->image, pass.width, pass.step);
+  pass.averaged = pass.step[0] > 1 || pass.step[1] > 1;
+  double reach = cascade->image->reach * pass.width + fmax(pass.step[0], pass.step[1]) + 2;
+  pass.reach = (int)fmin(ceil(reach / TILE), fmax(level->tiles_x, level->tiles_y));
+  if (pass.averaged) hl_pool_run(crew->pool, (size_t)level->tiles_y, average_row, &pass);
+  hl_pool_run(crew->pool, (size_t)level->tiles_y, add_row, &pass);
+}
+
+bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
+  cascade_level *farther = NULL;
+  for (int i = cascade->level_count - 1; i >= 0; i--) {
+    cascade_level *level = &cascade->level[i];
+    start_task task = {cascade, level, farther, crew->functions};
+    bool any = farther != NULL;
+    for (int g = 0; g < level->count; g++) any = any || level->group[g].filled;
+    if (!any) continue;
+    hl_pool_run(crew->pool, (size_t)level->tiles_y, start_row, &task);
+    for (int g = 0; g < level->count; g++)
+      if (level->group[g].filled) add_group(cascade, level, &level->group[g], receiver, crew);
+    farther = level;
+  }
+  return farther != NULL;
+}

@@ -1,0 +1,306 @@
+/* shadow_cascade/cascade_lanes.h - tile operations on cascade fields, as plain loops over rows. */
+#ifndef HL_SHADOW_CASCADE_CASCADE_LANES_H
+#define HL_SHADOW_CASCADE_CASCADE_LANES_H
+
+#include "shadow/blur_lanes.h"
+#include "shadow_cascade/cascade_field.h"
+
+/* Blurred sums leave a little light in umbrae: where less than this is left, none is. */
+static const float UMBRA = 1.0f / 160;
+
+/* Asks for a tile's rows, which lie on as many lines of the cache, before they are needed. Null: none. */
+LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x, int tile_y, tile_rows rows,
+                             const int to_write) {
+  if (field == NULL) return;
+  const field_pixel *row = field + (size_t)(tile_y * TILE + rows.first) * stride + (size_t)tile_x * TILE;
+  for (int i = rows.first; i < rows.end; i++, row += stride) {
+    if (to_write) __builtin_prefetch(row, 1);
+    else __builtin_prefetch(row, 0);
+  }
+}
+
+/* The same of a tile of floats, a line of the cache each if they are aligned so. */
+LANES_INLINE void fetch_float_tile(const float *field, size_t stride, int tile_x, int tile_y) {
+  const float *row = field + (size_t)tile_y * TILE * stride + (size_t)tile_x * TILE;
+  for (int i = 0; i < TILE; i++, row += stride) __builtin_prefetch(row, 0);
+}
+
+/* Stores rounded pixels and keeps the greatest so far. */
+LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
+  lanes_store_short(p, pixels);
+  *greatest = lanes_max(*greatest, pixels);
+}
+LANES_INLINE int is_above_zero(lanes greatest) { return lanes_bits(greatest + 0.5f >= 1.0f) != 0; }
+
+/* What thin matter leaves. */
+LANES_INLINE lanes left_by(const field_pixel *thin) {
+  return lanes_line(lanes_load_short(thin), -1.0f / FIELD_ONE, 1.0f);
+}
+
+/* What is left of the light where so much is lacking: from twice UMBRA on all of it. */
+LANES_INLINE lanes light_left(const field_pixel *lacking) {
+  lanes left = left_by(lacking);
+  return lanes_clamp(lanes_min(left, 2.0f * (left - UMBRA)), 0, 1.0f);
+}
+
+/* As blur_sixteen along a row, of fields: their whole numbers are summed as such. */
+LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) {
+  lanes_int ends = lanes_load_short_int(from - (box->reach + 1)) +
+                   lanes_load_short_int(from + (box->reach + 1));
+  lanes_int sum = lanes_load_short_int(from);
+  for (int i = 1; i <= box->reach; i++)
+    sum = sum + (lanes_load_short_int(from - i) + lanes_load_short_int(from + i));
+  return lanes_add_scaled(lanes_from_int(sum), lanes_from_int(ends), box->edge) * box->scale;
+}
+
+/* a + (1 - thin) b at a row of a tile; fields may be null: 0. */
+LANES_INLINE lanes left_and_a(lanes b, const field_pixel *thin, const field_pixel *a, size_t at) {
+  if (a == NULL) return thin == NULL ? b : b * left_by(thin + at);
+  lanes more = lanes_load_short(a + at);
+  return thin == NULL ? b + more : lanes_fma(b, left_by(thin + at), more);
+}
+
+static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
+  _Alignas(64) float rows[(TILE + 2 * BLUR_GREATEST_REACH) * TILE];
+  int apron = job->v.reach + 1, top = tile_y * TILE + job->rows.first,
+      count = job->rows.end - job->rows.first;
+  fetch_rows(job->a, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->thin, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->to, job->stride, tile_x, tile_y, job->rows, 1);
+  const field_pixel *from = job->from + (ptrdiff_t)(top - apron) * (ptrdiff_t)job->stride + tile_x * TILE;
+  for (int row = 0; row < count + 2 * apron; row++, from += job->stride)
+    lanes_store(rows + row * TILE, blur_field_row(from, &job->u));
+  size_t at = (size_t)top * job->stride + (size_t)tile_x * TILE;
+  lanes greatest = lanes_set(0);
+  for (int row = 0; row < count; row++, at += job->stride) {
+    lanes blurred = blur_sixteen(rows + (row + apron) * TILE, TILE, &job->v);
+    store_pixels(job->to + at, left_and_a(blurred, job->thin, job->a, at), &greatest);
+  }
+  return is_above_zero(greatest);
+}
+
+/* a + (1 - thin) b; b and thin may be null: 0. */
+LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
+  if (job->b == NULL) return lanes_load_short(job->a + at);
+  return left_and_a(lanes_load_short(job->b + at), job->thin, job->a, at);
+}
+
+static int add_tile(const field_job *job, int tile_x, int tile_y) {
+  fetch_rows(job->b, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->thin, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->to, job->stride, tile_x, tile_y, job->rows, 1);
+  size_t at = (size_t)(tile_y * TILE + job->rows.first) * job->stride + (size_t)tile_x * TILE;
+  lanes greatest = lanes_set(0);
+  for (int row = job->rows.first; row < job->rows.end; row++, at += job->stride)
+    store_pixels(job->to + at, a_and_b(job, at), &greatest);
+  return is_above_zero(greatest);
+}
+
+/* Sums of neighbours in 32 pixels. */
+LANES_INLINE lanes sums_of_pairs(lanes first, lanes second) {
+  return __builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
+         __builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+}
+
+static int add_half_tile(const field_job *job, int tile_x, int tile_y) {
+  size_t from = (size_t)(tile_y * TILE + job->rows.first) * 2 * job->stride_in + (size_t)tile_x * TILE * 2;
+  field_pixel *to = job->to + (size_t)(tile_y * TILE + job->rows.first) * job->stride + (size_t)tile_x * TILE;
+  lanes greatest = lanes_set(0);
+  for (int half = 0; half < 2; half++) {
+    fetch_rows(job->b, job->stride_in, 2 * tile_x, 2 * tile_y + half, ALL_ROWS, 0);
+    fetch_rows(job->thin, job->stride_in, 2 * tile_x, 2 * tile_y + half, ALL_ROWS, 0);
+  }
+  fetch_rows(job->to, job->stride, tile_x, tile_y, job->rows, 1);
+  for (int row = job->rows.first; row < job->rows.end; row++, from += 2 * job->stride_in, to += job->stride) {
+    size_t below = from + job->stride_in;
+    lanes upper = sums_of_pairs(a_and_b(job, from), a_and_b(job, from + TILE));
+    lanes lower = sums_of_pairs(a_and_b(job, below), a_and_b(job, below + TILE));
+    store_pixels(to, 0.25f * (upper + lower), &greatest);
+  }
+  return is_above_zero(greatest);
+}
+
+/* A row of a tile from a field of half the resolution. Pixel 2i lies a quarter of a coarse pixel before
+ * coarse pixel i's centre, pixel 2i+1 a quarter after. */
+LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x, int y) {
+  const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
+  const field_pixel *far = y & 1 ? near + stride : near - stride;
+  lanes coarse = lanes_add_scaled(0.25f * lanes_load_short(far), lanes_load_short(near),
+                                  0.75f); /* from the pixel before the tile's first */
+  lanes own = __builtin_shufflevector(coarse, coarse, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8);
+  lanes other = __builtin_shufflevector(coarse, coarse, 0, 2, 1, 3, 2, 4, 3, 5, 4, 6, 5, 7, 6, 8, 7, 9);
+  return lanes_add_scaled(0.25f * other, own, 0.75f);
+}
+
+static int add_double_tile(const field_job *job, int tile_x, int tile_y) {
+  fetch_rows(job->a, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->thin, job->stride, tile_x, tile_y, job->rows, 0);
+  fetch_rows(job->to, job->stride, tile_x, tile_y, job->rows, 1);
+  lanes greatest = lanes_set(0);
+  for (int y = tile_y * TILE + job->rows.first; y < tile_y * TILE + job->rows.end; y++) {
+    size_t at = (size_t)y * job->stride + (size_t)tile_x * TILE;
+    store_pixels(job->to + at,
+                 left_and_a(double_row(job->b, job->stride_in, tile_x, y), job->thin, job->a, at), &greatest);
+  }
+  return is_above_zero(greatest);
+}
+
+static int double_tile(const field_job *job, int tile_x, int tile_y) {
+  lanes greatest = lanes_set(0);
+  for (int y = tile_y * TILE + job->rows.first; y < tile_y * TILE + job->rows.end; y++)
+    store_pixels(job->to + (size_t)y * job->stride + (size_t)tile_x * TILE,
+                 double_row(job->a, job->stride_in, tile_x, y), &greatest);
+  return is_above_zero(greatest);
+}
+
+enum { IMAGE_ROWS = 4 };
+
+/* Some neighbouring rows of sixteen pixels, which hide each other's latency. */
+LANES_INLINE void weigh_rows(const image_job *job, const float *from, lanes sum[IMAGE_ROWS]) {
+  for (int row = 0; row < IMAGE_ROWS; row++) sum[row] = lanes_set(0);
+  for (int tap = 0; tap < job->count; tap++) {
+    const float *at = from + job->offset[tap];
+    for (int row = 0; row < IMAGE_ROWS; row++)
+      sum[row] = lanes_add_scaled(sum[row], lanes_load(at + (size_t)row * job->stride), job->weight[tap]);
+  }
+}
+
+LANES_INLINE void weigh_field_rows(const field_image_job *job, const field_pixel *from,
+                                   lanes sum[IMAGE_ROWS]) {
+  for (int row = 0; row < IMAGE_ROWS; row++) sum[row] = lanes_set(0);
+  for (int tap = 0; tap < job->count; tap++) {
+    const field_pixel *at = from + job->offset[tap];
+    for (int row = 0; row < IMAGE_ROWS; row++)
+      sum[row] = lanes_add_scaled(sum[row], lanes_load_short(at + (size_t)row * job->stride),
+                                  job->weight[tap]);
+  }
+}
+
+static int field_image_tile(const field_image_job *job, int tile_x, int tile_y) {
+  lanes greatest = lanes_set(0);
+  for (int row = 0; row < TILE; row += IMAGE_ROWS) {
+    size_t at = (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
+    lanes sum[IMAGE_ROWS], thin[IMAGE_ROWS];
+    weigh_field_rows(job, job->from + at, sum);
+    weigh_field_rows(job, job->thin + at, thin);
+    for (int i = 0; i < IMAGE_ROWS; i++) {
+      field_pixel *to = job->to + at + (size_t)i * job->stride;
+      lanes left = lanes_max(lanes_line(thin[i], -1.0f / FIELD_ONE, 1.0f), lanes_set(0));
+      store_pixels(to, lanes_fma(lanes_load_short(to), left, sum[i]), &greatest);
+    }
+  }
+  return is_above_zero(greatest);
+}
+
+static void image_tile(const image_job *job, int tile_x, int tile_y) {
+  for (int row = 0; row < TILE; row += IMAGE_ROWS) {
+    size_t at = (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
+    lanes sum[IMAGE_ROWS];
+    weigh_rows(job, job->from + at, sum);
+    for (int i = 0; i < IMAGE_ROWS; i++) lanes_store(job->to + at + (size_t)i * job->stride, sum[i]);
+  }
+}
+
+/* The part of a chunk's light that its slabs left. Where it began with next to none, they were not asked: all
+ * of it. */
+LANES_INLINE lanes kept_light(lanes end, lanes start) {
+  lanes least = lanes_set(1.0f / 256);
+  return lanes_select(start < least, lanes_set(1.0f),
+                      lanes_min(end / lanes_max(start, least), lanes_set(1.0f)));
+}
+
+static void left_tile(const left_job *job, int tile_x, int tile_y) {
+  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
+    size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE,
+           at_to = (size_t)row * job->stride_to + (size_t)tile_x * TILE;
+    lanes before = lanes_load(job->to + at_to), left = light_left(job->lacking + at);
+    if (job->kept) left = left * kept_light(before, 1.0f - lanes_load(job->lacked + at));
+    lanes_store(job->older + at_to, job->again ? before : left);
+    lanes_store(job->to + at_to, left);
+    lanes_store(job->lacked + at, 1.0f - left);
+  }
+}
+
+/* Matter at one place as matter at two, the part `late` of it at the second (derived): of a ray thin matter
+ * leaves 1 - F, which is the product of (1 - F)^(1 - late) and (1 - F)^late; and what the two take of the
+ * same light one after the other, A2 + (1 - F2) A1, is the A of both. */
+typedef struct parted_matter {
+  lanes absorbed[2], thin[2];
+} parted_matter;
+
+LANES_INLINE parted_matter part_matter(lanes absorbed, lanes thin, lanes late) {
+  parted_matter to = {.thin = {lanes_set(0), lanes_set(0)}};
+  if (lanes_bits(thin > 0.0f) != 0) {
+    lanes depth = lanes_log2(lanes_max(1.0f - thin, lanes_set(1e-6f)));
+    to.thin[0] = 1.0f - lanes_exp2(depth * (1.0f - late));
+    to.thin[1] = 1.0f - lanes_exp2(depth * late);
+  }
+  lanes solid = (absorbed - thin) /
+                lanes_max(lanes_fma(1.0f - to.thin[1], 1.0f - late, late), lanes_set(1e-3f));
+  to.absorbed[0] = lanes_fma(solid, 1.0f - late, to.thin[0]);
+  to.absorbed[1] = lanes_fma(solid, late, to.thin[1]);
+  return to;
+}
+
+LANES_INLINE lanes load_part(const field_pixel *p) { return lanes_load_short(p) * (1.0f / FIELD_ONE); }
+LANES_INLINE void store_part(field_pixel *p, lanes part, lanes *greatest) {
+  store_pixels(p, part * (float)FIELD_ONE, greatest);
+}
+
+static uint32_t part_tile(const part_job *job, int tile_x, int tile_y) {
+  lanes absorbed[2] = {lanes_set(0), lanes_set(0)}, thin[2] = {lanes_set(0), lanes_set(0)};
+  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
+    size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
+    parted_matter to = part_matter(load_part(job->absorbed + at), load_part(job->thin + at),
+                                   lanes_set(job->late));
+    for (int i = 0; i < 2; i++) {
+      store_part(job->to_absorbed[i] + at, to.absorbed[i], &absorbed[i]);
+      store_part(job->to_thin[i] + at, to.thin[i], &thin[i]);
+    }
+  }
+  uint32_t above_zero = 0;
+  for (int i = 0; i < 2; i++)
+    above_zero |= (uint32_t)(is_above_zero(absorbed[i]) | is_above_zero(thin[i]) << 1) << 2 * i;
+  return above_zero;
+}
+
+/* Where a chunk takes less than the first part of its light it counts as thin, from the second on as
+ * solid. */
+static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
+
+static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
+  lanes start[2] = {lanes_set(0), lanes_set(0)}, end[2] = {lanes_set(0), lanes_set(0)};
+  const field_pixel *first[] = {job->start_absorbed, job->start_thin, job->end_absorbed, job->end_thin};
+  fetch_float_tile(job->now, job->stride_now, tile_x, tile_y);
+  for (size_t i = 0; i < sizeof first / sizeof first[0]; i++)
+    fetch_rows(first[i], job->stride, tile_x, tile_y, ALL_ROWS, 1);
+  fetch_float_tile(job->moment, job->stride, tile_x, tile_y);
+  for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
+    size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
+    lanes before = 1.0f - lanes_load(job->lacked + at);
+    lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
+    lanes taken = lanes_max(before - now, lanes_set(0));
+    if (lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */
+      lanes_store_short(job->end_absorbed + at, lanes_set(0));
+      lanes_store_short(job->end_thin + at, lanes_set(0));
+      continue;
+    }
+    lanes part = taken / lanes_max(before, lanes_set(1e-3f));
+    lanes place = lanes_clamp(lanes_load(job->moment + at) / lanes_max(taken * job->length, lanes_set(1e-6f)),
+                              0, 1.0f);
+    lanes solid = lanes_clamp((part - THIN_MATTER) * (1.0f / (SOLID_MATTER - THIN_MATTER)), 0, 1.0f);
+    lanes thin = part * (1.0f - solid);
+    parted_matter to = part_matter(lanes_fma(taken, solid, thin), thin, place);
+    lanes_store(job->moment + at, lanes_set(0));
+    store_part(job->end_absorbed + at, to.absorbed[1], &end[0]);
+    store_part(job->end_thin + at, to.thin[1], &end[1]);
+    lanes left = 1.0f - to.thin[0];
+    store_part(job->start_absorbed + at, lanes_fma(load_part(job->start_absorbed + at), left, to.absorbed[0]),
+               &start[0]);
+    store_part(job->start_thin + at, lanes_fma(load_part(job->start_thin + at), left, to.thin[0]), &start[1]);
+  }
+  uint32_t to_start = (uint32_t)is_above_zero(start[0]) | (uint32_t)is_above_zero(start[1]) << 1;
+  return to_start | (uint32_t)is_above_zero(end[0]) << 2 | (uint32_t)is_above_zero(end[1]) << 3;
+}
+
+#endif

@@ -1,0 +1,274 @@
+/* shadow_cascade/cascade_passes.c - sums, blurs and parts of a cascade's fields. */
+#include "shadow_cascade/cascade_passes.h"
+
+#include <string.h>
+
+void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *field, int x, int y) {
+  field_pixel *pixels = field->pixels + (size_t)y * TILE * level->stride + (size_t)x * TILE;
+  for (size_t row = 0; row < TILE; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(field_pixel));
+}
+
+/* Fewer are faster looked at one by one. */
+enum { MANY_TILES = 4 };
+
+bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
+                          int y1) {
+  if (x0 < 0) x0 = 0;
+  if (x1 >= level->tiles_x) x1 = level->tiles_x - 1;
+  for (int y = y0 < 0 ? 0 : y0; y <= y1 && y < level->tiles_y && x0 <= x1; y++) {
+    const unsigned char *zeros = field->zeros + y * level->tiles_x;
+    if (x1 - x0 >= MANY_TILES) {
+      if (memchr(zeros + x0, 0, (size_t)(x1 - x0 + 1)) != NULL) return false;
+      continue;
+    }
+    for (int x = x0; x <= x1; x++)
+      if (!zeros[x]) return false;
+  }
+  return true;
+}
+
+int hl_cascade_doubling_reach(int from, int to) {
+  int reach = 0;
+  for (; from > to; from /= 2) reach += 2 * from;
+  return reach;
+}
+
+/* Says whether a tile is all zeros after some of its rows were found. What the others hold is not read: they
+ * may be cleared. */
+static void note_zeros(const cascade_level *level, const cascade_field *field, int x, int y, tile_rows rows,
+                       int above_zero) {
+  unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
+  bool whole = rows.end - rows.first == TILE;
+  if (above_zero || whole) *zeros = !above_zero;
+  else hl_cascade_clear_tile(level, field, x, y);
+}
+
+typedef struct add_task {
+  const cascade_reads *reads;
+  int reach;
+  const cascade_level *level, *level_a, *level_b; /* of to, a and b */
+  const cascade_field *a, *b, *to;
+  field_job job;
+  field_tile_function *function;
+  bool doubled; /* b is coarser: a of zeros may be left out */
+} add_task;
+
+/* In a row of tiles from x0 to x1, both included. */
+static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
+  const cascade_level *levels[2] = {task->level_a, task->level_b};
+  const cascade_field *fields[2] = {task->a, task->b};
+  for (int i = 0; i < 2; i++) {
+    if (fields[i] == NULL) continue;
+    int scale = levels[i]->scale, own = task->level->scale, first = x0, last = x1, top = y, bottom = y;
+    if (scale == own && x0 == x1) { /* most often: without a call */
+      if (!fields[i]->zeros[y * task->level->tiles_x + x0]) return false;
+      continue;
+    }
+    if (scale < own) first = 2 * x0, last = 2 * x1 + 1, top = 2 * y, bottom = 2 * y + 1;
+    if (scale > own) first = (x0 - 1) / 2, last = (x1 + 1) / 2, top = (y - 1) / 2, bottom = (y + 1) / 2;
+    if (!hl_cascade_all_zeros(levels[i], fields[i], first, last, top, bottom)) return false;
+  }
+  return true;
+}
+
+static bool row_is_zeros(const cascade_level *level, const cascade_field *field, row_part part) {
+  return hl_cascade_all_zeros(level, field, part.first, part.end - 1, part.y, part.y);
+}
+
+/* Most rows of a pass hold nothing, and are zeros already. */
+static void add_tiles(const add_task *task, row_part part) {
+  if (row_is_zeros(task->level, task->to, part) && sum_is_zeros(task, part.first, part.end - 1, part.y))
+    return;
+  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, part.y, task->reach);
+  if (!read.any) return;
+  for (int x = part.first; x < part.end; x++) {
+    if (!hl_cascade_is_read(&read, &read.all, x)) continue;
+    if (sum_is_zeros(task, x, x, part.y)) {
+      hl_cascade_clear_tile(task->level, task->to, x, part.y);
+      continue;
+    }
+    field_job job = task->job;
+    job.rows = hl_cascade_rows_read(&read, x);
+    if (task->doubled && task->a != NULL && task->a->zeros[part.y * task->level->tiles_x + x])
+      job.a = job.thin = NULL;
+    note_zeros(task->level, task->to, x, part.y, job.rows, task->function(&job, x, part.y));
+  }
+}
+
+static void add_part(void *data, size_t index, int worker) {
+  (void)worker;
+  const add_task *task = data;
+  add_tiles(task, hl_cascade_row_part(task->level, index));
+}
+
+static add_task task_of_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
+                            const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
+                            const cascade_level *level, const cascade_field *to, int reach) {
+  const cascade_functions *functions = crew->functions;
+  field_tile_function *function = level_a->scale < level->scale                ? functions->add_half
+                                  : b != NULL && level_b->scale > level->scale ? functions->add_double
+                                                                               : functions->add;
+  add_task task = {.reads = crew->reads,
+                   .reach = reach,
+                   .level = level,
+                   .level_a = level_a,
+                   .level_b = level_b,
+                   .a = a,
+                   .b = b,
+                   .to = to,
+                   .function = function,
+                   .doubled = function == functions->add_double};
+  task.job = (field_job){.a = a == NULL ? NULL : a->pixels,
+                         .b = b == NULL ? NULL : b->pixels,
+                         .to = to->pixels,
+                         .stride_in = b == NULL ? level_a->stride : level_b->stride,
+                         .stride = level->stride,
+                         .thin = thin == NULL ? NULL : thin->pixels};
+  return task;
+}
+
+void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
+                    const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
+                    const cascade_level *level, const cascade_field *to, int reach) {
+  add_task task = task_of_add(crew, level_a, a, thin, level_b, b, level, to, reach);
+  hl_pool_run(crew->pool, hl_cascade_row_parts(level), add_part, &task);
+}
+
+typedef struct blur_task {
+  const cascade_reads *reads;
+  int reach;
+  const cascade_level *level;
+  const cascade_field *from, *a, *thin, *to; /* a and thin may be null */
+  field_blur_job job;
+  field_blur_tile_function *function;
+  int reach_x, reach_y; /* of the blur; tiles */
+} blur_task;
+
+static void blur_part(void *data, size_t index, int worker) {
+  (void)worker;
+  const blur_task *task = data;
+  const row_part part = hl_cascade_row_part(task->level, index);
+  int y = part.y, around = task->reach_x;
+  if (row_is_zeros(task->level, task->to, part) &&
+      (task->a == NULL || row_is_zeros(task->level, task->a, part)) &&
+      hl_cascade_all_zeros(task->level, task->from, part.first - around, part.end - 1 + around,
+                           y - task->reach_y, y + task->reach_y))
+    return;
+  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
+  if (!read.any) return;
+  for (int x = part.first; x < part.end; x++) {
+    size_t tile = (size_t)y * (size_t)task->level->tiles_x + (size_t)x;
+    if (!hl_cascade_is_read(&read, &read.all, x)) continue;
+    bool skip = (task->a == NULL || task->a->zeros[tile]) &&
+                hl_cascade_all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x,
+                                     y - task->reach_y, y + task->reach_y);
+    if (skip) {
+      hl_cascade_clear_tile(task->level, task->to, x, y);
+      continue;
+    }
+    field_blur_job job = task->job;
+    job.rows = hl_cascade_rows_read(&read, x);
+    job.u = task->level->boxes[x].box;
+    job.v = task->level->boxes[task->level->tiles_x + y].box;
+    if (task->a != NULL && task->a->zeros[tile])
+      job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
+    if (task->thin != NULL && task->thin->zeros[tile]) job.thin = NULL;
+    note_zeros(task->level, task->to, x, y, job.rows, task->function(&job, x, y));
+  }
+}
+
+/* Boxes of each column or row; returns the greatest reach in tiles. */
+static int fill_boxes(cascade_box *boxes, int count, double variance, double resampled) {
+  int reach = 0;
+  for (int i = 0; i < count; i++) {
+    boxes[i].box = hl_blur_box_of_variance(fmax(variance * boxes[i].part - resampled, 0));
+    if (boxes[i].box.reach > reach) reach = boxes[i].box.reach;
+  }
+  return (reach + TILE) / TILE;
+}
+
+void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
+                         const cascade_field *a, const cascade_field *thin, const cascade_field *to,
+                         cascade_blur blur, int reach) {
+  blur_task task = {.reads = crew->reads,
+                    .reach = reach,
+                    .level = level,
+                    .from = from,
+                    .a = a,
+                    .thin = thin,
+                    .to = to,
+                    .function = crew->functions->blur_add};
+  task.job = (field_blur_job){.from = from->pixels,
+                              .a = a == NULL ? NULL : a->pixels,
+                              .to = to->pixels,
+                              .thin = thin == NULL ? NULL : thin->pixels,
+                              .stride = level->stride};
+  task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur.variance, blur.resampled[0]);
+  task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur.variance, blur.resampled[1]);
+  hl_pool_run(crew->pool, hl_cascade_row_parts(level), blur_part, &task);
+}
+
+typedef struct part_task {
+  const cascade_level *level;
+  const cascade_field *fields[4]; /* absorbed and thin of the first, then of the second */
+  part_job job;
+  part_tile_function *function;
+} part_task;
+
+static void part_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const part_task *task = data;
+  for (int x = 0; x < task->level->tiles_x; x++) {
+    size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
+    if (task->fields[0]->zeros[tile] && task->fields[1]->zeros[tile]) {
+      for (int i = 2; i < 4; i++) hl_cascade_clear_tile(task->level, task->fields[i], x, (int)index);
+      continue;
+    }
+    uint32_t above_zero = task->function(&task->job, x, (int)index);
+    for (int i = 0; i < 4; i++) task->fields[i]->zeros[tile] = (above_zero >> i & 1) == 0;
+  }
+}
+
+enum { MERGE_SUMS = 6 };
+
+typedef struct merge_task {
+  const cascade_level *level;
+  int ratio; /* of the levels' scales */
+  part_task part;
+  add_task sums[MERGE_SUMS];
+} merge_task;
+
+/* A row of tiles of the farther level, and those of the nearer one below it. */
+static void merge_row(void *data, size_t index, int worker) {
+  merge_task *task = data;
+  size_t first = index * (size_t)task->ratio, end = first + (size_t)task->ratio;
+  for (size_t row = first; row < end && row < (size_t)task->level->tiles_y; row++)
+    part_row(&task->part, row, worker);
+  for (int i = 0; i < MERGE_SUMS; i++)
+    add_tiles(&task->sums[i], (row_part){(int)index, 0, task->sums[i].level->tiles_x});
+}
+
+void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a,
+                      const cascade_matter *b, double late, const cascade_matter *spare,
+                      const cascade_level *next, const cascade_matter *first, const cascade_matter *second) {
+  merge_task task = {.level = level, .ratio = next->scale / level->scale};
+  task.part = (part_task){level,
+                          {b->absorbed, b->thin, spare->absorbed, spare->thin},
+                          {b->absorbed->pixels,
+                           b->thin->pixels,
+                           {b->absorbed->pixels, spare->absorbed->pixels},
+                           {b->thin->pixels, spare->thin->pixels},
+                           level->stride,
+                           (float)late},
+                          crew->functions->part};
+  const cascade_field *of_a[2] = {a->absorbed, a->thin}, *of_b[2] = {b->absorbed, b->thin},
+                      *of_spare[2] = {spare->absorbed, spare->thin};
+  const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
+  for (int i = 0; i < 2; i++) {
+    /* what goes to the first, by way of the second's fields */
+    task.sums[i] = task_of_add(crew, level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE);
+    task.sums[2 + i] = task_of_add(crew, next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE);
+    task.sums[4 + i] = task_of_add(crew, level, of_spare[i], NULL, NULL, NULL, next, to[i], READ_EVERYWHERE);
+  }
+  hl_pool_run(crew->pool, (size_t)next->tiles_y, merge_row, &task);
+}

@@ -1,0 +1,17 @@
+/* shadow_hard/hard.c - hard shadows (section 3): one buffer perpendicular to the light, attenuated by each
+ * slab as the light's centre sees it. */
+#include "shadow/shadow_method.h"
+
+static bool is_read_cubic(const shadow_setup *setup) {
+  hl_shadow_lookup lookup = setup->settings->shadow_lookup;
+  return lookup == HL_LOOKUP_AUTO ? hl_cubic_is_better(setup) : lookup == HL_LOOKUP_CUBIC;
+}
+
+static void plan_hard(light_shadow *shadow) {
+  shadow_plan *plan = &shadow->plan;
+  plan->cubic = is_read_cubic(&shadow->setup);
+  plan->extent = hl_extent_of_seen(&shadow->setup, hl_sharp_pixel(&shadow->setup, plan->cubic));
+  hl_shadow_view(shadow->setup.source, shadow->setup.source->direction, &plan->extent, &plan->view);
+}
+
+const shadow_method hl_shadow_hard = {.name = "hard", .plan = plan_hard};

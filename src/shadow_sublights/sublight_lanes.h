@@ -1,0 +1,200 @@
+/* shadow_sublights/sublight_lanes.h - one tile of one part's buffer times the slab, scaled and shifted, a row
+ * of sixteen pixels at a time.
+ *
+ * What a part's pixel gets is the slab's value at the nearest half pixel. Values between pixels are those of
+ * cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image processing", 1981):
+ * weights -1/8, 5/8, 5/8, -1/8. They are sharper than the samples, by what the bilinear look-up of a buffer
+ * blurs (variances: -1/4 at half pixels and 0 at whole ones, against 1/6). */
+#ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
+#define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
+
+#include "shadow/attenuate_lanes.h"
+#include "shadow_sublights/sublight_field.h"
+
+enum { EVERY_ROW = (1 << TILE) - 1 };
+
+/* In the middle of the two inner ones, within what a transmittance can be. */
+LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
+  return lanes_clamp(lanes_add_scaled((a + d) * -0.125f, b + c, 0.625f), 0, 1);
+}
+
+LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
+  return middle_of_four(lanes_load(at - step), lanes_load(at), lanes_load(at + step),
+                        lanes_load(at + 2 * step));
+}
+
+LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
+
+/* The rows of a tile and the next one in which it or its right neighbour's first pixel is below 1. Pixels
+ * further out, weighed by less than nothing, bring none in the middle below 1. */
+LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
+  uint32_t rows = 0;
+  for (int row = 0; row <= TILE; row++) {
+    const float *at = corner + row * stride;
+    rows |= (uint32_t)any_below_one(lanes_min(lanes_load(at), lanes_load(at + 1))) << row;
+  }
+  return rows;
+}
+
+static slab_rows half_pixel_tile(const half_pixel_job *job, int tile_x, int tile_y) {
+  ptrdiff_t stride = (ptrdiff_t)job->slab_stride, corner = tile_y * TILE * stride + tile_x * TILE;
+  uint32_t below = rows_below_one(job->slab + corner, stride);
+  slab_rows rows = 0;
+  for (uint32_t left = (below | below >> 1) & EVERY_ROW; left != 0; left &= left - 1) {
+    int row = __builtin_ctz(left);
+    ptrdiff_t at = corner + row * stride;
+    const float *from = job->slab + at;
+    lanes across = middle_along(from, 1), down = middle_along(from, stride);
+    lanes both = middle_of_four(middle_along(from - stride, 1), across, middle_along(from + stride, 1),
+                                middle_along(from + 2 * stride, 1));
+    lanes_store(job->moved[1] + at, across);
+    lanes_store(job->moved[2] + at, down);
+    lanes_store(job->moved[3] + at, both);
+    rows |= (any_below_one(lanes_load(from)) | any_below_one(across) << TILE |
+             any_below_one(down) << 2 * TILE | any_below_one(both) << 3 * TILE)
+            << row;
+  }
+  return rows;
+}
+
+static const float LANE_PLACES[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+/* The nearest halves of sixteen coordinates scale * i + start, counted in halves; held between -2 and size
+ * + 1. */
+LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
+  return lanes_floor(lanes_clamp(lanes_load(LANE_PLACES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
+}
+
+enum { SUBLIGHT_TAPS = 8 };
+
+/* How a row of sixteen pixels reads a row of the slab's images: pixel i is 2 i halves beyond its first
+ * pixel's, give or take as many as the two pixels' edges drift apart along the row. Steps are nearly 1, so
+ * that those are a few; weight[i] is 1 where pixels lie first + i halves from there, else 0. */
+typedef struct row_taps {
+  int first, count; /* count 0: too many */
+  lanes_int half;   /* of each pixel, held inside the slab */
+  lanes weight[SUBLIGHT_TAPS];
+} row_taps;
+
+LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
+  row_taps taps;
+  float scale = job->scale[0], start = scale * ((float)(tile_x * TILE) + 0.5f) + job->shift[0] - 0.5f;
+  taps.half = nearest_halves(scale, start, job->slab_width);
+  lanes_int apart = lanes_floor((lanes_load(LANE_PLACES) * (scale - 1.0f) + start) * 2.0f + 0.5f);
+  int ends[2] = {apart[0], apart[LANES - 1]};
+  taps.first = ends[0] < ends[1] ? ends[0] : ends[1];
+  taps.count = (ends[0] < ends[1] ? ends[1] : ends[0]) - taps.first + 1;
+  if (taps.count > SUBLIGHT_TAPS || taps.first < -56 || (float)taps.first > 2.0f * job->slab_width + 16.0f)
+    taps.count = 0;
+  for (int i = 0; i < taps.count; i++) taps.weight[i] = lanes_keep(apart == taps.first + i, lanes_set(1.0f));
+  return taps;
+}
+
+/* Sixteen pixels along a row of the slab. images: the row of two, the second half a pixel further along. */
+LANES_INLINE lanes slab_row(const row_taps *taps, const float *const images[2]) {
+  if (taps->count == 0) {
+    lanes_int column = taps->half >> 1;
+    return lanes_select((taps->half & 1) == 0, lanes_gather(images[0], column),
+                        lanes_gather(images[1], column));
+  }
+  if (taps->count == 1) return lanes_load(images[taps->first & 1] + (taps->first >> 1));
+  lanes sum = lanes_set(0);
+  for (int i = 0; i < taps->count; i++) {
+    int half = taps->first + i;
+    sum = lanes_fma(lanes_load(images[half & 1] + (half >> 1)), taps->weight[i], sum);
+  }
+  return sum;
+}
+
+/* Tiles of the slab under a row. */
+LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, int *first, int *last) {
+  *first = taps->half[0] >> 5;
+  *last = taps->half[LANES - 1] >> 5;
+  if (*first < 0) *first = 0;
+  if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
+}
+
+/* Where any of the images in the same rows is below 1. */
+LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
+  rows >>= 2 * TILE * between;
+  return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;
+}
+
+/* The rows of a tile, one bit each, in which some of the slab's pixels are below 1. half: of each row. */
+LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[TILE], int first, int last) {
+  int y0 = half[0] < 0 ? 0 : half[0] / (2 * TILE), y1 = half[TILE - 1] < 0 ? -1 : half[TILE - 1] / (2 * TILE);
+  uint32_t present = 0;
+  slab_rows of_tiles[4] = {0, 0, 0, 0};
+  if (y1 >= job->slab_tiles_y) y1 = job->slab_tiles_y - 1;
+  if (y1 > y0 + 3) return EVERY_ROW;
+  for (int y = y0; y <= y1; y++)
+    for (int x = first; x <= last; x++) of_tiles[y - y0] |= job->rows[(ptrdiff_t)y * job->slab_tiles_x + x];
+  if ((of_tiles[0] | of_tiles[1] | of_tiles[2] | of_tiles[3]) == 0) return 0;
+  for (int row = 0; row < TILE; row++) {
+    int line = half[row] >> 1, y = line / TILE - y0;
+    if (line >= 0 && y <= y1 - y0)
+      present |= (rows_of_either(of_tiles[y], half[row] & 1) >> line % TILE & 1) << row;
+  }
+  return present;
+}
+
+static const float DARK_PART = DARK * PART_ONE;
+
+/* The blocks that have any of these columns. */
+LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
+  uint32_t any = columns | columns >> 1;
+  any |= any >> 2;
+  return (any & 1) | (any >> 3 & 2) | (any >> 6 & 4) | (any >> 9 & 8);
+}
+
+/* The columns with light in a row of blocks. at: its first pixel. */
+LANES_INLINE uint32_t lit_columns(const sublight_job *job, size_t at) {
+  uint32_t columns = 0;
+  for (int row = 0; row < BLOCK; row++)
+    for (int c = 0; c < job->channels; c++)
+      columns |= lanes_bits(lanes_load_short(job->left[c] + at + (size_t)row * job->stride) >= DARK_PART);
+  return columns;
+}
+
+static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, uint32_t lit) {
+  size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
+  uint32_t left = 0;
+  for (int row = 0; row < TILE / BLOCK; row++)
+    if ((lit >> 4 * row & 15) != 0)
+      left |= blocks_of_columns(lit_columns(job, corner + (size_t)(row * BLOCK) * job->stride)) << 4 * row;
+  return lit & left;
+}
+
+/* Sixteen of a part's pixels times the slab's. */
+LANES_INLINE void composite_part(const sublight_job *job, part_pixel *at, lanes left_by_slab) {
+  lanes_store_short_int(at, lanes_truncate(lanes_load_short(at) * left_by_slab + job->carry));
+}
+
+static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
+  int touched = 0;
+  row_taps taps = taps_of_row(job, tile_x);
+  size_t corner = (size_t)(tile_y * TILE) * job->stride + (size_t)tile_x * TILE;
+  int first, last;
+  int32_t halves[TILE];
+  lanes_int half_of_rows = nearest_halves(
+      job->scale[1], job->scale[1] * ((float)(tile_y * TILE) + 0.5f) + job->shift[1] - 0.5f,
+      job->slab_height);
+  memcpy(halves, &half_of_rows, sizeof halves);
+  tiles_of_row(job, &taps, &first, &last);
+  for (uint32_t left = present_rows(job, halves, first, last); left != 0; left &= left - 1) {
+    int row = __builtin_ctz(left);
+    ptrdiff_t line = (halves[row] >> 1) * (ptrdiff_t)job->slab_stride;
+    for (int c = 0; c < job->channels; c++) {
+      const float *const *images = &job->slab[c][2 * (halves[row] & 1)];
+      const float *const rows[2] = {images[0] + line, images[1] + line};
+      part_pixel *at = job->left[c] + corner + (size_t)row * job->stride;
+      lanes left_by_slab = slab_row(&taps, rows);
+      if (lanes_bits(left_by_slab < 1.0f) == 0) continue; /* the part's row need not come from memory */
+      composite_part(job, at, left_by_slab);
+      touched = 1;
+    }
+  }
+  return touched;
+}
+
+#endif

@@ -1,0 +1,485 @@
+/* shadow_sublights/sublights.c - the parts of a light: their buffers, and the slabs composited into them. */
+#include "shadow_sublights/sublights.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+
+/* More than this is refused beforehand. */
+static const double GREATEST_BYTES = 4294967296.0;
+
+enum { MOVED_IMAGES = SLAB_IMAGES - 1 };
+
+/* What part i of side x side sees; the greatest numbers of tiles. */
+static void place_part(const light_source *source, const light_image *image, int side, int i, vec3 normal,
+                       const shadow_extent *extent, view *view, int *tiles_x, int *tiles_y) {
+  double square[2];
+  light_source part = *source;
+  if (image == NULL) hl_light_part(source, side, i / side, i % side, square);
+  else hl_light_grid_part(side, i / side, i % side, square);
+  vec3 offset = hl_light_point(source, square[0], square[1]);
+  if (source->parallel) part.direction = vec3_normalise(vec3_add(source->direction, offset));
+  else part.position = vec3_add(source->position, offset);
+  hl_shadow_view(&part, normal, extent, view);
+  if (hl_tiles(view->width) > *tiles_x) *tiles_x = hl_tiles(view->width);
+  if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
+}
+
+static void place_parts(sublights *sublights, const light_source *source, const light_image *image, int side,
+                        vec3 normal, const shadow_extent *extent) {
+  for (int i = 0; i < sublights->count; i++)
+    place_part(source, image, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x,
+               &sublights->tiles_y);
+}
+
+/* A margin of a tile on either side, where tiles of the slab reach across the edges; look-ups may read rows
+ * beyond the last. */
+enum { ROWS_BEYOND = 7 };
+static void lay_out_planes(sublights *sublights) {
+  sublights->stride = (size_t)(sublights->tiles_x + 3) / 2 * 2 * TILE; /* whole lines of the cache */
+  sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
+}
+
+uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
+                            const shadow_extent *extent, int channels, const view *slab, int reach) {
+  sublights planned = {.channels = channels};
+  uint64_t count = (uint64_t)side * (uint64_t)side,
+           slab_tiles = (uint64_t)hl_tiles(slab->width) * (uint64_t)hl_tiles(slab->height);
+  view view;
+  for (int i = 0; i < side * side; i++)
+    place_part(source, image, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
+  lay_out_planes(&planned);
+  uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
+  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) +
+         count * tiles * (sizeof *planned.flags + 1) +
+         slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
+         count * (sizeof *planned.parts + sizeof *planned.lookups) +
+         hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) -
+         hl_shadow_buffer_bytes(slab, 0, false, reach);
+}
+
+static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const shadow_buffer *slab,
+                          hl_error *error) {
+  size_t count = (size_t)sublights->count, channels = (size_t)sublights->channels;
+  size_t tiles = (size_t)sublights->tiles_x * (size_t)sublights->tiles_y;
+  lay_out_planes(sublights);
+  size_t pixels = count * channels * sublights->plane, moved = MOVED_IMAGES * channels * slab->plane;
+  if ((double)pixels * sizeof(part_pixel) > GREATEST_BYTES)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/render/light_samples: %zu parts of a light need %.1f GB of shadow buffers, more than "
+                   "4.3: use fewer, or a "
+                   "lower shadow_resolution",
+                   count, (double)pixels * sizeof(part_pixel) / 1e9);
+  hl_context *context = reserve->context;
+  sublights->memory = hl_reserve_take(reserve, pixels, sizeof(part_pixel));
+  sublights->flags = hl_allocate(context, count * tiles, sizeof *sublights->flags);
+  sublights->marks = hl_allocate_zeroed(context, count, tiles);
+  sublights->lookups = hl_allocate(context, count, sizeof *sublights->lookups);
+  sublights->moved = hl_reserve_take(reserve, moved, sizeof(float));
+  size_t slab_tiles = (size_t)slab->tiles_x * (size_t)slab->tiles_y;
+  sublights->rows = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->rows);
+  sublights->found = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->found);
+  if (sublights->memory == NULL || sublights->flags == NULL || sublights->marks == NULL ||
+      sublights->lookups == NULL || sublights->moved == NULL || sublights->rows == NULL ||
+      sublights->found == NULL)
+    return hl_fail_memory(error, pixels * sizeof(part_pixel) + moved * sizeof(float), "the parts of a light");
+  hl_pool_set(pool, sublights->memory, pixels * sizeof(part_pixel), 0xff); /* PART_ONE */
+  hl_pool_fill(pool, sublights->moved, moved, 1);
+  for (size_t i = 0; i < count; i++) {
+    sublight *part = &sublights->parts[i];
+    part->pixels = sublights->memory + i * channels * sublights->plane + TILE;
+    part->lit = sublights->flags + i * tiles;
+    part->touched = sublights->marks + i * tiles;
+  }
+  for (size_t i = 0; i < count * tiles; i++) sublights->flags[i] = ALL_BLOCKS;
+  return HL_OK;
+}
+
+/* The parts of a light with an image send its colours. */
+static hl_status weigh_parts(hl_context *context, sublights *sublights, const light_source *source, int side,
+                             hl_error *error) {
+  size_t count = (size_t)sublights->count;
+  double mean[HL_CHANNELS];
+  float(*weights)[HL_CHANNELS] = hl_allocate(context, count, sizeof *weights);
+  if (weights == NULL) return hl_fail_memory(error, count * sizeof *weights, "the parts of a light");
+  hl_light_image_weights(source, side, weights, mean);
+  for (size_t i = 0; i < count; i++) memcpy(sublights->lookups[i].weight, weights[i], sizeof *weights);
+  hl_release(context, weights);
+  return HL_OK;
+}
+
+hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights,
+                             const light_source *source, const light_image *image, int side, vec3 normal,
+                             const shadow_extent *extent, const shadow_buffer *slab, hl_error *error) {
+  hl_context *context = reserve->context;
+  size_t count = (size_t)side * (size_t)side;
+  sublights->parts = hl_allocate_zeroed(context, count, sizeof *sublights->parts);
+  if (sublights->parts == NULL)
+    return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
+  sublights->count = (int)count;
+  sublights->channels = slab->channels;
+  place_parts(sublights, source, image, side, normal, extent);
+  hl_status status = allocate(reserve, pool, sublights, slab, error);
+  if (status != HL_OK) return status;
+  for (size_t i = 0; i < count; i++) {
+    sublights->lookups[i] = (part_lookup){.map = hl_map_of_view(&sublights->parts[i].view),
+                                          .weight = {1, 1, 1}};
+    sublights->lookups[i].map.stride = sublights->stride;
+    for (int c = 0; c < sublights->channels; c++)
+      sublights->lookups[i].left[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
+  }
+  return image != NULL ? weigh_parts(context, sublights, source, side, error) : HL_OK;
+}
+
+void hl_sublights_release(hl_reserve *reserve, sublights *sublights) {
+  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags,
+                   sublights->marks, sublights->rows,    sublights->found};
+  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(reserve->context, owned[i]);
+  hl_reserve_return(reserve, sublights->memory);
+  hl_reserve_return(reserve, sublights->moved);
+  memset(sublights, 0, sizeof *sublights);
+}
+
+/* ---- compositing ---- */
+
+/* Pixel (0,0) of one of the slab's images but the first. */
+static float *moved_image(const sublights *sublights, const shadow_buffer *slab, int channel, int image) {
+  return sublights->moved + ((size_t)channel * MOVED_IMAGES + (size_t)image - 1) * slab->plane + slab->origin;
+}
+
+/* Where the ray of a part's pixel coordinates meets the sheet, in the slab's; false behind either. */
+static bool slab_place(const sublight *part, const view *slab, vec3 normal, double height, double at,
+                       double uv[2]) {
+  vec3 start, way;
+  hl_view_ray(&part->view, at, at, &start, &way);
+  double climb = vec3_dot(way, normal), distance = (height - vec3_dot(start, normal)) / climb;
+  if (part->view.perspective && !(distance > 0)) return false;
+  return hl_view_project(slab, vec3_add(start, vec3_scale(way, distance)), uv);
+}
+
+/* Multiples of the golden ratio, less their whole part, are spread evenly however many there are. */
+static float carry_of_slab(const sublights *sublights, const sublight *part) {
+  double turn = sublights->slabs * 0.6180339887498949 + (double)(part - sublights->parts) / sublights->count;
+  return (float)(1.0 / 128 +
+                 (turn - floor(turn)) * 63 / 64); /* so far from 0 and 1 that whole numbers stay */
+}
+
+/* In pixels. Light that grazes the sheets shifts them further; it is clamped where pixels are scaled as
+ * well. */
+static const double FARTHEST_SHIFT = 1 << 20;
+
+/* Both views lie parallel to the sheets with the same axes: from one to the other pixels are scaled and
+ * shifted. */
+static void map_part(const sublights *sublights, sublight *part, const shadow_buffer *slab, vec3 normal,
+                     double height) {
+  const double far = 1024;
+  double zero[2], other[2];
+  part->reaches = slab_place(part, &slab->view, normal, height, 0, zero) &&
+                  slab_place(part, &slab->view, normal, height, far, other);
+  part->job = (sublight_job){.slab_stride = slab->stride,
+                             .rows = sublights->rows,
+                             .slab_tiles_x = slab->tiles_x,
+                             .slab_tiles_y = slab->tiles_y,
+                             .slab_width = (float)slab->view.width,
+                             .slab_height = (float)slab->view.height,
+                             .stride = sublights->stride,
+                             .tiles_x = sublights->tiles_x,
+                             .carry = carry_of_slab(sublights, part),
+                             .channels = sublights->channels};
+  for (int axis = 0; axis < 2 && part->reaches; axis++) {
+    double scale = (other[axis] - zero[axis]) / far;
+    if (fabs(scale - 1) < 1e-6) scale = 1;
+    part->job.scale[axis] = (float)scale;
+    part->job.shift[axis] = (float)zero[axis];
+  }
+  part->shifted = part->reaches && part->job.scale[0] == 1 && part->job.scale[1] == 1 &&
+                  fmax(fabs(zero[0]), fabs(zero[1])) < FARTHEST_SHIFT;
+  for (int axis = 0; axis < 2 && part->shifted; axis++)
+    part->job.half[axis] = (int)floor(2 * zero[axis] + 0.5);
+  for (int c = 0; c < sublights->channels; c++) {
+    part->job.slab[c][0] = slab->transmittance[c];
+    for (int i = 1; i < SLAB_IMAGES; i++) part->job.slab[c][i] = moved_image(sublights, slab, c, i);
+    part->job.left[c] = part->pixels + (size_t)c * sublights->plane;
+  }
+}
+
+typedef struct sublight_task {
+  sublights *sublights;
+  shadow_buffer *slab;
+  const sublight_functions *functions;
+  int x0, x1, y0, y1; /* tiles of the slab that are present lie between these */
+  bool ends_run;      /* lit blocks are found after it */
+} sublight_task;
+
+/* First and last tile of `to` under pixels from x to x + TILE of one axis, scaled and shifted; a pixel to
+ * spare. */
+static void tiles_under(double x, double scale, double shift, int tiles, int *first, int *last) {
+  double low = (scale * x + shift - 1) / TILE, high = (scale * (x + TILE) + shift + 1) / TILE;
+  *first = low < 0 ? 0 : low > tiles ? tiles : (int)low;
+  *last = high < 0 ? -1 : high >= tiles ? tiles - 1 : (int)high;
+}
+
+static bool any_touched(const shadow_buffer *slab, int x0, int x1, int y0, int y1) {
+  for (int y = y0; y <= y1; y++)
+    for (int x = x0; x <= x1; x++)
+      if (slab->tile_touched[(size_t)y * (size_t)slab->tiles_x + (size_t)x] != 0) return true;
+  return false;
+}
+
+/* Whether anything of the slab is in these of its tiles. */
+static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1) {
+  for (int y = y0; y <= y1; y++)
+    for (int x = x0; x <= x1; x++)
+      if (job->rows[(size_t)y * (size_t)job->slab_tiles_x + (size_t)x] != 0) return true;
+  return false;
+}
+
+/* What is present of the slab; x1 < 0: nothing. */
+static void bound_present(sublight_task *task) {
+  const shadow_buffer *slab = task->slab;
+  task->x0 = slab->tiles_x;
+  task->y0 = slab->tiles_y;
+  task->x1 = task->y1 = -1;
+  for (int y = 0; y < slab->tiles_y; y++) {
+    const slab_rows *row = task->sublights->rows + (size_t)y * (size_t)slab->tiles_x;
+    for (int x = 0; x < slab->tiles_x; x++) {
+      if (row[x] == 0) continue;
+      if (x < task->x0) task->x0 = x;
+      if (x > task->x1) task->x1 = x;
+      if (y < task->y0) task->y0 = y;
+      task->y1 = y;
+    }
+  }
+}
+
+/* The tiles of a part under these of the slab, along an axis. */
+static void part_tiles(const sublight *part, int axis, int low, int high, int tiles, int *first, int *last) {
+  double scale = 1 / (double)part->job.scale[axis], shift = -(double)part->job.shift[axis] * scale;
+  int unused;
+  tiles_under((double)low * TILE, scale, shift, tiles, first, &unused);
+  tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
+}
+
+/* A row of tiles of one part times the slab. */
+static void composite_row(const sublight_task *task, sublight *part, int y) {
+  const sublights *all = task->sublights;
+  const shadow_buffer *slab = task->slab;
+  int y0, y1, first, last;
+  part_tiles(part, 1, task->y0, task->y1, all->tiles_y, &first, &last);
+  if (y < first || y > last) return;
+  if (part->shifted) {
+    size_t row = (size_t)y * (size_t)all->tiles_x;
+    task->functions->composite_row(&part->job, y, task->x0, task->x1, part->lit + row, part->touched + row);
+    return;
+  }
+  part_tiles(part, 0, task->x0, task->x1, all->tiles_x, &first, &last);
+  tiles_under((double)y * TILE, (double)part->job.scale[1], (double)part->job.shift[1], slab->tiles_y, &y0,
+              &y1);
+  for (int x = first; x <= last; x++) {
+    size_t tile = (size_t)y * (size_t)all->tiles_x + (size_t)x;
+    int x0, x1;
+    if (part->lit[tile] == 0) continue;
+    tiles_under((double)x * TILE, (double)part->job.scale[0], (double)part->job.shift[0], slab->tiles_x, &x0,
+                &x1);
+    if (any_present(&part->job, x0, x1, y0, y1) && task->functions->composite(&part->job, x, y))
+      part->touched[tile] = 1;
+  }
+}
+
+/* Where light is left in a row of tiles, of those where some was taken. */
+static void find_part_lit(const sublight_task *task, sublight *part, int y) {
+  int tiles_x = task->sublights->tiles_x;
+  size_t row = (size_t)y * (size_t)tiles_x;
+  for (int x = 0; x < tiles_x; x++) {
+    if (!part->touched[row + (size_t)x]) continue;
+    part->touched[row + (size_t)x] = 0;
+    part->lit[row + (size_t)x] = (uint16_t)task->functions->lit(&part->job, x, y, part->lit[row + (size_t)x]);
+  }
+}
+
+static void advance_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const sublight_task *task = data;
+  const sublights *all = task->sublights;
+  sublight *part =
+      &all->parts[index % (size_t)all->count]; /* parts in turn: what the slab holds under a row stays near */
+  int y = (int)(index / (size_t)all->count);
+  if (!part->reaches) return;
+  if (task->x1 >= 0) composite_row(task, part, y);
+  if (task->ends_run) find_part_lit(task, part, y);
+}
+
+/* ---- the slab ---- */
+
+/* Rows of a tile, bits 0 to 15. */
+static void fill_ones(float *pixels, size_t stride, slab_rows of_images) {
+  for (uint32_t rows = of_images & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
+    for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
+}
+
+/* The images of one row of tiles. Those of a tile hold pixels of the next ones too. */
+static void move_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const sublight_task *task = data;
+  const sublights *all = task->sublights;
+  const shadow_buffer *slab = task->slab;
+  int y = (int)index, y1 = y + 1 < slab->tiles_y ? y + 1 : y;
+  for (int x = 0; x < slab->tiles_x; x++) {
+    int x1 = x + 1 < slab->tiles_x ? x + 1 : x;
+    if (!any_touched(slab, x, x1, y, y1)) continue;
+    for (int c = 0; c < all->channels; c++) {
+      half_pixel_job job = {.slab = slab->transmittance[c], .slab_stride = slab->stride};
+      for (int i = 1; i < SLAB_IMAGES; i++) job.moved[i] = moved_image(all, slab, c, i);
+      all->rows[index * (size_t)slab->tiles_x + (size_t)x] |= task->functions->half_pixel(&job, x, y);
+    }
+  }
+}
+
+/* Tiles of the slab become ones again. */
+static void clear_row(void *data, size_t index, int worker) {
+  (void)worker;
+  const sublight_task *task = data;
+  const sublights *all = task->sublights;
+  shadow_buffer *slab = task->slab;
+  for (int x = 0; x < slab->tiles_x; x++) {
+    size_t tile = index * (size_t)slab->tiles_x + (size_t)x,
+           at = index * TILE * slab->stride + (size_t)x * TILE;
+    for (int c = 0; c < slab->channels; c++)
+      for (int i = 0; i < SLAB_IMAGES; i++)
+        fill_ones((i == 0 ? slab->transmittance[c] : moved_image(all, slab, c, i)) + at, slab->stride,
+                  all->rows[tile] >> TILE * i);
+    all->rows[tile] = 0;
+    slab->tile_touched[tile] = 0;
+  }
+}
+
+/* Lit blocks are found for a few slabs at once: the first one alone, then LIT_SLABS after another. */
+enum { LIT_SLABS = 4 };
+static int run_of_slab(int slab) { return (slab + LIT_SLABS - 1) / LIT_SLABS + 1; }
+
+static part_place place_of_job(const sublight_job *job) {
+  return (part_place){{1 / (double)job->scale[0], 1 / (double)job->scale[1]},
+                      {(double)job->shift[0], (double)job->shift[1]}};
+}
+
+/* Where the parts are over the first and the last of the next slabs, from a height on. */
+static void place_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height,
+                      double spacing) {
+  for (int i = 0; i < sublights->count; i++) {
+    sublight *part = &sublights->parts[i];
+    map_part(sublights, part, slab, normal, height + (LIT_SLABS - 0.5) * spacing);
+    part->far = place_of_job(&part->job);
+    bool reached = part->reaches;
+    map_part(sublights, part, slab, normal, height + 0.5 * spacing);
+    part->near = place_of_job(&part->job);
+    part->comes = reached && !part->reaches;
+  }
+}
+
+void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to,
+                          hl_pool *pool, const sublight_functions *functions) {
+  for (int i = 0; i < sublights->count; i++)
+    map_part(sublights, &sublights->parts[i], slab, normal, (from + to) / 2);
+  sublight_task task = {.sublights = sublights, .slab = slab, .functions = functions};
+  hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
+  int run = run_of_slab(sublights->slabs++);
+  task.ends_run = run_of_slab(sublights->slabs) != run;
+  bound_present(&task);
+  if (task.x1 >= 0 || task.ends_run)
+    hl_pool_run(pool, (size_t)sublights->count * (size_t)sublights->tiles_y, advance_row, &task);
+  hl_pool_run(pool, (size_t)slab->tiles_y, clear_row, &task);
+  if (task.ends_run) place_run(sublights, slab, normal, to, to - from);
+}
+
+/* ---- what light reaches ---- */
+
+/* Pixels of the slab around a block that lie over the same pixels of a part: half pixels are made of two on
+ * either side. */
+enum { BLOCK_SPARE = 2 };
+
+/* Rows or columns of a part's blocks under each of the four of a tile of the slab. */
+typedef struct blocks_under {
+  int first[TILE / BLOCK], last[TILE / BLOCK];
+} blocks_under;
+
+/* Which of `count` lengths of pixels a place lies in; -1 or count beyond the ends. */
+static int place_among(double place, int length, int count) {
+  return place < 0 ? -1 : place >= (double)length * count ? count : (int)place / length;
+}
+
+static blocks_under find_under(const sublight *part, int axis, int tile, int tiles) {
+  const part_place *near = &part->near, *far = &part->far;
+  int end = tiles * (TILE / BLOCK);
+  blocks_under under;
+  for (int i = 0; i < TILE / BLOCK; i++) {
+    double from = tile * TILE + i * BLOCK - BLOCK_SPARE, to = from + BLOCK + 2 * BLOCK_SPARE;
+    int first = place_among(
+        fmin(near->scale[axis] * (from - near->shift[axis]), far->scale[axis] * (from - far->shift[axis])),
+        BLOCK, end);
+    int last = place_among(
+        fmax(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])), BLOCK,
+        end);
+    under.first[i] = first < 0 ? 0 : first;
+    under.last[i] = last < end ? last : end - 1;
+  }
+  return under;
+}
+
+/* The part's lit blocks in a row of them, from block `first` on: a bit each, as far as a word goes. */
+static uint64_t lit_in_row(const sublights *all, const sublight *part, int row, int first, int last) {
+  const uint16_t *tiles = part->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
+  uint64_t bits = 0;
+  for (int x = first / 4; x <= last / 4; x++) {
+    uint64_t four = tiles[x] >> 4 * (row % 4) & 15;
+    bits |= 4 * x < first ? four >> (first - 4 * x) : four << (4 * x - first);
+  }
+  return bits;
+}
+
+static uint32_t lit_by_blocks(const sublights *all, const sublight *part, const blocks_under *columns,
+                              const blocks_under *rows) {
+  int first = columns->first[0], last = columns->last[TILE / BLOCK - 1];
+  uint32_t lit = 0;
+  if (last - first >= 60) return ALL_BLOCKS;
+  for (int y = 0; y < TILE / BLOCK; y++) {
+    uint64_t bits = 0;
+    for (int row = rows->first[y]; row <= rows->last[y]; row++)
+      bits |= lit_in_row(all, part, row, first, last);
+    for (int x = 0; x < TILE / BLOCK && bits != 0; x++) {
+      int count = columns->last[x] - columns->first[x] + 1;
+      if (count > 0 && (bits >> (columns->first[x] - first) & (((uint64_t)1 << count) - 1)) != 0)
+        lit |= 1u << (4 * y + x);
+    }
+  }
+  return lit;
+}
+
+/* Most tiles are lit everywhere or nowhere. */
+static uint32_t lit_by_part(const sublights *all, const sublight *part, int tile_x, int tile_y) {
+  blocks_under columns = find_under(part, 0, tile_x, all->tiles_x),
+               rows = find_under(part, 1, tile_y, all->tiles_y);
+  int x0 = columns.first[0] / 4, x1 = columns.last[TILE / BLOCK - 1], y0 = rows.first[0] / 4,
+      y1 = rows.last[TILE / BLOCK - 1];
+  uint32_t any = 0, every = ALL_BLOCKS;
+  for (int y = y0; 4 * y <= y1; y++)
+    for (int x = x0; 4 * x <= x1; x++) {
+      uint32_t lit = part->lit[(size_t)y * (size_t)all->tiles_x + (size_t)x];
+      any |= lit;
+      every &= lit;
+    }
+  return any == 0 || every == ALL_BLOCKS ? any : lit_by_blocks(all, part, &columns, &rows);
+}
+
+void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile) {
+  int x = (int)(tile % (size_t)slab->tiles_x), y = (int)(tile / (size_t)slab->tiles_x);
+  uint32_t run = (uint32_t)run_of_slab(sublights->slabs);
+  if (sublights->found[tile] == run) return;
+  uint32_t lit = sublights->slabs == 0 ? ALL_BLOCKS : 0;
+  for (int i = 0; i < sublights->count && lit != ALL_BLOCKS; i++) {
+    const sublight *part = &sublights->parts[i];
+    if (part->reaches) lit |= lit_by_part(sublights, part, x, y);
+    else if (part->comes) lit = ALL_BLOCKS;
+  }
+  slab->tile_lit[tile] = (uint16_t)lit;
+  sublights->found[tile] = run;
+}

@@ -1,0 +1,80 @@
+/* shadow_sublights/sublights.h - soft shadows as the mean of many sharp ones (beyond the paper).
+ *
+ * The light is cut into M x M parts; each part is a point (or a direction) with a buffer of its own, seen
+ * from it on a plane parallel to the sheets. A slab is classified once, in the view of the light's centre;
+ * seen from a part its image is only scaled and shifted, so for the parts the composite alone repeats: each
+ * reads the slab's transmittance at the nearest half pixel, and what a buffer has gathered, in 16 bits, is
+ * never resampled. A sample takes the mean over all buffers, each through its own map. The parts are a turned
+ * grid: along either side of the light they are M^2 even steps. */
+#ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
+#define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
+
+#include "core/pool.h"
+#include "core/reserve.h"
+#include "light/light_extent.h"
+#include "light/light_image.h"
+#include "shadow/shadow_lookup.h"
+#include "shadow_sublights/sublight_field.h"
+
+enum { SUBLIGHT_REACH = 31 /* of the slab's buffer, beyond a tile */ };
+
+/* From pixels of the slab to those of a part, along u and v: scale * (pixel - shift). */
+typedef struct part_place {
+  double scale[2], shift[2];
+} part_place;
+
+/* One part's buffer. */
+typedef struct sublight {
+  view view;
+  part_pixel *pixels; /* pixel (0,0) of the first channel; the others a plane apart; in memory */
+  uint16_t *lit;      /* [tiles]; blocks in which light is left, or was before the last few slabs; in flags */
+  unsigned char *touched; /* [tiles]; 1 where those took some; in marks */
+  sublight_job job;       /* of the slab now composited */
+  bool reaches;           /* the part lies before the slab */
+  bool shifted;           /* the job's scale is 1 */
+  part_place near, far;   /* of the next slab, and of the last one that shares its lit blocks */
+  bool comes;             /* the part does not reach the next one, but the last */
+} sublight;
+
+typedef struct sublights {
+  int count, channels, tiles_x, tiles_y;
+  size_t stride, plane;
+  int slabs;            /* composited so far */
+  sublight *parts;      /* owned; [count] */
+  part_lookup *lookups; /* owned; [count] */
+  part_pixel *memory;   /* lent; [count][channels] planes */
+  uint16_t *flags;      /* owned; [count][tiles] */
+  unsigned char *marks; /* owned; [count][tiles] */
+  float *moved; /* lent; [channels][SLAB_IMAGES - 1] planes of the slab, half a pixel further along u, v and
+                   both */
+  slab_rows *rows; /* owned; [tiles of the slab] */
+  uint32_t
+      *found; /* owned; [tiles of the slab]; the run of slabs for which its lit blocks were found; 0: none */
+} sublights;
+
+typedef struct sublight_functions {
+  sublight_tile_function *composite;
+  sublight_row_function *composite_row; /* where pixels are only shifted */
+  sublight_lit_function *lit;
+  half_pixel_tile_function *half_pixel;
+} sublight_functions;
+
+/* image: the light's, null where it is even. side: M. slab: the buffer of one slab at a time. */
+hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights,
+                             const light_source *source, const light_image *image, int side, vec3 normal,
+                             const shadow_extent *extent, const shadow_buffer *slab, hl_error *error);
+/* The bytes that they then hold. slab, reach: of that buffer. */
+uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
+                            const shadow_extent *extent, int channels, const view *slab, int reach);
+void hl_sublights_release(hl_reserve *reserve, sublights *sublights);
+
+/* After the slab between these heights was composited into slab, a buffer that held ones: composites it into
+ * all parts, and makes slab ones again. */
+void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to,
+                          hl_pool *pool, const sublight_functions *functions);
+
+/* Finds the blocks of a tile of the next slab that some part's light still reaches: slab's tile_lit. One task
+ * has a tile. */
+void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile);
+
+#endif
