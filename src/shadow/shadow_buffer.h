@@ -20,7 +20,7 @@ typedef struct shadow_buffer {
   size_t origin;                     /* offset of pixel (0,0) in a plane */
   float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory */
   float *second[HL_CHANNELS];  /* pixel (0,0); in memory; null: none. The paper's soft shadows: between two
-                                  blurs. The  cascade's: what light receivers fade from, see soft_cascade.h */
+                                  blurs. The cascade's: what light receivers fade from, see cascade.h */
   float *memory;               /* owned; all planes */
   size_t capacity;             /* floats in memory */
   uint16_t *tile_lit;          /* owned; [tiles]; blocks that light still reaches */

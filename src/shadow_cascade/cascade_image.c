@@ -3,7 +3,7 @@
  * Boxes may be blurred step by step, since of them variances alone matter. An image must be whole in every
  * penumbra: what group o absorbed is weighed at once by the taps of the image, scaled to w(o -> r)
  * (light_image.h), far groups first: s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel (derived
- * as in soft_cascade.h; without thin matter it is the sum over groups of K(G), which is the light's mean of
+ * as in cascade.h; without thin matter it is the sum over groups of K(G), which is the light's mean of
  * what its cells see). Nothing is kept from one receiver to the next; far groups are coarse. */
 #include "shadow_cascade/cascade_passes.h"
 
