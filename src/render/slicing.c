@@ -53,10 +53,58 @@ static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
   return true;
 }
 
+/* The middle of the narrowest cone around a light's rays to the content's corners, nearly: the axis moves
+ * towards the ray farthest from it, each time by less (Badoiu and Clarkson, "Smaller core-sets for balls",
+ * 2003, on directions). */
+static vec3 middle_of_rays(const frame *frame, const light_source *source) {
+  enum { STEPS = 64 };
+  vec3 middle = source->direction;
+  for (int step = 1; step <= STEPS; step++) {
+    vec3 farthest = middle;
+    double least = INFINITY;
+    for (int i = 0; i < frame->point_count; i++) {
+      vec3 way = vec3_normalise(vec3_subtract(frame->points[i], source->position));
+      if (vec3_dot(way, middle) < least) {
+        least = vec3_dot(way, middle);
+        farthest = way;
+      }
+    }
+    vec3 towards = vec3_add(middle, vec3_scale(vec3_subtract(farthest, middle), 1.0 / (step + 1)));
+    if (vec3_length(towards) > 1e-6) middle = vec3_normalise(towards);
+  }
+  return middle;
+}
+
+static vec3 lean_towards(vec3 h, vec3 axis, double fraction) {
+  return vec3_normalise(vec3_add(vec3_scale(h, 1 - fraction), vec3_scale(axis, fraction)));
+}
+
+/* The slicing axis of one light. Where the half-way vector's sheets are not crossed by all rays of a near
+ * light, the axis leans towards the middle of the light's rays, no further than they need: it then moves
+ * without a jump as the light does. False where no such sheets serve both the light and the eye. */
+static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
+                          vec3 *h, bool *back_to_front) {
+  *h = slicing_axis(frame, settings, source->direction, back_to_front);
+  if (settings->slicing == HL_SLICING_IMAGE_ALIGNED || rays_cross(frame, source, *h)) return true;
+  vec3 middle = middle_of_rays(frame, source);
+  if (!rays_cross(frame, source, middle)) return false;
+  double low = 0, high = 1;
+  for (int i = 0; i < 40; i++) {
+    double fraction = (low + high) / 2;
+    if (rays_cross(frame, source, lean_towards(*h, middle, fraction))) high = fraction;
+    else low = fraction;
+  }
+  vec3 leaning = lean_towards(*h, middle, high);
+  double e = vec3_dot(frame->eye_direction, leaning) * (*back_to_front ? -1 : 1);
+  if (e <= 0 || flattest_eye_ray(&frame->eye, leaning) < FLATTEST) return false;
+  *h = leaning;
+  return true;
+}
+
 bool hl_frame_serves(const frame *frame, const hl_render_settings *settings, const light_source *source) {
   bool back_to_front;
-  if (settings->slicing == HL_SLICING_IMAGE_ALIGNED) return true; /* as asked */
-  return rays_cross(frame, source, slicing_axis(frame, settings, source->direction, &back_to_front));
+  vec3 h;
+  return axis_of_light(frame, settings, source, &h, &back_to_front);
 }
 
 static bool axis_serves(const frame *frame, const frame_sweep *sweep, vec3 h, bool back_to_front) {
@@ -80,7 +128,10 @@ static bool try_light(const frame *frame, const hl_render_settings *settings, fr
   if (sweep->light_count == FRAME_LIGHTS || sweep->of_sectors) return false;
   sweep->light[sweep->light_count++] = light;
   bool back_to_front;
-  vec3 h = slicing_axis(frame, settings, sum_of_directions(frame, sweep), &back_to_front);
+  vec3 h;
+  if (sweep->light_count == 1)
+    (void)axis_of_light(frame, settings, &frame->lights[light], &h, &back_to_front);
+  else h = slicing_axis(frame, settings, sum_of_directions(frame, sweep), &back_to_front);
   if (sweep->light_count == 1 || axis_serves(frame, sweep, h, back_to_front)) {
     sweep->sheets.normal = h;
     sweep->back_to_front = back_to_front;

@@ -133,6 +133,51 @@ static void test_floors_under_near_lights(void **state) {
   }
 }
 
+/* A box on a floor under a near, wide light, against 8 x 8 sub-lights: in its umbra, where these leave
+ * nothing, next to nothing is left, and its penumbrae are where theirs are. */
+static void test_box_under_near_light(void **state) {
+  static const char volume[] =
+      "{\"shapes\": [{\"type\": \"box\", \"size\": [420, 420, 12]}, {\"type\": \"box\", \"size\": [60, 60, "
+      "60], "
+      "\"position\": [0, 0, 36]}], \"voxel_size\": 2, " MATERIAL "}";
+  static const char light[] =
+      "\"type\": \"rect\", \"position\": [-60, 0, 190], \"edge1\": [80, 0, 0], \"edge2\": [0, 80, 0]";
+  static float truth[SIDE * SIDE * 4];
+  (void)state;
+  render(volume, light, CAMERA,
+         "\"soft_method\": \"sublights\", \"light_samples\": 8, \"sheet_spacing\": 1, \"threads\": 2");
+  memcpy(truth, pixels, sizeof truth);
+  render(volume, light, CAMERA, "\"soft_method\": \"cascade\", \"sheet_spacing\": 1, \"threads\": 2");
+  double squares = 0, brightest = 0;
+  for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i += 4) {
+    squares += (pixels[i] - truth[i]) * (pixels[i] - truth[i]);
+    brightest = fmax(brightest, truth[i]);
+  }
+  double error = sqrt(squares / (SIDE * SIDE)) / brightest;
+  if (getenv("HALFLIGHT_SHOW") != NULL) printf("# box under a near light: %.4f\n", error);
+  assert_true(error < 0.015);
+}
+
+/* A light that comes nearer by small steps changes the picture by small steps, also where the half-way
+ * vector's sheets cease to serve all of its rays (at 228.197 above the floor). */
+static void test_near_light_moves_evenly(void **state) {
+  static float before[SIDE * SIDE * 4];
+  double change[3] = {0, 0, 0};
+  (void)state;
+  for (int step = 0; step < 3; step++) {
+    char light[200];
+    snprintf(light, sizeof light,
+             "\"type\": \"rect\", \"position\": [0, 0, %.3f], \"edge1\": [40, 0, 0], \"edge2\": [0, 40, 0]",
+             228.2045 - 0.015 * step);
+    render(FLOOR, light, CAMERA, "\"soft_method\": \"cascade\", \"sheet_spacing\": 1, \"threads\": 2");
+    for (size_t i = 0; i < sizeof pixels / sizeof *pixels && step > 0; i++)
+      change[step] = fmax(change[step], fabs(pixels[i] - before[i]));
+    memcpy(before, pixels, sizeof before);
+  }
+  if (getenv("HALFLIGHT_SHOW") != NULL) printf("# moved light: %.5f, %.5f\n", change[1], change[2]);
+  assert_true(change[1] < 2 * change[2] + 0.001);
+}
+
 /* Rings on a ball. */
 static void test_balls(void **state) {
   static const double sizes[] = {5, 20, 40};
@@ -171,6 +216,8 @@ int main(void) {
       cmocka_unit_test_prestate(test_floors_under_directional_light, hard),
       cmocka_unit_test_prestate(test_floors_under_near_lights, hard),
       cmocka_unit_test_prestate(test_balls, hard),
+      cmocka_unit_test(test_box_under_near_light),
+      cmocka_unit_test(test_near_light_moves_evenly),
       cmocka_unit_test_prestate(test_floors_under_directional_light, cascade),
       cmocka_unit_test_prestate(test_floors_under_near_lights, cascade),
       cmocka_unit_test_prestate(test_balls, cascade),
