@@ -10,7 +10,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "reference/reference.h"
-#include "scene/layers.h"
+#include "scene/check.h"
 
 /* A ray ends where the eye sees no more through it. */
 static const double OPAQUE = 1 - 1e-5;

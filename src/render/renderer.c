@@ -10,7 +10,7 @@
 #include "render/framed_scene.h"
 #include "render/maximum.h"
 #include "render/prepare.h"
-#include "scene/layers.h"
+#include "scene/check.h"
 
 struct hl_renderer {
   hl_context *context;

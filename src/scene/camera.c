@@ -1,14 +1,16 @@
-/* scene/camera.c - the camera's axes, views and the camera turned to them, and lights placed as seen by
- * it. */
+/* scene/camera.c - the camera's axes, views, the camera turned to a view, and directions of lights as the
+ * camera sees them. */
+#include "scene/camera.h"
+
 #include <string.h>
 
-#include "scene/view.h"
+#include "volume/volume.h"
 
-#define STEEP                                                                                  \
-  89.5 /* degrees: from here on the view's up is too near the line of sight to be the camera's \
-        * \ */
-#define LEVEL       1e-6 /* sine of what a horizon may be out by */
-#define ANGLE_STEPS 1e9  /* to a degree: what a camera's places, rounded, say of its angles */
+#define STEEP 89.5 /* degrees: steeper views lie too near the view's up for a camera's up */
+#define LEVEL 1e-6 /* sine of the angle that a horizon may be off by */
+#define ANGLE_STEPS \
+  1e9               /* per degree: angles found from a camera's rounded coordinates are rounded to these */
+#define OBLIQUE 0.9 /* cosine: an axis nearer to up than this is no front */
 
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward) {
   vec3 sight = vec3_subtract(vec3_of(camera->target), vec3_of(camera->position));
@@ -46,6 +48,32 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
   way = vec3_add(way, vec3_scale(right, beside[0]));
   way = vec3_add(way, vec3_scale(up, beside[1]));
   memcpy(direction, &way, sizeof way);
+}
+
+/* Anatomy holds while a volume is not turned in the scene. */
+hl_space hl_scene_space(const hl_scene_description *description) {
+  for (size_t v = 0; v < description->volume_count; v++)
+    if (description->volumes[v].volume->space != HL_SPACE_UNKNOWN &&
+        description->volumes[v].rotate_angle_deg == 0)
+      return description->volumes[v].volume->space;
+  return HL_SPACE_UNKNOWN;
+}
+
+static vec3 front_of(hl_space space) { return (vec3){0, space == HL_SPACE_LPS ? -1 : 1, 0}; }
+static vec3 beside(vec3 v, vec3 up) {
+  return vec3_normalise(vec3_subtract(v, vec3_scale(up, vec3_dot(v, up))));
+}
+
+void hl_view_about(const hl_scene_description *description, vec3 given_up, hl_view *view) {
+  vec3 up = vec3_normalise(given_up), x = {1, 0, 0}, y = {0, 1, 0};
+  hl_space space = hl_scene_space(description);
+  vec3 front = vec3_cross(beside(fabs(up.x) < OBLIQUE ? x : y, up), up);
+  if (space != HL_SPACE_UNKNOWN && fabs(vec3_dot(front_of(space), up)) < OBLIQUE)
+    front = beside(front_of(space), up);
+  *view = (hl_view){.up = {up.x, up.y, up.z},
+                    .front = {front.x, front.y, front.z},
+                    .azimuth_deg = HL_VIEW_AZIMUTH,
+                    .elevation_deg = HL_VIEW_ELEVATION};
 }
 
 /* Right of the view's front, for who looks at it. */

@@ -2,6 +2,7 @@
 #ifndef HL_SCENE_CHECK_H
 #define HL_SCENE_CHECK_H
 
+#include <halflight/layers.h>
 #include <halflight/scene.h>
 
 #define HL_LIMIT_PIXELS         32768 /* image width and height */
@@ -39,5 +40,8 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
 /* One transfer function; place is what errors call it ("/volumes/0/transfer_function"). */
 hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place,
                                      hl_error *error);
+
+/* The layers that a frame of this scene is asked for; null: none. */
+hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *scene, hl_error *error);
 
 #endif

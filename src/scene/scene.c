@@ -9,7 +9,7 @@
 
 #include "core/memory.h"
 #include "scene/check.h"
-#include "scene/light_frame.h"
+#include "scene/placement.h"
 
 void hl_light_defaults(hl_light *light) {
   if (light == NULL) return;

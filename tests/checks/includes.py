@@ -2,34 +2,44 @@
 """Dependencies between rooms point one way, and programs see the public headers alone.
 
 usage: includes.py SOURCE_FOLDER
+The rooms and what each may use are the table in docs/architecture.md: the rooms named there, and the rooms that those may use.
 """
 import pathlib
 import re
 import sys
 
-# room: rooms whose headers it may include besides its own and the public ones
-ALLOWED = {
-    "core": set(),
-    "volume": {"core"},
-    "shape": {"core", "volume"},
-    "scene": {"core", "volume", "shape"},
-    "image": {"core"},
-    "simd": {"core", "volume", "scene", "splat", "light", "shadow", "shadow_cascade", "shadow_sublights", "render"},
-    "splat": {"core", "volume", "scene", "simd"},
-    "light": {"core", "volume", "scene", "simd", "splat"},
-    "shadow": {"core", "volume", "scene", "simd", "splat", "light"},
-    "shadow_hard": {"core", "scene", "simd", "splat", "light", "shadow"},
-    "shadow_paper": {"core", "scene", "simd", "splat", "light", "shadow"},
-    "shadow_cascade": {"core", "scene", "simd", "splat", "light", "shadow"},
-    "shadow_sublights": {"core", "scene", "simd", "splat", "light", "shadow"},
-    "render": {"core", "volume", "scene", "simd", "splat", "light", "shadow", "image"},
-    "reference": {"core", "volume", "scene"},
-    "cli": set(),
-}
-PUBLIC_ONLY = {"cli"}
-
 root = pathlib.Path(sys.argv[1])
 problems = []
+
+
+def allowed_rooms(page):
+    """{room: rooms whose headers it may include besides its own and the public ones} from the page's table of rooms."""
+    rows = re.findall(r"^\| (`src/\w+/`[^|]*)\|.*\|([^|]*)\|$", page, re.M)
+    return {room: {name.strip() for name in uses.split(",") if name.strip()}
+            for rooms, uses in rows for room in re.findall(r"`src/(\w+)/`", rooms)}
+
+
+def find_circles(allowed):
+    """A room that may use another one may not be used by it."""
+    for room in sorted(allowed):
+        reached, waiting = set(), [room]
+        while waiting:
+            for use in allowed.get(waiting.pop(), set()) - reached - IN_CIRCLES:
+                reached.add(use)
+                waiting.append(use)
+        if room in reached:
+            problems.append(f"docs/architecture.md: src/{room}/ may use itself by way of other rooms")
+
+
+# The table of hot functions names the functions of the rooms that call it.
+IN_CIRCLES = {"simd"}
+PUBLIC_HEADERS = "the public headers alone"
+ALLOWED = allowed_rooms((root / "docs" / "architecture.md").read_text())
+PUBLIC_ONLY = {room for room, uses in ALLOWED.items() if uses == {PUBLIC_HEADERS}}
+for room, uses in ALLOWED.items():
+    for use in sorted(uses - set(ALLOWED) - {PUBLIC_HEADERS}):
+        problems.append(f"docs/architecture.md: src/{room}/ may use {use}, which is no room of the table")
+find_circles(ALLOWED)
 
 
 def includes(path):
@@ -59,7 +69,7 @@ def check_source(path, room):
 sources = sorted((root / "src").glob("*/*.[ch]"))
 for source in sources:
     if source.parent.name not in ALLOWED:
-        problems.append(f"src/{source.parent.name}: unknown room: add it to the table in this script")
+        problems.append(f"src/{source.parent.name}: unknown room: add it to the table in docs/architecture.md")
     else:
         check_source(source, source.parent.name)
 

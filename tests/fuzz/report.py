@@ -22,10 +22,10 @@ TARGETS = {
     "legacy_vtk": ("legacy VTK", ["volume/legacy_vtk.c"]),
     "vti": ("VTK XML", ["volume/vti.c", "volume/xml.c"]),
     "raw": ("bare voxels, descriptors", ["volume/raw.c"]),
-    "transfer": ("transfer functions", ["scene/transfer_load.c", "scene/json_transfer.c"]),
-    "shapes": ("shapes", ["scene/json_shapes.c", "scene/shapes_volume.c", "shape/"]),
+    "transfer": ("transfer functions", ["json/transfer_load.c", "json/transfer_function.c"]),
+    "shapes": ("shapes", ["json/shapes.c", "json/shapes_volume.c", "shape/"]),
     "picture": ("PNG, OpenEXR, NPY", ["image/png_read.c", "image/exr_read.c", "image/npy.c"]),
-    "scene": ("scene files", ["scene/json_", "scene/scene_json.c", "scene/check.c", "scene/scene.c"]),
+    "scene": ("scene files", ["json/", "scene/"]),
     "render": ("whole renders", ["render/", "light/", "splat/"])}
 SHARED = ("all volume files, what they share included", ["volume/"],
           ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "raw"])

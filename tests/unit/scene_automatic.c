@@ -1,9 +1,9 @@
 /* tests/unit/scene_automatic.c - automatic transfer functions, presets, colormaps, default scenes. */
-#include "scene/automatic.h"
-#include "scene/colormap.h"
+#include "guess/analysis.h"
+#include "guess/sample.h"
+#include "guess/view.h"
 #include "scene/nearest.h"
-#include "scene/sample.h"
-#include "scene/upright.h"
+#include "scene/transfer_function.h"
 #include "scene_parts.h"
 
 enum { N = 40 };

@@ -1,7 +1,7 @@
 /* tests/unit/scene_looks.c - what volumes are taken for, and how they are then shown: colours, labels,
  * lights. */
-#include "scene/exposure.h"
-#include "scene/looks.h"
+#include "guess/exposure.h"
+#include "guess/looks.h"
 #include "scene_parts.h"
 
 enum { N = 48, COUNT = N * N * N };

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "guess/for_volume.h"
 #include "scene/scene.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "scene/automatic.h"
-#include "scene/sample.h"
+#include "guess/analysis.h"
+#include "guess/sample.h"
 #include "scene_parts.h"
 
 static const char *data_folder(void) {

@@ -1,0 +1,294 @@
+/* guess/framing.c - a camera so placed that what is seen fills the picture and is in its middle.
+
+ *
+ * In: the outline of what is seen, and a direction of view. Each side of the picture is a plane through the
+ * eye, so the nearest eye that has all of it inside follows from the greatest reach to each side. With room
+ * for turning the eye goes farther away, about a target that stays. */
+#include <string.h>
+
+#include "core/error.h"
+#include "guess/outline.h"
+#include "guess/view.h"
+
+#define FILLED       0.92 /* of the picture's half width or height, by what is seen along a fixed direction */
+#define FILLED_LEAST 0.82 /* the same, less room for turning */
+#define OVER                                                                                               \
+  1.04 /* so much less room is enough at the narrowest place of a turn: less than the rims of what is seen \
+        * \ */
+#define WIDER 1.04 /* so much more has a view to show to be taken instead of an earlier one */
+#define ASIDE                                                                                               \
+  0.012 /* of the picture's sides: so far beside the middle what is seen may be, for a turn that needs less \
+           room */
+
+enum { TURNS = 36, HALVINGS = 48, SECTIONS = 12 };
+
+/* One direction of view; tangents of half the picture's angles, 0: parallel. */
+typedef struct frame_job {
+  const hl_outline *outline;
+  vec3 right, up, forward;
+  double aspect, tangent_x, tangent_y;
+} frame_job;
+
+/* Where the eye is along right, up and forward; for parallel projections half the picture's height instead of
+ * `forward`. */
+typedef struct frame_place {
+  double right, up, forward, half_height;
+} frame_place;
+
+static double reach(const frame_job *job, vec3 along, double tangent) {
+  return hl_outline_reach(job->outline, along, job->forward, tangent);
+}
+
+/* Derived: the plane x = ex + t (z - ez) and its mirror hold every point, so ex - t ez >= l and -ex - t ez >=
+ * r, the reaches to the two sides; together ez <= -(l + r) / (2 t), with ex = (l - r) / 2. */
+static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
+  return -(reach(job, along, tangent) + reach(job, vec3_scale(along, -1), tangent)) / 2 / tangent;
+}
+
+/* Where the eye is along `along` if it is at this depth and what is seen is to be in the middle. Derived:
+ * then both sides are at the same tangent t, for which that depth is the nearest; the depth grows with t. */
+static double middle_from(const frame_job *job, vec3 along, double greatest, double depth) {
+  double low = 0, high = greatest;
+  for (int n = 0; n < HALVINGS && greatest > 0; n++) {
+    double tangent = (low + high) / 2;
+    if (nearest_eye(job, along, tangent) > depth) high = tangent;
+    else low = tangent;
+  }
+  return (reach(job, along, high) - reach(job, vec3_scale(along, -1), high)) / 2;
+}
+
+/* So far away, or with so much more height, than what fills this part of the picture. */
+static frame_place fit(const frame_job *job, double filled) {
+  frame_place place = {0};
+  if (job->tangent_y > 0) {
+    double by_width = nearest_eye(job, job->right, filled * job->tangent_x),
+           by_height = nearest_eye(job, job->up, filled * job->tangent_y);
+    place.forward = fmin(by_width, by_height);
+  } else {
+    double width = reach(job, job->right, 0) + reach(job, vec3_scale(job->right, -1), 0);
+    double height = reach(job, job->up, 0) + reach(job, vec3_scale(job->up, -1), 0);
+    place.half_height = fmax(height, width / job->aspect) / 2 / filled;
+  }
+  return place;
+}
+
+static void centre(const frame_job *job, frame_place *place) {
+  place->right = middle_from(job, job->right, job->tangent_x, place->forward);
+  place->up = middle_from(job, job->up, job->tangent_y, place->forward);
+}
+
+static vec3 point_at(const frame_job *job, const frame_place *place, double depth) {
+  return vec3_add(vec3_add(vec3_scale(job->right, place->right), vec3_scale(job->up, place->up)),
+                  vec3_scale(job->forward, depth));
+}
+
+/* ---- room for turning ---- */
+
+/* The least distance from the target, or half height, with which nothing leaves the picture. Derived: for a
+ * plane at tangent t a point at x and z from the target needs x <= t (distance + z). */
+static double needed(const frame_job *job, vec3 target) {
+  const vec3 along[4] = {job->right, vec3_scale(job->right, -1), job->up, vec3_scale(job->up, -1)};
+  double most = 0;
+  for (int side = 0; side < 4; side++) {
+    double tangent = side < 2 ? job->tangent_x : job->tangent_y;
+    double beyond = reach(job, along[side], tangent) - vec3_dot(target, along[side]) +
+                    tangent * vec3_dot(target, job->forward);
+    most = fmax(most, tangent > 0 ? beyond / tangent : beyond / (side < 2 ? job->aspect : 1));
+  }
+  return most;
+}
+
+static void look(frame_job *job, const hl_view *view) {
+  hl_view_axes(view, &job->right, &job->up, &job->forward);
+}
+
+/* The same whatever the azimuth. */
+static double needed_in_a_turn(const frame_job *job, const hl_view *view, vec3 target) {
+  frame_job turned = *job;
+  hl_view at = *view;
+  double most = 0;
+  for (int n = 0; n < TURNS; n++) {
+    at.azimuth_deg = view->azimuth_deg + 360.0 * n / TURNS;
+    look(&turned, &at);
+    most = fmax(most, needed(&turned, target));
+  }
+  return most;
+}
+
+static double radius_about(const hl_outline *outline, vec3 target) {
+  double greatest = 0;
+  for (size_t n = 0; n < outline->count; n++)
+    greatest = fmax(greatest, vec3_length(vec3_subtract(outline->point[n], target)) + outline->radius[n]);
+  return greatest;
+}
+
+/* The same whatever the direction. */
+static double needed_at_all(const frame_job *job, vec3 target) {
+  double radius = radius_about(job->outline, target), tangent = fmin(job->tangent_x, job->tangent_y);
+  return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* over the sine */
+                     : radius / fmin(1, job->aspect);
+}
+
+/* The distance from the target, at this depth, or half the height: one number for both projections. */
+static double room_of(const frame_job *job, const frame_place *place, double depth) {
+  return job->tangent_y > 0 ? depth - place->forward : place->half_height;
+}
+
+/* Lowers what a turn needs along one coordinate of the target (golden section; it is convex, as a maximum of
+ * linear functions). */
+static void improve(const frame_job *job, const hl_view *view, vec3 along, double reach_each_way,
+                    vec3 *target) {
+  const double ratio = (sqrt(5) - 1) / 2;
+  double low = -reach_each_way, high = reach_each_way;
+  for (int n = 0; n < SECTIONS; n++) {
+    double a = high - ratio * (high - low), b = low + ratio * (high - low);
+    bool lower = needed_in_a_turn(job, view, vec3_add(*target, vec3_scale(along, a))) <
+                 needed_in_a_turn(job, view, vec3_add(*target, vec3_scale(along, b)));
+    if (lower) high = b;
+    else low = a;
+  }
+  *target = vec3_add(*target, vec3_scale(along, (low + high) / 2));
+}
+
+/* Moves the eye back for a turn about a target as good as can be: at any depth, and a little beside the
+ * middle. few: some of the outline, for the turn. Returns the target's depth. */
+static double make_room(const frame_job *job, const frame_job *few, const hl_view *view, frame_place *place) {
+  const frame_place tight = *place, loose = fit(job, FILLED_LEAST);
+  double depth = (reach(job, job->forward, 0) - reach(job, vec3_scale(job->forward, -1), 0)) / 2;
+  for (int round = 0; round < 3; round++) { /* what is in the middle depends on the distance a little */
+    centre(job, place);
+    double room = room_of(job, place, depth),
+           height = 2 * (job->tangent_y > 0 ? room * job->tangent_y : room);
+    vec3 target = point_at(job, place, depth);
+    improve(few, view, job->forward, radius_about(job->outline, target), &target);
+    improve(few, view, job->right, ASIDE * height * job->aspect, &target);
+    improve(few, view, job->up, ASIDE * height, &target);
+    improve(few, view, job->forward, radius_about(job->outline, target) / 4, &target);
+    depth = vec3_dot(target, job->forward);
+    double turn = needed_in_a_turn(job, view, target), enough = room_of(job, &loose, depth);
+    room = fmax(fmax(room_of(job, &tight, depth), turn / OVER), fmin(enough, needed_at_all(job, target)));
+    *place = (frame_place){vec3_dot(target, job->right), vec3_dot(target, job->up), depth - room, room};
+  }
+  return depth;
+}
+
+/* ---- cameras ---- */
+
+static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera,
+                       hl_outline *outline, frame_job *job, hl_error *error) {
+  bool perspective = camera->type == HL_CAMERA_PERSPECTIVE, possible = zoom >= 1e-6 && zoom <= 1e6;
+  possible = possible && description->volume_count > 0 && description->width > 0 && description->height > 0;
+  possible = possible && (!perspective || (camera->fovy_deg > 0 && camera->fovy_deg < 180));
+  for (size_t n = 0; n < description->volume_count; n++)
+    possible = possible && description->volumes[n].volume != NULL;
+  if (!possible)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "a camera cannot be framed without a volume, or with such a zoom, picture or field of view");
+  job->outline = outline;
+  job->aspect = (double)description->width / description->height;
+  job->tangent_y = perspective ? tan(camera->fovy_deg * HL_PI / 360) : 0;
+  job->tangent_x = job->tangent_y * job->aspect;
+  return hl_outline_find(description, outline, error);
+}
+
+/* Parallel projection does not depend on the eye's place: it is well before all that is seen. */
+static double distance_to(const frame_job *job, const frame_place *place, double depth, double extent,
+                          double zoom) {
+  double wide = fmax(place->half_height, place->half_height * job->aspect);
+  return job->tangent_y > 0 ? fmax(depth - place->forward, 1e-6 * extent) / zoom : extent / 2 + 2 * wide;
+}
+
+hl_status hl_camera_frame_view(const hl_scene_description *description, const hl_view *view, double zoom,
+                               hl_camera *camera, hl_error *error) {
+  if (description == NULL || view == NULL || camera == NULL || !hl_view_is_possible(view))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_camera_frame_view: null description or camera, or an impossible view");
+  hl_outline outline = {0}, thinned = {0};
+  frame_job job;
+  hl_status status = begin(description, zoom, camera, &outline, &job, error);
+  if (status == HL_OK) status = hl_outline_thin(&outline, &thinned, error);
+  if (status == HL_OK) {
+    look(&job, view);
+    frame_place place = fit(&job, FILLED);
+    frame_job few = job;
+    few.outline = &thinned;
+    double depth = make_room(&job, &few, view, &place);
+    vec3 target = point_at(&job, &place, depth);
+    if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height = 2 * place.half_height / zoom;
+    hl_camera_place(view, target, distance_to(&job, &place, depth, 2 * radius_about(&outline, target), zoom),
+                    camera);
+  }
+  hl_outline_release(&outline);
+  hl_outline_release(&thinned);
+  return status;
+}
+
+hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, hl_error *error) {
+  static const double turns[] = {
+      0, -2, 4, 2, 1, -3, 5, 3}; /* of HL_VIEW_AZIMUTH: the four three-quarter views, and their mirrors */
+  const hl_camera usual = {.type = HL_CAMERA_PERSPECTIVE, .fovy_deg = 30};
+  hl_scene_description square = *description;
+  square.width = square.height = 1;
+  const hl_view given = *view;
+  hl_outline outline = {0};
+  frame_job job;
+  hl_status status = begin(&square, 1, &usual, &outline, &job, error);
+  double most = 0;
+  for (size_t n = 0; status == HL_OK && n < sizeof turns / sizeof *turns; n++) {
+    hl_view at = given;
+    at.azimuth_deg += turns[n] * HL_VIEW_AZIMUTH;
+    look(&job, &at);
+    frame_place place = fit(&job, FILLED);
+    double wide = (reach(&job, job.forward, 0) - reach(&job, vec3_scale(job.forward, -1), 0)) / 2 -
+                  place.forward;
+    if (wide <= WIDER * most) continue;
+    most = wide;
+    view->azimuth_deg = at.azimuth_deg;
+  }
+  hl_outline_release(&outline);
+  return status;
+}
+
+/* Tight along axes that are already in *job. */
+static void place_tightly(const frame_job *job, double zoom, hl_camera *camera) {
+  double near = -reach(job, vec3_scale(job->forward, -1), 0), far = reach(job, job->forward, 0),
+         depth = (near + far) / 2;
+  frame_place place = fit(job, FILLED);
+  centre(job, &place);
+  vec3 target = point_at(job, &place, depth);
+  vec3 position = vec3_subtract(target,
+                                vec3_scale(job->forward, distance_to(job, &place, depth, far - near, zoom)));
+  if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height = 2 * place.half_height / zoom;
+  memcpy(camera->target, &target, sizeof camera->target);
+  memcpy(camera->position, &position, sizeof camera->position);
+  memcpy(camera->up, &job->up, sizeof camera->up);
+}
+
+hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg, double elevation_deg,
+                          double zoom, hl_camera *camera) {
+  if (description == NULL || camera == NULL || !isfinite(azimuth_deg) || !isfinite(elevation_deg))
+    return HL_ERROR_ARGUMENT;
+  const hl_view view = {{0, 0, 1}, {0, -1, 0}, azimuth_deg, elevation_deg, 0};
+  hl_outline outline = {0};
+  frame_job job;
+  hl_status status = begin(description, zoom, camera, &outline, &job, NULL);
+  look(&job, &view);
+  if (status == HL_OK) place_tightly(&job, zoom, camera);
+  hl_outline_release(&outline);
+  return status;
+}
+
+hl_status hl_camera_fit(const hl_scene_description *description, double zoom, hl_camera *camera) {
+  if (description == NULL || camera == NULL) return HL_ERROR_ARGUMENT;
+  double distance = vec3_length(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
+  if (!(distance > 0 && isfinite(distance) && isfinite(vec3_length(vec3_of(camera->up)))))
+    return HL_ERROR_ARGUMENT;
+  hl_outline outline = {0};
+  frame_job job;
+  hl_status status = begin(description, zoom, camera, &outline, &job, NULL);
+  hl_camera_basis(camera, &job.right, &job.up, &job.forward);
+  if (status == HL_OK) place_tightly(&job, zoom, camera);
+  hl_outline_release(&outline);
+  return status;
+}

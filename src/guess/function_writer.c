@@ -1,0 +1,228 @@
+/* guess/function_writer.c - from an analysis of the data to a transfer function that shows it: one writer for
+
+ * each look.
+ *
+ * In: measurements of a volume. Out: opacities and colours. Opacities are per smallest voxel edge. Surfaces
+ * become solid within the ramp between where things begin and where they surely are; fields and media get an
+ * optical depth across the whole object, so that large and small grids look alike.
+ */
+#include "guess/function_writer.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "guess/analysis.h"
+#include "guess/looks.h"
+#include "scene/scene.h"
+#include "scene/transfer_function.h"
+
+#define FLOW_DEPTH   2.0 /* of a flow whose values are all seen */
+#define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */
+
+/* Four colours in linear RGB: at the rim of things, on their surface, in their denser matter, and at the
+ * top. */
+typedef struct palette {
+  double rim[3], surface[3], dense[3], top[3];
+} palette;
+
+static void write_solid(hl_function_writer *w, const palette *colors) {
+  const hl_data_analysis *a = w->analysis;
+  double ramp = a->solid - a->faint, dense = fmax(a->dense, a->solid + 1e-6 * a->top),
+         top = fmax(a->top, dense * 1.001);
+  hl_add_opacity(w, a->faint, 0);
+  hl_add_opacity(w, a->faint + 0.35 * ramp, 0.08);
+  hl_add_opacity(w, a->faint + 0.7 * ramp, 0.28);
+  hl_add_opacity(w, a->solid, 0.5);
+  hl_add_opacity(w, a->solid + 0.5 * (dense - a->solid), 0.75);
+  hl_add_opacity(w, dense, 0.95);
+  hl_add_color(w, a->faint, colors->rim);
+  hl_add_color(w, a->solid, colors->surface);
+  hl_add_color(w, dense, colors->dense);
+  hl_add_color(w, top, colors->top);
+}
+
+void hl_write_matter(hl_function_writer *w) {
+  static const palette ivory = {
+      {0.60, 0.53, 0.41}, {0.76, 0.69, 0.56}, {0.78, 0.78, 0.75}, {0.74, 0.83, 0.92}};
+  write_solid(w, &ivory);
+}
+
+void hl_write_body(hl_function_writer *w) {
+  static const palette skin = {
+      {0.62, 0.36, 0.25}, {0.76, 0.50, 0.37}, {0.86, 0.72, 0.54}, {0.93, 0.91, 0.86}};
+  write_solid(w, &skin);
+}
+
+void hl_write_brain(hl_function_writer *w) {
+  static const palette brain = {
+      {0.60, 0.40, 0.35}, {0.72, 0.53, 0.46}, {0.86, 0.78, 0.70}, {0.92, 0.88, 0.82}};
+  write_solid(w, &brain);
+}
+
+void hl_write_field(hl_function_writer *w) {
+  const hl_data_analysis *a = w->analysis;
+  double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001);
+  hl_add_opacity(w, a->faint, 0);
+  hl_add_opacity(w, a->faint + 0.15 * ramp, hl_opacity_for(a, 0.8));
+  hl_add_opacity(w, a->faint + 0.7 * ramp, hl_opacity_for(a, 1.2));
+  hl_add_opacity(w, a->solid, hl_opacity_for(a, 2.5));
+  hl_add_opacity(w, a->solid + 0.25 * (top - a->solid), hl_opacity_for(a, 15));
+  hl_add_opacity(w, top, hl_opacity_for(a, 80));
+  hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * (top - a->solid), 0.25, 0.92);
+}
+
+/* One side of a flow: what is common is clear, what is rare is dense; part of the way to the end, optical
+ * depth. */
+static void add_rare(hl_function_writer *w, double reach, int side) {
+  static const double rarity[][2] = {{0.4, 0}, {0.6, 0.5}, {0.8, 3}, {1, 20}};
+  enum { STEPS = sizeof rarity / sizeof *rarity };
+  double middle = w->analysis->middle - w->analysis->background;
+  for (int n = 0; n < STEPS; n++) {
+    int p = side > 0 ? n : STEPS - 1 - n;
+    hl_add_opacity(w, middle + side * rarity[p][0] * reach, hl_opacity_for(w->analysis, rarity[p][1]));
+  }
+}
+
+/* Seen are the flow's extremes, each side for itself; where no value is common, all are seen alike. */
+void hl_write_flow(hl_function_writer *w) {
+  const hl_data_analysis *a = w->analysis;
+  double reach = fmax(a->lower, a->upper), middle = a->middle - a->background;
+  w->direction = 1;
+  if (a->common < 0.5) hl_add_opacity(w, middle, hl_opacity_for(a, FLOW_DEPTH));
+  else {
+    if (a->lower > 0.3 * reach) add_rare(w, a->lower, -1);
+    if (a->upper > 0.3 * reach) add_rare(w, a->upper, 1);
+  }
+  hl_add_colormap(w, "plasma", middle - a->lower, middle + a->upper, 0.2, 0.94);
+}
+
+/* Kelly's colours of greatest contrast (1965) without greys and the darkest, then the same lighter. */
+static void label_color(size_t label, double linear[3]) {
+  static const unsigned int kelly[] = {0xf3c300, 0x875692, 0xf38400, 0xa1caf1, 0xbe0032, 0xc2b280,
+                                       0x008856, 0xe68fac, 0x0067a5, 0xf99379, 0x604e97, 0xf6a600,
+                                       0xb3446c, 0xdcd300, 0x8db600, 0xe25822};
+  enum { COLORS = sizeof kelly / sizeof *kelly };
+  double lighter = fmin((double)(label / COLORS) * 0.3, 0.6);
+  for (int c = 0; c < 3; c++) {
+    double srgb = (double)(kelly[label % COLORS] >> (16 - 8 * c) & 255) / 255;
+    linear[c] = hl_srgb_to_linear(srgb + lighter * (1 - srgb));
+  }
+}
+
+/* A label's band: opaque close to its own number alone. What the kernel passes on its way to another number
+ * is no region's. */
+static void add_label(hl_function_writer *w, double label, double before, double after, double narrowest) {
+  static const double part = 0.03; /* of the way to the next number */
+  double down = fmin(fmax(part * (label - before), narrowest), 0.45 * (label - before)),
+         up = fmin(fmax(part * (after - label), narrowest), 0.45 * (after - label)),
+         at = label - w->analysis->background;
+  hl_add_opacity(w, at - down, 0);
+  hl_add_opacity(w, at - 0.5 * down, 0.97);
+  hl_add_opacity(w, at + 0.5 * up, 0.97);
+  hl_add_opacity(w, at + up, 0);
+}
+
+void hl_write_labels(hl_function_writer *w) {
+  const hl_data_analysis *a = w->analysis;
+  size_t last = a->label_count - 1;
+  double narrowest = (a->labels[last] - fmin(a->labels[0], 0)) /
+                     2000; /* two steps of the renderer's tables */
+  w->direction = 1;
+  for (size_t n = 0; n <= last; n++) {
+    double label = a->labels[n], before = n > 0 ? a->labels[n - 1] : label - 1,
+           after = n < last ? a->labels[n + 1] : label + 1;
+    if (before < 0 && label > 0) before = 0; /* no label, but a number that is there */
+    if (label < 0 && after > 0) after = 0;
+    double color[3];
+    label_color(n, color);
+    add_label(w, label, before, after, narrowest);
+    hl_add_color(w, 0.5 * (before + label) - a->background, color);
+    hl_add_color(w, 0.5 * (label + after) - a->background, color);
+  }
+}
+
+void hl_write_medium(hl_function_writer *w) {
+  const hl_data_analysis *a = w->analysis;
+  static const double white[3] = {0.8, 0.8, 0.8};
+  for (int step = 0; step <= 32; step++) {
+    double distance = a->top * step / 32;
+    hl_add_opacity(w, distance, hl_opacity_for(a, MEDIUM_DEPTH * distance / a->mean));
+  }
+  hl_add_color(w, 0, white);
+}
+
+void hl_write_signed(hl_function_writer *w) {
+  const hl_data_analysis *a = w->analysis;
+  static const double cold[3][3] = {{0.10, 0.30, 0.75}, {0.06, 0.18, 0.62}, {0.02, 0.06, 0.35}};
+  static const double warm[3][3] = {{0.95, 0.52, 0.20}, {0.85, 0.28, 0.08}, {0.60, 0.08, 0.03}};
+  w->direction = 1; /* both sides are written at once */
+  double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001);
+  double at[5] = {a->faint, a->faint + 0.5 * ramp, a->solid, a->solid + 0.5 * (top - a->solid), top};
+  double opacity[5] = {0, hl_opacity_for(a, 2), hl_opacity_for(a, 15), hl_opacity_for(a, 60),
+                       hl_opacity_for(a, 100)};
+  for (int p = 4; p >= 0; p--) hl_add_opacity(w, -at[p], opacity[p]);
+  for (int p = 0; p < 5; p++) hl_add_opacity(w, at[p], opacity[p]);
+  for (int p = 2; p >= 0; p--) hl_add_color(w, -at[2 * p], cold[p]);
+  for (int p = 0; p < 3; p++) hl_add_color(w, at[2 * p], warm[p]);
+}
+
+void hl_write_constant(hl_function_writer *w) {
+  static const double grey[3] = {0.6, 0.6, 0.6};
+  hl_add_opacity(w, 0, 0.2);
+  hl_add_color(w, 0, grey);
+}
+
+/* ---- writes transfer functions in distances from a volume's background. */
+
+void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis) {
+  *w = (hl_function_writer){.analysis = analysis, .direction = analysis->direction};
+}
+
+void hl_add_opacity(hl_function_writer *w, double distance, double opacity) {
+  if (w->opacity_count == sizeof w->opacity / sizeof *w->opacity) return;
+  double value = w->analysis->background + w->direction * distance;
+  w->opacity[w->opacity_count++] = (hl_opacity_point){value, fmin(fmax(opacity, 0), 1)};
+}
+
+void hl_add_color(hl_function_writer *w, double distance, const double color[3]) {
+  if (w->color_count == sizeof w->color / sizeof *w->color) return;
+  hl_color_point *point = &w->color[w->color_count++];
+  point->value = w->analysis->background + w->direction * distance;
+  memcpy(point->color, color, sizeof point->color);
+}
+
+void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start,
+                     double end) {
+  for (int step = 0; step <= 32; step++) {
+    double t = step / 32.0, color[3];
+    hl_colormap_evaluate(name, start + t * (end - start), color);
+    hl_add_color(w, from + t * (to - from), color);
+  }
+}
+
+double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth) {
+  return 1 - exp(-optical_depth / fmax(analysis->depth, 1));
+}
+
+/* Points were added with rising distance: where things are below the background, values fall. */
+static void put_in_order(hl_function_writer *w) {
+  if (w->direction > 0) return;
+  for (size_t a = 0, b = w->opacity_count; a + 1 < b; a++) {
+    hl_opacity_point swap = w->opacity[--b];
+    w->opacity[b] = w->opacity[a];
+    w->opacity[a] = swap;
+  }
+  for (size_t a = 0, b = w->color_count; a + 1 < b; a++) {
+    hl_color_point swap = w->color[--b];
+    w->color[b] = w->color[a];
+    w->color[a] = swap;
+  }
+}
+
+hl_status hl_finish_function(hl_function_writer *w, hl_context *context, const hl_volume *volume,
+                             hl_transfer_function *function, hl_error *error) {
+  put_in_order(w);
+  double edge = mat3_shortest_column(volume->index_to_world.linear);
+  hl_transfer_function made = {edge, w->opacity, w->opacity_count, w->color, w->color_count};
+  return hl_transfer_function_copy(context, &made, function, error);
+}

@@ -1,0 +1,43 @@
+/* guess/function_writer.h - a transfer function being written, in distances from a volume's background. */
+#ifndef HL_GUESS_FUNCTION_WRITER_H
+#define HL_GUESS_FUNCTION_WRITER_H
+
+#include "guess/analysis.h"
+
+typedef struct hl_function_writer {
+  const hl_data_analysis *analysis;
+  double direction; /* of rising distance: +1 or -1 in data values */
+  hl_opacity_point opacity[4 * HL_MOST_LABELS];
+  hl_color_point color[4 * HL_MOST_LABELS];
+  size_t opacity_count, color_count;
+} hl_function_writer;
+
+/* The analysis must outlive the writer. */
+void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis);
+
+/* Points with rising distance; more than fit are left out. */
+void hl_add_opacity(hl_function_writer *w, double distance, double opacity);
+void hl_add_color(hl_function_writer *w, double distance, const double color[3]); /* linear RGB */
+/* The part start..end of a named colormap over the distances from..to. */
+void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start,
+                     double end);
+
+/* The opacity per voxel edge that gives an optical depth across the whole object. */
+double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth);
+
+/* Opacities hold per smallest voxel edge of the volume. *function gets memory of its own. */
+hl_status hl_finish_function(hl_function_writer *w, hl_context *context, const hl_volume *volume,
+                             hl_transfer_function *function, hl_error *error);
+
+/* One for each look (automatic.c); smoke suits any data. */
+void hl_write_matter(hl_function_writer *w);
+void hl_write_body(hl_function_writer *w);
+void hl_write_brain(hl_function_writer *w);
+void hl_write_field(hl_function_writer *w);
+void hl_write_flow(hl_function_writer *w);
+void hl_write_signed(hl_function_writer *w);
+void hl_write_medium(hl_function_writer *w);
+void hl_write_labels(hl_function_writer *w);
+void hl_write_constant(hl_function_writer *w);
+
+#endif

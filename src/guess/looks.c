@@ -1,0 +1,279 @@
+/* guess/looks.c - from what is measured of a volume to what it is taken for, and the table of looks.
+
+ *
+ * In: a volume's analysis (analysis.c, labels.c). Out: a row of the table: transfer function, shading and
+ * lights. The colour of skin is for what can be a body; all other scanned things are ivory.
+ */
+#define _GNU_SOURCE /* strcasecmp */
+#include "guess/looks.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/error.h"
+#include "guess/function_writer.h"
+#include "scene/nearest.h"
+#include "scene/scene.h"
+#include "scene/transfer_function.h"
+
+typedef enum subject { BODY, BRAIN, MATTER, LABELS, FIELD, FLOW, SIGNED, MEDIUM, CONSTANT } subject;
+
+/* Lights are so strong that the brightest hundredth of the picture is about 235 of 255 in sRGB, and shadows
+ * stay readable. */
+static const hl_look looks[] = {
+    [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.75},
+    [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.7},
+    [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.65, 0.35, 0.15,
+                0.7},
+    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.30, 0.22, 0},
+    [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.70, 0.45, 0.35, 0.65},
+    [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.50, 0.45, 0.40, 0.9},
+    [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.35, 0.25, 0.8},
+    [MEDIUM] = {"smoke or cloud", hl_write_medium, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.20, 0, 0.20, 0},
+    [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.50, 0.35, 0.20, 0},
+};
+
+bool hl_is_hounsfield(const hl_volume *volume) {
+  return volume->minimum <= -500 && volume->minimum >= -10000 && volume->maximum >= 300;
+}
+
+static bool ends_with(const char *text, const char *end) {
+  size_t length = text != NULL ? strlen(text) : 0, tail = strlen(end);
+  return length >= tail && strcasecmp(text + length - tail, end) == 0;
+}
+
+/* The file tells where a patient's left and right are. */
+static bool is_anatomical(const char *file) { return ends_with(file, ".nii") || ends_with(file, ".nii.gz"); }
+
+/* What is denser than air is mostly tissue: -200 to 200 Hounsfield units, where metal, stone and wood have
+ * hardly anything. */
+static bool is_mostly_tissue(const hl_volume *volume) {
+  double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS, tissue = 0, matter = 0;
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
+    double hounsfield = volume->minimum + (bin + 0.5) * width;
+    if (hounsfield > -400) matter += (double)volume->histogram[bin];
+    if (fabs(hounsfield) < 200) tissue += (double)volume->histogram[bin];
+  }
+  return tissue > 0.4 * matter;
+}
+
+/* A body fills its picture: trees, vessels and machine parts leave most of it empty. */
+static bool is_body(const hl_volume *volume, const char *file, const hl_data_analysis *a) {
+  if (a->kind != HL_DATA_SURFACES || a->direction < 0) return false;
+  if (hl_is_hounsfield(volume)) return is_mostly_tissue(volume);
+  return is_anatomical(file) && a->filled > 0.15;
+}
+
+const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis) {
+  subject is = MATTER;
+  switch (analysis->kind) {
+    case HL_DATA_SURFACES:
+      if (is_body(volume, file, analysis))
+        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* cut out by a program */
+      break;
+    case HL_DATA_FIELD: is = FIELD; break;
+    case HL_DATA_SIGNED: is = SIGNED; break;
+    case HL_DATA_MEDIUM: is = MEDIUM; break;
+    case HL_DATA_CONSTANT: is = CONSTANT; break;
+    case HL_DATA_LABELS: is = LABELS; break;
+    case HL_DATA_FLOW: is = FLOW; break;
+  }
+  return &looks[is];
+}
+
+hl_status hl_look_write(const hl_look *look, hl_context *context, const hl_volume *volume,
+                        const hl_data_analysis *analysis, hl_transfer_function *function, hl_error *error) {
+  hl_function_writer w;
+  hl_begin_function(&w, analysis);
+  look->write(&w);
+  return hl_finish_function(&w, context, volume, function, error);
+}
+
+hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
+                                         hl_transfer_function *function, hl_error *error) {
+  if (context == NULL || volume == NULL || function == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_transfer_function_automatic: null context, volume or function");
+  hl_data_analysis analysis;
+  hl_status status = hl_data_analyse(volume, &analysis, error);
+  if (status != HL_OK) return status;
+  return hl_look_write(hl_look_for(volume, NULL, &analysis), context, volume, &analysis, function, error);
+}
+
+hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind, hl_error *error) {
+  if (volume == NULL || kind == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_guess: null volume or kind");
+  hl_data_analysis analysis;
+  hl_status status = hl_data_analyse(volume, &analysis, error);
+  *kind = status == HL_OK ? hl_look_for(volume, file, &analysis)->name : NULL;
+  return status;
+}
+
+/* ---- named transfer functions that adapt to the volume.
+ *
+ * CT presets are written in Hounsfield units. They hold as they are for volumes in Hounsfield units; for
+ * others (8 bit, 0 to 1) a piecewise linear map through four landmarks stands in: air is the background, half
+ * way from air to tissue is where things surely are, bone begins where the denser of two materials does, and
+ * dense bone is the top. Where much of the things is dense there is no tissue about the bone, which then
+ * begins where things do. The other presets are written in the landmarks themselves.
+ */
+
+/* A row of a CT preset: Hounsfield units, opacity per voxel edge, sRGB colour. */
+typedef struct hounsfield_row {
+  double hounsfield, opacity, srgb[3];
+} hounsfield_row;
+
+static const hounsfield_row bone[] = {{150, 0, {0.60, 0.33, 0.22}},
+                                      {220, 0.10, {0.80, 0.56, 0.40}},
+                                      {350, 0.65, {0.92, 0.80, 0.64}},
+                                      {700, 0.92, {0.97, 0.92, 0.82}},
+                                      {2000, 0.97, {1.00, 0.98, 0.94}}};
+static const hounsfield_row skin[] = {{-650, 0, {0.72, 0.45, 0.35}},
+                                      {-500, 0.10, {0.82, 0.56, 0.44}},
+                                      {-350, 0.60, {0.88, 0.64, 0.52}},
+                                      {-150, 0.92, {0.90, 0.68, 0.56}},
+                                      {300, 0.95, {0.94, 0.84, 0.74}}};
+static const hounsfield_row soft_tissue[] = {
+    {-180, 0, {0.90, 0.76, 0.50}},   {-100, 0.006, {0.90, 0.74, 0.48}}, {-10, 0.012, {0.84, 0.48, 0.36}},
+    {60, 0.07, {0.78, 0.30, 0.24}},  {150, 0.12, {0.82, 0.36, 0.26}},   {250, 0.35, {0.92, 0.76, 0.60}},
+    {500, 0.90, {0.97, 0.92, 0.84}}, {2000, 0.97, {1.00, 0.98, 0.95}}};
+
+/* The distance from the background of a value given in Hounsfield units. */
+static double distance_of(const hl_function_writer *w, bool hounsfield, double value) {
+  const hl_data_analysis *a = w->analysis;
+  if (hounsfield) return value - a->background;
+  const double landmark[4] = {-1000, -400, 350, 2000};
+  bool bare = a->dense_share > 0.35;
+  double tissue = bare ? 0.5 * a->solid : a->solid,
+         dense = bare ? 1.2 * a->solid : fmax(a->dense, 1.001 * a->solid);
+  const double distance[4] = {0, tissue, dense, fmax(a->top, 1.001 * dense)};
+  int n = value < landmark[1] ? 0 : value < landmark[2] ? 1 : 2;
+  double t = (value - landmark[n]) / (landmark[n + 1] - landmark[n]);
+  return distance[n] + t * (distance[n + 1] - distance[n]);
+}
+
+static void write_rows(hl_function_writer *w, const hl_volume *volume, const hounsfield_row *rows,
+                       size_t count) {
+  bool hounsfield = hl_is_hounsfield(volume);
+  if (hounsfield) w->direction = 1;
+  for (size_t r = 0; r < count; r++) {
+    double distance = distance_of(w, hounsfield, rows[r].hounsfield), color[3];
+    for (int c = 0; c < 3; c++) color[c] = hl_srgb_to_linear(rows[r].srgb[c]);
+    hl_add_opacity(w, distance, rows[r].opacity);
+    hl_add_color(w, distance, color);
+  }
+}
+
+static void write_bone(hl_function_writer *w, const hl_volume *volume) {
+  write_rows(w, volume, bone, sizeof bone / sizeof *bone);
+}
+
+static void write_skin(hl_function_writer *w, const hl_volume *volume) {
+  write_rows(w, volume, skin, sizeof skin / sizeof *skin);
+}
+
+static void write_soft_tissue(hl_function_writer *w, const hl_volume *volume) {
+  write_rows(w, volume, soft_tissue, sizeof soft_tissue / sizeof *soft_tissue);
+}
+
+/* A bare brain: a soft ramp, grey matter darker and pinker than white. */
+static void write_brain(hl_function_writer *w, const hl_volume *volume) {
+  (void)volume;
+  const hl_data_analysis *a = w->analysis;
+  static const double outer[3] = {0.58, 0.31, 0.26}, grey[3] = {0.76, 0.54, 0.47},
+                      white[3] = {0.90, 0.82, 0.75};
+  double ramp = a->solid - a->faint, dense = fmax(a->dense, 1.001 * a->solid);
+  hl_add_opacity(w, a->faint, 0);
+  hl_add_opacity(w, a->faint + 0.6 * ramp, 0.05);
+  hl_add_opacity(w, a->solid, 0.35);
+  hl_add_opacity(w, a->solid + 0.5 * ramp, 0.85);
+  hl_add_opacity(w, a->solid + 1.5 * ramp, 0.95);
+  hl_add_color(w, a->faint, outer);
+  hl_add_color(w, 0.5 * (a->solid + dense), grey);
+  hl_add_color(w, dense + 0.3 * fmax(a->top - dense, 0.001 * dense), white);
+}
+
+static void write_smoke(hl_function_writer *w, const hl_volume *volume) {
+  (void)volume;
+  hl_write_medium(w);
+}
+
+/* Nested shells: a faint outer one, a firm inner one, a solid core. */
+static void write_electron_density(hl_function_writer *w, const hl_volume *volume) {
+  (void)volume;
+  const hl_data_analysis *a = w->analysis;
+  if (a->kind == HL_DATA_SIGNED) {
+    hl_write_signed(w);
+    return;
+  }
+  double top = fmax(a->top, 1.001 * a->solid), core = a->solid + 0.4 * (top - a->solid);
+  hl_add_opacity(w, 0.6 * a->faint, 0);
+  hl_add_opacity(w, a->faint, hl_opacity_for(a, 1.2));
+  hl_add_opacity(w, a->faint + 0.3 * (a->solid - a->faint), hl_opacity_for(a, 0.4));
+  hl_add_opacity(w, a->solid, hl_opacity_for(a, 4));
+  hl_add_opacity(w, core, hl_opacity_for(a, 40));
+  hl_add_opacity(w, top, hl_opacity_for(a, 100));
+  hl_add_colormap(w, "plasma", 0.6 * a->faint, core, 0.25, 0.95);
+}
+
+/* The value that all but one voxel in a hundred thousand stay below: a single bright one does not darken the
+ * rest. */
+static double almost_greatest(const hl_volume *volume) {
+  uint64_t voxels = 0, above = 0;
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) voxels += volume->histogram[bin];
+  int bin = HL_HISTOGRAM_BINS;
+  while (bin > 1 && (above += volume->histogram[bin - 1]) <= voxels / 100000) bin--;
+  return bin == HL_HISTOGRAM_BINS
+             ? volume->maximum
+             : volume->minimum + (volume->maximum - volume->minimum) * bin / HL_HISTOGRAM_BINS;
+}
+
+/* For maximum projections: greys from what surrounds the things, which is not shown, to the greatest value.
+ * Where things lie below what surrounds them, or to both sides of it, from the least value. */
+static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
+  const hl_data_analysis *a = w->analysis;
+  bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;
+  double low = above ? a->background : volume->minimum, high = almost_greatest(volume);
+  if (!(high > low)) high = volume->maximum;
+  w->direction = 1;
+  hl_add_opacity(w, low - a->background, 0);
+  hl_add_opacity(w, high - a->background, 1);
+  hl_add_colormap(w, "grays", low - a->background, high - a->background, 0, 1);
+}
+
+static const struct {
+  const char *name;
+  void (*write)(hl_function_writer *w, const hl_volume *volume);
+} presets[] = {
+    {"ct-bone", write_bone},   {"ct-skin", write_skin}, {"ct-soft-tissue", write_soft_tissue},
+    {"mr-brain", write_brain}, {"smoke", write_smoke},  {"electron-density", write_electron_density},
+    {"mip", write_maximum},
+};
+
+#define PRESET_COUNT (sizeof presets / sizeof *presets)
+
+const char *hl_preset_name(size_t index) { return index < PRESET_COUNT ? presets[index].name : NULL; }
+
+hl_status hl_transfer_function_preset(hl_context *context, const char *name, const hl_volume *volume,
+                                      hl_transfer_function *function, hl_error *error) {
+  if (context == NULL || name == NULL || volume == NULL || function == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_transfer_function_preset: null context, name, volume or function");
+  const char *names[PRESET_COUNT + 1] = {NULL};
+  for (size_t p = 0; p < PRESET_COUNT; p++) names[p] = presets[p].name;
+  for (size_t p = 0; p < PRESET_COUNT; p++) {
+    if (strcmp(names[p], name) != 0) continue;
+    hl_data_analysis analysis;
+    hl_function_writer w;
+    hl_status status = hl_data_analyse(volume, &analysis, error);
+    if (status != HL_OK) return status;
+    hl_begin_function(&w, &analysis);
+    if (analysis.kind == HL_DATA_CONSTANT) hl_write_constant(&w);
+    else presets[p].write(&w, volume);
+    return hl_finish_function(&w, context, volume, function, error);
+  }
+  char mend[300];
+  hl_suggest_name(name, names, mend, sizeof mend);
+  return hl_fail(error, HL_ERROR_INPUT, "unknown preset \"%.80s\": %s", name, mend);
+}

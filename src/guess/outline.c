@@ -1,0 +1,237 @@
+/* guess/outline.c - the outermost points of what is seen of a scene.
+
+ *
+ * Of each row of voxels only the first and the last that are seen can be extreme, and of these only the
+ * corners of each slice's convex hull. */
+#include "guess/outline.h"
+
+#include <string.h>
+
+#include "core/error.h"
+#include "core/memory.h"
+#include "guess/sample.h"
+#include "guess/seen_cells.h"
+#include "scene/scene.h"
+
+enum { POINTS_AT_FIRST = 1024, DIRECTIONS = 400 };
+
+static hl_status add(hl_outline *outline, vec3 point, double radius, hl_error *error) {
+  if (outline->count == outline->capacity) {
+    size_t capacity = outline->capacity > 0 ? 2 * outline->capacity : POINTS_AT_FIRST;
+    vec3 *points = hl_reallocate(outline->context, outline->point, capacity, sizeof *points);
+    if (points != NULL) outline->point = points;
+    double *radii = hl_reallocate(outline->context, outline->radius, capacity, sizeof *radii);
+    if (radii != NULL) outline->radius = radii;
+    if (points == NULL || radii == NULL)
+      return hl_fail_memory(error, capacity * sizeof *points, "a scene's outline");
+    outline->capacity = capacity;
+  }
+  outline->point[outline->count] = point;
+  outline->radius[outline->count++] = radius;
+  return HL_OK;
+}
+
+/* The ends of a slice's rows on one side, as far as they are corners of a convex hull; j ascends. */
+typedef struct chain {
+  ptrdiff_t *i, *j; /* owned */
+  int count;
+  int side; /* 1: the last voxels of rows; -1: the first */
+} chain;
+
+/* Derived: the corner before the new one is none if the three turn to the inside or not at all (monotone
+ * chain; Andrew 1979). */
+static void chain_add(chain *c, ptrdiff_t i, ptrdiff_t j) {
+  for (; c->count >= 2; c->count--) {
+    ptrdiff_t i0 = c->i[c->count - 2], j0 = c->j[c->count - 2], i1 = c->i[c->count - 1],
+              j1 = c->j[c->count - 1];
+    if (c->side * ((i1 - i0) * (j - j0) - (i - i0) * (j1 - j0)) > 0) break;
+  }
+  c->i[c->count] = i;
+  c->j[c->count++] = j;
+}
+
+static hl_status add_chain(hl_outline *outline, const chain *c, ptrdiff_t k, affine3 placement,
+                           hl_error *error) {
+  vec3 edges = {vec3_length(mat3_column(placement.linear, 0)), vec3_length(mat3_column(placement.linear, 1)),
+                vec3_length(mat3_column(placement.linear, 2))};
+  hl_status status = HL_OK;
+  for (int n = 0; status == HL_OK && n < c->count; n++)
+    status = add(outline, affine3_apply(placement, (vec3){(double)c->i[n], (double)c->j[n], (double)k}),
+                 vec3_length(edges) / 2, error);
+  return status;
+}
+
+static hl_status add_slices(hl_outline *outline, const hl_seen *seen, affine3 placement, chain chains[2],
+                            hl_error *error) {
+  hl_status status = HL_OK;
+  ptrdiff_t stride = (ptrdiff_t)seen->stride, first, last;
+  for (ptrdiff_t k = seen->first[2]; status == HL_OK && k < seen->end[2]; k += stride) {
+    chains[0].count = chains[1].count = 0;
+    for (ptrdiff_t j = seen->first[1]; j < seen->end[1]; j += stride) {
+      if (!hl_seen_row(seen, j, k, &first, &last)) continue;
+      chain_add(&chains[0], first, j);
+      chain_add(&chains[1], last, j);
+    }
+    for (int side = 0; status == HL_OK && side < 2; side++)
+      status = add_chain(outline, &chains[side], k, placement, error);
+  }
+  return status;
+}
+
+static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
+  hl_seen seen;
+  bool any;
+  size_t rows = volume->volume->dimension[1];
+  hl_status status = hl_seen_find(volume, &seen, &any, error);
+  if (status == HL_OK && any) {
+    ptrdiff_t *ends = hl_allocate(outline->context, 4 * rows, sizeof *ends);
+    chain chains[2] = {{ends, ends + rows, 0, -1}, {ends + 2 * rows, ends + 3 * rows, 0, 1}};
+    status = ends != NULL ? add_slices(outline, &seen, hl_scene_volume_index_to_world(volume), chains, error)
+                          : hl_fail_memory(error, 4 * rows * sizeof *ends, "a volume's rows");
+    hl_release(outline->context, ends);
+  }
+  hl_seen_release(&seen);
+  return status;
+}
+
+static hl_status add_box(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
+  affine3 placement = hl_scene_volume_index_to_world(volume);
+  double box[2][3];
+  hl_status status = HL_OK;
+  hl_scene_volume_box(volume, box[0], box[1]);
+  for (int corner = 0; status == HL_OK && corner < 8; corner++)
+    status = add(
+        outline,
+        affine3_apply(placement, (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]}), 0,
+        error);
+  return status;
+}
+
+hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error) {
+  hl_status status = HL_OK;
+  *outline = (hl_outline){.context = description->volumes[0].volume->context};
+  for (size_t n = 0; status == HL_OK && n < description->volume_count; n++)
+    status = add_volume(outline, &description->volumes[n], error);
+  bool nothing = outline->count == 0;
+  for (size_t n = 0; nothing && status == HL_OK && n < description->volume_count; n++)
+    status = add_box(outline, &description->volumes[n], error);
+  return status;
+}
+
+void hl_outline_release(hl_outline *outline) {
+  hl_release(outline->context, outline->point);
+  hl_release(outline->context, outline->radius);
+}
+
+double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, double tangent) {
+  vec3 normal = vec3_subtract(along, vec3_scale(forward, tangent));
+  double length = vec3_length(normal), greatest = -INFINITY;
+  for (size_t n = 0; n < outline->count; n++)
+    greatest = fmax(greatest, vec3_dot(outline->point[n], normal) + length * outline->radius[n]);
+  return greatest;
+}
+
+/* Directions spread evenly over the sphere (spherical Fibonacci points; Swinbank and Purser 2006). */
+static vec3 direction(int n) {
+  double z = 1 - (2 * n + 1.0) / DIRECTIONS, across = sqrt(1 - z * z), angle = n * HL_PI * (3 - sqrt(5));
+  return (vec3){across * cos(angle), across * sin(angle), z};
+}
+
+static size_t farthest(const hl_outline *outline, vec3 along) {
+  size_t best = 0;
+  double most = -INFINITY;
+  for (size_t n = 0; n < outline->count; n++) {
+    double here = vec3_dot(outline->point[n], along) + outline->radius[n];
+    if (here > most) most = here, best = n;
+  }
+  return best;
+}
+
+hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error) {
+  hl_status status = HL_OK;
+  *thinned = (hl_outline){.context = outline->context};
+  for (int n = 0; status == HL_OK && n < DIRECTIONS; n++) {
+    size_t best = farthest(outline, direction(n));
+    bool known = false;
+    for (size_t m = 0; m < thinned->count && !known; m++)
+      known = memcmp(&thinned->point[m], &outline->point[best], sizeof *thinned->point) == 0;
+    if (!known) status = add(thinned, outline->point[best], outline->radius[best], error);
+  }
+  return status;
+}
+
+/* ---- the values of a volume that a transfer function lets be seen, from any side.
+ *
+ * In: voxels and opacities. Out: two values between which nearly all lies that is seen. What opaque matter
+ * surrounds is hidden from every side, and a surface is seen by the voxels at its rim: a voxel counts with
+ * its opacity and with the light that its most transparent neighbour lets through, in and out again.
+ */
+
+#define PLACES 5e5  /* looked at, about */
+#define TAIL   0.01 /* part of what is seen that lies beyond either end */
+
+enum { BINS = 4096 };
+
+/* The least opacity per voxel edge of the six neighbours; that of a neighbour outside the grid is 0. */
+static double least_opacity_around(const hl_volume *volume, const hl_transfer_function *function,
+                                   const size_t at[3]) {
+  double least = 1;
+  for (int n = 0; n < 6; n++) {
+    size_t next[3] = {at[0], at[1], at[2]};
+    next[n / 2] += n % 2 == 0 ? 1 : (size_t)-1; /* below 0: outside, as beyond the end */
+    least = fmin(least,
+                 hl_transfer_function_opacity(function, hl_volume_value(volume, next[0], next[1], next[2])));
+  }
+  return least;
+}
+
+/* Counts what is seen in equal bins over [low, high]. */
+static double count_seen(const hl_volume *volume, const hl_transfer_function *function, double low,
+                         double high, double *counts) {
+  const size_t *n = volume->dimension;
+  size_t step = hl_lattice_step(n, PLACES), at[3];
+  double sum = 0;
+  for (at[2] = 0; at[2] < n[2]; at[2] += step)
+    for (at[1] = 0; at[1] < n[1]; at[1] += step)
+      for (at[0] = 0; at[0] < n[0]; at[0] += step) {
+        double value = hl_volume_value(volume, at[0], at[1], at[2]),
+               opacity = hl_transfer_function_opacity(function, value);
+        if (!(opacity > 0) || !(value >= low && value <= high)) continue;
+        double light = 1 - least_opacity_around(volume, function, at), seen = opacity * light * light;
+        int bin = (int)((value - low) / (high - low) * BINS);
+        counts[bin < BINS ? bin : BINS - 1] += seen;
+        sum += seen;
+      }
+  return sum;
+}
+
+/* The value that the part `fraction` of the counts lies below. */
+static double quantile(const double *counts, double sum, double fraction, double low, double high) {
+  double below = 0;
+  int bin = 0;
+  while (bin + 1 < BINS && below + counts[bin] < fraction * sum) below += counts[bin++];
+  double within = counts[bin] > 0 ? (fraction * sum - below) / counts[bin] : 0.5;
+  return low + (high - low) * (bin + fmin(fmax(within, 0), 1)) / BINS;
+}
+
+hl_status hl_transfer_function_seen_range(const hl_volume *volume, const hl_transfer_function *function,
+                                          double range[2], hl_error *error) {
+  if (volume == NULL || function == NULL || range == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_transfer_function_seen_range: null volume, function or range");
+  double counts[BINS] = {0}, low = volume->minimum, high = volume->maximum;
+  range[0] = low;
+  range[1] = high > low ? high : low + 1;
+  double sum = high > low ? count_seen(volume, function, low, high, counts) : 0;
+  if (!(sum > 0)) return HL_OK;
+  double first = quantile(counts, sum, TAIL, low, high), last = quantile(counts, sum, 1 - TAIL, low, high);
+  if (last - first <
+      100 * (high - low) / BINS) { /* outliers took nearly all bins: once more between the ends */
+    double bin = (high - low) / BINS, near[BINS] = {0};
+    low = fmax(low, first - bin), high = fmin(high, last + bin);
+    sum = count_seen(volume, function, low, high, near);
+    first = quantile(near, sum, TAIL, low, high), last = quantile(near, sum, 1 - TAIL, low, high);
+  }
+  if (last > first) range[0] = first, range[1] = last;
+  return HL_OK;
+}

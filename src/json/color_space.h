@@ -1,0 +1,16 @@
+/* json/color_space.h - mixing two sRGB colours in the spaces that colour map files name. */
+#ifndef HL_JSON_COLOR_SPACE_H
+#define HL_JSON_COLOR_SPACE_H
+
+typedef enum hl_color_space {
+  HL_SPACE_RGB = 0,
+  HL_SPACE_HSV = 1,       /* the short way round the hues */
+  HL_SPACE_LAB = 2,       /* CIELAB, white point D65 */
+  HL_SPACE_DIVERGING = 3, /* Moreland's Msh, through white between distant hues */
+  HL_SPACE_STEP = 4       /* the second colour right after the first point, as VTK has it */
+} hl_color_space;
+
+/* mixed = the colour at t in [0,1] from a to b; all sRGB from 0 to 1. */
+void hl_color_mix(hl_color_space space, const double a[3], const double b[3], double t, double mixed[3]);
+
+#endif

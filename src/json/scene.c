@@ -1,0 +1,306 @@
+/* json/scene.c - a scene file: the top level, and the loading of what it names.
+
+ *
+ * In: JSON text. Out: an hl_scene. Order matters: volumes are loaded before the camera, which frames them
+ * where the file does not say, and the camera is known before the lights, which stand as it sees them where
+ * the file has none.
+ */
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "guess/for_volume.h"
+#include "json/parts.h"
+#include "json/shapes.h"
+#include "scene/check.h"
+#include "scene/scene.h"
+
+/* What reading gathers and must let go of, whatever happens. */
+typedef struct gathered {
+  hl_scene_description description;
+  hl_light *lights;         /* owned; [light_count] */
+  hl_scene_volume *volumes; /* owned, with their transfer functions' points; [volume_count] */
+  hl_volume_shelf shelf;
+  hl_light key_light;
+} gathered;
+
+static void release(hl_context *context, gathered *g) {
+  for (size_t v = 0; v < g->description.volume_count; v++)
+    hl_transfer_function_release(context, &g->volumes[v].transfer_function);
+  for (size_t v = 0; v < g->shelf.count; v++) {
+    hl_volume_release(g->shelf.loaded[v].volume);
+    hl_release(context, g->shelf.loaded[v].source);
+  }
+  hl_release(context, g->shelf.loaded);
+  json_decref(g->shelf.stood_in);
+  hl_release(context, g->volumes);
+  for (size_t l = 0; g->lights != NULL && l < g->description.light_count; l++) {
+    hl_release(context, (void *)g->lights[l].vertices);
+    hl_light_images_release(context, &g->lights[l]);
+  }
+  hl_release(context, g->lights);
+}
+
+static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene_description *d) {
+  static const char *const keys[] = {"width",    "height", "background", "background_transparent",
+                                     "exposure", NULL};
+  const json_t *value = json_object_get(root, "image");
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "image");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_integer(reader, value, "width", &d->width);
+  if (status == HL_OK) status = hl_json_integer(reader, value, "height", &d->height);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "background", 3, d->background);
+  if (status == HL_OK)
+    status = hl_json_flag(reader, value, "background_transparent", &d->background_transparent);
+  if (status == HL_OK) status = hl_json_number(reader, value, "exposure", &d->exposure);
+  if (status != HL_OK) return status;
+  if (d->width < 1 || d->height < 1 || d->width > HL_LIMIT_PIXELS || d->height > HL_LIMIT_PIXELS)
+    return hl_json_fail(reader, HL_ERROR_INPUT,
+                        d->width < 1 || d->width > HL_LIMIT_PIXELS ? "width" : "height",
+                        "%d is out of range: give a number of pixels from 1 to %d",
+                        d->width < 1 || d->width > HL_LIMIT_PIXELS ? d->width : d->height, HL_LIMIT_PIXELS);
+  hl_json_leave(reader, mark);
+  return HL_OK;
+}
+
+static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
+
+/* A key that says nothing for this kind of thing would be ignored, so it is refused. */
+static hl_status refuse_key(hl_json_reader *reader, const json_t *object, const char *key, const char *mend) {
+  return has(object, key) ? hl_json_fail(reader, HL_ERROR_INPUT, key, "%s", mend) : HL_OK;
+}
+
+/* What the camera would be if the file said no more than its type and field of view. */
+static hl_status frame(hl_json_reader *reader, const hl_scene_description *d, hl_camera *camera) {
+  if (camera->type == HL_CAMERA_PERSPECTIVE && !(camera->fovy_deg >= 1e-6 && camera->fovy_deg <= 179.999))
+    return hl_json_fail(reader, HL_ERROR_INPUT, "fovy_deg",
+                        "%.9g is out of range: give an angle in degrees, above 0 and below 180",
+                        camera->fovy_deg);
+  hl_status status = hl_scene_frame(d, camera, reader->error);
+  if (status == HL_OK || status == HL_ERROR_MEMORY || status == HL_ERROR_CANCELLED) return status;
+  return hl_json_fail(reader, status, NULL, "the volumes cannot be framed: give a position and a target");
+}
+
+static hl_status read_camera_members(hl_json_reader *reader, const json_t *value, hl_scene_description *d) {
+  static const char *const keys[] = {"type", "position", "target", "up", "fovy_deg", "height", NULL};
+  hl_camera *camera = &d->camera;
+  int type = (int)camera->type;
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_choice(reader, value, "type", hl_camera_type_names, 0, &type);
+  camera->type = (hl_camera_type)type;
+  if (status == HL_OK && type == HL_CAMERA_PERSPECTIVE)
+    status = refuse_key(reader, value, "height",
+                        "is for orthographic cameras: give fovy_deg, or \"type\": \"orthographic\"");
+  if (status == HL_OK && type == HL_CAMERA_ORTHOGRAPHIC)
+    status = refuse_key(reader, value, "fovy_deg",
+                        "is for perspective cameras: give height, or \"type\": \"perspective\"");
+  if (status == HL_OK && !has(value, "position"))
+    for (int k = 2; status == HL_OK && k < 4; k++)
+      status = refuse_key(reader, value, keys[k],
+                          "needs a position: give both, or neither to frame the volumes");
+  if (status == HL_OK) status = hl_json_number(reader, value, "fovy_deg", &camera->fovy_deg);
+  if (status == HL_OK) status = frame(reader, d, camera);
+  if (status == HL_OK && has(value, "position")) memcpy(camera->up, (double[3]){0, 0, 1}, sizeof camera->up);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "position", 3, camera->position);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "target", 3, camera->target);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "up", 3, camera->up);
+  return status == HL_OK ? hl_json_number(reader, value, "height", &camera->height) : status;
+}
+
+/* The camera (value null: absent) of a description whose image and volumes are known: what is absent is
+ * framed. */
+static hl_status read_camera(hl_json_reader *reader, const json_t *value, hl_scene_description *d) {
+  size_t mark = hl_json_enter(reader, "camera");
+  hl_status status = value != NULL ? read_camera_members(reader, value, d) : frame(reader, d, &d->camera);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+static hl_status read_shadow_resolution(hl_json_reader *reader, const json_t *value, int *resolution) {
+  const json_t *member = json_object_get(value, "shadow_resolution");
+  if (json_is_string(member) && strcmp(json_string_value(member), "auto") == 0) {
+    *resolution = 0;
+    return HL_OK;
+  }
+  if (member == NULL) return HL_OK;
+  if (json_is_integer(member) && json_integer_value(member) >= 1 &&
+      json_integer_value(member) <= HL_LIMIT_SHADOW_RESOLUTION) {
+    *resolution = (int)json_integer_value(member);
+    return HL_OK;
+  }
+  return hl_json_fail(reader, HL_ERROR_INPUT, "shadow_resolution",
+                      "give \"auto\" or a whole number of pixels from 1 to %d", HL_LIMIT_SHADOW_RESOLUTION);
+}
+
+static hl_status read_render(hl_json_reader *reader, const json_t *value, hl_render_settings *render) {
+  static const char *const keys[] = {
+      "shadows", "soft_method",   "light_samples",     "sheet_spacing", "kernel",      "reconstruction",
+      "slicing", "shadow_lookup", "shadow_resolution", "threads",       "compositing", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "render");
+  int shadows = (int)render->shadows, method = (int)render->soft_method, kernel = (int)render->kernel,
+      reconstruction = (int)render->reconstruction, slicing = (int)render->slicing,
+      lookup = (int)render->shadow_lookup, compositing = (int)render->compositing;
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "soft_method", hl_soft_method_names, 0, &method);
+  if (status == HL_OK) status = hl_json_integer(reader, value, "light_samples", &render->light_samples);
+  if (status == HL_OK) status = hl_json_number(reader, value, "sheet_spacing", &render->sheet_spacing);
+  if (status == HL_OK) status = hl_json_choice(reader, value, "kernel", hl_kernel_names, 0, &kernel);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "reconstruction", hl_reconstruction_names, 0, &reconstruction);
+  if (status == HL_OK) status = hl_json_choice(reader, value, "slicing", hl_slicing_names, 0, &slicing);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "shadow_lookup", hl_shadow_lookup_names, 0, &lookup);
+  if (status == HL_OK)
+    status = hl_json_choice(reader, value, "compositing", hl_compositing_names, 0, &compositing);
+  if (status == HL_OK) status = read_shadow_resolution(reader, value, &render->shadow_resolution);
+  if (status == HL_OK) status = hl_json_integer(reader, value, "threads", &render->threads);
+  if (status != HL_OK) return status;
+  render->shadows = (hl_shadows)shadows;
+  render->soft_method = (hl_soft_method)method;
+  render->kernel = (hl_kernel)kernel;
+  render->reconstruction = (hl_reconstruction)reconstruction;
+  render->slicing = (hl_slicing)slicing;
+  render->shadow_lookup = (hl_shadow_lookup)lookup;
+  render->compositing = (hl_compositing)compositing;
+  hl_json_leave(reader, mark);
+  return HL_OK;
+}
+
+static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gathered *g) {
+  const json_t *value = json_object_get(root, "volumes");
+  if (value == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "volumes",
+                        "is missing: name at least one volume, [ { \"file\": ... } ]");
+  g->shelf.groups = json_object_get(root, "groups");
+  g->shelf.threads = g->description.render.threads;
+  g->shelf.projected = g->description.render.compositing == HL_COMPOSITING_MAXIMUM;
+  size_t mark = hl_json_enter(reader, "volumes");
+  hl_status status = hl_json_array(reader, value, 1, HL_LIMIT_VOLUMES);
+  if (status != HL_OK) return status;
+  size_t count = json_array_size(value);
+  g->volumes = hl_allocate_zeroed(reader->context, count, sizeof *g->volumes);
+  g->shelf.loaded = hl_allocate_zeroed(reader->context, count, sizeof *g->shelf.loaded);
+  if (g->volumes == NULL || g->shelf.loaded == NULL)
+    return hl_fail_memory(reader->error, count * sizeof *g->volumes, "a scene's volumes");
+  g->description.volumes = g->volumes;
+  for (size_t v = 0; v < count; v++) {
+    g->description.volume_count = v + 1;
+    size_t inner = hl_json_enter_index(reader, v);
+    status = hl_json_read_volume(reader, json_array_get(value, v), &g->shelf, &g->volumes[v]);
+    if (status != HL_OK) return status;
+    hl_json_leave(reader, inner);
+  }
+  hl_json_leave(reader, mark);
+  return HL_OK;
+}
+
+static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathered *g) {
+  const json_t *value = json_object_get(root, "lights");
+  if (value == NULL) {
+    hl_scene_key_light(&g->key_light);
+    g->description.lights = &g->key_light;
+    g->description.light_count = 1;
+    return HL_OK;
+  }
+  size_t mark = hl_json_enter(reader, "lights");
+  hl_status status = hl_json_array(reader, value, 0, HL_LIMIT_LIGHTS);
+  if (status != HL_OK) return status;
+  size_t count = json_array_size(value);
+  g->lights = hl_allocate_zeroed(reader->context, count, sizeof *g->lights);
+  if (g->lights == NULL) return hl_fail_memory(reader->error, count * sizeof *g->lights, "a scene's lights");
+  g->description.lights = g->lights;
+  g->description.light_count = count;
+  for (size_t l = 0; l < count; l++) {
+    size_t inner = hl_json_enter_index(reader, l);
+    status = hl_json_read_light(reader, json_array_get(value, l), &g->lights[l]);
+    if (status != HL_OK) return status;
+    hl_json_leave(reader, inner);
+  }
+  hl_json_leave(reader, mark);
+  return HL_OK;
+}
+
+/* A camera can frame only what is possible. */
+static hl_status check_volumes(hl_json_reader *reader, const hl_scene_description *d) {
+  for (size_t v = 0; v < d->volume_count; v++) {
+    hl_status status = hl_scene_volume_check(&d->volumes[v], v, reader->error);
+    if (status == HL_OK) continue;
+    if (status == HL_ERROR_INPUT) hl_json_prefix(reader, NULL);
+    return status;
+  }
+  return HL_OK;
+}
+
+static hl_status read_version(hl_json_reader *reader, const json_t *root) {
+  int version = 0;
+  if (json_object_get(root, "halflight") == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "halflight",
+                        "is missing: begin with \"halflight\": 1, the format's version");
+  hl_status status = hl_json_integer(reader, root, "halflight", &version);
+  if (status != HL_OK || version == 1) return status;
+  return hl_json_fail(reader, version > 1 ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, "halflight",
+                      "version %d is not known: this program reads version 1", version);
+}
+
+static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
+  static const char *const keys[] = {"halflight", "description", "image",  "camera",  "ambient", "lights",
+                                     "groups",    "volumes",     "render", "$schema", NULL};
+  hl_scene_description *d = &g->description;
+  const char *schema = NULL;
+  hl_status status = hl_json_object(reader, root, keys);
+  if (status == HL_OK) status = read_version(reader, root);
+  if (status == HL_OK) status = hl_json_text(reader, root, "$schema", &schema);
+  if (status == HL_OK) status = hl_json_text(reader, root, "description", &d->description);
+  if (status == HL_OK) status = read_image(reader, root, d);
+  if (status == HL_OK) status = hl_json_numbers(reader, root, "ambient", 3, d->ambient);
+  if (status == HL_OK) status = read_render(reader, json_object_get(root, "render"), &d->render);
+  if (status == HL_OK) status = hl_json_check_groups(reader, json_object_get(root, "groups"));
+  if (status == HL_OK) status = read_volumes(reader, root, g);
+  if (status == HL_OK) status = check_volumes(reader, d);
+  if (status == HL_OK) status = read_camera(reader, json_object_get(root, "camera"), d);
+  return status == HL_OK ? read_lights(reader, root, g) : status;
+}
+
+hl_status hl_scene_from_json(hl_context *context, const char *text, size_t length, const char *base_folder,
+                             const char *name, hl_scene **scene, hl_error *error) {
+  if (context == NULL || text == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_from_json: null context, text or scene");
+  *scene = NULL;
+  hl_json_reader reader = {
+      .context = context, .name = name != NULL ? name : "scene", .folder = base_folder, .error = error};
+  json_t *root = NULL;
+  hl_status status = hl_json_parse(text, length, reader.name, &root, error);
+  if (status != HL_OK) return status;
+  gathered g = {0};
+  hl_scene_description_defaults(&g.description);
+  status = read_scene(&reader, root, &g);
+  if (status == HL_OK) {
+    status = hl_scene_create(context, &g.description, scene, error);
+    if (status == HL_ERROR_INPUT || status == HL_ERROR_UNSUPPORTED) hl_json_prefix(&reader, NULL);
+  }
+  release(context, &g);
+  json_decref(root);
+  return status;
+}
+
+hl_status hl_scene_load(hl_context *context, const char *path, hl_scene **scene, hl_error *error) {
+  if (context == NULL || path == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_load: null context, path or scene");
+  *scene = NULL;
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  hl_status status = hl_file_read(context, path, HL_JSON_LIMIT, &bytes, &length, error);
+  if (status != HL_OK) return status;
+  char *folder = hl_path_folder(context, path);
+  if (folder != NULL)
+    status = hl_scene_from_json(context, (const char *)bytes, length, folder, path, scene, error);
+  else status = hl_fail_memory(error, strlen(path) + 1, "a path");
+  hl_release(context, folder);
+  hl_release(context, bytes);
+  return status;
+}

@@ -1,0 +1,224 @@
+/* json/transfer_function.c - a transfer function from JSON: explicit points, a colormap, a preset or another
+
+ * file.
+ *
+ * A preset, a file or, without opacity points, the automatic function (for shapes: the solid one) is the
+ * ground; points, colormap and unit_distance given beside it take the place of its own.
+ */
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "json/parts.h"
+#include "scene/check.h"
+#include "scene/scene.h"
+
+static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
+
+/* An array of arrays of `width` numbers, in memory of its own. */
+static hl_status read_rows(hl_json_reader *reader, const json_t *object, const char *key, size_t width,
+                           double **rows, size_t *count) {
+  const json_t *value = json_object_get(object, key);
+  size_t mark = hl_json_enter(reader, key);
+  hl_status status = hl_json_array(reader, value, 0, HL_LIMIT_POINTS);
+  if (status != HL_OK) return status;
+  *count = json_array_size(value);
+  *rows = hl_allocate(reader->context, *count * width, sizeof **rows);
+  if (*rows == NULL)
+    return hl_fail_memory(reader->error, *count * width * sizeof **rows, "a transfer function");
+  for (size_t r = 0; status == HL_OK && r < *count; r++) {
+    const json_t *row = json_array_get(value, r);
+    size_t inner = hl_json_enter_index(reader, r);
+    status = hl_json_array(reader, row, width, width);
+    for (size_t n = 0; status == HL_OK && n < width; n++) {
+      char index[2] = {(char)('0' + n), 0};
+      const json_t *element = json_array_get(row, n);
+      if (json_is_number(element)) (*rows)[r * width + n] = json_number_value(element);
+      else
+        status = hl_json_fail(reader, HL_ERROR_INPUT, index, "is no number: give %s",
+                              n == 0 ? "a data value" : "a number from 0 to 1");
+    }
+    if (status == HL_OK) hl_json_leave(reader, inner);
+  }
+  if (status == HL_OK) {
+    hl_json_leave(reader, mark);
+    return HL_OK;
+  }
+  hl_release(reader->context, *rows);
+  *rows = NULL;
+  return status;
+}
+
+_Static_assert(sizeof(hl_opacity_point) == 2 * sizeof(double), "opacity points are rows of two numbers");
+_Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are rows of four numbers");
+
+/* Solids appear over the middle voxel of the HL_SHAPE_EDGE that their density falls over. */
+enum { SOLID_POINTS = 2 };
+static const double solid_begins = 0.375, solid_is_full = 0.625, solid_opacity = 0.95;
+
+/* function->opacity = nothing outside, this opacity inside. */
+static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_transfer_function *function) {
+  hl_opacity_point *points = hl_allocate(reader->context, SOLID_POINTS, sizeof *points);
+  if (points == NULL)
+    return hl_fail_memory(reader->error, SOLID_POINTS * sizeof *points, "a transfer function");
+  points[0] = (hl_opacity_point){solid_begins, 0};
+  points[1] = (hl_opacity_point){solid_is_full, opacity};
+  hl_release(reader->context, (void *)function->opacity);
+  function->opacity = points;
+  function->opacity_count = SOLID_POINTS;
+  return HL_OK;
+}
+
+/* One colour for all values. */
+static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
+                                  hl_transfer_function *function) {
+  hl_color_point *point = hl_allocate_zeroed(reader->context, 1, sizeof *point);
+  if (point == NULL) return hl_fail_memory(reader->error, sizeof *point, "a transfer function");
+  hl_release(reader->context, (void *)function->color);
+  function->color = point;
+  function->color_count = 1;
+  return hl_json_numbers(reader, value, "color", 3, point->color);
+}
+
+/* An opaque solid: per voxel edge, so that its skin is one voxel thick. */
+static hl_status read_solid(hl_json_reader *reader, const hl_volume *volume, hl_transfer_function *function) {
+  function->unit_distance = mat3_shortest_column(volume->index_to_world.linear);
+  return set_solid_opacity(reader, solid_opacity, function);
+}
+
+static hl_status read_points(hl_json_reader *reader, const json_t *value, bool is_solid,
+                             hl_transfer_function *function) {
+  hl_status status = HL_OK;
+  double *rows = NULL;
+  size_t count = 0;
+  const json_t *opacity = json_object_get(value, "opacity");
+  if (is_solid && json_is_number(opacity)) {
+    double inside = json_number_value(opacity);
+    if (!(inside >= 0 && inside <= 1))
+      return hl_json_fail(reader, HL_ERROR_INPUT, "opacity",
+                          "%.9g is out of range: give an opacity from 0 to 1", inside);
+    if ((status = set_solid_opacity(reader, inside, function)) != HL_OK) return status;
+  } else if (opacity != NULL) {
+    if ((status = read_rows(reader, value, "opacity", 2, &rows, &count)) != HL_OK) return status;
+    hl_release(reader->context, (void *)function->opacity);
+    function->opacity = (hl_opacity_point *)rows;
+    function->opacity_count = count;
+  }
+  if (json_is_number(json_array_get(json_object_get(value, "color"), 0)))
+    return read_plain_color(reader, value, function);
+  if (has(value, "color")) {
+    if ((status = read_rows(reader, value, "color", 4, &rows, &count)) != HL_OK) return status;
+    hl_release(reader->context, (void *)function->color);
+    function->color = (hl_color_point *)rows;
+    function->color_count = count;
+  }
+  return status;
+}
+
+static hl_status read_colormap(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
+                               hl_transfer_function *function) {
+  const char *name = NULL;
+  double range[2] = {0, 1};
+  hl_status status = hl_json_text(reader, value, "colormap", &name);
+  if (status != HL_OK) return status;
+  if (name == NULL)
+    return has(value, "range") ? hl_json_fail(reader, HL_ERROR_INPUT, "range",
+                                              "is for a colormap: give one, or remove the range")
+                               : HL_OK;
+  if (has(value, "color"))
+    return hl_json_fail(reader, HL_ERROR_INPUT, "colormap", "and color exclude each other: remove one");
+  if (volume != NULL && volume->maximum > volume->minimum)
+    range[0] = volume->minimum, range[1] = volume->maximum;
+  if ((status = hl_json_numbers(reader, value, "range", 2, range)) != HL_OK) return status;
+  if (!(range[0] < range[1]))
+    return hl_json_fail(reader, HL_ERROR_INPUT, "range",
+                        "%.9g to %.9g is empty: give two values, the lower one first", range[0], range[1]);
+  status = hl_transfer_function_colormap(reader->context, name, range[0], range[1], function, reader->error);
+  if (status == HL_ERROR_INPUT) {
+    hl_json_enter(reader, "colormap");
+    hl_json_prefix(reader, reader->place);
+  }
+  return status;
+}
+
+/* For files that have colours only. */
+static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume *volume,
+                                        hl_transfer_function *function) {
+  hl_transfer_function automatic;
+  hl_status status = hl_transfer_function_automatic(reader->context, volume, &automatic, reader->error);
+  if (status != HL_OK) return status;
+  function->unit_distance = automatic.unit_distance;
+  function->opacity = automatic.opacity;
+  function->opacity_count = automatic.opacity_count;
+  hl_release(reader->context, (void *)automatic.color);
+  return HL_OK;
+}
+
+/* The function that the rest changes. */
+static hl_status read_ground(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
+                             hl_transfer_function *function) {
+  const hl_volume *volume = subject.volume;
+  const char *preset = NULL, *file = NULL, *key = "preset";
+  hl_status status = hl_json_text(reader, value, "preset", &preset);
+  if (status == HL_OK) status = hl_json_text(reader, value, "file", &file);
+  if (status != HL_OK) return status;
+  if (preset != NULL && file != NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "and preset exclude each other: remove one");
+  if (preset != NULL) {
+    if (volume == NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, key, "needs a volume to adapt to: use it in a scene");
+    status = hl_transfer_function_preset(reader->context, preset, volume, function, reader->error);
+  } else if (file != NULL) {
+    key = "file";
+    if (volume == NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, key, "in a file of its own: name that file directly");
+    char *path = hl_path_join(reader->context, reader->folder, file);
+    if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
+    status = hl_transfer_function_load(reader->context, path, function, reader->error);
+    hl_release(reader->context, path);
+    if (status == HL_OK && function->opacity == NULL && !has(value, "opacity"))
+      status = take_automatic_opacity(reader, volume, function);
+  } else if (!has(value, "opacity")) {
+    key = NULL;
+    if (subject.is_solid) return read_solid(reader, volume, function);
+    if (volume != NULL)
+      status = hl_transfer_function_automatic(reader->context, volume, function, reader->error);
+    else if (!has(value, "color") && !has(value, "colormap"))
+      return hl_json_fail(reader, HL_ERROR_INPUT, "opacity", "is missing: give [[value, opacity], ...]");
+  }
+  if (status == HL_OK) return HL_OK;
+  if (key != NULL) hl_json_enter(reader, key);
+  hl_json_prefix(reader, reader->place);
+  return status;
+}
+
+static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
+                              hl_transfer_function *function) {
+  static const char *const keys[] = {"unit_distance", "opacity", "color", "colormap",
+                                     "range",         "preset",  "file",  NULL};
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = read_ground(reader, value, subject, function);
+  if (status == HL_OK) status = hl_json_number(reader, value, "unit_distance", &function->unit_distance);
+  if (status == HL_OK) status = read_points(reader, value, subject.is_solid, function);
+  return status == HL_OK ? read_colormap(reader, value, subject.volume, function) : status;
+}
+
+hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value,
+                                         hl_function_subject subject, hl_transfer_function *function) {
+  *function = (hl_transfer_function){.unit_distance = 1};
+  if (value == NULL && subject.is_solid && !subject.projected)
+    return read_solid(reader, subject.volume, function);
+  if (value == NULL) {
+    hl_status status = subject.projected ? hl_transfer_function_preset(reader->context, "mip", subject.volume,
+                                                                       function, reader->error)
+                                         : hl_transfer_function_automatic(reader->context, subject.volume,
+                                                                          function, reader->error);
+    if (status != HL_OK) hl_json_prefix(reader, reader->place);
+    return status;
+  }
+  size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function")
+                                       : 0; /* a file of its own is the root */
+  hl_status status = read_members(reader, value, subject, function);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}

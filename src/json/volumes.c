@@ -1,0 +1,315 @@
+/* json/volumes.c - one volume of a scene from JSON: its file, place, material and transfer function. */
+#include <string.h>
+#include <unistd.h>
+
+#include "core/context.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "guess/analysis.h"
+#include "json/parts.h"
+#include "json/shapes.h"
+#include "scene/scene.h"
+
+#define DATA_PREFIX "data:" /* of files that are in the context's data folder */
+
+static const char *const volume_keys[] = {"name",       "stand_in",
+                                          "file",       "shapes",
+                                          "voxel_size", "transform",
+                                          "shading",    "transfer_function",
+                                          "material",   "attenuation_color",
+                                          "visible",    "casts_shadow",
+                                          "clip",       "receives_shadow",
+                                          "array",      "component",
+                                          "spacing",    NULL};
+
+static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"axis", "angle_deg", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "rotate");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "axis", 3, volume->rotate_axis);
+  if (status == HL_OK) status = hl_json_number(reader, value, "angle_deg", &volume->rotate_angle_deg);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+/* One factor, or three along the axes of the volume's own file. */
+static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  const json_t *scale = json_object_get(value, "scale");
+  if (json_is_array(scale)) return hl_json_numbers(reader, value, "scale", 3, volume->axis_scale);
+  if (scale != NULL && !json_is_number(scale))
+    return hl_json_fail(reader, HL_ERROR_INPUT, "scale", "is %s: give a number or three, [x, y, z]",
+                        hl_json_type_name(scale));
+  return hl_json_number(reader, value, "scale", &volume->scale);
+}
+
+static hl_status read_transform(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"scale", "rotate", "translate", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "transform");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = read_scale(reader, value, volume);
+  if (status == HL_OK) status = read_rotate(reader, json_object_get(value, "rotate"), volume);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "translate", 3, volume->translate);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+static hl_status read_material(hl_json_reader *reader, const json_t *value, hl_material *material) {
+  static const char *const keys[] = {"ambient", "diffuse", "specular", "shininess", "emission", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "material");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = hl_json_number(reader, value, "ambient", &material->ambient);
+  if (status == HL_OK) status = hl_json_number(reader, value, "diffuse", &material->diffuse);
+  if (status == HL_OK) status = hl_json_number(reader, value, "specular", &material->specular);
+  if (status == HL_OK) status = hl_json_number(reader, value, "shininess", &material->shininess);
+  if (status == HL_OK) status = hl_json_number(reader, value, "emission", &material->emission);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"min", "max", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "clip");
+  hl_status status = hl_json_object(reader, value, keys);
+  for (int k = 0; status == HL_OK && k < 2; k++)
+    if (json_object_get(value, keys[k]) == NULL)
+      status = hl_json_fail(reader, HL_ERROR_INPUT, keys[k], "is missing: give both min and max");
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "min", 3, volume->clip_min);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "max", 3, volume->clip_max);
+  volume->clipped = 1;
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+/* options: how a file is read; null: of shapes. */
+static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
+                                           const hl_volume_load_options *options) {
+  for (size_t v = 0; v < shelf->count; v++) {
+    const hl_loaded_volume *loaded = &shelf->loaded[v];
+    if (strcmp(loaded->source, source) != 0) continue;
+    if (options == NULL) return loaded;
+    bool same_array = (loaded->array == NULL) == (options->array == NULL) &&
+                      (loaded->array == NULL || strcmp(loaded->array, options->array) == 0);
+    if (same_array && loaded->component == options->component &&
+        memcmp(loaded->spacing, options->spacing, sizeof loaded->spacing) == 0)
+      return loaded;
+  }
+  return NULL;
+}
+
+/* Takes over source and volume. */
+static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source,
+                                            const hl_volume_load_options *options, hl_volume *volume) {
+  hl_loaded_volume *place = &shelf->loaded[shelf->count++];
+  *place = (hl_loaded_volume){.source = source, .volume = volume};
+  if (options == NULL) return place;
+  place->array = options->array;
+  place->component = options->component;
+  memcpy(place->spacing, options->spacing, sizeof place->spacing);
+  return place;
+}
+
+/* An index, or "magnitude". */
+static hl_status read_component(hl_json_reader *reader, const json_t *value, int *component) {
+  const json_t *given = json_object_get(value, "component");
+  if (json_is_string(given) && strcmp(json_string_value(given), "magnitude") == 0) {
+    *component = HL_COMPONENT_MAGNITUDE;
+    return HL_OK;
+  }
+  if (given == NULL) return HL_OK;
+  if (json_is_integer(given) && json_integer_value(given) < 0)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "component",
+                        "is below 0: give a number from 0 on, or \"magnitude\"");
+  if (!json_is_integer(given))
+    return hl_json_fail(reader, HL_ERROR_INPUT, "component",
+                        "is %s: give a number from 0 on, or \"magnitude\"",
+                        json_is_string(given) ? "another word" : hl_json_type_name(given));
+  return hl_json_integer(reader, value, "component", component);
+}
+
+/* How the volume's file is read. */
+static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
+                                   hl_volume_load_options *options) {
+  hl_volume_load_options_defaults(options);
+  hl_status status = hl_json_text(reader, value, "array", &options->array);
+  if (status == HL_OK) status = read_component(reader, value, &options->component);
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "spacing", 3, options->spacing);
+  for (int axis = 0; status == HL_OK && axis < 3; axis++)
+    if (json_object_get(value, "spacing") != NULL && !(options->spacing[axis] > 0))
+      status = hl_json_fail(reader, HL_ERROR_INPUT, "spacing",
+                            "has a number that is not above 0: give the distance of voxels");
+  return status;
+}
+
+static bool is_data(const char *file) { return strncmp(file, DATA_PREFIX, strlen(DATA_PREFIX)) == 0; }
+
+/* Where a file name leads: "data:" to the data folder, the rest from the scene's. Null without memory. */
+static char *path_of(const hl_json_reader *reader, const char *file) {
+  bool data = is_data(file);
+  return hl_path_join(reader->context, data ? reader->context->options.data_folder : reader->folder,
+                      data ? file + strlen(DATA_PREFIX) : file);
+}
+
+/* The volume of a file, loaded now or earlier. */
+static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
+                      hl_volume_shelf *shelf, hl_scene_volume *volume) {
+  if (is_data(file) && reader->context->options.data_folder == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "\"%.200s\": no data folder is known: name one",
+                        file);
+  char *path = path_of(reader, file);
+  if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
+  const hl_loaded_volume *loaded = find_loaded(shelf, path, options);
+  if (loaded != NULL) {
+    hl_release(reader->context, path);
+  } else {
+    hl_volume *made = NULL;
+    hl_status status = hl_volume_load_with(reader->context, path, options, &made, reader->error);
+    if (status != HL_OK) {
+      hl_release(reader->context, path);
+      hl_json_enter(reader, "file");
+      hl_json_prefix(reader, reader->place);
+      return status;
+    }
+    loaded = put_on_shelf(shelf, path, options, made);
+  }
+  volume->volume = loaded->volume;
+  volume->file = loaded->source;
+  volume->array = options->array;
+  volume->component = options->component;
+  memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
+  return HL_OK;
+}
+
+/* The volume of shapes; the same list, voxel size and groups make it once. */
+static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
+                             hl_scene_volume *volume) {
+  const json_t *shapes = json_object_get(value, "shapes");
+  double voxel_size = json_number_value(json_object_get(value, "voxel_size"));
+  char *text = hl_json_shapes_text(reader->context, shapes, shelf->groups, voxel_size);
+  const hl_loaded_volume *loaded = text != NULL ? find_loaded(shelf, text, NULL) : NULL;
+  hl_release(reader->context, text);
+  if (loaded == NULL) {
+    hl_shapes_options options;
+    hl_shapes_options_defaults(&options);
+    options.threads = shelf->threads;
+    hl_volume *made = NULL;
+    hl_status status = hl_json_read_shapes(reader, value, shelf->groups, &options, &made, &voxel_size);
+    if (status != HL_OK) return status;
+    text = hl_json_shapes_text(reader->context, shapes, shelf->groups, voxel_size);
+    if (text == NULL) {
+      hl_volume_release(made);
+      return hl_fail_memory(reader->error, 1000, "the text of shapes");
+    }
+    loaded = put_on_shelf(shelf, text, NULL, made);
+  }
+  volume->volume = loaded->volume;
+  volume->shapes = loaded->source;
+  return HL_OK;
+}
+
+static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
+                             hl_scene_volume *volume) {
+  const char *file = NULL;
+  bool shapes = json_object_get(value, "shapes") != NULL;
+  hl_status status = hl_json_text(reader, value, "file", &file);
+  if (status != HL_OK) return status;
+  if (file != NULL && shapes)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "shapes", "and file exclude each other: remove one");
+  if (!shapes && json_object_get(value, "voxel_size") != NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "voxel_size", "is for shapes: remove it");
+  static const char *const of_files[] = {"array", "component", "spacing"};
+  for (size_t n = 0; shapes && n < sizeof of_files / sizeof *of_files; n++)
+    if (json_object_get(value, of_files[n]) != NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, of_files[n], "is for files: remove it");
+  if (shapes) return read_shapes(reader, value, shelf, volume);
+  if (file == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is missing: name the volume's file, or give shapes");
+  if (file[0] == 0) return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is empty: name the volume's file");
+  hl_volume_load_options options;
+  status = read_load_options(reader, value, &options);
+  return status == HL_OK ? load(reader, file, &options, shelf, volume) : status;
+}
+
+/* Orbitals are signed, everything else that shapes make is a density. */
+static bool is_solid(const hl_scene_volume *volume) {
+  return volume->shapes != NULL && volume->volume->storage != HL_STORAGE_F32;
+}
+
+/* Without a word on it, smoke is a medium and the rest has surfaces. */
+static hl_status read_shading(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  int shading = HL_SHADING_PHONG;
+  if (json_object_get(value, "shading") == NULL && json_object_get(value, "transfer_function") == NULL &&
+      volume->shapes == NULL) {
+    hl_data_analysis analysis;
+    hl_status status = hl_data_analyse(volume->volume, &analysis, reader->error);
+    if (status != HL_OK) return hl_json_prefix(reader, reader->place), status;
+    if (analysis.kind == HL_DATA_MEDIUM) shading = HL_SHADING_NONE;
+  }
+  hl_status status = hl_json_choice(reader, value, "shading", hl_shading_names, 0, &shading);
+  volume->shading = (hl_shading)shading;
+  return status;
+}
+
+static bool is_there(const hl_json_reader *reader, const char *file) {
+  if (is_data(file) && reader->context->options.data_folder == NULL) return false;
+  char *path = path_of(reader, file);
+  bool there = path == NULL || access(path, F_OK) == 0; /* without memory, loading tells */
+  hl_release(reader->context, path);
+  return there;
+}
+
+/* Where the volume's file is absent, *value becomes the volume with the keys of its stand-in, kept on the
+ * shelf. */
+static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
+  const json_t *stand_in = json_object_get(*value, "stand_in");
+  const char *file = NULL;
+  if (stand_in == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "stand_in");
+  hl_status status = hl_json_object(reader, stand_in, volume_keys + 2); /* it has no name and no stand-in */
+  if (status != HL_OK) return status;
+  hl_json_leave(reader, mark);
+  if ((status = hl_json_text(reader, *value, "file", &file)) != HL_OK) return status;
+  if (file == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "stand_in",
+                        "is for a file that may be absent: name one, or remove it");
+  if (is_there(reader, file)) return HL_OK;
+  json_t *merged = hl_json_copy(*value);
+  json_object_del(merged, "stand_in");
+  static const char *const of_file[] = {"file", "array", "component", "spacing"};
+  for (size_t n = 0; n < sizeof of_file / sizeof *of_file; n++) json_object_del(merged, of_file[n]);
+  if (shelf->stood_in == NULL) shelf->stood_in = json_array();
+  bool failed = json_object_update(merged, (json_t *)stand_in) != 0;
+  if (json_array_append_new(shelf->stood_in, merged) != 0 || failed)
+    return hl_fail_memory(reader->error, 1000, "a stand-in");
+  const char *folder = reader->context->options.data_folder;
+  hl_log(reader->context, HL_LOG_WARNING, "%s: %s/file: %s is not there%s%s: its stand-in is shown",
+         reader->name, reader->place, file, folder != NULL ? ", the data folder is " : "",
+         folder != NULL ? folder : "");
+  *value = merged;
+  return HL_OK;
+}
+
+hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
+                              hl_scene_volume *volume) {
+  hl_scene_volume_defaults(volume);
+  hl_status status = hl_json_object(reader, value, volume_keys);
+  if (status == HL_OK) status = choose_stand_in(reader, &value, shelf);
+  if (status == HL_OK) status = hl_json_text(reader, value, "name", &volume->name);
+  if (status == HL_OK) status = read_transform(reader, json_object_get(value, "transform"), volume);
+  if (status == HL_OK) status = read_material(reader, json_object_get(value, "material"), &volume->material);
+  if (status == HL_OK)
+    status = hl_json_numbers(reader, value, "attenuation_color", 3, volume->attenuation_color);
+  if (status == HL_OK) status = hl_json_flag(reader, value, "visible", &volume->visible);
+  if (status == HL_OK) status = hl_json_flag(reader, value, "casts_shadow", &volume->casts_shadow);
+  if (status == HL_OK) status = hl_json_flag(reader, value, "receives_shadow", &volume->receives_shadow);
+  if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
+  if (status == HL_OK) status = read_source(reader, value, shelf, volume);
+  if (status == HL_OK) status = read_shading(reader, value, volume);
+  if (status != HL_OK) return status;
+  hl_function_subject subject = {volume->volume, is_solid(volume), shelf->projected};
+  return hl_json_read_transfer_function(reader, json_object_get(value, "transfer_function"), subject,
+                                        &volume->transfer_function);
+}

@@ -1,0 +1,438 @@
+/* json/write.c - a scene as JSON text that reads back as the same scene.
+
+ *
+ * Numbers are written with the fewest digits that give the same double again; rows of numbers stay on one
+ * line.
+ */
+#define _GNU_SOURCE
+#include <locale.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "json/read.h"
+#include "json/shapes.h"
+#include "scene/scene.h"
+
+/* A text that grows. After a failed allocation everything is ignored until the end. */
+typedef struct writer {
+  hl_context *context;
+  char *text;
+  size_t length, capacity;
+  int depth;
+  bool first; /* no member or element yet at this depth */
+  bool failed;
+} writer;
+
+static void put(writer *w, const char *text, size_t length) {
+  if (!w->failed && w->length + length + 1 > w->capacity) {
+    size_t capacity = 2 * w->capacity + length + 1024;
+    char *grown = hl_reallocate(w->context, w->text, capacity, 1);
+    if (grown == NULL) w->failed = true;
+    else w->text = grown, w->capacity = capacity;
+  }
+  if (w->failed) return;
+  memcpy(w->text + w->length, text, length);
+  w->length += length;
+  w->text[w->length] = 0;
+}
+
+static void put_text(writer *w, const char *text) { put(w, text, strlen(text)); }
+
+/* Comma if needed, new line, indentation, and the key if there is one. */
+static void begin_item(writer *w, const char *key) {
+  put_text(w, w->first ? "\n" : ",\n");
+  w->first = false;
+  for (int d = 0; d < w->depth; d++) put_text(w, "  ");
+  if (key == NULL) return;
+  put_text(w, "\"");
+  put_text(w, key);
+  put_text(w, "\": ");
+}
+
+static void open_bracket(writer *w, const char *key, const char *bracket) {
+  if (w->depth > 0) begin_item(w, key);
+  put_text(w, bracket);
+  w->depth++;
+  w->first = true;
+}
+
+static void close_bracket(writer *w, const char *bracket) {
+  bool empty = w->first;
+  w->depth--;
+  w->first = true;
+  if (!empty) begin_item(w, NULL);
+  put_text(w, bracket);
+  w->first = false;
+}
+
+static void put_number(writer *w, double number) {
+  char text[64];
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, sizeof text, "%.*g", digits, number);
+    if (strtod(text, NULL) == number) break;
+  }
+  const char *point = localeconv()->decimal_point; /* JSON's is always "." */
+  char *found = strcmp(point, ".") != 0 ? strstr(text, point) : NULL;
+  if (found != NULL) {
+    *found = '.';
+    memmove(found + 1, found + strlen(point), strlen(found + strlen(point)) + 1);
+  }
+  if (signbit(number) && number == 0) strcpy(text, "-0.0");
+  put_text(w, text);
+}
+
+static void put_quoted(writer *w, const char *text) {
+  put_text(w, "\"");
+  for (const char *c = text; *c != 0; c++) {
+    char escaped[8];
+    if (*c == '"' || *c == '\\') {
+      put_text(w, "\\");
+      put(w, c, 1);
+    } else if ((unsigned char)*c < 0x20) {
+      snprintf(escaped, sizeof escaped, "\\u%04x", (unsigned)*c);
+      put_text(w, escaped);
+    } else put(w, c, 1);
+  }
+  put_text(w, "\"");
+}
+
+static void write_number(writer *w, const char *key, double number) {
+  begin_item(w, key);
+  put_number(w, number);
+}
+
+static void write_row(writer *w, const char *key, const double *numbers, size_t count) {
+  begin_item(w, key);
+  put_text(w, "[");
+  for (size_t n = 0; n < count; n++) {
+    if (n > 0) put_text(w, ", ");
+    put_number(w, numbers[n]);
+  }
+  put_text(w, "]");
+}
+
+static void write_name(writer *w, const char *key, const char *name) {
+  begin_item(w, key);
+  put_quoted(w, name);
+}
+
+static void write_flag(writer *w, const char *key, int flag) {
+  begin_item(w, key);
+  put_text(w, flag ? "true" : "false");
+}
+
+static void write_image(writer *w, const hl_scene_description *d) {
+  open_bracket(w, "image", "{");
+  write_number(w, "width", d->width);
+  write_number(w, "height", d->height);
+  write_row(w, "background", d->background, 3);
+  if (d->background_transparent) write_flag(w, "background_transparent", 1);
+  if (d->exposure != 0) write_number(w, "exposure", d->exposure);
+  close_bracket(w, "}");
+}
+
+static void write_camera(writer *w, const hl_camera *camera) {
+  open_bracket(w, "camera", "{");
+  write_name(w, "type", hl_camera_type_names[camera->type]);
+  write_row(w, "position", camera->position, 3);
+  write_row(w, "target", camera->target, 3);
+  write_row(w, "up", camera->up, 3);
+  if (camera->type == HL_CAMERA_PERSPECTIVE) write_number(w, "fovy_deg", camera->fovy_deg);
+  else write_number(w, "height", camera->height);
+  close_bracket(w, "}");
+}
+
+static void write_texture(writer *w, const hl_light_texture *texture) {
+  if (texture->pixels == NULL) return;
+  open_bracket(w, "texture", "{");
+  write_name(w, "file", texture->file);
+  open_bracket(w, "screen", "{");
+  write_row(w, "center", texture->screen_center, 3);
+  write_row(w, "right", texture->screen_right, 3);
+  write_row(w, "up", texture->screen_up, 3);
+  close_bracket(w, "}");
+  close_bracket(w, "}");
+}
+
+static void write_emission(writer *w, const hl_light *light) {
+  if (light->emission.pixels == NULL) return;
+  open_bracket(w, "emission", "{");
+  write_name(w, "file", light->emission.file);
+  if (light->type != HL_LIGHT_RECT) write_row(w, "up", light->emission.up, 3);
+  close_bracket(w, "}");
+}
+
+static void write_light_place(writer *w, const hl_light *light) {
+  if (light->type == HL_LIGHT_DIRECTIONAL) {
+    write_row(w, "direction", light->direction, 3);
+    write_number(w, "angular_diameter_deg", light->angular_diameter_deg);
+    return;
+  }
+  if (light->type == HL_LIGHT_POLYGON) {
+    open_bracket(w, "vertices", "[");
+    for (size_t v = 0; v < light->vertex_count; v++) write_row(w, NULL, light->vertices[v], 3);
+    close_bracket(w, "]");
+    return;
+  }
+  write_row(w, "position", light->position, 3);
+  if (light->type == HL_LIGHT_RECT) {
+    write_row(w, "edge1", light->edge1, 3);
+    write_row(w, "edge2", light->edge2, 3);
+    return;
+  }
+  if (light->type == HL_LIGHT_DISK) write_row(w, "normal", light->normal, 3);
+  if (light->type == HL_LIGHT_SPOT) {
+    write_row(w, "direction", light->direction, 3);
+    write_number(w, "opening_angle_deg", light->opening_angle_deg);
+    write_number(w, "falloff_angle_deg", light->falloff_angle_deg);
+  }
+  write_number(w, "radius", light->radius);
+}
+
+static void write_light(writer *w, const hl_light *light) {
+  open_bracket(w, NULL, "{");
+  write_name(w, "type", hl_light_type_names[light->type]);
+  if (light->frame != HL_LIGHT_FRAME_WORLD) write_name(w, "frame", hl_light_frame_names[light->frame]);
+  write_light_place(w, light);
+  if (light->type != HL_LIGHT_DIRECTIONAL) write_name(w, "falloff", hl_falloff_names[light->falloff]);
+  write_row(w, "color", light->color, 3);
+  write_number(w, "intensity", light->intensity);
+  if (light->shadows != HL_SHADOWS_DEFAULT)
+    write_name(w, "shadows", hl_shadows_names[light->shadows - HL_SHADOWS_OFF]);
+  write_texture(w, &light->texture);
+  write_emission(w, light);
+  close_bracket(w, "}");
+}
+
+static void write_transfer_function(writer *w, const hl_transfer_function *function) {
+  open_bracket(w, "transfer_function", "{");
+  write_number(w, "unit_distance", function->unit_distance);
+  open_bracket(w, "opacity", "[");
+  for (size_t p = 0; p < function->opacity_count; p++) {
+    const hl_opacity_point *point = &function->opacity[p];
+    write_row(w, NULL, (double[2]){point->value, point->opacity}, 2);
+  }
+  close_bracket(w, "]");
+  open_bracket(w, "color", "[");
+  for (size_t p = 0; p < function->color_count; p++) {
+    const hl_color_point *point = &function->color[p];
+    write_row(w, NULL, (double[4]){point->value, point->color[0], point->color[1], point->color[2]}, 4);
+  }
+  close_bracket(w, "]");
+  close_bracket(w, "}");
+}
+
+static void write_transform(writer *w, const hl_scene_volume *volume) {
+  open_bracket(w, "transform", "{");
+  const double *axis = volume->axis_scale;
+  if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) write_number(w, "scale", volume->scale);
+  else
+    write_row(w, "scale",
+              (double[3]){hl_scene_volume_scale(volume, 0), hl_scene_volume_scale(volume, 1),
+                          hl_scene_volume_scale(volume, 2)},
+              3);
+  open_bracket(w, "rotate", "{");
+  write_row(w, "axis", volume->rotate_axis, 3);
+  write_number(w, "angle_deg", volume->rotate_angle_deg);
+  close_bracket(w, "}");
+  write_row(w, "translate", volume->translate, 3);
+  close_bracket(w, "}");
+}
+
+static void write_json(writer *w, const char *key, const json_t *value);
+
+/* Members on one line where they are plain, each shape on a line of its own. */
+static void write_object(writer *w, const char *key, const json_t *value) {
+  const char *name;
+  json_t *member;
+  open_bracket(w, key, "{");
+  json_object_foreach((json_t *)value, name, member) write_json(w, name, member);
+  close_bracket(w, "}");
+}
+
+static void write_list(writer *w, const char *key, const json_t *value) {
+  if (json_is_number(json_array_get(value, 0))) {
+    double numbers[3] = {0};
+    for (size_t n = 0; n < 3; n++) numbers[n] = json_number_value(json_array_get(value, n));
+    write_row(w, key, numbers, json_array_size(value) < 3 ? json_array_size(value) : 3);
+    return;
+  }
+  open_bracket(w, key, "[");
+  for (size_t n = 0; n < json_array_size(value); n++) write_json(w, NULL, json_array_get(value, n));
+  close_bracket(w, "]");
+}
+
+static void write_json(writer *w, const char *key, const json_t *value) {
+  if (json_is_object(value)) write_object(w, key, value);
+  else if (json_is_array(value)) write_list(w, key, value);
+  else if (json_is_string(value)) write_name(w, key, json_string_value(value));
+  else if (json_is_number(value)) write_number(w, key, json_number_value(value));
+  else write_flag(w, key, json_is_true(value));
+}
+
+/* text: {"shapes": [...], "voxel_size": h}, found good by hl_scene_to_json(); groups go into their shapes. */
+static void write_shapes(writer *w, const char *text) {
+  json_t *root = json_loads(text, 0, NULL);
+  json_t *shapes = hl_json_expand_shapes(json_object_get(root, "shapes"), json_object_get(root, "groups"));
+  if (shapes == NULL) w->failed = true;
+  write_list(w, "shapes", shapes);
+  if (json_object_get(root, "voxel_size") != NULL)
+    write_number(w, "voxel_size", json_number_value(json_object_get(root, "voxel_size")));
+  json_decref(shapes);
+  json_decref(root);
+}
+
+/* How the file is read, where it is not by default. */
+static void write_source(writer *w, const hl_scene_volume *volume) {
+  write_name(w, "file", volume->file);
+  if (volume->array != NULL) write_name(w, "array", volume->array);
+  if (volume->component == HL_COMPONENT_MAGNITUDE) write_name(w, "component", "magnitude");
+  else if (volume->component >= 0) write_number(w, "component", volume->component);
+  if (volume->spacing[0] > 0) write_row(w, "spacing", volume->spacing, 3);
+}
+
+static void write_volume(writer *w, const hl_scene_volume *volume) {
+  open_bracket(w, NULL, "{");
+  if (volume->name != NULL) write_name(w, "name", volume->name);
+  if (volume->shapes != NULL) write_shapes(w, volume->shapes);
+  else write_source(w, volume);
+  write_transform(w, volume);
+  write_transfer_function(w, &volume->transfer_function);
+  write_name(w, "shading", hl_shading_names[volume->shading]);
+  open_bracket(w, "material", "{");
+  write_number(w, "ambient", volume->material.ambient);
+  write_number(w, "diffuse", volume->material.diffuse);
+  write_number(w, "specular", volume->material.specular);
+  write_number(w, "shininess", volume->material.shininess);
+  if (volume->material.emission != 0) write_number(w, "emission", volume->material.emission);
+  close_bracket(w, "}");
+  write_row(w, "attenuation_color", volume->attenuation_color, 3);
+  write_flag(w, "visible", volume->visible);
+  write_flag(w, "casts_shadow", volume->casts_shadow);
+  write_flag(w, "receives_shadow", volume->receives_shadow);
+  if (volume->clipped) {
+    open_bracket(w, "clip", "{");
+    write_row(w, "min", volume->clip_min, 3);
+    write_row(w, "max", volume->clip_max, 3);
+    close_bracket(w, "}");
+  }
+  close_bracket(w, "}");
+}
+
+static void write_render(writer *w, const hl_render_settings *render) {
+  open_bracket(w, "render", "{");
+  write_name(w, "shadows", hl_shadows_names[render->shadows - HL_SHADOWS_OFF]);
+  write_name(w, "soft_method", hl_soft_method_names[render->soft_method]);
+  write_number(w, "light_samples", render->light_samples);
+  write_number(w, "sheet_spacing", render->sheet_spacing);
+  write_name(w, "kernel", hl_kernel_names[render->kernel]);
+  write_name(w, "reconstruction", hl_reconstruction_names[render->reconstruction]);
+  write_name(w, "slicing", hl_slicing_names[render->slicing]);
+  write_name(w, "shadow_lookup", hl_shadow_lookup_names[render->shadow_lookup]);
+  if (render->shadow_resolution == 0) write_name(w, "shadow_resolution", "auto");
+  else write_number(w, "shadow_resolution", render->shadow_resolution);
+  write_number(w, "threads", render->threads);
+  if (render->compositing != HL_COMPOSITING_LIGHT)
+    write_name(w, "compositing", hl_compositing_names[render->compositing]);
+  close_bracket(w, "}");
+}
+
+static void write_scene(writer *w, const hl_scene_description *d) {
+  open_bracket(w, NULL, "{");
+  write_number(w, "halflight", 1);
+  if (d->description != NULL) write_name(w, "description", d->description);
+  write_image(w, d);
+  write_camera(w, &d->camera);
+  write_row(w, "ambient", d->ambient, 3);
+  open_bracket(w, "lights", "[");
+  for (size_t l = 0; l < d->light_count; l++) write_light(w, &d->lights[l]);
+  close_bracket(w, "]");
+  open_bracket(w, "volumes", "[");
+  for (size_t v = 0; v < d->volume_count; v++) write_volume(w, &d->volumes[v]);
+  close_bracket(w, "]");
+  write_render(w, &d->render);
+  close_bracket(w, "}");
+  put_text(w, "\n");
+}
+
+static bool is_utf8(const char *text) {
+  if (text == NULL) return true;
+  json_t *string = json_string(text); /* null for what is not */
+  bool good = string != NULL;
+  json_decref(string);
+  return good;
+}
+
+static bool is_text_of_shapes(const char *text) {
+  json_t *root = json_loads(text, 0, NULL);
+  bool good = json_is_array(json_object_get(root, "shapes"));
+  json_decref(root);
+  return good;
+}
+
+static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_error *error) {
+  if (volume->file == NULL && volume->shapes == NULL)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "/volumes/%zu/file: the volume came from memory: write it to a file and name that in the scene",
+        index);
+  if (volume->shapes != NULL && !is_text_of_shapes(volume->shapes))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "/volumes/%zu/shapes: is no text that hl_volume_from_shapes() reads: give that, or null",
+                   index);
+  if (is_utf8(volume->file) && is_utf8(volume->name) && is_utf8(volume->array)) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT,
+                 "/volumes/%zu: name, file or array is not UTF-8, as JSON texts must be: rename it", index);
+}
+
+static hl_status check_light_image(const float *pixels, const char *file, const char *key, size_t light,
+                                   hl_error *error) {
+  if (pixels == NULL) return HL_OK;
+  if (file == NULL)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "/lights/%zu/%s/file: the image came from memory: write it to a file and name that in the scene",
+        light, key);
+  if (is_utf8(file)) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT,
+                 "/lights/%zu/%s/file: is not UTF-8, as JSON texts must be: rename it", light, key);
+}
+
+/* What a text cannot say: voxels and pixels without a file, names that are not UTF-8. */
+static hl_status check_writable(const hl_scene_description *d, hl_error *error) {
+  for (size_t l = 0; l < d->light_count; l++) {
+    const hl_light *light = &d->lights[l];
+    hl_status status = check_light_image(light->texture.pixels, light->texture.file, "texture", l, error);
+    if (status == HL_OK)
+      status = check_light_image(light->emission.pixels, light->emission.file, "emission", l, error);
+    if (status != HL_OK) return status;
+  }
+  for (size_t v = 0; v < d->volume_count; v++) {
+    hl_status status = check_volume(&d->volumes[v], v, error);
+    if (status != HL_OK) return status;
+  }
+  if (is_utf8(d->description)) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT, "/description: is not UTF-8, as JSON texts must be");
+}
+
+hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text, hl_error *error) {
+  if (context == NULL || scene == NULL || text == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_to_json: null context, scene or text");
+  *text = NULL;
+  hl_status status = check_writable(&scene->description, error);
+  if (status != HL_OK) return status;
+  writer w = {.context = context, .first = true};
+  write_scene(&w, &scene->description);
+  if (w.failed) {
+    hl_release(context, w.text);
+    return hl_fail_memory(error, w.length, "a scene's text");
+  }
+  *text = w.text;
+  return HL_OK;
+}
+
+void hl_text_release(hl_context *context, char *text) { hl_release(context, text); }

@@ -1,0 +1,32 @@
+/* scene/transfer_function.h - what a transfer function says about values, and the named colormaps. */
+#ifndef HL_SCENE_TRANSFER_FUNCTION_H
+#define HL_SCENE_TRANSFER_FUNCTION_H
+
+#include <halflight/scene.h>
+#include <stdbool.h>
+
+#include "core/error.h"
+
+/* opacity (per unit_distance) and linear colour of a data value: piecewise linear, ends held. */
+double hl_transfer_function_opacity(const hl_transfer_function *function, double value);
+void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]);
+
+/* True if some value in [low, high] has opacity above zero. */
+int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high);
+
+/* The transparent value in [low, high] that is nearest to target (inside them); false if there is none. */
+bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
+                                      double target, double *nearest);
+
+/* *to gets arrays of its own. */
+hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
+                                    hl_transfer_function *to, hl_error *error);
+
+#define HL_COLORMAP_POINTS 65 /* colour points that stand for a whole map */
+
+double hl_srgb_to_linear(double srgb);
+
+/* Linear RGB at t in [0,1] (clamped); false if there is no such map. */
+bool hl_colormap_evaluate(const char *name, double t, double linear[3]);
+
+#endif
