@@ -48,7 +48,7 @@ static bool is_empty(const float pixel[4]) {
 }
 
 /* The linear value that colour c of a pixel is stored as. */
-static float stored_value(const hl_codes *codes, const float pixel[4], int c) {
+static float hl_stored_value(const hl_codes *codes, const float pixel[4], int c) {
   if (!codes->transparent) return pixel[c] * codes->exposure + (1 - pixel[3]) * codes->background[c];
   /* Light above alpha (emission) cannot be told in unassociated colour: it saturates. */
   return pixel[3] > 0 ? pixel[c] / pixel[3] * codes->exposure : 0;
@@ -59,7 +59,7 @@ void hl_codes_of_row(const hl_codes *codes, const float *pixels, int width, int 
     int x = (int)((pixel - pixels) / 4);
     float offset = codes->depth == 16 || is_empty(pixel) ? 0.0f : dither_offset(x, y);
     for (int c = 0; c < 3; c++)
-      to = put_code(to, hl_srgb_encode_offset(&codes->encoder, stored_value(codes, pixel, c), offset),
+      to = put_code(to, hl_srgb_encode_offset(&codes->encoder, hl_stored_value(codes, pixel, c), offset),
                     codes->depth);
     if (codes->transparent)
       to = put_code(to, quantise(pixel[3], codes->encoder.maximum, offset), codes->depth);

@@ -8,7 +8,7 @@
 #define HL_LIGHT_LIGHT_IMAGE_H
 
 #include "light/light_extent.h"
-#include "splat/view.h"
+#include "view/view.h"
 
 enum {
   IMAGE_SIDE = 12,

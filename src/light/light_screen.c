@@ -5,7 +5,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "scene/light_shape.h"
-#include "splat/view.h"
+#include "view/view.h"
 
 /* The image as a picture plane that the light looks through: its pixels are the view's. Derived: a sample x
  * lies on the ray through c + s R + t U; with the light at P, x - P = w (c - P + s R + t U), and for parallel

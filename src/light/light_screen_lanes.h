@@ -3,7 +3,7 @@
 #define HL_LIGHT_LIGHT_SCREEN_LANES_H
 
 #include "light/light_screen.h"
-#include "splat/rays_lanes.h"
+#include "view/rays_lanes.h"
 
 /* How far within the screen's two edges of one axis a place is: 0 to 1 over one pixel of the picture, or over
  * more. */

@@ -4,7 +4,7 @@
 #define HL_LIGHT_LIT_REGION_H
 
 #include "light/light_source.h"
-#include "splat/view.h"
+#include "view/view.h"
 
 /* Cuts bounds in the coordinates of a view from the light down to what is lit; where nothing within them is,
  * to a point. */

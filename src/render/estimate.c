@@ -4,7 +4,7 @@
 #include "render/estimate.h"
 
 #include "core/context.h"
-#include "splat/bricks.h"
+#include "grid/make_grid.h"
 
 enum { SMALL_PARTS = 64 << 10 /* descriptions, sweeps, corners, counts */ };
 

@@ -1,6 +1,8 @@
 /* render/frame.c - the eye's view and the content's bounds. */
 #include "render/frame.h"
 
+#include "grid/relevant.h"
+
 static vec3 camera_up(const hl_camera *camera, vec3 forward) {
   vec3 up = vec3_normalise(vec3_of(camera->up));
   if (vec3_length(vec3_cross(forward, up)) > 1e-6) return up;

@@ -7,7 +7,7 @@
 
 #include "light/light_source.h"
 #include "render/shade.h"
-#include "splat/occupancy.h"
+#include "view/occupancy.h"
 
 enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
 

@@ -33,10 +33,10 @@ uint32_t hl_sweep_cover(const sweep *sweep, const shade_patch *patches, int patc
   uint32_t seen = blocks & hl_shown_blocks(shown_from, 0); /* 0: not covered yet */
   counts->pixels_covered += hl_pixels_of_blocks(blocks & ~seen);
   counts->pixels_seen += hl_pixels_of_blocks(seen);
-  uint32_t open = sweep->hot->cover_tile(&sweep->shade, patches, patch_count,
-                                         (int)(tile % (size_t)sweep->tiles_x),
-                                         (int)(tile / (size_t)sweep->tiles_x), seen, scratch,
-                                         sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
+  uint32_t open = sweep->hot->render.cover(&sweep->shade, patches, patch_count,
+                                           (int)(tile % (size_t)sweep->tiles_x),
+                                           (int)(tile / (size_t)sweep->tiles_x), seen, scratch,
+                                           sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
   for (uint32_t closed = seen & ~open; closed != 0; closed &= closed - 1)
     shown_from[__builtin_ctz(closed)] = first_shown(sweep, sweep->sheet);
   return sweep->trying ? blocks : open;

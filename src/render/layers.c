@@ -117,7 +117,7 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
   layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
-  *pass = (layer_pass){sweep->hot->shade_tile, sweep->shade, false, pixels, COLORS * TILE_PIXELS};
+  *pass = (layer_pass){sweep->hot->render.shade, sweep->shade, false, pixels, COLORS * TILE_PIXELS};
   pass->job.lights = lights;
   pass->job.light_count = light_count;
   for (int c = 0; c < 3; c++) pass->job.ambient[c] = 0;
@@ -145,7 +145,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   if (emission != NULL) emission->job.emission = sweep->shade.emission;
   layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
   if (measures != NULL) {
-    measures->shade = sweep->hot->measure_tile;
+    measures->shade = sweep->hot->render.measure;
     measures->tile_floats = MEASURES * TILE_PIXELS;
   }
   return HL_OK;

@@ -11,7 +11,7 @@
 
 #include "core/pool.h"
 #include "render/frame.h"
-#include "simd/hot.h"
+#include "render/hot.h"
 
 /* Pixels of the frame's layers, in blocks as the picture's: [tiles][16][floats a pixel][16]. Null: not
  * wanted. */

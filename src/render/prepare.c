@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "grid/make_grid.h"
+#include "grid/relevant.h"
 
 static bool same_function(const hl_transfer_function *a, const hl_transfer_function *b) {
   return a->unit_distance == b->unit_distance && a->opacity_count == b->opacity_count &&
@@ -65,8 +67,8 @@ static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_fu
   bool same = same_voxels && same_function(&prepared->function, &scene->transfer_function);
   if (!same_voxels) {
     hl_prepared_release(context, prepared);
-    status = hl_grid_create(context, pool, &hot->grid, hl_kernel_get(kernel), scene, index_to_frame, empty,
-                            &prepared->grid, error);
+    const grid_source source = {scene, hl_kernel_get(kernel), index_to_frame, empty};
+    status = hl_grid_create(context, pool, &hot->grid, &source, &prepared->grid, error);
     if (status == HL_OK && hl_pool_cancelled(pool))
       status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
     if (status != HL_OK) return status;

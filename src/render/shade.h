@@ -104,4 +104,9 @@ typedef struct maximum_values {
   size_t tiles;
 } maximum_values;
 
+/* The functions of this room that are compiled for each instruction set. */
+typedef struct render_functions {
+  shade_tile_function *shade, *measure, *cover, *maximum;
+} render_functions;
+
 #endif

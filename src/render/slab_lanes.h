@@ -6,9 +6,9 @@
 #ifndef HL_RENDER_SLAB_LANES_H
 #define HL_RENDER_SLAB_LANES_H
 
+#include "fill/gradient_lanes.h"
 #include "render/shade.h"
 #include "shadow/attenuate_lanes.h"
-#include "splat/slope_lanes.h"
 
 /* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
 static const float OPAQUE = 1.0f - 1.0f / 2048;

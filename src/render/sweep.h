@@ -9,9 +9,9 @@
 
 #include "core/reserve.h"
 #include "render/frame.h"
+#include "render/hot.h"
 #include "render/layers.h"
 #include "shadow/shadow_method.h"
-#include "simd/hot.h"
 
 /* A volume made ready: kept between frames while its voxels and transfer function stay. */
 typedef struct prepared_volume {

@@ -34,7 +34,7 @@ static shadow_setup setup_of_light(const sweep *sweep, const light_source *sourc
   return (shadow_setup){.context = sweep->context,
                         .pool = sweep->pool,
                         .reserve = sweep->reserve,
-                        .hot = sweep->hot,
+                        .functions = &sweep->hot->shadow,
                         .settings = &sweep->scene->render,
                         .source = source,
                         .image = image == NULL || image->even ? NULL : image,

@@ -62,10 +62,10 @@ static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker,
 /* Steps 12 to 16 for one tile. Returns the blocks that stay open. */
 static uint32_t shade_blocks(const sweep *sweep, const shade_patch *patches, int count, size_t tile,
                              uint32_t blocks, int worker, void *scratch) {
-  uint32_t open = sweep->hot->shade_tile(&sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
-                                         (int)(tile / (size_t)sweep->tiles_x), blocks, scratch,
-                                         sweep->pixels + tile * 4 * TILE_PIXELS,
-                                         &sweep->counts[worker].samples);
+  uint32_t open = sweep->hot->render.shade(
+      &sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
+      (int)(tile / (size_t)sweep->tiles_x), blocks, scratch, sweep->pixels + tile * 4 * TILE_PIXELS,
+      &sweep->counts[worker].samples);
   hl_sweep_layers_tile(sweep, patches, count, tile, blocks, worker, scratch);
   return open;
 }
@@ -74,10 +74,11 @@ static uint32_t shade_blocks(const sweep *sweep, const shade_patch *patches, int
 static uint32_t find_maximum(const sweep *sweep, const shade_patch *patches, int count, size_t tile,
                              uint32_t blocks, int worker) {
   const maximum_values *maximum = sweep->maximum;
-  return sweep->hot->maximum_tile(&sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
-                                  (int)(tile / (size_t)sweep->tiles_x), blocks, NULL,
-                                  maximum->values + tile * maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS,
-                                  &sweep->counts[worker].samples);
+  return sweep->hot->render.maximum(
+      &sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
+      (int)(tile / (size_t)sweep->tiles_x), blocks, NULL,
+      maximum->values + tile * maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS,
+      &sweep->counts[worker].samples);
 }
 
 /* Steps 6 and 8 to 16 for one tile. */
@@ -181,7 +182,7 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   if (method->before_tile != NULL) method->before_tile(shadow, tile, &job);
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
-  attenuated_blocks blocks = sweep->hot->attenuate_tile(&job, tile_x, tile_y);
+  attenuated_blocks blocks = sweep->hot->shadow.attenuate(&job, tile_x, tile_y);
   if (method->find_lit == NULL) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
   if (blocks.taken == 0) return;
   buffer->tile_touched[tile] = 1;

@@ -1,8 +1,8 @@
 /* render/view_sheets.c - what one view, the eye's or a light's, sees of the last sheets: where, in what
  * order, and the densities of patches, filled when they are asked for and kept for the next slab. */
 #include "core/memory.h"
+#include "fill/voxel_lists.h"
 #include "render/sweep.h"
-#include "splat/voxel_sort.h"
 
 enum { ENTRY_FLOATS = 2 * TILE_PIXELS };
 
@@ -35,7 +35,7 @@ static const float *entries_of(const sweep *sweep, view_sheets *sheets, size_t t
   *entry = __atomic_fetch_add(&sheets->entry_count, 1, __ATOMIC_RELAXED);
   float *enter = sheets->entries + *entry * (size_t)ENTRY_FLOATS;
   size_t tiles_x = (size_t)sheets->occupancy.tiles_x;
-  sweep->hot->coverage_tile(&sheets->box_rays[sheets->occupancy.patch_grid[patch]], (int)(tile % tiles_x),
+  sweep->hot->view.coverage(&sheets->box_rays[sheets->occupancy.patch_grid[patch]], (int)(tile % tiles_x),
                             (int)(tile / tiles_x), enter, enter + TILE_PIXELS);
   return enter;
 }
@@ -46,8 +46,10 @@ static hl_status sort_voxels(const sweep *sweep, const view *view, view_sheets *
   if (sheets->lists == NULL) return hl_fail_memory(error, sizeof *sheets->lists, "the sorted voxels");
   hl_status status = HL_OK;
   for (int g = 0; g < sweep->volume_count && status == HL_OK; g++)
-    status = hl_voxel_lists_build(sweep->context, sweep->pool, &sweep->grids[g], sweep->kernel, view,
-                                  &sweep->geometry->sheets, &sheets->lists[g], error);
+    status = hl_voxel_lists_build(
+        sweep->context, sweep->pool,
+        &(voxel_sort){&sweep->grids[g], sweep->kernel, view, &sweep->geometry->sheets}, &sheets->lists[g],
+        error);
   return status;
 }
 
@@ -83,8 +85,9 @@ uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view, double spare
   size_t patches;
   bool cut = false;
   for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
-  uint64_t bytes = hl_occupancy_bytes(sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets,
-                                      spare, &patches);
+  uint64_t bytes = hl_occupancy_bytes(
+      &(occupancy_source){sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, spare},
+      &patches);
   size_t ring = (size_t)bundle_of_patches(patches) + 1;
   uint64_t a_patch = ring * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(patch_run) +
                      (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
@@ -142,8 +145,8 @@ void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_
 
 hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spare, view_sheets *sheets,
                                hl_error *error) {
-  hl_status status = hl_occupancy_build(sweep->context, sweep->pool, sweep->grids, sweep->volume_count, view,
-                                        &sweep->geometry->sheets, spare, sweep->hot->brick_ranges,
+  const occupancy_source source = {sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, spare};
+  hl_status status = hl_occupancy_build(sweep->context, sweep->pool, sweep->hot->view.brick_ranges, &source,
                                         &sheets->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sweep, view, sheets, error);
   if (status == HL_OK) status = set_up_entries(sweep, view, sheets, error);
@@ -189,7 +192,7 @@ static void look_near(const sweep *sweep, const view_sheets *sheets, size_t tile
                         hl_occupancy_has(o, patch, run->first + i + 1))
              << i;
   relevant_blocks near = {0};
-  sweep->hot->relevant_blocks_tile(&sheets->runs[o->patch_grid[patch]], (int)(tile % (size_t)o->tiles_x),
+  sweep->hot->fill.relevant_blocks(&sheets->runs[o->patch_grid[patch]], (int)(tile % (size_t)o->tiles_x),
                                    (int)(tile / (size_t)o->tiles_x), slabs, more, &near);
   for (int i = 0; i < RUN_SLABS; i++) run->near.blocks[i] |= near.blocks[i];
   run->near.whole = near.whole;
@@ -233,7 +236,7 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
   wanted &= ~(uint32_t)kept->need;
   others &= ~(wanted | kept->need);
   if ((wanted | others) == 0) return;
-  fill_tile_function *fill = b->sweep->splat ? b->sweep->hot->splat_tile : b->sweep->hot->gather_tile;
+  fill_tile_function *fill = b->sweep->splat ? b->sweep->hot->fill.splat : b->sweep->hot->fill.gather;
   filled_blocks blocks = fill(source_on_sheet(b->sweep, b->sheets, b->patch, b->first + i),
                               (int)(b->tile % (size_t)o->tiles_x), (int)(b->tile / (size_t)o->tiles_x),
                               wanted, others, density_on_sheet(b->sheets, b->patch, b->first + i));

@@ -3,9 +3,9 @@
 #ifndef HL_SHADOW_ATTENUATE_H
 #define HL_SHADOW_ATTENUATE_H
 
+#include "fill/fill.h"
+#include "grid/classifier.h"
 #include "light/light_source.h"
-#include "splat/classify.h"
-#include "splat/fill.h"
 
 /* One volume's part in a tile. On lines of the cache of its own: threads write theirs side by side. */
 typedef struct attenuate_volume {

@@ -2,9 +2,9 @@
 #ifndef HL_SHADOW_ATTENUATE_LANES_H
 #define HL_SHADOW_ATTENUATE_LANES_H
 
+#include "grid/classifier_lanes.h"
 #include "shadow/attenuate.h"
-#include "splat/classify_lanes.h"
-#include "splat/coverage_lanes.h"
+#include "view/rays_lanes.h"
 
 /* Pixels of the shadow buffer that get less than this of the light are done: 1/4 of a step of 8 bits. */
 static const float DARK = 1.0f / 1024;

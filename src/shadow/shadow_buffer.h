@@ -9,7 +9,7 @@
 #include "core/pool.h"
 #include "light/light_source.h"
 #include "shadow/attenuate.h"
-#include "splat/occupancy.h"
+#include "view/occupancy.h"
 
 typedef struct shadow_buffer {
   view view;

@@ -20,15 +20,25 @@
 #include "core/reserve.h"
 #include "light/light_extent.h"
 #include "light/light_image.h"
+#include "shadow/blur.h"
 #include "shadow/shadow_lookup.h"
-#include "simd/hot.h"
+
+/* The functions of shadows that are compiled for each instruction set. A method that has such functions
+ * defines their table in its own folder. */
+typedef struct shadow_functions {
+  attenuate_tile_function *attenuate;
+  lit_blocks_function *lit_blocks;
+  blur_functions blur;
+  const struct cascade_functions *cascade;    /* shadow_cascade/cascade_field.h */
+  const struct sublight_functions *sublights; /* shadow_sublights/sublight_field.h */
+} shadow_functions;
 
 /* What all methods are given: one light of one sweep. Borrowed; it must outlive the method. */
 typedef struct shadow_setup {
   hl_context *context;
   hl_pool *pool;
   hl_reserve *reserve; /* of blocks for one sweep */
-  const hot_functions *hot;
+  const shadow_functions *functions;
   const hl_render_settings *settings;
   const light_source *source;
   light_image *image; /* on the light itself; null where the light is even. The method places its cells */

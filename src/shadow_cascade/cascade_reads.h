@@ -4,7 +4,7 @@
 #define HL_SHADOW_CASCADE_CASCADE_READS_H
 
 #include "shadow_cascade/cascade_field.h"
-#include "splat/occupancy.h"
+#include "view/occupancy.h"
 
 /* Sums over rectangles of tiles are four of these (a summed-area table). */
 typedef struct cascade_reads {

@@ -73,12 +73,8 @@ static void after_tile(light_shadow *shadow, size_t tile) {
 }
 
 static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, int sheet) {
-  const hot_functions *hot = shadow->setup.hot;
-  const cascade_functions functions = {
-      hot->lit_blocks_tile, hot->field_blur_tile, hot->add_tile,  hot->add_half_tile, hot->add_double_tile,
-      hot->left_tile,       hot->absorbed_tile,   hot->part_tile, hot->double_tile,   hot->field_image_tile};
   hl_soft_cascade_advance(shadow->state, shadow->buffer, occupancy, shadow->setup.sheets, sheet,
-                          shadow->setup.pool, &functions);
+                          shadow->setup.pool, shadow->setup.functions->cascade);
 }
 
 static void end_cascade(light_shadow *shadow) {

@@ -17,11 +17,8 @@ static void plan_paper(light_shadow *shadow) {
 
 static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int sheet) {
   (void)occupancy;
-  const hot_functions *hot = shadow->setup.hot;
-  const blur_functions blur = {hot->blur_rows_tile, hot->blur_columns_tile, hot->lit_blocks_tile,
-                               hot->image_tile};
   hl_soft_paper_convolve(shadow->state, shadow->buffer, hl_sheet_height(shadow->setup.sheets, sheet + 1),
-                         shadow->setup.pool, &blur);
+                         shadow->setup.pool, &shadow->setup.functions->blur);
 }
 
 const shadow_method hl_shadow_paper = {.name = "paper",

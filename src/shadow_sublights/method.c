@@ -40,12 +40,10 @@ static void find_lit(light_shadow *shadow, size_t tile) {
 
 static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, int sheet) {
   (void)occupancy;
-  const hot_functions *hot = shadow->setup.hot;
   const sheet_stack *sheets = shadow->setup.sheets;
-  const sublight_functions functions = {hot->sublight_tile, hot->sublight_row, hot->sublight_lit,
-                                        hot->half_pixel_tile};
   hl_sublights_advance(shadow->state, shadow->buffer, sheets->normal, hl_sheet_height(sheets, sheet - 1),
-                       hl_sheet_height(sheets, sheet), shadow->setup.pool, &functions);
+                       hl_sheet_height(sheets, sheet), shadow->setup.pool,
+                       shadow->setup.functions->sublights);
 }
 
 static void end_sublights(light_shadow *shadow) {

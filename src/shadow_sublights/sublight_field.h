@@ -50,4 +50,12 @@ typedef void sublight_row_function(const sublight_job *job, int tile_y, int firs
 /* Of a tile's blocks with light left, those that still have some. */
 typedef uint32_t sublight_lit_function(const sublight_job *job, int tile_x, int tile_y, uint32_t lit);
 
+/* The functions of this room that are compiled for each instruction set. */
+typedef struct sublight_functions {
+  sublight_tile_function *composite;
+  sublight_row_function *composite_row; /* where pixels are only shifted */
+  sublight_lit_function *lit;
+  half_pixel_tile_function *half_pixel;
+} sublight_functions;
+
 #endif

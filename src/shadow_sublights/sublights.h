@@ -52,13 +52,6 @@ typedef struct sublights {
       *found; /* owned; [tiles of the slab]; the run of slabs for which its lit blocks were found; 0: none */
 } sublights;
 
-typedef struct sublight_functions {
-  sublight_tile_function *composite;
-  sublight_row_function *composite_row; /* where pixels are only shifted */
-  sublight_lit_function *lit;
-  half_pixel_tile_function *half_pixel;
-} sublight_functions;
-
 /* image: the light's, null where it is even. side: M. slab: the buffer of one slab at a time. */
 hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights,
                              const light_source *source, const light_image *image, int side, vec3 normal,

@@ -1,13 +1,12 @@
-/* simd/narrow.h - sixteen small numbers in half a register of AVX2, or a quarter: what is near each other is
- * told by its distance from the least. Their order is the packing instructions': lanes 0-3, 8-11, 4-7,
- * 12-15. */
+/* simd/narrow.h - sixteen small numbers in 16 or 8 bits each, for AVX2: numbers close to each other are
+ * counted from the least of them. The packing instructions order lanes as 0-3, 8-11, 4-7, 12-15. */
 #ifndef HL_SIMD_NARROW_H
 #define HL_SIMD_NARROW_H
 
 #include "simd/lanes.h"
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* In 16 bits each, held within them. */
+/* In 16 bits each, clamped to their range. */
 LANES_INLINE __m256i narrow_shorts(lanes_int x) {
   __m256i half[2];
   memcpy(half, &x, sizeof half);
@@ -19,13 +18,14 @@ LANES_INLINE __m128i narrow_bytes(lanes_int x) {
   return _mm_packs_epi16(_mm256_castsi256_si128(shorts), _mm256_extracti128_si256(shorts, 1));
 }
 
-/* Whether any number without a sign is above a limit. */
+/* Whether any number, taken as unsigned, is above a limit. */
 LANES_INLINE int any_short_above(__m256i x, int limit) {
   __m256i above = _mm256_subs_epu16(x, _mm256_set1_epi16((short)limit));
   return !_mm256_testz_si256(above, above);
 }
 
-/* Those numbers in memory, and where those of lanes k and k + 4 of a half are there. */
+/* These numbers in memory. narrow_pair() points at the number of lane k of a half; lane k + 4's follows
+ * NARROW_SECOND later. */
 typedef struct narrow_offsets {
   _Alignas(32) uint16_t at[LANES];
 } narrow_offsets;

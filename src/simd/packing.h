@@ -11,9 +11,9 @@ static const uint64_t NIBBLE_ONES = 0x1111111111111111u, NIBBLE_NUMBERS = 0xfedc
 LANES_INLINE lanes_int lanes_from_nibbles(uint64_t nibbles) {
   typedef uint32_t words __attribute__((vector_size(64)));
   uint32_t low = (uint32_t)nibbles, high = (uint32_t)(nibbles >> 32);
-  const words places = {0, 4, 8, 12, 16, 20, 24, 28, 0, 4, 8, 12, 16, 20, 24, 28};
+  const words shifts = {0, 4, 8, 12, 16, 20, 24, 28, 0, 4, 8, 12, 16, 20, 24, 28};
   words both = {low, low, low, low, low, low, low, low, high, high, high, high, high, high, high, high};
-  return (lanes_int)(both >> places & 15);
+  return (lanes_int)(both >> shifts & 15);
 }
 
 /* Each of sixteen bits in a nibble of its own. */
@@ -24,9 +24,9 @@ LANES_INLINE uint64_t spread_bits(uint64_t bits) {
   return (bits | bits << 3) & NIBBLE_ONES;
 }
 
-/* The numbers of the nibbles that are chosen, moved together: each moves down by as many as are not chosen
- * below it, by one, two, four and eight in turn (Warren, "Hacker's Delight", compress). before: how many are
- * chosen below each. */
+/* The numbers of the chosen nibbles, moved together: each moves down by the number of nibbles below it that
+ * are not chosen, by one, two, four and eight in turn (Warren, "Hacker's Delight", compress). before: how
+ * many are chosen below each. */
 LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
   uint64_t all = chosen * 15, numbers = NIBBLE_NUMBERS & all, ways = (NIBBLE_NUMBERS - before) & all;
   for (int step = 0; step < 4; step++) {
@@ -38,11 +38,11 @@ LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
 }
 #endif
 
-/* Some of sixteen lanes, one bit each, that move together to the lanes `at` and on, in their order. */
+/* Moves some of sixteen lanes, one bit each, to the lanes from `at` on, in their order. */
 typedef struct lanes_packing {
 #if defined(__AVX512F__)
-  __m512i from; /* of the packed lanes: where each comes from */
-  __m512i to;   /* of the lanes with a bit: where each goes */
+  __m512i from; /* for each packed lane: the lane that it comes from */
+  __m512i to;   /* for each lane with a bit: the lane that it goes to */
   __mmask16 packed, bits;
 #else
   lanes_int from, to, packed, bits;
@@ -60,7 +60,7 @@ LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   packing.to = _mm512_maskz_expand_epi32(packing.bits, _mm512_add_epi32(first, _mm512_set1_epi32(at)));
 #else
   uint64_t chosen = spread_bits(bits),
-           before = chosen * NIBBLE_ONES - chosen; /* products add up what is below */
+           before = chosen * NIBBLE_ONES - chosen; /* the product adds up the nibbles below each */
   packing.bits = lanes_from_bits(bits);
   packing.packed = lanes_from_bits(packed);
   packing.from = lanes_from_nibbles(chosen_numbers(chosen, before) << 4 * at);
@@ -78,7 +78,7 @@ LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #endif
 }
 
-/* Back to where they came from; the lanes without a bit are 0. */
+/* Moves packed lanes back; the lanes without a bit are 0. */
 LANES_CALL lanes lanes_unpack(const lanes_packing *packing, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_maskz_permutexvar_ps(packing->bits, packing->to, (__m512)x);

@@ -26,7 +26,7 @@ TARGETS = {
     "shapes": ("shapes", ["json/shapes.c", "json/shapes_volume.c", "shape/"]),
     "picture": ("PNG, OpenEXR, NPY", ["image/png_read.c", "image/exr_read.c", "image/npy.c"]),
     "scene": ("scene files", ["json/", "scene/"]),
-    "render": ("whole renders", ["render/", "light/", "splat/"])}
+    "render": ("whole renders", ["render/", "light/", "shadow", "grid/", "view/", "fill/"])}
 SHARED = ("all volume files, what they share included", ["volume/"],
           ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "raw"])
 

@@ -21,7 +21,7 @@ static void mark(const bench *bench, const footprint_map *map, uint32_t brick, d
   int32_t place[3];
   double centre[3], half[3];
   footprint_bounds bounds;
-  hl_grid_brick_place(&bench->grid, brick, place);
+  hl_brick_coordinates(&bench->grid, brick, place);
   hl_brick_bounds(&bench->grid, place, GRID_MARGIN, centre, half);
   if (!hl_footprint_bounds(map, centre, half, &bounds)) return;
   for (int y = 0; y < TILES; y++)
@@ -79,9 +79,10 @@ static void test_bricks_mark_what_they_touch(void **state) {
     vec3 direction = bench_random_direction(&seed), normal = bench_random_normal(direction, &seed);
     bench_look(&bench, direction, normal, pixels[round % 3], distances[round % 4], HL_KERNEL_BSPLINE);
     occupancy o = {0};
-    assert_int_equal(hl_occupancy_build(bench.context, bench.pool, &bench.grid, 1, &bench.view, &bench.sheets,
-                                        round % 2 ? 1.0 : 0.3, hl_hot_scalar.brick_ranges, &o, NULL),
-                     HL_OK);
+    const occupancy_source source = {&bench.grid, 1, &bench.view, &bench.sheets, round % 2 ? 1.0 : 0.3};
+    assert_int_equal(
+        hl_occupancy_build(bench.context, bench.pool, hl_hot_scalar.view.brick_ranges, &source, &o, NULL),
+        HL_OK);
     check(&bench, &o, counts);
     hl_occupancy_release(bench.context, &o);
   }

@@ -62,9 +62,10 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
   bench->color = (hl_color_point){0, {1, 1, 1}};
   bench->scene.transfer_function = (hl_transfer_function){1, &bench->opacity, 1, &bench->color, 1};
   affine3 placement = {axes, vec3_scale(middle, -1)};
+  const grid_source source = {&bench->scene, hl_kernel_get(HL_KERNEL_BSPLINE), placement,
+                              hl_scene_volume_empty_value(&bench->scene)};
   require(hl_grid_create(bench->context, bench->pool, &hl_hot_functions(hl_cpu_best_instruction_set())->grid,
-                         hl_kernel_get(HL_KERNEL_BSPLINE), &bench->scene, placement,
-                         hl_scene_volume_empty_value(&bench->scene), &bench->grid, &error),
+                         &source, &bench->grid, &error),
           &error);
   require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error),
           &error);
@@ -98,9 +99,8 @@ void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double 
   assert_true(hl_view_finish(view));
   bench->sheets = (sheet_stack){normal, -0.7, 1.0 / 3, BENCH_SHEETS};
   hl_voxel_lists_release(bench->context, &bench->lists);
-  require(hl_voxel_lists_build(bench->context, bench->pool, &bench->grid, hl_kernel_get(which), view,
-                               &bench->sheets, &bench->lists, &error),
-          &error);
+  const voxel_sort sort = {&bench->grid, hl_kernel_get(which), view, &bench->sheets};
+  require(hl_voxel_lists_build(bench->context, bench->pool, &sort, &bench->lists, &error), &error);
 }
 
 fill_source bench_source(const bench *bench, hl_kernel which, int sheet) {

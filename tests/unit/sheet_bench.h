@@ -2,8 +2,11 @@
 #ifndef SHEET_BENCH_H
 #define SHEET_BENCH_H
 
-#include "simd/hot.h"
-#include "splat/voxel_sort.h"
+#include "fill/voxel_lists.h"
+#include "grid/bounds.h"
+#include "grid/make_grid.h"
+#include "grid/relevant.h"
+#include "render/hot.h"
 
 typedef struct bench {
   hl_context *context;

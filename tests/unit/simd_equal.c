@@ -17,6 +17,8 @@
 #include <cmocka.h>
 
 #include "core/cpu.h"
+#include "shadow_cascade/cascade_field.h"
+#include "shadow_sublights/sublight_field.h"
 #include "sheet_bench.h"
 
 enum {
@@ -226,8 +228,8 @@ typedef struct fill_state {
 
 static void call_fill(const hot_functions *hot, void *state) {
   fill_state *s = state;
-  fill_tile_function *fill = s->gather ? hot->gather_tile : hot->splat_tile;
-  hot->relevant_blocks_tile(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), s->need,
+  fill_tile_function *fill = s->gather ? hot->fill.gather : hot->fill.splat;
+  hot->fill.relevant_blocks(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), s->need,
                             &s->out.relevant);
   s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->others, s->out.density);
 }
@@ -308,7 +310,7 @@ typedef struct coverage_state {
 
 static void call_coverage(const hot_functions *hot, void *state) {
   coverage_state *s = state;
-  hot->coverage_tile(&s->rays, 1, 2, s->out[0], s->out[1]);
+  hot->view.coverage(&s->rays, 1, 2, s->out[0], s->out[1]);
 }
 
 static void test_coverage(void **unused) {
@@ -339,7 +341,7 @@ typedef struct ranges_state {
 
 static void call_ranges(const hot_functions *hot, void *state) {
   ranges_state *s = state;
-  hot->brick_ranges(&s->view, &s->grid, (const int32_t(*)[BRICKS_AT_ONCE])s->place, &s->out);
+  hot->view.brick_ranges(&s->view, &s->grid, (const int32_t(*)[BRICKS_AT_ONCE])s->place, &s->out);
 }
 
 static void test_brick_ranges(void **unused) {
@@ -423,12 +425,12 @@ typedef struct attenuate_state {
 
 static void call_attenuate(const hot_functions *hot, void *state) {
   attenuate_state *s = state;
-  s->out.blocks = hot->attenuate_tile(&s->job, 1, 1);
+  s->out.blocks = hot->shadow.attenuate(&s->job, 1, 1);
 }
 
 static void call_lit_blocks(const hot_functions *hot, void *state) {
   attenuate_state *s = state;
-  s->out.lit = hot->lit_blocks_tile((const float *const *)s->job.transmittance, s->job.channels, TILE);
+  s->out.lit = hot->shadow.lit_blocks((const float *const *)s->job.transmittance, s->job.channels, TILE);
 }
 
 static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
@@ -509,25 +511,25 @@ typedef struct field_state {
 
 static void call_field(const hot_functions *hot, void *state) {
   field_state *s = state;
-  if (s->which == 0) hot->blur_rows_tile(&s->blur, 1, 1);
-  if (s->which == 1) hot->blur_columns_tile(&s->blur, 1, 1);
-  if (s->which == 2) s->out.lit = hot->add_tile(&s->field, 1, 1);
-  if (s->which == 3) s->out.lit = hot->add_half_tile(&s->field, 1, 1);
-  if (s->which == 4) s->out.lit = hot->add_double_tile(&s->field, 1, 1);
-  if (s->which == 5) s->out.lit = hot->field_blur_tile(&s->field_blur, 1, 1);
-  if (s->which == 6) hot->left_tile(&s->left, 1, 1);
-  if (s->which == 7) s->out.lit = (int)hot->absorbed_tile(&s->absorbed, 1, 1);
-  if (s->which == 8) s->out.lit = hot->sublight_tile(&s->sublight, 1, 1);
+  if (s->which == 0) hot->shadow.blur.rows(&s->blur, 1, 1);
+  if (s->which == 1) hot->shadow.blur.columns(&s->blur, 1, 1);
+  if (s->which == 2) s->out.lit = hot->shadow.cascade->add(&s->field, 1, 1);
+  if (s->which == 3) s->out.lit = hot->shadow.cascade->add_half(&s->field, 1, 1);
+  if (s->which == 4) s->out.lit = hot->shadow.cascade->add_double(&s->field, 1, 1);
+  if (s->which == 5) s->out.lit = hot->shadow.cascade->blur_add(&s->field_blur, 1, 1);
+  if (s->which == 6) hot->shadow.cascade->left(&s->left, 1, 1);
+  if (s->which == 7) s->out.lit = (int)hot->shadow.cascade->absorbed(&s->absorbed, 1, 1);
+  if (s->which == 8) s->out.lit = hot->shadow.sublights->composite(&s->sublight, 1, 1);
   if (s->which == 13) {
-    slab_rows rows = hot->half_pixel_tile(&s->half_pixel, 1, 1);
+    slab_rows rows = hot->shadow.sublights->half_pixel(&s->half_pixel, 1, 1);
     s->out.lit = (int)(rows ^ rows >> 32);
   }
-  if (s->which == 14) hot->sublight_row(&s->sublight, 1, 0, 3, s->lit, s->out.touched);
-  if (s->which == 15) s->out.lit = (int)hot->sublight_lit(&s->dark, 1, 1, s->lit[1]);
-  if (s->which == 9) s->out.lit = hot->double_tile(&s->field, 1, 1);
-  if (s->which == 10) hot->image_tile(&s->image, 1, 1);
-  if (s->which == 12) s->out.lit = (int)hot->part_tile(&s->part, 1, 1);
-  if (s->which == 11) s->out.lit = hot->field_image_tile(&s->field_image, 1, 1);
+  if (s->which == 14) hot->shadow.sublights->composite_row(&s->sublight, 1, 0, 3, s->lit, s->out.touched);
+  if (s->which == 15) s->out.lit = (int)hot->shadow.sublights->lit(&s->dark, 1, 1, s->lit[1]);
+  if (s->which == 9) s->out.lit = hot->shadow.cascade->double_tile(&s->field, 1, 1);
+  if (s->which == 10) hot->shadow.blur.image(&s->image, 1, 1);
+  if (s->which == 12) s->out.lit = (int)hot->shadow.cascade->part(&s->part, 1, 1);
+  if (s->which == 11) s->out.lit = hot->shadow.cascade->image_add(&s->field_image, 1, 1);
 }
 
 static void test_fields(void **unused) {
@@ -665,7 +667,7 @@ static void call_shade(const hot_functions *hot, void *state) {
   shade_state *s = state;
   s->out.samples = 0;
   _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
-  shade_tile_function *function = s->covers ? hot->cover_tile : hot->shade_tile;
+  shade_tile_function *function = s->covers ? hot->render.cover : hot->render.shade;
   s->out.open = function(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels,
                          &s->out.samples);
 }
@@ -812,8 +814,8 @@ typedef struct maximum_state {
 static void call_maximum(const hot_functions *hot, void *state) {
   maximum_state *s = state;
   s->out.samples = 0;
-  s->out.open = hot->maximum_tile(&s->shade.job, s->shade.patches, s->shade.patch_count, 0, 0,
-                                  s->shade.blocks, NULL, s->out.values, &s->out.samples);
+  s->out.open = hot->render.maximum(&s->shade.job, s->shade.patches, s->shade.patch_count, 0, 0,
+                                    s->shade.blocks, NULL, s->out.values, &s->out.samples);
 }
 
 static void test_maximum(void **unused) {

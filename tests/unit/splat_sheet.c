@@ -66,7 +66,7 @@ static void check_known(expected_function *expected, double margin, double toler
     for (int way = 0; way < 2; way++) {
       int k = round % bench.sheets.count;
       fill_source source = bench_source(&bench, which, k);
-      fill_sheet(&source, way == 0 ? hl_hot_scalar.splat_tile : hl_hot_scalar.gather_tile, sheet);
+      fill_sheet(&source, way == 0 ? hl_hot_scalar.fill.splat : hl_hot_scalar.fill.gather, sheet);
       for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
           vec3 p = bench_position(&bench, k, x, y);
@@ -116,8 +116,8 @@ static void check_agreement(const size_t n[3], hl_storage storage, uint32_t seed
     look_at_random(&bench, &seed, round / 3, 0.35, which);
     for (int k = 0; k < bench.sheets.count; k += 2) {
       fill_source source = bench_source(&bench, which, k);
-      fill_sheet(&source, hl_hot_scalar.splat_tile, splatted);
-      fill_sheet(&source, hl_hot_scalar.gather_tile, gathered);
+      fill_sheet(&source, hl_hot_scalar.fill.splat, splatted);
+      fill_sheet(&source, hl_hot_scalar.fill.gather, gathered);
       for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) assert_near(splatted[y][x], gathered[y][x], 1e-5 * scale);
     }
@@ -146,7 +146,7 @@ static void test_other_blocks_are_left_alone(void **state) {
   for (int way = 0; way < 2; way++) {
     float density[TILE_PIXELS];
     for (int i = 0; i < TILE_PIXELS; i++) density[i] = -7;
-    fill_tile_function *fill = way == 0 ? hl_hot_scalar.splat_tile : hl_hot_scalar.gather_tile;
+    fill_tile_function *fill = way == 0 ? hl_hot_scalar.fill.splat : hl_hot_scalar.fill.gather;
     assert_int_equal(fill(&source, 1, 1, 0x8421, 0, density).filled, 0x8421);
     for (int i = 0; i < TILE_PIXELS; i++)
       assert_true((density[i] == -7) == !(0x8421 >> (i / BLOCK_PIXELS) & 1));
@@ -165,7 +165,7 @@ static void fill_noise(uint8_t *voxels, uint32_t seed) {
 
 static int32_t cell_pair(const grid *grid, double at, int axis) {
   double held = fmax(-1, fmin(at, grid->dimension[axis] * (1 - 1e-6)));
-  return ((int32_t)floor(held) + 1) / HL_NEAR_CELLS;
+  return ((int32_t)floor(held) + 1) / HL_LOOKUP_CELLS;
 }
 
 /* Every density lies between its cell's bounds, and these are far tighter than the range of the voxels. */
@@ -184,7 +184,7 @@ static void test_cells_bound_the_reconstruction(void **state) {
   for (int round = 0; round < ORIENTATIONS; round++) {
     look_at_random(&bench, &seed, round, 0.3, HL_KERNEL_BSPLINE);
     fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, round % bench.sheets.count);
-    fill_sheet(&source, hl_hot_scalar.gather_tile, sheet);
+    fill_sheet(&source, hl_hot_scalar.fill.gather, sheet);
     for (int y = 0; y < SIDE; y++)
       for (int x = 0; x < SIDE; x++) {
         vec3 p = bench_position(&bench, round % bench.sheets.count, x, y);
@@ -224,21 +224,21 @@ static void cell_extremes(const grid *grid, const int32_t cell[3], uint8_t extre
 }
 
 /* What a look at the cells from one on finds, by its bits. */
-static int look_at_cells(const cell_level *level, const unsigned char *visible, const int32_t first[3]) {
+static int look_at_cells(const cell_lookup *lookup, const unsigned char *visible, const int32_t first[3]) {
   int bits = 0;
   for (int bit = 0; bit < 8; bit++)
-    for (int32_t z = first[2]; z < first[2] + 2 + (bit >> 2) && z < level->count[2]; z++)
-      for (int32_t y = first[1]; y < first[1] + 2 + (bit >> 1 & 1) && y < level->count[1]; y++)
-        for (int32_t x = first[0]; x < first[0] + 2 + (bit & 1) && x < level->count[0]; x++)
-          bits |= visible[place_of(level->count, x, y, z)] << bit;
+    for (int32_t z = first[2]; z < first[2] + 2 + (bit >> 2) && z < lookup->count[2]; z++)
+      for (int32_t y = first[1]; y < first[1] + 2 + (bit >> 1 & 1) && y < lookup->count[1]; y++)
+        for (int32_t x = first[0]; x < first[0] + 2 + (bit & 1) && x < lookup->count[0]; x++)
+          bits |= visible[place_of(lookup->count, x, y, z)] << bit;
   return bits;
 }
 
 /* Compares bounds and look-ups of all cells with what their voxels say; returns how many show something. */
 static long check_cells(const bench *bench) {
-  static unsigned char visible[CELL_LEVELS][4096];
+  static unsigned char visible[LOOKUP_SIZES][4096];
   const grid *grid = &bench->grid;
-  const int32_t *count = grid->level[0].count;
+  const int32_t *count = grid->lookup[0].count;
   long shown = 0;
   memset(visible, 0, sizeof visible);
   for (int32_t z = 0; z < count[2]; z++)
@@ -255,13 +255,13 @@ static long check_cells(const bench *bench) {
         visible[0][place_of(count, x, y, z)] = visible[1][brick] = 1;
         shown++;
       }
-  for (int i = 0; i < CELL_LEVELS; i++) {
-    const cell_level *level = &grid->level[i];
-    for (int32_t z = 0; z < level->count[2]; z++)
-      for (int32_t y = 0; y < level->count[1]; y++)
-        for (int32_t x = 0; x < level->count[0]; x++)
-          assert_int_equal(level->near[place_of(level->count, x, y, z)],
-                           look_at_cells(level, visible[i], (const int32_t[3]){x, y, z}));
+  for (int i = 0; i < LOOKUP_SIZES; i++) {
+    const cell_lookup *lookup = &grid->lookup[i];
+    for (int32_t z = 0; z < lookup->count[2]; z++)
+      for (int32_t y = 0; y < lookup->count[1]; y++)
+        for (int32_t x = 0; x < lookup->count[0]; x++)
+          assert_int_equal(lookup->visible[place_of(lookup->count, x, y, z)],
+                           look_at_cells(lookup, visible[i], (const int32_t[3]){x, y, z}));
   }
   return shown;
 }
@@ -286,10 +286,9 @@ static void test_cells_are_what_their_voxels_say(void **state) {
     hl_grid_release(bench.context, &bench.grid);
     bench.scene.transfer_function.opacity = ramp;
     bench.scene.transfer_function.opacity_count = 2;
+    const grid_source source = {&bench.scene, hl_kernel_get(HL_KERNEL_LINEAR), affine3_identity(), 7};
     assert_int_equal(
-        hl_grid_create(bench.context, bench.pool, &hl_hot_scalar.grid, hl_kernel_get(HL_KERNEL_LINEAR),
-                       &bench.scene, affine3_identity(), 7, &bench.grid, NULL),
-        HL_OK);
+        hl_grid_create(bench.context, bench.pool, &hl_hot_scalar.grid, &source, &bench.grid, NULL), HL_OK);
     assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL),
                      HL_OK);
     hl_grid_mark_relevant(&bench.grid, &hl_hot_scalar.grid, &bench.classifier, bench.pool);
@@ -461,16 +460,16 @@ static void test_relevant_blocks_miss_nothing(void **state) {
     int at = round % (bench.sheets.count - 1);
     fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, at);
     slab_run run = bench_run(&bench, 0);
-    fill_sheet(&source, hl_hot_scalar.gather_tile, sheet);
+    fill_sheet(&source, hl_hot_scalar.fill.gather, sheet);
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
       int tile_x = tile % SIDE_TILES, tile_y = tile / SIDE_TILES;
       relevant_blocks found = {0};
       uint32_t slabs = at > 0 ? 3u << (at - 1) : 1;
-      hl_hot_scalar.relevant_blocks_tile(&run, tile_x, tile_y, slabs, ALL_BLOCKS, &found);
+      hl_hot_scalar.fill.relevant_blocks(&run, tile_x, tile_y, slabs, ALL_BLOCKS, &found);
       uint32_t near = at > 0 ? found.blocks[at - 1] & found.blocks[at] : found.blocks[at];
       float density[TILE_PIXELS];
-      uint32_t relevant = hl_hot_scalar.gather_tile(&source, tile_x, tile_y, 0, near, density).filled;
-      assert_int_equal(hl_hot_scalar.splat_tile(&source, tile_x, tile_y, 0, near, density).filled, relevant);
+      uint32_t relevant = hl_hot_scalar.fill.gather(&source, tile_x, tile_y, 0, near, density).filled;
+      assert_int_equal(hl_hot_scalar.fill.splat(&source, tile_x, tile_y, 0, near, density).filled, relevant);
       assert_int_equal(relevant & ~near, 0);
       left_out += 16 - __builtin_popcount(near);
       left_out_by_bits += __builtin_popcount(near & ~relevant);
@@ -507,8 +506,8 @@ static void test_whole_slabs_are_not_cut(void **state) {
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
       relevant_blocks found = {0};
       _Alignas(64) float enter[TILE_PIXELS], leave[TILE_PIXELS];
-      hl_hot_scalar.coverage_tile(&rays, tile % SIDE_TILES, tile / SIDE_TILES, enter, leave);
-      hl_hot_scalar.relevant_blocks_tile(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1,
+      hl_hot_scalar.view.coverage(&rays, tile % SIDE_TILES, tile / SIDE_TILES, enter, leave);
+      hl_hot_scalar.fill.relevant_blocks(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1,
                                          ALL_BLOCKS, &found);
       for (int slab = 0; slab < RUN_SLABS; slab++)
         for (int i = 0; i < TILE_PIXELS; i++) {

@@ -1,0 +1,59 @@
+/* fill/fill.h - filling a tile of a sheet with densities: one interface, two ways.
+ *
+ * splat pushes every voxel's footprint section onto the tile (the paper's way); gather pulls, for every
+ * pixel still needed, the same sum over the 4x4x4 voxels around it. Both give the same densities to
+ * rounding. */
+#ifndef HL_FILL_FILL_H
+#define HL_FILL_FILL_H
+
+#include "fill/voxel_lists.h"
+#include "grid/classifier.h"
+#include "view/view.h"
+
+/* The inputs of filling one sheet of one grid in one view. */
+typedef struct fill_source {
+  const grid *grid;
+  const kernel *kernel;
+  const classifier *classifier; /* tells which blocks show nothing; null: all may show something */
+  sheet_rays rays;              /* pixels -> index space */
+  const voxel_lists *lists;     /* splat only */
+  int sheet;
+} fill_source;
+
+/* Blocks of a tile, one bit each: the filled blocks, and those among them where some pixel may show
+ * something, either its density or a greater density on the next sheet. */
+typedef struct filled_blocks {
+  uint32_t filled, showing;
+} filled_blocks;
+
+/* Fills density[16][16] (block, lane) for the blocks in `need`, and for blocks in `others` whose points lie
+ * in cells that may show something (grid/relevant.h). The densities of other blocks stay as they are. */
+typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need,
+                                         uint32_t others, float *density);
+
+/* Some consecutive sheets of one grid, and the slabs between them. */
+enum { RUN_SLABS = 4 };
+typedef struct slab_run {
+  const grid *grid;
+  sheet_rays rays[RUN_SLABS + 1]; /* pixels -> index space */
+  float low[3], high[3];          /* index space: nothing between these is cut by the volume's box */
+} slab_run;
+
+/* The needed blocks of a tile in which a slab may hold something visible, for each slab, and whether the
+ * volume's box cuts none of these. */
+typedef struct relevant_blocks {
+  uint16_t blocks[RUN_SLABS];
+  uint16_t whole; /* one bit for each slab */
+} relevant_blocks;
+
+/* Fills `found` for the slabs with a bit; the others stay as they are. need: the blocks of interest. */
+typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs,
+                                      uint32_t need, relevant_blocks *found);
+
+/* The functions of this room that are compiled for each instruction set. */
+typedef struct fill_functions {
+  relevant_blocks_function *relevant_blocks;
+  fill_tile_function *splat, *gather;
+} fill_functions;
+
+#endif

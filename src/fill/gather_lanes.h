@@ -1,0 +1,222 @@
+/* fill/gather_lanes.h - pulling: each pixel's density is the sum of the 4x4x4 voxels around its point,
+ * weighted by the kernel.
+ *
+ * Four u8 voxels along x are one 32-bit load. The order of the sum is fixed: pairs along x, then
+ * y, then z. */
+#ifndef HL_FILL_GATHER_LANES_H
+#define HL_FILL_GATHER_LANES_H
+
+#include "fill/block_lanes.h"
+#include "fill/row_lanes.h"
+#include "fill/windows_lanes.h"
+
+/* Where the 64 taps of every lane are in memory; all lie in the grid. */
+typedef struct tap_window {
+  const unsigned char *voxels;
+  lanes_offsets offsets; /* bytes from voxels to tap (0,0,0) */
+} tap_window;
+
+LANES_INLINE const unsigned char *window_row(const grid *grid, hl_storage storage, const tap_window *window,
+                                             int y, int z) {
+  size_t row_bytes = (size_t)grid->dimension[0] * hl_storage_bytes(storage);
+  return window->voxels + ((size_t)z * (size_t)grid->dimension[1] + (size_t)y) * row_bytes;
+}
+
+/* The loops are not unrolled: they would outgrow the instruction cache and take a compiler minutes. */
+LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window,
+                            const lanes weight[3][4]) {
+  lanes sum = lanes_set(0);
+  row_weights along = weights_of_row(storage, weight[0]);
+#pragma GCC unroll 1
+  for (int z = 0; z < 4; z++) {
+    lanes plane = lanes_set(0);
+#pragma GCC unroll 1
+    for (int y = 0; y < 4; y++)
+      plane = lanes_fma(sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along),
+                        weight[1][y], plane);
+    sum = lanes_fma(plane, weight[2][z], sum);
+  }
+  return from_units(storage, sum);
+}
+
+static __attribute__((noinline)) lanes sum_u8(const grid *grid, const tap_window *window,
+                                              const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_U8, window, weight);
+}
+static __attribute__((noinline)) lanes sum_u16(const grid *grid, const tap_window *window,
+                                               const lanes weight[3][4]) {
+#ifdef HL_SHORT_ROWS
+  return sum_short_rows(grid, window->voxels, &window->offsets, weight);
+#else
+  return sum_taps(grid, HL_STORAGE_U16, window, weight);
+#endif
+}
+static __attribute__((noinline)) lanes sum_f32(const grid *grid, const tap_window *window,
+                                               const lanes weight[3][4]) {
+  return sum_taps(grid, HL_STORAGE_F32, window, weight);
+}
+
+/* The same sum, in the same order, in grids that are less than four voxels thick along some axis; one lane at
+ * a time. */
+static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const lanes_int cell[3],
+                                                        uint32_t active, const lanes weight[3][4]) {
+  lanes sums = lanes_set(0);
+  for (; active != 0; active &= active - 1) {
+    int lane = __builtin_ctz(active);
+    int64_t x = cell[0][lane] - 1, y = cell[1][lane] - 1, z = cell[2][lane] - 1;
+    float sum = 0;
+    for (int c = 0; c < 4; c++) {
+      float plane = 0;
+      for (int b = 0; b < 4; b++) {
+        float along[4];
+        for (int a = 0; a < 4; a++)
+          along[a] = hl_stored_value(grid, x + a, y + b, z + c) * weight[0][a][lane];
+        plane = plane + ((along[0] + along[1]) + (along[2] + along[3])) * weight[1][b][lane];
+      }
+      sum = sum + plane * weight[2][c][lane];
+    }
+    sums[lane] = sum;
+  }
+  return sums;
+}
+
+/* Beyond the border its values continue: the weights of taps outside are added to the border voxel's weight,
+ * and the four taps move inside. The cells -1, 0, n-2 and n-1 have taps outside. Returns the moved cells. */
+LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4]) {
+  lanes zero = lanes_set(0);
+  lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2,
+            last = cell == count - 1;
+  lanes w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
+  weight[0] = lanes_select(first, w0 + w1 + w2,
+                           lanes_select(second, w0 + w1, lanes_select(last | last_but_one, zero, w0)));
+  weight[1] = lanes_select(
+      first, w3, lanes_select(second, w2, lanes_select(last, zero, lanes_select(last_but_one, w0, w1))));
+  weight[2] = lanes_select(
+      first, zero, lanes_select(second, w3, lanes_select(last, w0, lanes_select(last_but_one, w1, w2))));
+  weight[3] = lanes_select(first | second, zero,
+                           lanes_select(last, w1 + w2 + w3, lanes_select(last_but_one, w2 + w3, w3)));
+  lanes_int inside = lanes_select_int(cell < 1, lanes_set_int(1), cell);
+  return lanes_select_int(inside > count - 3, lanes_set_int(count - 3), inside);
+}
+
+/* The lanes whose taps lie in the grid along an axis. */
+LANES_INLINE uint32_t taps_inside(lanes_int cell, int32_t count) {
+  return lanes_bits((cell >= 1) & (cell < count - 2));
+}
+
+/* The axes, one bit each, along which taps of active lanes lie outside. */
+LANES_INLINE int axes_to_fold(const grid *grid, const lanes_int cell[3], uint32_t active) {
+  int axes = 0;
+  for (int a = 0; a < 3; a++) axes |= ((taps_inside(cell[a], grid->dimension[a]) & active) != active) << a;
+  return axes;
+}
+
+/* Offsets are counted from the first active lane's cell, so that they fit 32 bits in any volume; idle lanes
+ * read the taps of that cell. */
+LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uint32_t active) {
+  int first = __builtin_ctz(active);
+  int32_t reference[3];
+  for (int a = 0; a < 3; a++) reference[a] = cell[a][first];
+  size_t bytes = hl_storage_bytes(grid->storage);
+  tap_window window;
+  window.voxels = (const unsigned char *)grid->voxels +
+                  (((size_t)(reference[2] - 1) * (size_t)grid->dimension[1] + (size_t)(reference[1] - 1)) *
+                       (size_t)grid->dimension[0] +
+                   (size_t)(reference[0] - 1)) *
+                      bytes;
+  lanes_int offset = (cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
+                     (cell[1] - reference[1]) * grid->dimension[0] + (cell[0] - reference[0]);
+  lanes_store_offsets(&window.offsets, (offset * (int32_t)bytes) & lanes_from_bits(active));
+  return window;
+}
+
+/* The weighted sum for the active lanes of a block. inside: all lanes are active, and all their taps lie in
+ * the grid. */
+LANES_INLINE lanes gather_block(const fill_source *source, const block_points *points, uint32_t active,
+                                int degree, int inside) {
+  const grid *grid = source->grid;
+  hl_storage storage = grid->storage;
+  lanes weight[3][4];
+  lanes_int cell[3] = {points->cell[0], points->cell[1], points->cell[2]};
+  tap_weights(source->kernel, degree, points->position.x - lanes_from_int(cell[0]), weight[0]);
+  tap_weights(source->kernel, degree, points->position.y - lanes_from_int(cell[1]), weight[1]);
+  tap_weights(source->kernel, degree, points->position.z - lanes_from_int(cell[2]), weight[2]);
+  const lanes(*weights)[4] = (const lanes(*)[4])weight;
+  int outside = inside ? 0 : axes_to_fold(grid, cell, active);
+  if (outside != 0) {
+    if (has_integer_weights(storage))
+      round_to_weights(weight[0]); /* before they are folded: splatting rounds them before, too */
+    if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
+      return sum_in_thin_grid(grid, cell, active, weights);
+    for (int a = 0; a < 3; a++)
+      if (outside >> a & 1) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
+  }
+#ifdef HL_WINDOWS
+  lanes sum;
+  if (sum_of_windows(grid, cell, inside ? points->low : NULL, active, weights, &sum)) return sum;
+#endif
+  tap_window window = window_at(grid, cell, active);
+  if (storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);
+  if (storage == HL_STORAGE_U16) return sum_u16(grid, &window, weights);
+  return sum_f32(grid, &window, weights);
+}
+
+/* Fills one block's densities; returns whether any may show something. */
+LANES_INLINE int gather_points(const fill_source *source, const block_points *points, int inside,
+                               float *density) {
+  uint32_t active = inside ? 0xffff : lanes_bits(points->inside);
+  lanes sum = lanes_set(0);
+  if (active == 0) {
+    lanes_store(density, sum);
+    return 0;
+  }
+  sum = source->kernel->degree == HL_BSPLINE_DEGREE
+            ? gather_block(source, points, active, HL_BSPLINE_DEGREE, inside)
+            : gather_block(source, points, active, HL_KERNEL_DEGREE, inside);
+  sum = sum - source->grid->empty;
+  lanes_int shown = may_show(source, sum);
+  if (!inside) {
+    sum = lanes_keep(points->inside, sum);
+    shown &= points->inside;
+  }
+  lanes_store(density, sum);
+  return lanes_bits(shown) != 0;
+}
+
+LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, int tile_y, int block,
+                                         int inside) {
+  int x = tile_x * TILE + block % 4 * BLOCK, y = tile_y * TILE + block / 4 * BLOCK;
+  block_points points = inside ? find_points_inside(source, x, y) : find_points(source, x, y);
+  lowest_of_block(points.cell, points.low);
+  return points;
+}
+
+/* Which of the others show something is found before the first block is summed: processors cannot foresee it,
+ * and would begin sums in vain. inside: tile_is_inside(). */
+LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
+                                         uint32_t others, int inside, float *density) {
+  block_points points[TILE_BLOCKS];
+  filled_blocks blocks = {need, 0};
+  for (uint32_t left = others; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    points[block] = points_in_tile(source, tile_x, tile_y, block, inside);
+    blocks.filled |= (uint32_t)cells_visible(source->grid, points[block].cell, points[block].low) << block;
+  }
+  for (uint32_t left = blocks.filled; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    if (need >> block & 1) points[block] = points_in_tile(source, tile_x, tile_y, block, inside);
+    blocks.showing |= (uint32_t)gather_points(source, &points[block], inside, density + block * BLOCK_PIXELS)
+                      << block;
+  }
+  return blocks;
+}
+
+static filled_blocks gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need,
+                                 uint32_t others, float *density) {
+  if (!source->grid->cell_bits_tell) need |= others, others = 0;
+  if (tile_is_inside(source, tile_x * TILE, tile_y * TILE))
+    return gather_blocks(source, tile_x, tile_y, need, others, 1, density);
+  return gather_blocks(source, tile_x, tile_y, need, others, 0, density);
+}
+
+#endif

@@ -1,0 +1,104 @@
+/* fill/relevant_blocks_lanes.h - which blocks of a tile may show something between two sheets: the box
+ * around each block's rays is looked up among the visible cells, sixteen blocks at a time. Several
+ * consecutive slabs are done at once: they share boxes and the cells that are read. */
+#ifndef HL_FILL_RELEVANT_BLOCKS_LANES_H
+#define HL_FILL_RELEVANT_BLOCKS_LANES_H
+
+#include "fill/fill.h"
+#include "view/rays_lanes.h"
+
+typedef struct lanes_box {
+  lanes low[3], high[3];
+} lanes_box; /* index space */
+
+/* The box of a block's points on a sheet. Derived: on the sheet at base + P / H, the next pixel lies
+ * (Pu - (Hu / H) P) / H further; the pixels' centres are at most 3/2 pixels from the block's middle in either
+ * direction (a little more is allowed for: H changes within the block). */
+LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
+  const float reach = 1.5f * 1.02f;
+  lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
+  lanes linear[3] = {p.x, p.y, p.z}, inverse = lanes_set(1.0f);
+  if (rays->perspective) inverse = 1.0f / rays_climb(rays, u, v);
+  lanes_box box;
+  for (int a = 0; a < 3; a++) {
+    lanes at = rays->perspective ? lanes_fma(linear[a], inverse, lanes_set(rays->base[a])) : linear[a];
+    lanes along_u = lanes_fma(linear[a], inverse * -rays->hu, lanes_set(rays->pu[a])) * inverse;
+    lanes along_v = lanes_fma(linear[a], inverse * -rays->hv, lanes_set(rays->pv[a])) * inverse;
+    lanes length = lanes_abs(along_u) + lanes_abs(along_v);
+    box.low[a] = lanes_add_scaled(at, length, -reach);
+    box.high[a] = lanes_add_scaled(at, length, reach);
+  }
+  return box;
+}
+
+/* Whether a box visible something, where it spans no more units than one look-up covers; *wide: the others.
+ * shift: cells to units. low, high: the box's first and last cells. */
+LANES_INLINE lanes_int box_visible(const cell_lookup *lookup, int shift, const lanes_int low[3],
+                                   const lanes_int high[3], lanes_int inside, lanes_int *wide) {
+  lanes_int first = lanes_set_int(0), bit = first, fits = lanes_set_int(-1);
+  for (int a = 2; a >= 0; a--) {
+    lanes_int from = low[a] >> shift, beyond = (high[a] >> shift) - from;
+    fits &= beyond < LOOKUP_REACH;
+    bit = bit * 2 - (beyond == LOOKUP_REACH - 1);
+    first = first * lookup->count[a] + from;
+  }
+  lanes_int found = lanes_gather_bytes(lookup->visible, first & inside);
+  *wide = ~fits;
+  return fits & (((found >> (bit & 7)) & 1) != 0);
+}
+
+/* The box around a block's rays in a slab, from the boxes on its two sheets. */
+LANES_INLINE lanes_box box_of_slab(const lanes_box *a, const lanes_box *b) {
+  lanes_box box;
+  for (int axis = 0; axis < 3; axis++) {
+    box.low[axis] = lanes_min(a->low[axis], b->low[axis]);
+    box.high[axis] = lanes_max(a->high[axis], b->high[axis]);
+  }
+  return box;
+}
+
+/* The blocks whose boxes show something. */
+LANES_INLINE uint32_t visible_boxes(const grid *grid, const lanes_box *box) {
+  lanes_int inside = lanes_set_int(-1), first[3], last[3];
+  for (int axis = 0; axis < 3; axis++) {
+    float count = (float)grid->dimension[axis];
+    inside &= (box->high[axis] > -0.5f - GRID_MARGIN) & (box->low[axis] < count - 0.5f + GRID_MARGIN);
+    first[axis] = lanes_floor(lanes_clamp(box->low[axis], -1.0f, count * (1 - 1e-6f))) + 1;
+    last[axis] = lanes_floor(lanes_clamp(box->high[axis], -1.0f, count * (1 - 1e-6f))) + 1;
+  }
+  if (lanes_bits(inside) == 0 || grid->lookup[0].visible == NULL) return lanes_bits(inside);
+  lanes_int wide, visible = box_visible(&grid->lookup[0], 1, first, last, inside, &wide);
+  if (lanes_bits(wide & inside) == 0) return lanes_bits(visible & inside);
+  lanes_int too_wide, visible_coarsely = box_visible(&grid->lookup[1], 2, first, last, inside, &too_wide);
+  /* a box too wide for both look-ups counts as visible */
+  return lanes_bits(inside & (visible | (wide & (visible_coarsely | too_wide))));
+}
+
+/* The blocks whose boxes lie where the volume's box cuts nothing. */
+LANES_INLINE uint32_t uncut_blocks(const slab_run *run, const lanes_box *box) {
+  lanes_int whole = lanes_set_int(-1);
+  for (int axis = 0; axis < 3; axis++)
+    whole &= (box->low[axis] >= run->low[axis]) & (box->high[axis] <= run->high[axis]);
+  return lanes_bits(whole);
+}
+
+static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, uint32_t slabs, uint32_t need,
+                                 relevant_blocks *found) {
+  lanes u = lanes_load(block_column) * (float)BLOCK + ((float)(tile_x * TILE) + 1.5f);
+  lanes v = lanes_load(block_row) * (float)BLOCK + ((float)(tile_y * TILE) + 1.5f);
+  lanes_box on_sheet[RUN_SLABS + 1];
+  for (int slab = 0; slab < RUN_SLABS; slab++) {
+    const sheet_rays *rays = &run->rays[slab];
+    if ((slabs >> slab & 1) == 0) continue;
+    if (slab == 0 || (slabs >> (slab - 1) & 1) == 0) on_sheet[slab] = box_on_sheet(rays, u, v);
+    on_sheet[slab + 1] = box_on_sheet(rays + 1, u, v);
+    lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
+    uint32_t visible = visible_boxes(run->grid, &box);
+    /* where the eye is in the slab, rays begin there, which cuts blocks too */
+    int whole = rays[0].step * rays[1].step > 0 && (visible & ~uncut_blocks(run, &box)) == 0;
+    found->whole = (uint16_t)((found->whole & ~(1u << slab)) | (uint32_t)whole << slab);
+    found->blocks[slab] = (uint16_t)(visible & need);
+  }
+}
+
+#endif

@@ -1,0 +1,29 @@
+/* fill/voxel_lists.h - relevant voxels sorted for splatting, by a bucket sort (step 2). */
+#ifndef HL_FILL_VOXEL_LISTS_H
+#define HL_FILL_VOXEL_LISTS_H
+
+#include "view/occupancy.h"
+
+/* The voxels that touch each tile of a view, by the first sheet that their kernels touch. */
+typedef struct voxel_lists {
+  int tiles_x, tiles_y;
+  int bucket_count; /* sheets + span - 1 */
+  int span; /* how many sheets a kernel can touch; sheet k reads buckets k .. k + span - 1. At the border,
+               where values continue, voxels touch more sheets and are listed again every span sheets */
+  uint32_t *start; /* owned; [tiles * bucket_count + 1] */
+  uint32_t *voxel; /* owned; [start[last]]; index in the grid padded by 2 voxels on every side */
+} voxel_lists;
+
+/* The voxels to sort, and where they are seen. */
+typedef struct voxel_sort {
+  const grid *grid;
+  const kernel *kernel;
+  const view *view;
+  const sheet_stack *sheets;
+} voxel_sort;
+
+hl_status hl_voxel_lists_build(hl_context *context, hl_pool *pool, const voxel_sort *sort, voxel_lists *lists,
+                               hl_error *error);
+void hl_voxel_lists_release(hl_context *context, voxel_lists *lists);
+
+#endif

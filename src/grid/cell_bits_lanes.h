@@ -1,0 +1,143 @@
+/* grid/cell_bits_lanes.h - the bits of a brick's 64 cells, from its 7x7x7 voxels: bounds along z, then y,
+ * then x. Two rows of eight numbers along x fill sixteen lanes. */
+#ifndef HL_GRID_CELL_BITS_LANES_H
+#define HL_GRID_CELL_BITS_LANES_H
+
+#include "grid/relevant.h"
+#include "simd/lanes.h"
+
+enum { BITS_ROW = 8, BITS_ROWS = 8 };
+
+/* ---- voxels as numbers ---- */
+
+LANES_INLINE int32_t bits_voxel_at(int32_t i, int32_t count) {
+  return i < 0 ? 0 : i >= count ? count - 1 : i;
+}
+
+/* Eight voxels of each of two rows. */
+LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const row[2]) {
+  if (storage == HL_STORAGE_U8) {
+    typedef uint8_t bytes __attribute__((vector_size(LANES)));
+    bytes both;
+    memcpy((char *)&both, row[0], BITS_ROW);
+    memcpy((char *)&both + BITS_ROW, row[1], BITS_ROW);
+    return __builtin_convertvector(both, lanes);
+  }
+  if (storage == HL_STORAGE_U16) {
+    lanes_short both;
+    memcpy((char *)&both, row[0], 2 * BITS_ROW);
+    memcpy((char *)&both + 2 * BITS_ROW, row[1], 2 * BITS_ROW);
+    return __builtin_convertvector(both, lanes);
+  }
+  lanes both;
+  memcpy((char *)&both, row[0], 4 * BITS_ROW);
+  memcpy((char *)&both + 4 * BITS_ROW, row[1], 4 * BITS_ROW);
+  return both;
+}
+
+/* The same across the grid's faces, where the border's values continue. */
+LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, int32_t z) {
+  float both[LANES];
+  for (int i = 0; i < LANES; i++) both[i] = hl_stored_value(grid, x + i % BITS_ROW, y + i / BITS_ROW, z);
+  return lanes_load(both);
+}
+
+/* ---- bounds of four cells along an axis ---- */
+
+/* Derived: in units of a third, the Bezier points of the cell between voxels b and c are the thirds 2 b + c
+ * and b + 2 c, and its knots, each the mean of the thirds on its two sides: (b + 4 c + d) / 6 = ((b + 2 c) /
+ * 3 + (2 c + d) / 3) / 2. */
+typedef struct bits_thirds {
+  lanes near, far; /* nearer to b, nearer to c */
+} bits_thirds;
+
+LANES_INLINE bits_thirds thirds_between(lanes b, lanes c) {
+  lanes sum = b + c;
+  return (bits_thirds){sum + b, sum + c};
+}
+
+LANES_INLINE lanes greatest_of_cell(bits_thirds before, bits_thirds cell, bits_thirds after) {
+  lanes first = (before.far + cell.near) * 0.5f, last = (cell.far + after.near) * 0.5f;
+  return lanes_max(lanes_max(first, last), lanes_max(cell.near, cell.far));
+}
+
+LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[HL_BRICK_CELLS]) {
+  bits_thirds before = thirds_between(v[0], v[1]), cell = thirds_between(v[1], v[2]);
+#pragma GCC unroll 4
+  for (int i = 0; i < HL_BRICK_CELLS; i++) {
+    bits_thirds after = thirds_between(v[i + 2], v[i + 3]);
+    greatest[i] = greatest_of_cell(before, cell, after);
+    before = cell;
+    cell = after;
+  }
+}
+
+/* ---- a brick ---- */
+
+/* Bounds along z: [cell z][y][x]. Seven rows count; the eighth fills the lanes. */
+LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
+                               float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
+  const int32_t *count = grid->dimension;
+  size_t bytes = hl_storage_bytes(storage), row_bytes = (size_t)count[0] * bytes,
+         slice_bytes = row_bytes * (size_t)count[1];
+  int32_t x = brick[0] * HL_BRICK_CELLS - 2, y = brick[1] * HL_BRICK_CELLS - 2,
+          z = brick[2] * HL_BRICK_CELLS - 2;
+  int within = x >= 0 && x + BITS_ROW <= count[0];
+  const unsigned char *voxels = (const unsigned char *)grid->voxels + (within ? (size_t)x * bytes : 0);
+  for (int pair = 0; pair < BITS_ROWS / 2; pair++) {
+    lanes v[CELL_BIT_TAPS], greatest[HL_BRICK_CELLS];
+    size_t first = (size_t)bits_voxel_at(y + 2 * pair, count[1]) * row_bytes;
+    size_t second = (size_t)bits_voxel_at(y + 2 * pair + 1, count[1]) * row_bytes;
+    for (int tap = 0; tap < CELL_BIT_TAPS; tap++) {
+      const unsigned char *slice = voxels + (size_t)bits_voxel_at(z + tap, count[2]) * slice_bytes;
+      const unsigned char *const rows[2] = {slice + first, slice + second};
+      v[tap] = (within ? bits_two_rows(storage, rows) : bits_two_held_rows(grid, x, y + 2 * pair, z + tap)) *
+               sign;
+    }
+    greatest_of_four(v, greatest);
+    for (int i = 0; i < HL_BRICK_CELLS; i++) lanes_store(bounds[i][2 * pair], greatest[i]);
+  }
+}
+
+/* Then along y, two layers of cells at a time: [cell z][cell y][x]. */
+LANES_INLINE void bits_along_y(float from[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW],
+                               float bounds[HL_BRICK_CELLS][HL_BRICK_CELLS][BITS_ROW]) {
+  for (int layer = 0; layer < HL_BRICK_CELLS; layer += 2) {
+    lanes v[CELL_BIT_TAPS], greatest[HL_BRICK_CELLS];
+    for (int tap = 0; tap < CELL_BIT_TAPS; tap++) {
+      memcpy((char *)&v[tap], from[layer][tap], sizeof from[layer][tap]);
+      memcpy((char *)&v[tap] + sizeof from[layer][tap], from[layer + 1][tap], sizeof from[layer][tap]);
+    }
+    greatest_of_four(v, greatest);
+    for (int i = 0; i < HL_BRICK_CELLS; i++) {
+      memcpy(bounds[layer][i], (char *)&greatest[i], sizeof bounds[layer][i]);
+      memcpy(bounds[layer + 1][i], (char *)&greatest[i] + sizeof bounds[layer][i], sizeof bounds[layer][i]);
+    }
+  }
+}
+
+LANES_INLINE uint64_t bits_of_brick(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
+                                    float threshold) {
+  _Alignas(64) float along_z[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW],
+      along_y[HL_BRICK_CELLS][HL_BRICK_CELLS][BITS_ROW];
+  bits_along_z(grid, storage, brick, sign, along_z);
+  bits_along_y(along_z, along_y);
+  uint64_t bits = 0;
+  for (int layer = 0; layer < HL_BRICK_CELLS; layer++) {
+    lanes v[4];
+    for (int tap = 0; tap < 4; tap++) v[tap] = lanes_load_block(&along_y[layer][0][tap], BITS_ROW);
+    lanes greatest = greatest_of_cell(thirds_between(v[0], v[1]), thirds_between(v[1], v[2]),
+                                      thirds_between(v[2], v[3]));
+    /* in units of a third along each axis */
+    bits |= (uint64_t)lanes_bits(greatest > lanes_set(27 * threshold)) << (16 * layer);
+  }
+  return bits;
+}
+
+static uint64_t brick_bits(const grid *grid, const int32_t brick[3], float sign, float threshold) {
+  if (grid->storage == HL_STORAGE_U8) return bits_of_brick(grid, HL_STORAGE_U8, brick, sign, threshold);
+  if (grid->storage == HL_STORAGE_U16) return bits_of_brick(grid, HL_STORAGE_U16, brick, sign, threshold);
+  return bits_of_brick(grid, HL_STORAGE_F32, brick, sign, threshold);
+}
+
+#endif

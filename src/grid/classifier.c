@@ -1,0 +1,122 @@
+/* grid/classifier.c - builds the tables of a transfer function. */
+#include "grid/classifier.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+
+/* sigma = -ln(1 - alpha) / u, alpha clamped to 0.9999 (algorithm, optical model). */
+static double extinction_of(const hl_transfer_function *function, double value) {
+  double alpha = hl_transfer_function_opacity(function, value);
+  if (alpha <= 0) return 0;
+  if (alpha > 0.9999) alpha = 0.9999;
+  return -log1p(-alpha) / function->unit_distance;
+}
+
+double hl_transparent_below(const hl_scene_volume *volume, double empty) {
+  bool below_all = empty < volume->volume->minimum &&
+                   hl_transfer_function_opacity(&volume->transfer_function, empty) > 0;
+  return below_all ? (empty + volume->volume->minimum) / 2 : -INFINITY;
+}
+
+/* Integrates the table, exactly, as it is piecewise linear: over one step the mean extinction e is (e0 + e1)
+ * / 2, its moment about the step's start (e0 + 2 e1) / 6 (derived). */
+static void integrate(classifier *classifier) {
+  double integral = 0, moment = 0;
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
+    classifier->sums[entry][1] = (float)integral;
+    classifier->sums[entry][2] = (float)moment;
+    if (entry > CLASSIFIER_ENTRIES) break;
+    double e0 = classifier->sums[entry][0], e1 = classifier->sums[entry + 1][0];
+    integral += (e0 + e1) / 2;
+    moment += entry * (e0 + e1) / 2 + (e0 + 2 * e1) / 6;
+  }
+}
+
+static void fill_tables(const hl_scene_volume *volume, double empty, double low, double high,
+                        classifier *classifier) {
+  const hl_transfer_function *function = &volume->transfer_function;
+  double nothing = hl_transparent_below(volume, empty);
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
+    double value = low + (high - low) * entry / CLASSIFIER_ENTRIES, color[3];
+    double extinction = value < nothing ? 0 : extinction_of(function, value);
+    classifier->sums[entry][0] = (float)extinction;
+    hl_transfer_function_color(function, value, color);
+    for (int c = 0; c < 3; c++) classifier->color[entry][c] = (float)color[c];
+  }
+  classifier->sums[CLASSIFIER_ENTRIES + 1][0] = classifier->sums[CLASSIFIER_ENTRIES][0];
+  memcpy(classifier->color[CLASSIFIER_ENTRIES + 1], classifier->color[CLASSIFIER_ENTRIES],
+         sizeof classifier->color[0]);
+  integrate(classifier);
+  int32_t next = CLASSIFIER_ENTRIES + 2;
+  for (int entry = CLASSIFIER_ENTRIES + 1; entry >= 0; entry--) {
+    if (classifier->sums[entry][0] > 0) next = entry;
+    classifier->next_visible[entry] = next;
+  }
+  int last = CLASSIFIER_ENTRIES;
+  while (last > 0 && !(classifier->sums[last][0] > 0)) last--;
+  classifier->first_visible = (float)classifier->next_visible[0] - 1;
+  classifier->last_visible = (float)last + 1;
+}
+
+/* The least gradient of a surface: a thousandth of the transfer function's span per voxel edge. */
+static float normal_edge(const hl_scene_volume *volume, double entries_per_value) {
+  const hl_transfer_function *function = &volume->transfer_function;
+  double span = function->opacity_count == 0
+                    ? 0
+                    : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
+  if (!(span > 0)) span = 1;
+  mat3 placed =
+      volume->volume->index_to_world.linear; /* without the placement's rotation, which keeps lengths */
+  for (int axis = 0; axis < 3; axis++)
+    placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
+  double edge = mat3_shortest_column(placed) * volume->scale;
+  return (float)fmin(fmax(1e-3 * span / edge * entries_per_value, 1e-30), 1e30);
+}
+
+/* A narrower range of values is widened to this times value_scale: floats could not hold its scale. Its
+ * values then share one entry. */
+static const double NARROWEST_RANGE = 1e-34;
+
+hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
+                               classifier *classifier, hl_error *error) {
+  enum { COUNT = CLASSIFIER_ENTRIES + 2 };
+  *classifier = (struct classifier){0};
+  classifier->sums = hl_allocate_zeroed(context, 2 * (size_t)COUNT, sizeof *classifier->sums);
+  classifier->next_visible = hl_allocate(context, COUNT, sizeof(int32_t));
+  if (classifier->sums == NULL || classifier->next_visible == NULL) {
+    hl_classifier_release(context, classifier);
+    return hl_fail_memory(error, 9 * COUNT * sizeof(float), "a transfer-function table");
+  }
+  classifier->color = classifier->sums + COUNT;
+  double empty = grid->empty * grid->value_scale + grid->value_offset;
+  double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
+  if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low)); /* adding 1 to 1e30 changes nothing */
+  high = fmax(high, low + NARROWEST_RANGE * fabs(grid->value_scale));
+  classifier->scale = (float)(grid->value_scale * CLASSIFIER_ENTRIES / (high - low));
+  classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
+  classifier->normal_edge = normal_edge(volume, CLASSIFIER_ENTRIES / (high - low));
+  fill_tables(volume, empty, low, high, classifier);
+  return HL_OK;
+}
+
+void hl_classifier_release(hl_context *context, classifier *classifier) {
+  hl_release(context, classifier->sums);
+  hl_release(context, classifier->next_visible);
+  *classifier = (struct classifier){0};
+}
+
+bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high) {
+  float a = (low - grid->empty) * classifier->scale + classifier->offset;
+  float b = (high - grid->empty) * classifier->scale + classifier->offset;
+  float least = fminf(a, b), greatest = fmaxf(a, b);
+  int32_t first = least <= 0 ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
+  int32_t last = greatest <= 0                    ? 1
+                 : greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1
+                                                  : (int32_t)greatest + 1;
+  return classifier->next_visible[first] <= last;
+}
+
+bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high) {
+  return hl_classifier_span_visible(classifier, grid, fminf(low, grid->empty), fmaxf(high, grid->empty));
+}

@@ -1,0 +1,40 @@
+/* grid/classifier.h - a transfer function as tables: densities are classified after interpolation.
+ *
+ * Density on a sheet (stored units, relative to the grid's empty value) -> extinction and colour, linear
+ * between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. Along a ray from one sheet
+ * to the next, density runs from a to b; its mean extinction is the integral of the table from a to b over (b
+ * - a), so the table's integral is kept too, and no sharp feature of a transfer function falls between two
+ * sheets. */
+#ifndef HL_GRID_CLASSIFIER_H
+#define HL_GRID_CLASSIFIER_H
+
+#include "grid/grid.h"
+
+enum { CLASSIFIER_ENTRIES = 4096 };
+
+typedef struct classifier {
+  float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
+  float (*sums)[4];  /* owned; [CLASSIFIER_ENTRIES + 2]; extinction per world unit; its integral over entries,
+                        from entry 0; the integral of extinction * entry; 0 */
+  float (*color)[4]; /* owned with sums; [same]; linear RGB; 0 */
+  int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: the first entry from this one on with extinction
+                            > 0 */
+  float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
+  float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
+} classifier;
+
+hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
+                               classifier *classifier, hl_error *error);
+void hl_classifier_release(hl_context *context, classifier *classifier);
+
+/* Data values below the result are transparent whatever the transfer function says: where it shows even
+ * empty, and empty lies below all values, the values closer to empty than to the least value. Else -infinity.
+ */
+double hl_transparent_below(const hl_scene_volume *volume, double empty);
+
+/* True if some stored value in [low, high] is visible. */
+bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high);
+/* True if some stored value in [low, high], or between them and empty, is visible. */
+bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high);
+
+#endif

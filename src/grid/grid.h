@@ -1,0 +1,123 @@
+/* grid/grid.h - a volume as the sheets read it: its voxels, their position in the frame, and bricks and cells
+ * that tell where the transfer function shows something.
+ *
+ * Densities on sheets are differences from the grid's empty value, in stored units (what the voxels hold):
+ * where nothing is splatted the density is empty, and the sum of some of a point's voxels stays between empty
+ * and values that are transparent anyway.
+ *
+ * The cell of a point p (index space, clamped to [-1, n)) has the coordinates floor(p) + 1, from 0 to n along
+ * each axis. A brick is 4x4x4 cells. A point's density depends on the 4x4x4 voxels around its cell. */
+#ifndef HL_GRID_GRID_H
+#define HL_GRID_GRID_H
+
+#include "core/error.h"
+#include "core/pool.h"
+#include "grid/kernel.h"
+#include "scene/scene.h"
+
+enum {
+  HL_BRICK_CELLS = 4,
+  HL_LOOKUP_CELLS = 2, /* cells along an edge of the finer unit of bounds and look-ups */
+  GRID_COLUMN = 8,     /* voxels: the width of a column */
+  GRID_MARGIN = 4 /* voxels: how far outside its box a grid still has values, for slabs across its faces */
+};
+
+/* Where something is visible, in units of 2x2x2 cells or of bricks. A box of at most three units along each
+ * axis is looked up by its first unit: bit i + 2 j + 4 k of `visible` there tells whether any of the 2 + i,
+ * 2 + j, 2 + k units from there on along x, y, z shows something. */
+enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
+typedef struct cell_lookup {
+  int32_t count[3];
+  unsigned char *visible; /* owned; [count z][y][x]; null where 32 bits cannot number the cells */
+} cell_lookup;
+
+typedef struct grid {
+  const void *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's */
+  /* u8 voxels once more, in columns eight voxels wide: eight rows of a column are 64 bytes in a line, so that
+   * a window of 8x8 voxels comes from two columns by two loads (of 512 bits), and neighbouring windows come
+   * from the same lines of the cache whichever way the sheets lie. Values are less 128, as signed numbers.
+   * Owned; [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where nothing reads them. */
+  unsigned char *columns;
+  size_t column_slice_bytes, column_bytes; /* from slice to slice, from column to column */
+  hl_storage storage;
+  int32_t dimension[3];
+  float empty;                      /* stored units */
+  double value_scale, value_offset; /* data value = value_scale * stored + value_offset */
+  affine3 index_to_frame, frame_to_index;
+  double box_low[3], box_high[3]; /* index space: where the volume exists */
+  int32_t brick_count[3];
+  void *brick_bounds; /* owned; [bricks z][y][x][2]; least and greatest stored value, of the voxels' type,
+                         of the voxels that the brick's cells and the cells around it depend on */
+  unsigned char *relevant; /* owned; [bricks z][y][x]; 1 where the transfer function may show something */
+  cell_lookup lookup[LOOKUP_SIZES]; /* of 2x2x2 cells, and of bricks */
+  unsigned char **cell_bounds; /* owned; [bricks z], each owned: packed bounds of every 2x2x2 cells of a layer
+                                  of bricks (bounds.h), stored value = cell_base + cell_step * bound; null
+                                  where 32 bits cannot number the cells */
+  float cell_base, cell_step;  /* stored units */
+  uint64_t *cell_bits; /* owned; [bricks z][y][x]; bit x + 4 y + 16 z: whether the cell (x, y, z) of the brick
+                          may show something; or null */
+  bool cell_bits_tell; /* enough cells show nothing for the bits to be worth asking */
+  uint32_t *relevant_list; /* owned; [relevant_count]; relevant bricks with a visible cell, in rising order */
+  uint32_t relevant_count;
+  int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
+  bool cut; /* some relevant brick reaches the box's faces: rays need to know where they cross them */
+  void *finite_voxels;  /* owned; a copy of the voxels with non-finite ones replaced by empty, or null */
+  uint64_t kept_voxels; /* 64 for each relevant brick, fewer at the borders */
+} grid;
+
+/* ---- the functions of this room that are compiled for each instruction set ---- */
+
+/* Elementwise bounds of rows of stored values. rows: row_count pointers to count values of one type. */
+typedef void bound_rows_function(const void *const *rows, int row_count, size_t count, float *least,
+                                 float *greatest);
+
+enum { CELL_TAPS = 5 /* voxels along an axis that two neighbouring cells depend on */ };
+
+/* Bounds of pairs of cells along x: pair f depends on the voxels 2f-2 .. 2f+2; beyond the row's ends the last
+ * voxel continues. row: count stored values. padded: scratch, count + 6 floats. low, high: count / 2 + 1.
+ * smooth: whether the kernel is the B-spline. */
+typedef void bound_along_function(hl_storage storage, const void *row, int32_t count, bool smooth,
+                                  float *padded, float *low, float *high);
+/* The same across rows of bounds, elementwise. */
+typedef void bound_across_function(const float *const low_rows[CELL_TAPS],
+                                   const float *const high_rows[CELL_TAPS], size_t count, bool smooth,
+                                   float *low, float *high);
+
+/* Bit x + 4 y + 16 z: whether sign times the reconstruction may exceed a threshold (stored units) somewhere
+ * in the cell (x, y, z) of the brick. */
+typedef uint64_t brick_bits_function(const grid *grid, const int32_t brick[3], float sign, float threshold);
+
+typedef struct grid_functions {
+  bound_rows_function *rows[3]; /* by hl_storage */
+  bound_along_function *along;
+  bound_across_function *across;
+  brick_bits_function *brick_bits;
+  bool reads_columns; /* whether gathering reads the columns of u8 voxels */
+} grid_functions;
+
+/* ---- bricks and voxels ---- */
+
+static inline size_t hl_grid_bricks(const grid *grid) {
+  return (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[2];
+}
+
+/* Coordinates of the brick with an index. */
+static inline void hl_brick_coordinates(const grid *grid, uint32_t brick, int32_t b[3]) {
+  b[0] = (int32_t)(brick % (uint32_t)grid->brick_count[0]);
+  b[1] = (int32_t)(brick / (uint32_t)grid->brick_count[0] % (uint32_t)grid->brick_count[1]);
+  b[2] = (int32_t)(brick / (uint32_t)grid->brick_count[0] / (uint32_t)grid->brick_count[1]);
+}
+
+/* The stored value of a voxel; beyond the grid's faces the border's values continue. */
+static inline float hl_stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
+  int64_t at[3] = {x, y, z};
+  for (int a = 0; a < 3; a++)
+    at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
+  size_t index = ((size_t)at[2] * (size_t)grid->dimension[1] + (size_t)at[1]) * (size_t)grid->dimension[0] +
+                 (size_t)at[0];
+  if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)grid->voxels)[index];
+  if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)grid->voxels)[index];
+  return ((const float *)grid->voxels)[index];
+}
+
+#endif

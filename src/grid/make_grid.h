@@ -1,0 +1,20 @@
+/* grid/make_grid.h - making a grid from a volume, once a volume and kernel. */
+#ifndef HL_GRID_MAKE_GRID_H
+#define HL_GRID_MAKE_GRID_H
+
+#include "grid/grid.h"
+
+typedef struct grid_source {
+  const hl_scene_volume *volume; /* kept alive by the caller */
+  const kernel *kernel;          /* cells are bounded for it */
+  affine3 index_to_frame;        /* index space to frame space */
+  double empty;                  /* data value */
+} grid_source;
+
+hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
+                         const grid_source *source, grid *grid, hl_error *error);
+/* The bytes that the volume's grid takes at most. */
+uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions, int threads);
+void hl_grid_release(hl_context *context, grid *grid);
+
+#endif

@@ -1,0 +1,320 @@
+/* grid/relevant.c - see relevant.h. */
+#include "grid/relevant.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "grid/bounds.h"
+
+/* ---- bricks ---- */
+
+void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double centre[3], double half[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    double low = (double)b[axis] * HL_BRICK_CELLS - 1, high = low + HL_BRICK_CELLS;
+    if (b[axis] == 0) low -= margin;
+    if (high >= grid->dimension[axis] - 1) high = grid->dimension[axis] - 0.5 + margin;
+    centre[axis] = (low + high) / 2;
+    half[axis] = (high - low) / 2;
+  }
+}
+
+bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]) {
+  if (grid->relevant_count == 0) return false;
+  double centre[3], half[3];
+  hl_brick_bounds(grid, grid->relevant_low, margin, centre, half);
+  for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - half[axis];
+  hl_brick_bounds(grid, grid->relevant_high, margin, centre, half);
+  for (int axis = 0; axis < 3; axis++) high[axis] = centre[axis] + half[axis];
+  return true;
+}
+
+typedef struct brick_job {
+  grid *grid;
+  const classifier *classifier;
+} brick_job;
+
+/* Whether brick b's own cells overlap the clipped box. */
+static bool overlaps_box(const grid *grid, const int32_t b[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    double low = (double)b[axis] * HL_BRICK_CELLS - 1, high = low + HL_BRICK_CELLS;
+    if (high + 1 < grid->box_low[axis] || low - 1 > grid->box_high[axis]) return false;
+  }
+  return true;
+}
+
+static void mark_bricks(void *data, size_t index, int worker) {
+  (void)worker;
+  brick_job *job = data;
+  grid *grid = job->grid;
+  int32_t b[3] = {0, 0, (int32_t)index};
+  size_t at = index * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[0];
+  for (b[1] = 0; b[1] < grid->brick_count[1]; b[1]++)
+    for (b[0] = 0; b[0] < grid->brick_count[0]; b[0]++, at++) {
+      float bounds[2];
+      hl_bounds_of_brick(grid, at, bounds);
+      grid->relevant[at] = overlaps_box(grid, b) &&
+                           hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]);
+    }
+}
+
+/* The number of voxels that brick b owns along one axis; every voxel has one owner. */
+static int voxels_along(int32_t b, int32_t count) {
+  int32_t first = b * HL_BRICK_CELLS, last = first + HL_BRICK_CELLS;
+  if (last > count) last = count;
+  return last > first ? last - first : 0;
+}
+
+/* Whether a brick comes within a voxel of the box's faces. */
+static bool reaches_faces(const grid *grid, const int32_t b[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    double low = (double)b[axis] * HL_BRICK_CELLS - 1, high = low + HL_BRICK_CELLS;
+    if (low - 1 < grid->box_low[axis] || high + 1 > grid->box_high[axis]) return true;
+  }
+  return false;
+}
+
+/* Whether a brick has a cell that shows something; after mark_cells(), before fill_lookups(). */
+static bool has_visible_cell(const grid *grid, size_t brick) {
+  return grid->lookup[1].visible == NULL || grid->lookup[1].visible[brick];
+}
+
+/* ---- which cells show something ---- */
+
+typedef struct cell_job {
+  grid *grid;
+  uint16_t
+      least_high[256]; /* by lower bound: the least upper bound with which something is visible; 256: none */
+} cell_job;
+
+static void find_least_high(const classifier *classifier, const grid *grid, uint16_t least_high[256]) {
+  for (int low = 255; low >= 0; low--) {
+    int high = low;
+    while (high < 256 &&
+           !hl_classifier_span_visible(classifier, grid, grid->cell_base + (float)low * grid->cell_step,
+                                       grid->cell_base + (float)high * grid->cell_step))
+      high++;
+    least_high[low] = (uint16_t)high;
+  }
+}
+
+/* The bytes that the bounds of a row of bricks take. */
+static size_t packed_row_bytes(const grid *grid, const unsigned char *even) {
+  size_t count = (size_t)grid->brick_count[0], alike = 0;
+  for (size_t i = 0; i < hl_even_row_bytes(grid); i++) alike += (size_t)__builtin_popcount(even[i]);
+  return alike * EVEN_BYTES + (count - alike) * UNEVEN_BYTES;
+}
+
+/* Writes 1 for each of a brick's 2x2x2 cells that show something; returns whether any does. */
+static unsigned char mark_cells_of_brick(const cell_job *job, const int32_t brick[3],
+                                         const unsigned char *bounds, bool even) {
+  const cell_lookup *lookup = &job->grid->lookup[0];
+  unsigned char any = 0;
+  if (even && bounds[1] < job->least_high[bounds[0]]) return 0;
+  for (int32_t cell = 0; cell < BRICK_CELLS; cell++) {
+    int32_t x = 2 * brick[0] + cell % 2, y = 2 * brick[1] + cell / 2 % 2, z = 2 * brick[2] + cell / 4;
+    bool shows = even || bounds[BRICK_CELLS + cell] >= job->least_high[bounds[cell]];
+    if (!shows || x >= lookup->count[0] || y >= lookup->count[1] || z >= lookup->count[2]) continue;
+    lookup->visible[((size_t)z * (size_t)lookup->count[1] + (size_t)y) * (size_t)lookup->count[0] +
+                    (size_t)x] = any = 1;
+  }
+  return any;
+}
+
+static void mark_cell_layer(void *data, size_t layer, int worker) {
+  (void)worker;
+  const cell_job *job = data;
+  const grid *grid = job->grid;
+  const cell_lookup *fine = &grid->lookup[0], *coarse = &grid->lookup[1];
+  size_t plane = (size_t)fine->count[0] * (size_t)fine->count[1], width = (size_t)grid->brick_count[0];
+  int32_t slices = fine->count[2] - 2 * (int32_t)layer < 2 ? 1 : 2;
+  memset(fine->visible + 2 * layer * plane, 0, (size_t)slices * plane);
+  memset(coarse->visible + layer * width * (size_t)grid->brick_count[1], 0,
+         width * (size_t)grid->brick_count[1]);
+  const unsigned char *even = grid->cell_bounds[layer];
+  const unsigned char *bounds = even + hl_even_row_bytes(grid) * (size_t)grid->brick_count[1];
+  for (int32_t y = 0; y < grid->brick_count[1]; y++, even += hl_even_row_bytes(grid)) {
+    size_t row = (layer * (size_t)grid->brick_count[1] + (size_t)y) * width;
+    if (memchr(grid->relevant + row, 1, width) == NULL) {
+      bounds += packed_row_bytes(grid, even);
+      continue;
+    }
+    for (int32_t x = 0; x < grid->brick_count[0]; x++) {
+      bool same = hl_brick_is_even(even, x);
+      if (grid->relevant[row + (size_t)x])
+        coarse->visible[row + (size_t)x] = mark_cells_of_brick(job, (int32_t[3]){x, y, (int32_t)layer},
+                                                               bounds, same);
+      bounds += same ? EVEN_BYTES : UNEVEN_BYTES;
+    }
+  }
+}
+
+static void mark_cells(grid *grid, const classifier *classifier, hl_pool *pool) {
+  if (grid->lookup[0].visible == NULL) return;
+  cell_job job = {.grid = grid};
+  find_least_high(classifier, grid, job.least_high);
+  hl_pool_run(pool, (size_t)grid->brick_count[2], mark_cell_layer, &job);
+}
+
+/* ---- look-ups of boxes of cells ---- */
+
+/* The bits of `visible` (cell_lookup) that stand for boxes three units long along x, y, z. */
+enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
+
+/* Turns a row's marks (1: visible) into its look-ups along x. */
+static void look_up_row(unsigned char *cells, size_t width) {
+  for (size_t x = 0; x + 2 < width; x++)
+    cells[x] = (unsigned char)(-(cells[x] | cells[x + 1]) | (-cells[x + 2] & THREE_ALONG_X));
+  for (size_t x = width < 2 ? 0 : width - 2; x < width; x++)
+    cells[x] = (unsigned char)-(cells[x] | cells[width - 1]);
+}
+
+/* Widens look-ups along y or z, in place, for `width` cells side by side from the first one on. step: from a
+ * cell to the next along the axis. three: the bits of boxes three units long along the axis. */
+static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t width, unsigned char three) {
+  for (int32_t i = 0; i + 2 < count; i++) {
+    unsigned char *cell = cells + (size_t)i * step;
+    for (size_t x = 0; x < width; x++)
+      cell[x] |= (unsigned char)(cell[x + step] | (cell[x + 2 * step] & three));
+  }
+  if (count < 2) return;
+  unsigned char *cell = cells + (size_t)(count - 2) * step;
+  for (size_t x = 0; x < width; x++) cell[x] |= cell[x + step];
+}
+
+/* Look-ups of a slice along x and y. */
+static void look_up_slice(void *data, size_t index, int worker) {
+  (void)worker;
+  const cell_lookup *lookup = data;
+  size_t width = (size_t)lookup->count[0];
+  unsigned char *visible = lookup->visible + index * width * (size_t)lookup->count[1];
+  for (int32_t y = 0; y < lookup->count[1]; y++) look_up_row(visible + (size_t)y * width, width);
+  join_axis(visible, width, lookup->count[1], width, THREE_ALONG_Y);
+}
+
+/* Look-ups of a row along z, in all slices. */
+static void look_up_across(void *data, size_t index, int worker) {
+  (void)worker;
+  const cell_lookup *lookup = data;
+  size_t width = (size_t)lookup->count[0];
+  join_axis(lookup->visible + index * width, width * (size_t)lookup->count[1], lookup->count[2], width,
+            THREE_ALONG_Z);
+}
+
+static void fill_lookups(grid *grid, hl_pool *pool) {
+  if (grid->lookup[0].visible == NULL) return;
+  for (int i = 0; i < LOOKUP_SIZES; i++) {
+    hl_pool_run(pool, (size_t)grid->lookup[i].count[2], look_up_slice, &grid->lookup[i]);
+    hl_pool_run(pool, (size_t)grid->lookup[i].count[1], look_up_across, &grid->lookup[i]);
+  }
+}
+
+/* ---- a bit for each cell ---- */
+
+/* Larger volumes get no bits: an eighth of a byte a voxel would be much beside their other memory. */
+static const uint64_t GREATEST_BYTES = 8 << 20;
+/* Bits that leave out less than this fraction of the visible bricks' cells are not worth asking. */
+static const double LEAST_LEFT_OUT = 1.0 / 8;
+
+uint64_t hl_cell_bits_bytes(uint64_t bricks) {
+  return bricks * sizeof(uint64_t) <= GREATEST_BYTES ? bricks * sizeof(uint64_t) : 0;
+}
+
+typedef struct bits_job {
+  grid *grid;
+  brick_bits_function *brick_bits;
+  float sign, threshold;     /* visible: sign * stored value > threshold */
+  uint64_t bricks, set_bits; /* of visible bricks: their number, and their cells with a bit; atomic */
+} bits_job;
+
+/* Finds the sign and the threshold. The threshold is lowered by the errors that sums of floats and the
+ * rounded weights of u8 voxels may have: 6e-6 of the greatest number, and 1e-3 of a table's entry. False
+ * where floats are too coarse to tell. */
+static bool find_threshold(const grid *grid, const classifier *classifier, bits_job *job) {
+  double high = (double)grid->cell_base + 255.0 * (double)grid->cell_step;
+  double greatest = fmax(fmax(fabs((double)grid->cell_base), fabs(high)), fabs((double)grid->empty));
+  double scale = (double)classifier->scale;
+  if (scale == 0 || !isfinite(scale) || !(greatest > 1e-30) || !(greatest < 1e30)) return false;
+  double value = ((double)classifier->first_visible - (double)classifier->offset) / scale +
+                 (double)grid->empty;
+  job->sign = scale > 0 ? 1 : -1;
+  job->threshold = (float)(value * (double)job->sign - 8e-6 * greatest - 2e-3 / fabs(scale));
+  /* sums of zeros are zero without an error */
+  float at_zero = -grid->empty * classifier->scale + classifier->offset;
+  if (scale > 0 && grid->cell_base >= 0 && at_zero <= classifier->first_visible)
+    job->threshold = fmaxf(job->threshold, 0);
+  return isfinite(job->threshold);
+}
+
+/* Bits are found for all bricks, relevant or not: values that are not visible themselves may lie on a ray's
+ * way from one sheet to a visible value on the next. */
+static uint64_t find_bits(const bits_job *job, size_t at, const int32_t brick[3]) {
+  const grid *grid = job->grid;
+  float bounds[2];
+  hl_bounds_of_brick(grid, at, bounds);
+  float low = job->sign > 0 ? bounds[0] : -bounds[1], high = job->sign > 0 ? bounds[1] : -bounds[0];
+  if (high <= job->threshold) return 0;
+  return low > job->threshold ? UINT64_MAX : job->brick_bits(grid, brick, job->sign, job->threshold);
+}
+
+static void find_layer_bits(void *data, size_t layer, int worker) {
+  (void)worker;
+  bits_job *job = data;
+  const grid *grid = job->grid;
+  size_t at = layer * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[0];
+  uint64_t bricks = 0, set_bits = 0;
+  for (int32_t y = 0; y < grid->brick_count[1]; y++)
+    for (int32_t x = 0; x < grid->brick_count[0]; x++, at++) {
+      uint64_t bits = find_bits(job, at, (const int32_t[3]){x, y, (int32_t)layer});
+      grid->cell_bits[at] = bits;
+      if (!grid->relevant[at] || !has_visible_cell(grid, at)) continue;
+      bricks++;
+      set_bits += (uint64_t)__builtin_popcountll(bits);
+    }
+  __atomic_fetch_add(&job->bricks, bricks, __ATOMIC_RELAXED);
+  __atomic_fetch_add(&job->set_bits, set_bits, __ATOMIC_RELAXED);
+}
+
+static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_function *brick_bits,
+                           hl_pool *pool) {
+  bits_job job = {.grid = grid, .brick_bits = brick_bits};
+  grid->cell_bits_tell = grid->cell_bits != NULL && find_threshold(grid, classifier, &job);
+  if (!grid->cell_bits_tell) return;
+  hl_pool_run(pool, (size_t)grid->brick_count[2], find_layer_bits, &job);
+  double cells = 64 * (double)job.bricks;
+  grid->cell_bits_tell = cells - (double)job.set_bits >= LEAST_LEFT_OUT * cells;
+}
+
+/* ---- everything above ---- */
+
+/* Lists the relevant bricks, bounds their coordinates and counts their voxels. */
+static void list_relevant(grid *grid) {
+  grid->kept_voxels = 0;
+  grid->relevant_count = 0;
+  grid->cut = false;
+  bool first = true;
+  for (size_t at = 0; at < hl_grid_bricks(grid); at++) {
+    if (!grid->relevant[at]) continue;
+    int32_t b[3];
+    hl_brick_coordinates(grid, (uint32_t)at, b);
+    for (int axis = 0; axis < 3; axis++) {
+      if (first || b[axis] < grid->relevant_low[axis]) grid->relevant_low[axis] = b[axis];
+      if (first || b[axis] > grid->relevant_high[axis]) grid->relevant_high[axis] = b[axis];
+    }
+    first = false;
+    if (has_visible_cell(grid, at)) grid->relevant_list[grid->relevant_count++] = (uint32_t)at;
+    grid->cut = grid->cut || reaches_faces(grid, b);
+    grid->kept_voxels += (uint64_t)voxels_along(b[0], grid->dimension[0]) *
+                         (uint64_t)voxels_along(b[1], grid->dimension[1]) *
+                         (uint64_t)voxels_along(b[2], grid->dimension[2]);
+  }
+}
+
+void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const classifier *classifier,
+                           hl_pool *pool) {
+  brick_job job = {grid, classifier};
+  hl_pool_run(pool, (size_t)grid->brick_count[2], mark_bricks, &job);
+  mark_cells(grid, classifier, pool);
+  list_relevant(grid);
+  find_cell_bits(grid, classifier, functions->brick_bits, pool);
+  fill_lookups(grid, pool);
+}

@@ -1,0 +1,43 @@
+/* render/hot.h - the hot functions of all rooms behind one table, chosen once a context.
+ *
+ * Each function is written once, in a *_lanes.h of its room, and compiled for every instruction set by
+ * src/hot; all give the same bytes. A room receives the table of its own functions alone. */
+#ifndef HL_RENDER_HOT_H
+#define HL_RENDER_HOT_H
+
+#include "fill/fill.h"
+#include "grid/grid.h"
+#include "render/shade.h"
+#include "shadow/shadow_method.h"
+#include "view/occupancy.h"
+
+typedef struct hot_functions {
+  grid_functions grid;
+  view_functions view;
+  fill_functions fill;
+  shadow_functions shadow;
+  render_functions render;
+} hot_functions;
+
+/* ---- one table for each instruction set (src/hot/hot.c) ---- */
+
+extern const hot_functions hl_hot_scalar;
+#if defined(__x86_64__)
+extern const hot_functions hl_hot_avx2, hl_hot_avx512, hl_hot_avx512_vbmi;
+#elif defined(__aarch64__)
+extern const hot_functions hl_hot_neon;
+#endif
+
+static inline const hot_functions *hl_hot_functions(hl_instruction_set set) {
+#if defined(__x86_64__)
+  if (set == HL_INSTRUCTION_SET_AVX512_VBMI) return &hl_hot_avx512_vbmi;
+  if (set == HL_INSTRUCTION_SET_AVX512) return &hl_hot_avx512;
+  if (set == HL_INSTRUCTION_SET_AVX2) return &hl_hot_avx2;
+#elif defined(__aarch64__)
+  if (set == HL_INSTRUCTION_SET_NEON) return &hl_hot_neon;
+#endif
+  (void)set;
+  return &hl_hot_scalar;
+}
+
+#endif

@@ -1,0 +1,252 @@
+/* view/occupancy.c - projects relevant bricks onto tiles and sheets. */
+#include "view/occupancy.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "grid/relevant.h"
+
+typedef struct occupancy_job {
+  occupancy *occupancy;
+  const grid *grid;
+  const tile_rectangle *rectangle;
+  brick_view view;
+  brick_ranges_function *ranges;
+} occupancy_job;
+
+enum { BRICKS_A_TASK = 1024 };
+
+static int first_tile(double low) { return low <= 0 ? 0 : low >= 1e9 ? INT32_MAX : (int)(low / TILE); }
+static int last_tile(double high, int tiles) {
+  return high < 0 ? -1 : high >= (double)tiles * TILE ? tiles - 1 : (int)(high / TILE);
+}
+
+/* The tiles within some bounds and the margin around them; empty where the view does not see them. */
+static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *o) {
+  tile_rectangle r = {.x = first_tile(bounds->low[0] - o->spare), .y = first_tile(bounds->low[1] - o->spare)};
+  int x1 = last_tile(bounds->high[0] + o->spare, o->tiles_x),
+      y1 = last_tile(bounds->high[1] + o->spare, o->tiles_y);
+  r.width = x1 < r.x ? 0 : x1 - r.x + 1;
+  r.height = y1 < r.y ? 0 : y1 - r.y + 1;
+  return r;
+}
+
+/* The tiles of a grid's relevant bricks: the bounds of the box around all bricks contain the bounds of each.
+ */
+static tile_rectangle find_rectangle(const grid *grid, const footprint_map *map, const occupancy *o) {
+  double low[3], high[3], centre[3], half[3];
+  footprint_bounds bounds;
+  if (!hl_relevant_bounds(grid, GRID_MARGIN, low, high)) return (tile_rectangle){0};
+  for (int axis = 0; axis < 3; axis++) {
+    centre[axis] = (low[axis] + high[axis]) / 2;
+    half[axis] = (high[axis] - low[axis]) / 2;
+  }
+  if (!hl_footprint_bounds(map, centre, half, &bounds)) return (tile_rectangle){0};
+  return tiles_of(&bounds, o);
+}
+
+static bool in_rectangle(const tile_rectangle *r, int x, int y) {
+  return x >= r->x && y >= r->y && x < r->x + r->width && y < r->y + r->height;
+}
+
+/* Numbers the patches, tile after tile. */
+static void number_patches(occupancy *o, int grid_count) {
+  uint32_t patch = 0;
+  for (int y = 0; y < o->tiles_y; y++)
+    for (int x = 0; x < o->tiles_x; x++) {
+      o->first_patch[(size_t)y * (size_t)o->tiles_x + (size_t)x] = patch;
+      for (int g = 0; g < grid_count; g++) {
+        const tile_rectangle *r = &o->rectangle[g];
+        if (!in_rectangle(r, x, y)) continue;
+        o->patch_of[r->first + (size_t)(y - r->y) * (size_t)r->width + (size_t)(x - r->x)] = patch;
+        o->patch_grid[patch++] = (uint32_t)g;
+      }
+    }
+  o->first_patch[(size_t)o->tiles_x * (size_t)o->tiles_y] = patch;
+}
+
+/* Rounds an affine function to floats; returns a bound of its rounding error: some times 2^-24 of the
+ * greatest sum of its terms' magnitudes over the grid. */
+static float set_row(const double row[4], const double middle[3], const double half[3], double scale,
+                     float rounded[4]) {
+  double offset = row[3], greatest = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    rounded[axis] = (float)(row[axis] * scale);
+    offset += row[axis] * middle[axis];
+    greatest += fabs(row[axis]) * half[axis];
+  }
+  rounded[3] = (float)(offset * scale);
+  return (float)((greatest + fabs(offset)) * fabs(scale) * 1e-6);
+}
+
+static void set_view(const footprint_map *map, const grid *grid, const sheet_stack *sheets,
+                     const occupancy *o, const tile_rectangle *r, brick_view *view) {
+  double middle[3], half[3], height[4];
+  for (int axis = 0; axis < 3; axis++) {
+    middle[axis] = 0.5 * grid->dimension[axis];
+    half[axis] = 0.5 * grid->dimension[axis] + GRID_MARGIN + HL_BRICK_CELLS;
+    view->middle[axis] = (float)middle[axis];
+    height[axis] = map->height[axis];
+  }
+  height[3] = map->height[3] - sheets->first;
+  view->slack[0] = set_row(map->view[0], middle, half, 1, view->view[0]);
+  for (int axis = 0; axis < 2; axis++)
+    view->slack[1 + axis] = set_row(map->view[1 + axis], middle, half, 1.0 / TILE, view->view[1 + axis]);
+  view->slack[3] = set_row(height, middle, half, 1 / sheets->spacing, view->height);
+  view->spare = (float)(o->spare / TILE);
+  const int32_t first[RANGE_AXES] = {r->x, r->y, 0},
+                last[RANGE_AXES] = {r->x + r->width - 1, r->y + r->height - 1, o->sheets - 1};
+  memcpy(view->first, first, sizeof first);
+  memcpy(view->last, last, sizeof last);
+}
+
+/* Sets bits first to last. Other bricks have often set them already: then they are only read. */
+static void mark_bits(uint64_t *words, int first, int last) {
+  for (int word = first / 64; word <= last / 64; word++) {
+    int low = word == first / 64 ? first % 64 : 0, high = word == last / 64 ? last % 64 : 63;
+    uint64_t mask = (high == 63 ? ~(uint64_t)0 : ((uint64_t)1 << (high + 1)) - 1) & (~(uint64_t)0 << low);
+    if ((__atomic_load_n(&words[word], __ATOMIC_RELAXED) & mask) != mask)
+      __atomic_fetch_or(&words[word], mask, __ATOMIC_RELAXED);
+  }
+}
+
+static void mark_brick(const occupancy_job *job, const brick_ranges *ranges, int brick) {
+  const occupancy *o = job->occupancy;
+  const tile_rectangle *r = job->rectangle;
+  int first = ranges->first[RANGE_SHEETS][brick], last = ranges->last[RANGE_SHEETS][brick];
+  if (first > last) return;
+  for (int y = ranges->first[RANGE_Y][brick]; y <= ranges->last[RANGE_Y][brick]; y++) {
+    const uint32_t *patch = o->patch_of + r->first + (size_t)(y - r->y) * (size_t)r->width;
+    for (int x = ranges->first[RANGE_X][brick]; x <= ranges->last[RANGE_X][brick]; x++)
+      mark_bits(o->by_patch + patch[x - r->x] * (size_t)o->words, first, last);
+  }
+}
+
+/* Coordinates of sixteen bricks. Indices rise: most often the next brick is in the same row of bricks. */
+static void coordinates_of_bricks(const grid *grid, const uint32_t *bricks, int count,
+                                  int32_t coordinates[3][BRICKS_AT_ONCE]) {
+  uint32_t row_start = 0, row_end = 0;
+  int32_t b[3] = {0};
+  for (int i = 0; i < BRICKS_AT_ONCE; i++) {
+    uint32_t brick = bricks[i < count ? i : count - 1];
+    if (brick < row_start || brick >= row_end) {
+      hl_brick_coordinates(grid, brick, b);
+      row_start = brick - (uint32_t)b[0];
+      row_end = row_start + (uint32_t)grid->brick_count[0];
+    }
+    b[0] = (int32_t)(brick - row_start);
+    for (int axis = 0; axis < 3; axis++) coordinates[axis][i] = b[axis];
+  }
+}
+
+static void mark_bricks(void *data, size_t index, int worker) {
+  (void)worker;
+  const occupancy_job *job = data;
+  size_t end = (index + 1) * BRICKS_A_TASK;
+  if (end > job->grid->relevant_count) end = job->grid->relevant_count;
+  for (size_t i = index * BRICKS_A_TASK; i < end; i += BRICKS_AT_ONCE) {
+    int count = end - i < BRICKS_AT_ONCE ? (int)(end - i) : BRICKS_AT_ONCE;
+    int32_t coordinates[3][BRICKS_AT_ONCE];
+    brick_ranges ranges;
+    coordinates_of_bricks(job->grid, job->grid->relevant_list + i, count, coordinates);
+    job->ranges(&job->view, job->grid, (const int32_t(*)[BRICKS_AT_ONCE])coordinates, &ranges);
+    for (int brick = 0; brick < count; brick++) mark_brick(job, &ranges, brick);
+  }
+}
+
+/* Transposes 64 tiles x 64 sheets at a time. index: which word of each sheet in by_sheet. */
+static void transpose_tiles(void *data, size_t index, int worker) {
+  (void)worker;
+  occupancy *o = data;
+  size_t tiles = (size_t)o->tiles_x * (size_t)o->tiles_y;
+  for (int word = 0; word < o->words; word++)
+    for (size_t t = 0; t < 64 && index * 64 + t < tiles; t++) {
+      uint64_t bits = 0;
+      for (size_t patch = o->first_patch[index * 64 + t]; patch < o->first_patch[index * 64 + t + 1]; patch++)
+        bits |= o->by_patch[patch * (size_t)o->words + (size_t)word];
+      for (; bits != 0; bits &= bits - 1) {
+        size_t sheet = (size_t)word * 64 + (size_t)__builtin_ctzll(bits);
+        o->by_sheet[sheet * (size_t)o->tile_words + index] |= (uint64_t)1 << t;
+      }
+    }
+}
+
+static hl_status allocate(hl_context *context, occupancy *o, size_t tiles, hl_error *error) {
+  o->patch_of = hl_allocate(context, o->patch_count + 1, sizeof(uint32_t));
+  o->patch_grid = hl_allocate(context, o->patch_count + 1, sizeof(uint32_t));
+  o->first_patch = hl_allocate(context, tiles + 1, sizeof(uint32_t));
+  o->by_patch = hl_allocate_zeroed(context, o->patch_count * (size_t)o->words + 1, sizeof(uint64_t));
+  o->by_sheet = hl_allocate_zeroed(context, (size_t)o->words * 64 * (size_t)o->tile_words, sizeof(uint64_t));
+  if (o->patch_of == NULL || o->patch_grid == NULL || o->first_patch == NULL || o->by_patch == NULL ||
+      o->by_sheet == NULL)
+    return hl_fail_memory(error, o->patch_count * (size_t)o->words * sizeof(uint64_t),
+                          "the occupancy of tiles");
+  return HL_OK;
+}
+
+static void set_size(const occupancy_source *source, occupancy *o) {
+  o->spare = source->spare;
+  o->tiles_x = hl_tiles(source->view->width);
+  o->tiles_y = hl_tiles(source->view->height);
+  o->sheets = source->sheets->count;
+  o->words = (source->sheets->count + 63) / 64;
+  o->tile_words = (int)(((size_t)o->tiles_x * (size_t)o->tiles_y + 63) / 64);
+}
+
+static footprint_map map_of_grid(const occupancy_source *source, int g) {
+  footprint_map map;
+  hl_footprint_map(source->view, source->sheets->normal, source->grids[g].index_to_frame, &map);
+  return map;
+}
+
+uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count) {
+  occupancy o = {0};
+  set_size(source, &o);
+  for (int g = 0; g < source->grid_count; g++) {
+    footprint_map map = map_of_grid(source, g);
+    tile_rectangle r = find_rectangle(&source->grids[g], &map, &o);
+    o.patch_count += (size_t)r.width * (size_t)r.height;
+  }
+  *patch_count = o.patch_count;
+  uint64_t tiles = (uint64_t)o.tiles_x * (uint64_t)o.tiles_y, words = (uint64_t)o.words;
+  return o.patch_count * (8 + 8 * words) + 4 * tiles + words * 64 * (uint64_t)o.tile_words * 8;
+}
+
+hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_function *ranges,
+                             const occupancy_source *source, occupancy *occupancy, hl_error *error) {
+  set_size(source, occupancy);
+  size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
+  occupancy->rectangle = hl_allocate(context, (size_t)source->grid_count, sizeof(tile_rectangle));
+  if (occupancy->rectangle == NULL)
+    return hl_fail_memory(error, sizeof(tile_rectangle), "the occupancy of tiles");
+  for (int g = 0; g < source->grid_count; g++) {
+    footprint_map map = map_of_grid(source, g);
+    tile_rectangle *r = &occupancy->rectangle[g];
+    *r = find_rectangle(&source->grids[g], &map, occupancy);
+    r->first = occupancy->patch_count;
+    occupancy->patch_count += (size_t)r->width * (size_t)r->height;
+  }
+  hl_status status = allocate(context, occupancy, tiles, error);
+  if (status != HL_OK) return status;
+  number_patches(occupancy, source->grid_count);
+  for (int g = 0; g < source->grid_count; g++) {
+    const grid *grid = &source->grids[g];
+    occupancy_job job = {
+        .occupancy = occupancy, .grid = grid, .rectangle = &occupancy->rectangle[g], .ranges = ranges};
+    footprint_map map = map_of_grid(source, g);
+    set_view(&map, grid, source->sheets, occupancy, job.rectangle, &job.view);
+    hl_pool_run(pool, (grid->relevant_count + BRICKS_A_TASK - 1) / BRICKS_A_TASK, mark_bricks, &job);
+  }
+  hl_pool_run(pool, (size_t)occupancy->tile_words, transpose_tiles, occupancy);
+  return HL_OK;
+}
+
+void hl_occupancy_release(hl_context *context, occupancy *occupancy) {
+  hl_release(context, occupancy->rectangle);
+  hl_release(context, occupancy->patch_of);
+  hl_release(context, occupancy->first_patch);
+  hl_release(context, occupancy->patch_grid);
+  hl_release(context, occupancy->by_patch);
+  hl_release(context, occupancy->by_sheet);
+  *occupancy = (struct occupancy){0};
+}

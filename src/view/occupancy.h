@@ -1,0 +1,90 @@
+/* view/occupancy.h - which tiles of which sheets may show something, for one view.
+ *
+ * Each relevant brick marks the tiles and sheets that it can touch, one bit each. A sheet then visits its
+ * marked tiles only: empty space costs nothing. */
+#ifndef HL_VIEW_OCCUPANCY_H
+#define HL_VIEW_OCCUPANCY_H
+
+#include "grid/grid.h"
+#include "view/view.h"
+
+/* The tiles of a view that one grid can touch: elsewhere the grid takes neither memory nor time. */
+typedef struct tile_rectangle {
+  int x, y, width, height; /* tiles */
+  size_t first;            /* where its tiles begin in patch_of; row after row */
+} tile_rectangle;
+
+/* A patch is one grid in one tile. A tile's patches follow each other, in the order of the grids. */
+typedef struct occupancy {
+  int tiles_x, tiles_y, sheets;
+  int words;                 /* 64-bit words of one patch: sheets rounded up */
+  int tile_words;            /* 64-bit words of one sheet: tiles rounded up */
+  double spare;              /* pixels: margin around each brick's projection that counts as touched */
+  tile_rectangle *rectangle; /* owned; [grids] */
+  size_t patch_count;
+  uint32_t *patch_of;    /* owned; [patches]; the patch of each tile of each grid's rectangle */
+  uint32_t *first_patch; /* owned; [tiles + 1]; where a tile's patches begin */
+  uint32_t *patch_grid;  /* owned; [patches]; the patch's grid */
+  uint64_t *by_patch;    /* owned; [patches][words]; bit = sheet */
+  uint64_t *by_sheet;    /* owned; [words * 64][tile_words]; bit = tile, all grids together */
+} occupancy;
+
+/* ---- what sixteen bricks touch: compiled for each instruction set ---- */
+
+enum { BRICKS_AT_ONCE = 16, RANGE_AXES = 3 };
+enum range_axis { RANGE_X, RANGE_Y, RANGE_SHEETS };
+
+/* One grid in one view: affine functions of a point of index space, counted from `middle`. */
+typedef struct brick_view {
+  float view[3][4]; /* w; w times tiles across; w times tiles down */
+  float height[4];  /* sheets */
+  float slack[4];   /* for each of the four functions: a bound of its rounding error */
+  float middle[3];  /* index space */
+  float spare;      /* tiles: margin around each brick's projection that counts as touched */
+  int32_t first[RANGE_AXES],
+      last[RANGE_AXES]; /* limits: the grid's tiles across and down, the view's sheets */
+} brick_view;
+
+/* What each brick touches: the first and last tile across and down, and sheet. A brick with an empty range
+ * (first > last) touches nothing. */
+typedef struct brick_ranges {
+  int32_t first[RANGE_AXES][BRICKS_AT_ONCE], last[RANGE_AXES][BRICKS_AT_ONCE];
+} brick_ranges;
+
+/* brick: coordinates along each axis. */
+typedef void brick_ranges_function(const brick_view *view, const grid *grid,
+                                   const int32_t brick[3][BRICKS_AT_ONCE], brick_ranges *ranges);
+
+/* The functions of this room that are compiled for each instruction set. */
+typedef struct view_functions {
+  brick_ranges_function *brick_ranges;
+  coverage_tile_function *coverage;
+} view_functions;
+
+/* ---- building ---- */
+
+enum { PIXEL_TO_SPARE = 1 };
+
+/* Which grids in which view. */
+typedef struct occupancy_source {
+  const grid *grids; /* [grid_count] */
+  int grid_count;
+  const view *view;
+  const sheet_stack *sheets;
+  double spare; /* as in occupancy; PIXEL_TO_SPARE at least */
+} occupancy_source;
+
+/* Fills an empty occupancy. Where it fails, hl_occupancy_release() is still due. */
+hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_function *ranges,
+                             const occupancy_source *source, occupancy *occupancy, hl_error *error);
+void hl_occupancy_release(hl_context *context, occupancy *occupancy);
+
+/* The bytes that such an occupancy would hold, and its number of patches. */
+uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count);
+
+static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
+  const uint64_t *bits = occupancy->by_patch + patch * (size_t)occupancy->words;
+  return (int)(bits[sheet / 64] >> (sheet % 64) & 1);
+}
+
+#endif

@@ -1,0 +1,107 @@
+/* view/rays_lanes.h - where the rays of a 4x4 block of pixels meet a sheet, and where they enter and leave a
+ * volume's box. */
+#ifndef HL_VIEW_RAYS_LANES_H
+#define HL_VIEW_RAYS_LANES_H
+
+#include "simd/lanes.h"
+#include "view/view.h"
+
+typedef struct lanes3 {
+  lanes x, y, z;
+} lanes3;
+
+LANES_INLINE lanes dot3(lanes3 a, lanes3 b) { return lanes_fma(a.x, b.x, lanes_fma(a.y, b.y, a.z * b.z)); }
+LANES_INLINE lanes3 scale3(lanes3 a, lanes s) { return (lanes3){a.x * s, a.y * s, a.z * s}; }
+LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
+LANES_INLINE lanes3 set3(const float v[3]) {
+  return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])};
+}
+/* a + b s. */
+LANES_INLINE lanes3 add_scaled3(lanes3 a, lanes3 b, lanes s) {
+  return (lanes3){lanes_fma(b.x, s, a.x), lanes_fma(b.y, s, a.y), lanes_fma(b.z, s, a.z)};
+}
+
+/* A row of an affine map applied to vectors and to points. */
+LANES_INLINE lanes row_of_vector(const float row[4], lanes3 v) {
+  return lanes_add_scaled(lanes_add_scaled(v.z * row[2], v.y, row[1]), v.x, row[0]);
+}
+LANES_INLINE lanes row_of_point(const float row[4], lanes3 p) {
+  return lanes_add_scaled(lanes_add_scaled(lanes_line(p.z, row[2], row[3]), p.y, row[1]), p.x, row[0]);
+}
+
+static const float block_column[LANES]
+    __attribute__((unused)) = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+static const float block_row[LANES]
+    __attribute__((unused)) = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+
+/* Pixel coordinates of the block whose first pixel is (x, y). */
+LANES_INLINE lanes block_u(int x) { return lanes_load(block_column) + (float)x; }
+LANES_INLINE lanes block_v(int y) { return lanes_load(block_row) + (float)y; }
+
+/* A value that is linear in pixel coordinates. */
+LANES_INLINE lanes linear_in_view(float at, float by_u, float by_v, lanes u, lanes v) {
+  return lanes_add_scaled(lanes_line(v, by_v, at), u, by_u);
+}
+LANES_INLINE lanes3 rays_linear(const float at[3], const float by_u[3], const float by_v[3], lanes u,
+                                lanes v) {
+  return (lanes3){linear_in_view(at[0], by_u[0], by_v[0], u, v),
+                  linear_in_view(at[1], by_u[1], by_v[1], u, v),
+                  linear_in_view(at[2], by_u[2], by_v[2], u, v)};
+}
+
+/* H = h.W of a perspective view's rays. */
+LANES_INLINE lanes rays_climb(const sheet_rays *rays, lanes u, lanes v) {
+  return linear_in_view(rays->h0, rays->hu, rays->hv, u, v);
+}
+
+/* W of a perspective view's rays, not normalised. */
+LANES_INLINE lanes3 rays_directions(const sheet_rays *rays, lanes u, lanes v) {
+  return rays_linear(rays->w0, rays->wu, rays->wv, u, v);
+}
+
+LANES_INLINE lanes3 rays_positions(const sheet_rays *rays, lanes u, lanes v) {
+  lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
+  if (!rays->perspective) return p;
+  lanes s = 1.0f / rays_climb(rays, u, v);
+  return (lanes3){lanes_fma(p.x, s, lanes_set(rays->base[0])), lanes_fma(p.y, s, lanes_set(rays->base[1])),
+                  lanes_fma(p.z, s, lanes_set(rays->base[2]))};
+}
+
+/* ---- where rays enter and leave a box: the slab method ---- */
+
+static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave) {
+  for (int block = 0; block < TILE_BLOCKS; block++) {
+    lanes u = block_u(tile_x * TILE + block % 4 * BLOCK), v = block_v(tile_y * TILE + block / 4 * BLOCK);
+    lanes first = lanes_set(rays->least), last = lanes_set(1e30f);
+    for (int axis = 0; axis < 3; axis++) {
+      lanes start = linear_in_view(rays->start[axis], rays->start_u[axis], rays->start_v[axis], u, v);
+      lanes direction = linear_in_view(rays->direction[axis], rays->direction_u[axis],
+                                       rays->direction_v[axis], u, v);
+      /* a ray parallel to two faces: a tiny direction sends its crossings far away, to the right sides */
+      direction = lanes_select(lanes_abs(direction) < 1e-12f, lanes_set(1e-12f), direction);
+      lanes a = (rays->low[axis] - start) / direction, b = (rays->high[axis] - start) / direction;
+      first = lanes_max(first, lanes_min(a, b));
+      last = lanes_min(last, lanes_max(a, b));
+    }
+    lanes base = linear_in_view(rays->start_height, rays->start_height_u, rays->start_height_v, u, v);
+    lanes climb = linear_in_view(rays->climb, rays->climb_u, rays->climb_v, u, v);
+    lanes a = lanes_fma(first, climb, base), b = lanes_fma(last, climb, base);
+    lanes_int missed = first > last;
+    lanes_store(enter + block * BLOCK_PIXELS, lanes_select(missed, lanes_set(1e30f), lanes_min(a, b)));
+    lanes_store(leave + block * BLOCK_PIXELS, lanes_select(missed, lanes_set(-1e30f), lanes_max(a, b)));
+  }
+}
+
+/* Where the covered part of the slab [height - spacing, height] begins and how long it is, in slabs. */
+typedef struct covered_part {
+  lanes begin, length;
+} covered_part;
+
+LANES_INLINE covered_part covered(lanes enter, lanes leave, float height, float spacing) {
+  lanes top = lanes_min(leave, lanes_set(height));
+  lanes bottom = lanes_max(enter, lanes_set(height - spacing));
+  return (covered_part){lanes_min((bottom - (height - spacing)) * (1.0f / spacing), lanes_set(1.0f)),
+                        lanes_max((top - bottom) * (1.0f / spacing), lanes_set(0))};
+}
+
+#endif

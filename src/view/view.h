@@ -1,0 +1,128 @@
+/* view/view.h - how the pixels of the eye or of a light see the sheets.
+ *
+ * A view is a bundle of rays, one a pixel: from one point (perspective camera, point light) or parallel
+ * (orthographic camera, directional light). The picture plane may have any tilt: a shadow buffer lies
+ * perpendicular to its light for hard shadows and parallel to the sheets for soft ones (fig. 17).
+ * Pixel (i, j) has its centre at (i + 1/2, j + 1/2). Positions are in frame space: world moved so that
+ * the scene's centre is the origin, which keeps float arithmetic exact enough far from the world's. */
+#ifndef HL_VIEW_VIEW_H
+#define HL_VIEW_VIEW_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/vector.h"
+
+/* Pictures are made of tiles of 16x16 pixels, kept as sixteen blocks of 4x4 pixels: sixteen lanes each. */
+enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
+
+/* The number of tiles that cover so many pixels. */
+static inline int hl_tiles(int pixels) { return (pixels + TILE - 1) / TILE; }
+
+/* The number of pixels of a set of blocks. Counts bits by sums of pairs, of fours and so on: processors
+ * without vectors have no instruction for it. */
+static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
+  blocks -= blocks >> 1 & 0x5555;
+  blocks = (blocks & 0x3333) + (blocks >> 2 & 0x3333);
+  blocks = (blocks + (blocks >> 4)) & 0x0f0f;
+  return (uint64_t)((blocks + (blocks >> 8)) & 31) * BLOCK_PIXELS;
+}
+
+typedef struct view {
+  bool perspective;
+  int width, height;   /* pixels */
+  vec3 origin;         /* perspective: where the rays meet; frame space */
+  vec3 corner, du, dv; /* perspective: ray of continuous pixel (u, v) is corner + u du + v dv;
+                          parallel: the ray's start point */
+  vec3 direction;      /* parallel: unit direction of every ray */
+  mat3 inverse;        /* (w, w u, w v) = inverse * (X - origin) for perspective,
+                          (distance, u, v) = inverse * (X - corner) for parallel */
+} view;
+
+/* Fills inverse from the other members; false where the view is degenerate. */
+bool hl_view_finish(view *view);
+
+/* Continuous pixel coordinates of a point; false where a perspective view has it behind. */
+bool hl_view_project(const view *view, vec3 point, double uv[2]);
+
+/* The ray through continuous pixel (u, v): start and (unnormalised) direction. */
+void hl_view_ray(const view *view, double u, double v, vec3 *start, vec3 *direction);
+
+/* (w, w u, w v) as affine functions of a point p of another space (given by to_frame): rows of 4 floats,
+ * the last is the constant. For a parallel view w is 1. */
+void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]);
+
+/* Where pixels see one sheet, in some space; (u, v) counts pixels from the first pixel's centre. In a
+ * perspective view, the position is base + P / H and the direction is W; in a parallel view the position is
+ * P; with P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu + v hv. Derived: the ray E + s W
+ * meets the sheet h.X = z at s = (z - h.E) / H; with any t and Wc, base = E + t Wc gives P = (z - h.E) W - t
+ * H Wc, linear as H is. Where Wc is the middle ray and base its point on the sheet, P stays as small as the
+ * visible area, however far away the eye is. */
+typedef struct sheet_rays {
+  int perspective;
+  float base[3], p0[3], pu[3], pv[3];
+  float w0[3], wu[3], wv[3]; /* perspective views only */
+  float h0, hu, hv;
+  float step; /* z - h.E */
+} sheet_rays;
+
+/* normal: unit normal of the sheets; height: the sheet's h.X; from_frame: frame space to the space of the
+ * result. */
+void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays);
+
+/* The sheets of a sweep: mid-plane of sheet k at height first + k * spacing along the unit normal. */
+typedef struct sheet_stack {
+  vec3 normal; /* h; frame space */
+  double first, spacing;
+  int count;
+} sheet_stack;
+
+static inline double hl_sheet_height(const sheet_stack *sheets, int sheet) {
+  return sheets->first + sheet * sheets->spacing;
+}
+
+/* ---- where rays enter and leave a box ----
+ *
+ * A homogeneous box must be as thick as it is: counting sheets would round its depth to whole sheets.
+ * So each ray keeps the heights at which it enters and leaves the box, and the slab between two sheets counts
+ * only as far as it lies between these heights (derived; exact for a homogeneous medium). */
+
+/* Rays of a view in one grid's index space: start + s * direction, s > least, both linear in the pixel, and
+ * heights above the first sheet: start_height + s * climb. */
+typedef struct box_rays {
+  float start[3], start_u[3], start_v[3];
+  float direction[3], direction_u[3], direction_v[3];
+  float start_height, start_height_u, start_height_v;
+  float climb, climb_u, climb_v;
+  float low[3], high[3]; /* the box, index space */
+  float least;           /* the least s: the eye of a perspective view */
+} box_rays;
+
+/* enter, leave: [256], one tile, block after block; heights above the first sheet. A ray that misses the box
+ * has enter > leave. */
+typedef void coverage_tile_function(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave);
+
+/* low, high: the box, index space. */
+void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 frame_to_index,
+                 const double low[3], const double high[3], box_rays *rays);
+
+/* ---- bounds of boxes in a view ---- */
+
+/* Bounds of a box of index space, in a view and along the sheets' normal. */
+typedef struct footprint_bounds {
+  double low[2], high[2];         /* continuous pixels */
+  double low_height, high_height; /* along the normal */
+} footprint_bounds;
+
+/* Maps a grid's index space to a view and to heights along the sheets' normal. */
+typedef struct footprint_map {
+  double view[3][4]; /* (w, w u, w v) */
+  double height[4];
+} footprint_map;
+
+void hl_footprint_map(const view *view, vec3 normal, affine3 index_to_frame, footprint_map *map);
+/* The box is given by its centre and half edges. False where all of it lies behind the view. */
+bool hl_footprint_bounds(const footprint_map *map, const double centre[3], const double half[3],
+                         footprint_bounds *bounds);
+
+#endif
