@@ -1,37 +1,71 @@
-/* volume/format.h - the file formats behind hl_volume_load, one function each.
+/* volume/format.h - what a file format is to hl_volume_load, and what the readers of formats share.
  *
- * Each reads *stream from its current place, may replace or push on it, and leaves closing to the caller. It
- * lists in *request what arrays there are, and reads the one that is wanted.
+ * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. The list of
+ * NAMEs in meson.build is the registry. A reader lists the file's arrays in its request, asks for a choice,
+ * and reads the chosen array. An array or component that is read without having been named is told by a
+ * warning, once the volume is there.
  */
 #ifndef HL_VOLUME_FORMAT_H
 #define HL_VOLUME_FORMAT_H
 
-#include "volume/arrays.h"
+#include "volume/payload.h"
 
-hl_status hl_load_nrrd(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
-hl_status hl_load_metaimage(hl_stream **stream, hl_load_request *request, hl_volume **volume,
+enum { HL_ARRAYS_MOST = 256 }; /* that are listed of one file */
+
+/* What the caller of a loader wants, and what its format found. */
+typedef struct hl_load_request {
+  hl_context *context;
+  const char *array;      /* null: choose */
+  int component;          /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
+  double spacing[3];      /* world units; all 0: as in the file */
+  hl_array_entry *arrays; /* owned; [array_count]; in the file's order */
+  size_t array_count;
+  size_t chosen; /* the array that is read */
+  int chosen_component;
+  bool more;                                  /* the file has arrays beyond HL_ARRAYS_MOST */
+  char array_told[1000], component_told[400]; /* warnings about what was taken by default; "": none */
+} hl_load_request;
+
+/* Adds an array to the list. name: "" if the format has none; type: 0 if its values are not read. */
+hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
+                        bool of_cells, hl_error *error);
+
+/* Sets request->chosen: the array of the wanted name; else `active` (an index, or -1); else the first of one
+ * component of the points, of the cells; else the first of all. There must be one. */
+hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error);
+
+/* Says which component the payload, whose components and block are known, is read for: the wanted one; else
+ * the only one; else the magnitude of vectors of two or three (is_series: of steps of a series the first). */
+hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
+                              hl_error *error);
+
+/* For formats of one array without a name: lists it and chooses the component. */
+hl_status hl_component_only(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                             hl_error *error);
-hl_status hl_load_nifti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
-hl_status hl_load_npy(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
-hl_status hl_load_vti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
-hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_volume **volume,
-                             hl_error *error);
-hl_status hl_load_raw_descriptor(hl_stream **stream, hl_load_request *request, hl_volume **volume,
-                                 hl_error *error);
-hl_status hl_load_raw(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
-/* Whether a file that starts with these bytes (at least as many as there are up to 1024) is of the format. */
-bool hl_is_metaimage(const unsigned char *bytes, size_t length);
-bool hl_is_nifti(const unsigned char *bytes, size_t length);
-bool hl_is_npy(const unsigned char *bytes, size_t length);
-bool hl_is_vti(const unsigned char *bytes, size_t length);
-bool hl_is_raw_descriptor(const unsigned char *bytes, size_t length);
+enum { HL_FORMAT_SNIFFED_BYTES = 1024, HL_FORMAT_ENDINGS = 3 };
 
-/* The size and type, unchecked, that a raw file's name states; false if it states none. */
-bool hl_raw_name(const char *path, hl_payload *payload);
+/* A reader. Every member but load may be null. */
+typedef struct hl_format {
+  const char *name;                       /* in the list of formats of error lines */
+  const char *endings[HL_FORMAT_ENDINGS]; /* of names that promise `beginning`; null after the last */
+  const char *beginning; /* what such files begin with, for the error line of one that does not */
 
-/* Pushes a decompressor if the next bytes are gzip's mark. */
-hl_status hl_stream_inflate_if_gzip(hl_stream **stream, hl_error *error);
+  /* Whether a file that starts with these bytes is of the format. length: HL_FORMAT_SNIFFED_BYTES, less where
+   * the file is shorter. */
+  bool (*has_content)(const unsigned char *bytes, size_t length);
+
+  /* Whether the file is of the format whatever its bytes are. Every format is asked before any has_content.
+   */
+  bool (*fits)(const hl_stream *stream);
+
+  /* Whether the name alone makes the file one of the format: asked where has_content of every format said no.
+   * May replace *stream by the file that holds the header. */
+  hl_status (*claim_name)(hl_stream **stream, bool *claimed, hl_error *error);
+
+  /* Reads *stream from its current position, may replace it or push decoders on it; the caller closes it. */
+  hl_status (*load)(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+} hl_format;
 
 /* What a format calls a voxel type; name may list alternatives, as for hl_text_is_one_of. */
 typedef struct hl_named_type {

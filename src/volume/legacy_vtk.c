@@ -7,6 +7,8 @@
  */
 #include <string.h>
 
+#include "volume/convert.h"
+#include "volume/decoders.h"
 #include "volume/format.h"
 #include "volume/text.h"
 
@@ -337,8 +339,11 @@ static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_h
   return read_header(header, error);
 }
 
-hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_volume **volume,
-                             hl_error *error) {
+static bool has_content(const unsigned char *bytes, size_t length) {
+  return length >= 14 && memcmp(bytes, "# vtk DataFile", 14) == 0;
+}
+
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   vtk_header header;
   hl_status status = find_volume(stream, request, &header, error);
   if (status != HL_OK) return status;
@@ -356,3 +361,11 @@ hl_status hl_load_legacy_vtk(hl_stream **stream, hl_load_request *request, hl_vo
   return status == HL_OK ? hl_payload_read(*stream, &header.payload, request->spacing, volume, error)
                          : status;
 }
+
+const hl_format hl_format_legacy_vtk = {
+    .name = ".vtk",
+    .endings = {".vtk"},
+    .beginning = "\"# vtk DataFile Version\"",
+    .has_content = has_content,
+    .load = load,
+};

@@ -1,29 +1,51 @@
 /* volume/load.c - hl_volume_load: tells the format, by content first and by name where it has no mark. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/context.h"
+#include "volume/decoders.h"
 #include "volume/format.h"
+#include "volume/formats.h"
 #include "volume/text.h"
 
-enum { SNIFFED_BYTES = 1024 };
+#define HL_FORMAT(name) extern const hl_format hl_format_##name;
+HL_FORMATS
+#undef HL_FORMAT
 
-typedef hl_status load_function(hl_stream **stream, hl_load_request *request, hl_volume **volume,
-                                hl_error *error);
+static const hl_format *const formats[] = {
+#define HL_FORMAT(name) &hl_format_##name,
+    HL_FORMATS
+#undef HL_FORMAT
+};
+enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 
 static bool begins(const unsigned char *bytes, size_t length, const char *mark, size_t mark_length) {
   return length >= mark_length && memcmp(bytes, mark, mark_length) == 0;
 }
 
-static load_function *by_content(const unsigned char *bytes, size_t length) {
-  if (begins(bytes, length, "NRRD", 4)) return hl_load_nrrd;
-  if (begins(bytes, length, "# vtk DataFile", 14)) return hl_load_legacy_vtk;
-  if (hl_is_npy(bytes, length)) return hl_load_npy;
-  if (hl_is_nifti(bytes, length)) return hl_load_nifti;
-  if (hl_is_vti(bytes, length)) return hl_load_vti;
-  if (hl_is_metaimage(bytes, length)) return hl_load_metaimage;
-  if (hl_is_raw_descriptor(bytes, length)) return hl_load_raw_descriptor;
+static const hl_format *by_content(const unsigned char *bytes, size_t length) {
+  for (int n = 0; n < FORMAT_COUNT; n++)
+    if (formats[n]->has_content != NULL && formats[n]->has_content(bytes, length)) return formats[n];
   return NULL;
+}
+
+static const hl_format *by_fit(const hl_stream *stream) {
+  for (int n = 0; n < FORMAT_COUNT; n++)
+    if (formats[n]->fits != NULL && formats[n]->fits(stream)) return formats[n];
+  return NULL;
+}
+
+/* *format: null if none claims the file. */
+static hl_status by_name(hl_stream **stream, const hl_format **format, hl_error *error) {
+  bool claimed = false;
+  hl_status status = HL_OK;
+  for (int n = 0; n < FORMAT_COUNT && status == HL_OK && !claimed; n++) {
+    if (formats[n]->claim_name == NULL) continue;
+    status = formats[n]->claim_name(stream, &claimed, error);
+    if (claimed) *format = formats[n];
+  }
+  return status;
 }
 
 /* Takes the mark with which Windows programs begin UTF-8 text, where the rest is a header of text. */
@@ -32,7 +54,7 @@ static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **b
   if (!begins(*bytes, *length, "\xef\xbb\xbf", 3) || by_content(*bytes + 3, *length - 3) == NULL)
     return HL_OK;
   hl_stream_take(stream, 3);
-  return hl_stream_peek(stream, SNIFFED_BYTES, bytes, length, error);
+  return hl_stream_peek(stream, HL_FORMAT_SNIFFED_BYTES, bytes, length, error);
 }
 
 /* Files that people will try, with what to do about them; null if this is none of them. */
@@ -63,26 +85,11 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
   return NULL;
 }
 
-/* A NIfTI pair is loaded through its header, whichever of the two was named. */
-static hl_status switch_to_pair_header(hl_stream **stream, bool *switched, hl_error *error) {
-  const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
-  char header[1024];
-  size_t length = strlen(name);
-  *switched = false;
-  if (hl_text_ends(name, ".img.gz")) length -= 7;
-  else if (hl_text_ends(name, ".img")) length -= 4;
-  else return HL_OK;
-  if (length + 8 > sizeof header) return HL_OK;
-  memcpy(header, name, length);
-  static const char *const endings[] = {".hdr", ".hdr.gz"};
-  for (int n = 0; n < 2; n++) {
-    strcpy(header + length, endings[n]);
-    hl_status status = hl_stream_switch(stream, header, error);
-    *switched = status == HL_OK;
-    if (status == HL_OK) return hl_stream_inflate_if_gzip(stream, error);
-    if (status != HL_ERROR_IO) return status;
-  }
-  return HL_OK;
+static void list_formats(char *text, size_t size) {
+  size_t used = 0;
+  for (int n = 0; n < FORMAT_COUNT && used < size; n++)
+    if (formats[n]->name != NULL)
+      used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", formats[n]->name);
 }
 
 static hl_status fail_unknown(const hl_stream *stream, const unsigned char *bytes, size_t length,
@@ -90,68 +97,35 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
   const char *path = stream->path, *advice = known_but_unsupported(bytes, length);
   if (advice != NULL) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s", path, advice);
   if (length == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: the file is empty", path);
-  static const struct {
-    const char *ending, *mark;
-  } marks[] = {{".nrrd", "\"NRRD000\""},
-               {".nhdr", "\"NRRD000\""},
-               {".mha", "\"ObjectType = Image\" or \"NDims = 3\""},
-               {".mhd", "\"ObjectType = Image\" or \"NDims = 3\""},
-               {".vti", "\"<VTKFile\""},
-               {".vtk", "\"# vtk DataFile Version\""}};
-  for (size_t n = 0; n < sizeof marks / sizeof *marks; n++)
-    if (hl_text_ends(path, marks[n].ending))
-      return hl_fail(error, HL_ERROR_INPUT, "%s: the file does not begin with %s, as %s files do", path,
-                     marks[n].mark, marks[n].ending);
+  for (int n = 0; n < FORMAT_COUNT; n++)
+    for (int ending = 0; ending < HL_FORMAT_ENDINGS && formats[n]->endings[ending] != NULL; ending++)
+      if (hl_text_ends(path, formats[n]->endings[ending]))
+        return hl_fail(error, HL_ERROR_INPUT, "%s: the file does not begin with %s, as %s files do", path,
+                       formats[n]->beginning, formats[n]->endings[ending]);
+  char known[400] = "";
+  list_formats(known, sizeof known);
   return hl_fail(error, HL_ERROR_INPUT,
-                 "%s: not a volume file that is known (NRRD, MetaImage, NIfTI, VTK .vti, .vtk, NumPy .npy); "
-                 "raw voxels need their "
+                 "%s: not a volume file that is known (%s); raw voxels need their "
                  "size and type in the name: name_256x256x128_uint8.raw",
-                 path);
-}
-
-bool hl_find_type(const hl_named_type *types, size_t count, const char *name, hl_voxel_type *type) {
-  for (size_t n = 0; n < count; n++)
-    if (hl_text_is_one_of(name, types[n].name)) {
-      *type = types[n].type;
-      return true;
-    }
-  return false;
-}
-
-hl_status hl_stream_inflate_if_gzip(hl_stream **stream, hl_error *error) {
-  const unsigned char *bytes;
-  size_t length;
-  hl_status status = hl_stream_peek(*stream, 3, &bytes, &length, error);
-  if (status == HL_OK && begins(bytes, length, "\x1f\x8b\x08", 3))
-    status = hl_stream_push_inflate(stream, error);
-  return status;
+                 path, known);
 }
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
-  hl_payload raw;
-  bool named = hl_raw_name((*stream)->path, &raw);
-  /* Raw voxels may begin with any bytes, also with those of another format. */
-  if (named && !hl_text_ends((*stream)->path, ".gz") && hl_stream_at_most(*stream) == hl_payload_bytes(&raw))
-    return hl_load_raw(stream, request, volume, error);
+  const hl_format *format = by_fit(*stream);
+  if (format != NULL) return format->load(stream, request, volume, error);
   hl_status status = hl_stream_inflate_if_gzip(stream, error);
   if (status != HL_OK) return status;
   const unsigned char *bytes;
   size_t length;
-  status = hl_stream_peek(*stream, SNIFFED_BYTES, &bytes, &length, error);
+  status = hl_stream_peek(*stream, HL_FORMAT_SNIFFED_BYTES, &bytes, &length, error);
   if (status == HL_OK) status = take_byte_order_mark(*stream, &bytes, &length, error);
   if (status != HL_OK) return status;
-  load_function *format = by_content(bytes, length);
-  if (format != NULL) return format(stream, request, volume, error);
-  if (named || hl_text_ends((*stream)->path, ".raw") || hl_text_ends((*stream)->path, ".raw.gz"))
-    return hl_load_raw(stream, request, volume, error);
-  if (length > 0 && (hl_text_ends((*stream)->path, ".nii") || hl_text_ends((*stream)->path, ".nii.gz") ||
-                     hl_text_ends((*stream)->path, ".hdr")))
-    return hl_load_nifti(stream, request, volume, error); /* which says what is wrong with it */
-  bool switched;
-  status = switch_to_pair_header(stream, &switched, error);
+  format = by_content(bytes, length);
+  if (format == NULL) status = by_name(stream, &format, error);
   if (status != HL_OK) return status;
-  if (switched) return hl_load_nifti(stream, request, volume, error);
-  return fail_unknown(*stream, bytes, length, error);
+  if (format != NULL) return format->load(stream, request, volume, error);
+  status = hl_stream_peek(*stream, HL_FORMAT_SNIFFED_BYTES, &bytes, &length, error);
+  return status == HL_OK ? fail_unknown(*stream, bytes, length, error) : status;
 }
 
 void hl_volume_load_options_defaults(hl_volume_load_options *options) {

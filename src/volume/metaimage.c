@@ -8,6 +8,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/decoders.h"
 #include "volume/format.h"
 #include "volume/text.h"
 
@@ -29,7 +30,7 @@ typedef struct meta_header {
   char data_file[NAME_BYTES];
 } meta_header;
 
-bool hl_is_metaimage(const unsigned char *bytes, size_t length) {
+static bool has_content(const unsigned char *bytes, size_t length) {
   static const char *const keys[] = {"ObjectType", "NDims",   "Comment",    "ObjectSubType",
                                      "ID",         "DimSize", "BinaryData", "ElementType"};
   for (size_t n = 0; n < sizeof keys / sizeof *keys; n++) {
@@ -216,8 +217,7 @@ static hl_status go_to_voxels(hl_stream **stream, const meta_header *header, con
   return status == HL_OK && header->compressed ? hl_stream_push_inflate(stream, error) : status;
 }
 
-hl_status hl_load_metaimage(hl_stream **stream, hl_load_request *request, hl_volume **volume,
-                            hl_error *error) {
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   meta_header header = {.dimension = 0};
   hl_payload payload;
   hl_payload_defaults(&payload);
@@ -232,3 +232,11 @@ hl_status hl_load_metaimage(hl_stream **stream, hl_load_request *request, hl_vol
   if (status == HL_OK) status = go_to_voxels(stream, &header, &payload, error);
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
+
+const hl_format hl_format_metaimage = {
+    .name = "MetaImage",
+    .endings = {".mha", ".mhd"},
+    .beginning = "\"ObjectType = Image\" or \"NDims = 3\"",
+    .has_content = has_content,
+    .load = load,
+};

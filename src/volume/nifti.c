@@ -9,6 +9,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/decoders.h"
 #include "volume/format.h"
 #include "volume/text.h"
 
@@ -80,7 +81,7 @@ static bool has_magic(const unsigned char *bytes, const nifti_layout *layout) {
          magic[3] == 0;
 }
 
-bool hl_is_nifti(const unsigned char *bytes, size_t length) {
+static bool has_content(const unsigned char *bytes, size_t length) {
   bool big_endian;
   const nifti_layout *layout = length < HEADER_1_BYTES ? NULL : identify(bytes, &big_endian);
   return layout != NULL && length >= layout->header_bytes && has_magic(bytes, layout);
@@ -283,7 +284,7 @@ static hl_status find_components(const nifti_header *header, size_t side_by_side
   return HL_OK;
 }
 
-hl_status hl_load_nifti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   nifti_header header = {.layout = NULL};
   hl_payload payload;
   size_t side_by_side = 1, series = 1, others = 1;
@@ -302,3 +303,43 @@ hl_status hl_load_nifti(hl_stream **stream, hl_load_request *request, hl_volume 
   if (status == HL_OK) status = go_to_voxels(stream, &header, &payload, error);
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
+
+/* Goes from the voxels of a pair, NAME.img, to their header, NAME.hdr; *switched: there is one. */
+static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *error) {
+  const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
+  char header[NAME_BYTES];
+  size_t length = strlen(name);
+  *switched = false;
+  if (hl_text_ends(name, ".img.gz")) length -= 7;
+  else if (hl_text_ends(name, ".img")) length -= 4;
+  else return HL_OK;
+  if (length + 8 > sizeof header) return HL_OK;
+  memcpy(header, name, length);
+  static const char *const endings[] = {".hdr", ".hdr.gz"};
+  for (int n = 0; n < 2; n++) {
+    strcpy(header + length, endings[n]);
+    hl_status status = hl_stream_switch(stream, header, error);
+    *switched = status == HL_OK;
+    if (status == HL_OK) return hl_stream_inflate_if_gzip(stream, error);
+    if (status != HL_ERROR_IO) return status;
+  }
+  return HL_OK;
+}
+
+/* Damaged headers are claimed too, so that load() says what is wrong with them. */
+static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
+  const unsigned char *bytes;
+  size_t length;
+  hl_status status = hl_stream_peek(*stream, 1, &bytes, &length, error);
+  const char *path = (*stream)->path;
+  *claimed = status == HL_OK && length > 0 &&
+             (hl_text_ends(path, ".nii") || hl_text_ends(path, ".nii.gz") || hl_text_ends(path, ".hdr"));
+  return status != HL_OK || *claimed ? status : switch_to_header(stream, claimed, error);
+}
+
+const hl_format hl_format_nifti = {
+    .name = "NIfTI",
+    .has_content = has_content,
+    .claim_name = claim_name,
+    .load = load,
+};

@@ -25,7 +25,7 @@ typedef struct npy_header {
   size_t shape[MOST_AXES];
 } npy_header;
 
-bool hl_is_npy(const unsigned char *bytes, size_t length) {
+static bool has_content(const unsigned char *bytes, size_t length) {
   return length >= MARK_BYTES && memcmp(bytes, mark, sizeof mark - 1) == 0;
 }
 
@@ -229,7 +229,7 @@ static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
   return status;
 }
 
-hl_status hl_load_npy(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   npy_header header = {.numbers = 1};
   hl_payload payload;
   hl_payload_defaults(&payload);
@@ -248,3 +248,9 @@ hl_status hl_load_npy(hl_stream **stream, hl_load_request *request, hl_volume **
   status = hl_payload_read(*stream, &payload, spacing, volume, error);
   return status == HL_OK && header.fortran ? transpose(grid_axes, volume, error) : status;
 }
+
+const hl_format hl_format_npy = {
+    .name = "NumPy .npy",
+    .has_content = has_content,
+    .load = load,
+};

@@ -11,10 +11,9 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "volume/convert.h"
-#include "volume/payload_parts.h"
 #include "volume/text.h"
 
-enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192 };
+enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192, SKIPPED_BYTES = 1 << 16 };
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
@@ -27,7 +26,7 @@ void hl_payload_defaults(hl_payload *payload) {
   payload->promiser = "the header";
 }
 
-size_t hl_payload_voxels(const hl_payload *payload) {
+static size_t voxel_count(const hl_payload *payload) {
   const size_t *dimension = payload->grid.dimensions;
   return dimension[0] * dimension[1] * dimension[2];
 }
@@ -35,9 +34,8 @@ size_t hl_payload_voxels(const hl_payload *payload) {
 /* Of all components; the greatest number there is where there are more. */
 static uint64_t value_count(const hl_payload *payload) {
   uint64_t values;
-  return __builtin_mul_overflow((uint64_t)hl_payload_voxels(payload), payload->components, &values)
-             ? UINT64_MAX
-             : values;
+  return __builtin_mul_overflow((uint64_t)voxel_count(payload), payload->components, &values) ? UINT64_MAX
+                                                                                              : values;
 }
 
 uint64_t hl_payload_bytes(const hl_payload *payload) {
@@ -65,7 +63,7 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
 }
 
 /* Progress, and whether to go on. */
-hl_status hl_payload_report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
+static hl_status report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
   hl_progress(stream->context, "load", (double)done / (double)count);
   return hl_cancelled(stream->context) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path)
                                        : HL_OK;
@@ -99,14 +97,14 @@ static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsig
   hl_voxel_type type = payload->grid.type;
   size_t file_bytes = hl_voxel_type_bytes(type), stored_bytes = hl_storage_bytes(hl_voxel_type_storage(type));
   bool in_place = file_bytes == stored_bytes;
-  size_t count = hl_payload_voxels(payload), piece = in_place ? PIECE_BYTES / file_bytes : STAGE_VOXELS;
+  size_t count = voxel_count(payload), piece = in_place ? PIECE_BYTES / file_bytes : STAGE_VOXELS;
   unsigned char stage[STAGE_VOXELS * 8];
   for (size_t done = 0; done < count;) {
     size_t wanted = count - done < piece ? count - done : piece;
     unsigned char *place = voxels + done * stored_bytes;
     hl_status status = read_piece(stream, payload, done, wanted, in_place ? place : stage, place, error);
     done += wanted;
-    if (status == HL_OK) status = hl_payload_report(stream, done, count, error);
+    if (status == HL_OK) status = report(stream, done, count, error);
     if (status != HL_OK) return status;
   }
   return HL_OK;
@@ -185,17 +183,17 @@ static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, u
 }
 
 static hl_status read_text(hl_stream *stream, const hl_payload *payload, void *voxels, hl_error *error) {
-  size_t count = hl_payload_voxels(payload);
+  size_t count = voxel_count(payload);
   for (size_t done = 0; done < count; done++) {
     hl_status status = read_text_value(stream, payload, done, done, voxels, error);
-    if (status == HL_OK && done % PIECE_BYTES == 0) status = hl_payload_report(stream, done, count, error);
+    if (status == HL_OK && done % PIECE_BYTES == 0) status = report(stream, done, count, error);
     if (status != HL_OK) return status;
   }
   return HL_OK;
 }
 
-hl_status hl_payload_stage(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
-                           void *stage, hl_error *error) {
+static hl_status read_stage(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
+                            void *stage, hl_error *error) {
   unsigned char raw[STAGE_VOXELS * 8];
   if (!payload->text) return read_piece(stream, payload, done, count, raw, stage, error);
   hl_status status = HL_OK;
@@ -204,10 +202,107 @@ hl_status hl_payload_stage(hl_stream *stream, const hl_payload *payload, uint64_
   return status;
 }
 
+/* ---- several components: one of them, or their magnitude ----
+ *
+ * The file holds [outer][component][block] values, block voxels of one component at a time: block is 1 where
+ * the components of a voxel lie side by side, and all voxels where components follow each other as a whole.
+ * The magnitude is summed up in the voxels themselves, so that any order needs no more memory. */
+
+/* Where in the file's order the next value is. */
+typedef struct component_place {
+  size_t first; /* voxel of the block's first value */
+  size_t component;
+  size_t in_block;
+} component_place;
+
+static double value_of(const hl_payload *payload, const void *stage, size_t index) {
+  double stored = 0;
+  switch (hl_voxel_type_storage(payload->grid.type)) {
+    case HL_STORAGE_U8: stored = ((const uint8_t *)stage)[index]; break;
+    case HL_STORAGE_U16: stored = ((const uint16_t *)stage)[index]; break;
+    case HL_STORAGE_F32: stored = (double)((const float *)stage)[index]; break;
+  }
+  return payload->grid.value_scale * (stored - hl_voxel_type_bias(payload->grid.type)) +
+         payload->grid.value_offset;
+}
+
+/* The square root of the sum of squares so far (in double, which holds the squares of all floats). */
+static void add_square(float *magnitude, size_t component, double value) {
+  double before = component > 0 ? (double)*magnitude : 0;
+  *magnitude = (float)(component > 0 ? sqrt(before * before + value * value) : fabs(value));
+}
+
+static void take_value(const hl_payload *payload, const unsigned char *stage, size_t index,
+                       const component_place *place, unsigned char *voxels) {
+  size_t voxel = place->first + place->in_block;
+  if (payload->component == HL_COMPONENT_MAGNITUDE) {
+    add_square((float *)voxels + voxel, place->component, value_of(payload, stage, index));
+  } else if (place->component == (size_t)payload->component) {
+    size_t bytes = hl_storage_bytes(hl_voxel_type_storage(payload->grid.type));
+    memcpy(voxels + voxel * bytes, stage + index * bytes, bytes);
+  }
+}
+
+static void advance(const hl_payload *payload, component_place *place) {
+  if (++place->in_block < payload->block) return;
+  place->in_block = 0;
+  if (++place->component < payload->components) return;
+  place->component = 0;
+  place->first += payload->block;
+}
+
+/* Passes over a large block that is not wanted. */
+static hl_status skip_block(hl_stream *stream, const hl_payload *payload, component_place *place,
+                            bool *skipped, hl_error *error) {
+  uint64_t bytes = (uint64_t)payload->block * hl_voxel_type_bytes(payload->grid.type);
+  *skipped = place->in_block == 0 && !payload->text && bytes >= SKIPPED_BYTES &&
+             payload->component != HL_COMPONENT_MAGNITUDE && place->component != (size_t)payload->component;
+  if (!*skipped) return HL_OK;
+  place->in_block = payload->block - 1;
+  advance(payload, place);
+  return hl_stream_skip(stream, bytes, error);
+}
+
+static hl_status read_components(hl_stream *stream, const hl_payload *payload, void *voxels,
+                                 hl_error *error) {
+  unsigned char stage[STAGE_VOXELS * sizeof(float)];
+  component_place place = {0, 0, 0};
+  size_t count = voxel_count(payload);
+  for (uint64_t done = 0; place.first < count;) {
+    /* Planes after the wanted one need not be read. */
+    if (payload->block == count && payload->component >= 0 && place.component > (size_t)payload->component)
+      break;
+    bool skipped;
+    hl_status status = skip_block(stream, payload, &place, &skipped, error);
+    if (status != HL_OK) return status;
+    if (skipped) {
+      done += payload->block;
+      continue;
+    }
+    uint64_t left = (uint64_t)(count - place.first) * payload->components; /* at least what is left */
+    size_t wanted = left < STAGE_VOXELS ? (size_t)left : STAGE_VOXELS;
+    if (payload->block - place.in_block < wanted && payload->block > 1)
+      wanted = payload->block - place.in_block;
+    if (payload->block == 1 && left - place.component < wanted) wanted = (size_t)(left - place.component);
+    status = read_stage(stream, payload, done, wanted, stage, error);
+    if (status != HL_OK) return status;
+    for (size_t n = 0; n < wanted; n++) {
+      take_value(payload, stage, n, &place, voxels);
+      advance(payload, &place);
+    }
+    done += wanted;
+    status = report(stream, place.first, count, error);
+    if (status != HL_OK) return status;
+  }
+  return HL_OK;
+}
+
+/* ---- the whole ---- */
+
 /* Asking for one byte more also lets a decompressor check its sum. */
 static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_error *error) {
   bool to_the_end = payload->components == 1 || payload->component == HL_COMPONENT_MAGNITUDE ||
-                    payload->block < hl_payload_voxels(payload);
+                    payload->block < voxel_count(payload);
   if (payload->trailing == HL_TRAILING_IGNORED || !to_the_end) return HL_OK;
   const unsigned char *bytes;
   size_t available;
@@ -252,11 +347,11 @@ hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const do
   if (status != HL_OK) return status;
   hl_volume_description grid = grid_of(payload, spacing);
   size_t stored_bytes = hl_storage_bytes(hl_voxel_type_storage(grid.type));
-  void *voxels = hl_allocate(stream->context, hl_payload_voxels(payload), stored_bytes);
-  if (voxels == NULL) return hl_fail_memory(error, hl_payload_voxels(payload) * stored_bytes, stream->path);
-  status = hl_payload_report(stream, 0, hl_payload_voxels(payload), error);
+  void *voxels = hl_allocate(stream->context, voxel_count(payload), stored_bytes);
+  if (voxels == NULL) return hl_fail_memory(error, voxel_count(payload) * stored_bytes, stream->path);
+  status = report(stream, 0, voxel_count(payload), error);
   if (status == HL_OK)
-    status = payload->components > 1 ? hl_components_read(stream, payload, voxels, error)
+    status = payload->components > 1 ? read_components(stream, payload, voxels, error)
              : payload->text         ? read_text(stream, payload, voxels, error)
                                      : read_binary(stream, payload, voxels, error);
   if (status == HL_OK) status = check_end(stream, payload, error);

@@ -12,7 +12,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "volume/convert.h"
-#include "volume/format.h"
+#include "volume/raw.h"
 #include "volume/volume.h"
 
 enum { PIECE = 1 << 16, OUT_BYTES = 1 << 18, GZIP_WINDOW = 15 + 16 /* zlib.h: largest window, gzip */ };

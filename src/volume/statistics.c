@@ -3,13 +3,14 @@
  * u8 and u16 voxels are counted per stored value, everything else follows from the counts exactly. f32
  * voxels take one pass for range, sum and finiteness, and one for the histogram.
  */
+#include "volume/statistics.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/context.h"
 #include "core/memory.h"
-#include "volume/volume.h"
 
 enum { LANES = 8 };
 enum {

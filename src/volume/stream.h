@@ -47,16 +47,6 @@ bool hl_stream_can_restart(const hl_stream *stream);
 hl_status hl_stream_restart(hl_stream **stream, hl_error *error);
 void hl_stream_close(hl_stream *stream); /* the whole chain; null is allowed */
 
-/* A decoder on top of *stream, which it takes over; *stream becomes the decoder, or stays what it was.
- * Either way it is the caller's to close, also on failure. */
-hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error); /* gzip members or zlib */
-hl_status hl_stream_push_base64(hl_stream **stream, hl_error *error);  /* up to another character */
-hl_status hl_stream_push_hex(hl_stream **stream, hl_error *error);
-/* VTK's compressed blocks: a header of integers of header_bytes (4 or 8) each, then zlib blocks. Fails
- * unless they hold promised bytes. */
-hl_status hl_stream_push_vtk_blocks(hl_stream **stream, size_t header_bytes, bool big_endian,
-                                    uint64_t promised, hl_error *error);
-
 /* For kinds of streams: a zeroed block of size bytes that starts with an hl_stream over below (or null). */
 hl_stream *hl_stream_make(hl_context *context, size_t size, hl_stream *below);
 

@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "volume/arrays.h"
 #include "volume/convert.h"
+#include "volume/statistics.h"
 
 const char *hl_space_name(hl_space space) {
   return space == HL_SPACE_RAS ? "RAS" : space == HL_SPACE_LPS ? "LPS" : space == HL_SPACE_LAS ? "LAS" : NULL;
@@ -238,6 +238,11 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
 
 void hl_volume_retain(hl_volume *volume) {
   if (volume != NULL) atomic_fetch_add(&volume->references, 1);
+}
+
+void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count) {
+  for (size_t n = 0; n < count; n++) hl_release(context, arrays[n].name);
+  hl_release(context, arrays);
 }
 
 void hl_volume_release(hl_volume *volume) {

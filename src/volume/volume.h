@@ -50,7 +50,6 @@ static inline size_t hl_storage_bytes(hl_storage storage) {
 static inline size_t hl_volume_voxel_count(const hl_volume *volume) {
   return volume->dimension[0] * volume->dimension[1] * volume->dimension[2];
 }
-size_t hl_voxel_type_bytes(hl_voxel_type type); /* 0 if there is no such type */
 
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
  * hl_allocate that the volume takes over, also on failure. description gives the grid, the type in the
@@ -58,11 +57,11 @@ size_t hl_voxel_type_bytes(hl_voxel_type type); /* 0 if there is no such type */
 hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
                           void *voxels, hl_volume **volume, hl_error *error);
 
+/* Releases a list of arrays. */
+void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count);
+
 /* Fails unless the grid is possible: type, dimensions, their product in bytes, axes, scale and offset. */
 hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,
                                hl_error *error);
-
-/* Fills range, mean, nonfinite_count and histogram from the voxels. */
-hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *error);
 
 #endif

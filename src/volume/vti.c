@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "volume/decoders.h"
 #include "volume/format.h"
 #include "volume/text.h"
 #include "volume/xml.h"
@@ -40,7 +41,7 @@ typedef struct vti_header {
   bool appended_is_base64;
 } vti_header;
 
-bool hl_is_vti(const unsigned char *bytes, size_t length) {
+static bool has_content(const unsigned char *bytes, size_t length) {
   size_t n = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* byte order mark */
   while (n < length && hl_is_space((char)bytes[n])) n++;
   return (length - n >= 5 && memcmp(bytes + n, "<?xml", 5) == 0) ||
@@ -341,7 +342,7 @@ static hl_status read_array(hl_stream **stream, const vti_header *header, hl_vol
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-hl_status hl_load_vti(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   vti_header header = {.stream = *stream,
                        .spacing = {1, 1, 1},
                        .direction = {1, 0, 0, 0, 1, 0, 0, 0, 1},
@@ -354,3 +355,11 @@ hl_status hl_load_vti(hl_stream **stream, hl_load_request *request, hl_volume **
   hl_release(request->context, header.arrays);
   return status;
 }
+
+const hl_format hl_format_vti = {
+    .name = "VTK .vti",
+    .endings = {".vti"},
+    .beginning = "\"<VTKFile\"",
+    .has_content = has_content,
+    .load = load,
+};

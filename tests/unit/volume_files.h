@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "volume/volume.h"
+#include "volume/convert.h"
 
 enum {
   NI = 3,

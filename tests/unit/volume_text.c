@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "volume/stream.h"
+#include "volume/decoders.h"
 #include "volume/text.h"
 #include "volume/xml.h"
 

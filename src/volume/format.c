@@ -1,5 +1,5 @@
-/* volume/arrays.c - the choice of an array and a component, and the lines that tell it. */
-#include "volume/arrays.h"
+/* volume/format.c - what readers of formats share: the choice of an array and a component, names of types. */
+#include "volume/format.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -20,11 +20,6 @@ hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t compo
   if (copy == NULL) return hl_fail_memory(error, strlen(name) + 1, "the name of an array");
   request->arrays[request->array_count++] = (hl_array_entry){copy, components, type, of_cells};
   return HL_OK;
-}
-
-void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count) {
-  for (size_t n = 0; n < count; n++) hl_release(context, arrays[n].name);
-  hl_release(context, arrays);
 }
 
 /* "density; velocity (3 components); ..." */
@@ -125,4 +120,13 @@ hl_status hl_component_only(hl_load_request *request, const char *path, bool is_
                    path);
   request->chosen = 0;
   return status == HL_OK ? hl_component_choose(request, path, is_series, payload, error) : status;
+}
+
+bool hl_find_type(const hl_named_type *types, size_t count, const char *name, hl_voxel_type *type) {
+  for (size_t n = 0; n < count; n++)
+    if (hl_text_is_one_of(name, types[n].name)) {
+      *type = types[n].type;
+      return true;
+    }
+  return false;
 }

@@ -1,14 +1,17 @@
-/* volume/stream_inflate.c - streams that decompress: gzip and zlib data, and VTK's compressed blocks.
+/* volume/decoders.c - streams that decode what the stream below them holds.
  *
- * In: compressed bytes from the stream below. Out: plain bytes, never more than are asked for. All
- * states are bounded: zlib's window, and one small header.
+ * In: coded bytes from the stream below. Out: plain bytes, never more than are asked for. All states are
+ * bounded: zlib's window, one small header, one group of digits.
  */
+#include "volume/decoders.h"
+
 #include <limits.h>
 #include <string.h>
 #include <zlib.h>
 
 #include "core/memory.h"
-#include "volume/stream.h"
+
+/* ---- compressed: gzip, zlib, VTK's blocks ---- */
 
 enum {
   DEFLATE_GREATEST_RATIO = 1032, /* RFC 1951: 258 bytes from one bit of length and one of distance */
@@ -45,10 +48,15 @@ static hl_status start_zlib(z_stream *zlib, hl_stream *stream, bool *started, hl
   return *started ? HL_OK : hl_fail_memory(error, PENDING_BYTES, stream->path);
 }
 
-/* One step of zlib from what the stream below has, at most input_limit bytes of it. *consumed and *made may
- * both be 0 at the end of the input. */
+/* What one call of zlib's inflate() did. At the end of the input consumed and made may both be 0. */
+typedef struct inflate_result {
+  size_t consumed, made; /* bytes */
+  int code;              /* as inflate() returned it */
+} inflate_result;
+
+/* Calls inflate() once, on at most input_limit bytes of the stream below. bytes: [capacity]. */
 static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_limit, unsigned char *bytes,
-                              size_t capacity, size_t *consumed, size_t *made, int *code, hl_error *error) {
+                              size_t capacity, inflate_result *result, hl_error *error) {
   const unsigned char *input;
   size_t available;
   hl_status status = hl_stream_peek(stream->below, 1, &input, &available, error);
@@ -58,12 +66,12 @@ static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_
   zlib->next_out = bytes;
   zlib->avail_out = (unsigned)(capacity < INT_MAX ? capacity : INT_MAX);
   size_t input_before = zlib->avail_in, output_before = zlib->avail_out;
-  *code = inflate(zlib, Z_NO_FLUSH);
-  *consumed = input_before - zlib->avail_in;
-  *made = output_before - zlib->avail_out;
-  hl_stream_take(stream->below, *consumed);
-  if (*code == Z_MEM_ERROR) return hl_fail_memory(error, PENDING_BYTES, stream->path);
-  if (*code == Z_DATA_ERROR || *code == Z_NEED_DICT || *code == Z_STREAM_ERROR)
+  result->code = inflate(zlib, Z_NO_FLUSH);
+  result->consumed = input_before - zlib->avail_in;
+  result->made = output_before - zlib->avail_out;
+  hl_stream_take(stream->below, result->consumed);
+  if (result->code == Z_MEM_ERROR) return hl_fail_memory(error, PENDING_BYTES, stream->path);
+  if (result->code == Z_DATA_ERROR || result->code == Z_NEED_DICT || result->code == Z_STREAM_ERROR)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->below->offset,
                           "%s, byte %llu: the compressed data are damaged (%s)", stream->path,
                           (unsigned long long)stream->below->offset,
@@ -86,14 +94,13 @@ static hl_status inflate_pull(hl_stream *base, unsigned char *bytes, size_t capa
   inflate_stream *stream = (inflate_stream *)base;
   *count = 0;
   while (*count < capacity && !stream->finished) {
-    size_t consumed, made;
-    int code;
-    hl_status status = inflate_step(base, &stream->zlib, UINT_MAX, bytes + *count, capacity - *count,
-                                    &consumed, &made, &code, error);
-    if (status == HL_OK && code == Z_STREAM_END) status = next_member(stream, error);
+    inflate_result step;
+    hl_status status = inflate_step(base, &stream->zlib, UINT_MAX, bytes + *count, capacity - *count, &step,
+                                    error);
+    if (status == HL_OK && step.code == Z_STREAM_END) status = next_member(stream, error);
     if (status != HL_OK) return status;
-    *count += made;
-    if (code != Z_STREAM_END && consumed == 0 && made == 0) {
+    *count += step.made;
+    if (step.code != Z_STREAM_END && step.consumed == 0 && step.made == 0) {
       base->cut_short = true;
       break;
     }
@@ -140,15 +147,14 @@ static hl_status fail_block(const blocks_stream *stream, hl_error *error) {
 
 /* The current block is full: let zlib see its check sum, and pass over what is left of its input. */
 static hl_status end_block(blocks_stream *stream, hl_error *error) {
-  int code = Z_OK;
-  while (code != Z_STREAM_END) {
+  inflate_result step = {.code = Z_OK};
+  while (step.code != Z_STREAM_END) {
     unsigned char surplus;
-    size_t consumed, made;
-    hl_status status = inflate_step(&stream->base, &stream->zlib, stream->compressed_left, &surplus, 1,
-                                    &consumed, &made, &code, error);
+    hl_status status = inflate_step(&stream->base, &stream->zlib, stream->compressed_left, &surplus, 1, &step,
+                                    error);
     if (status != HL_OK) return status;
-    stream->compressed_left -= consumed;
-    if (made > 0 || (consumed == 0 && code != Z_STREAM_END)) return fail_block(stream, error);
+    stream->compressed_left -= step.consumed;
+    if (step.made > 0 || (step.consumed == 0 && step.code != Z_STREAM_END)) return fail_block(stream, error);
   }
   hl_status status = hl_stream_skip(stream->base.below, stream->compressed_left, error);
   stream->block++;
@@ -162,16 +168,16 @@ static hl_status blocks_pull(hl_stream *base, unsigned char *bytes, size_t capac
   *count = 0;
   while (*count < capacity && stream->block < stream->block_count) {
     size_t room = capacity - *count < stream->plain_left ? capacity - *count : (size_t)stream->plain_left;
-    size_t consumed, made;
-    int code;
-    hl_status status = inflate_step(base, &stream->zlib, stream->compressed_left, bytes + *count, room,
-                                    &consumed, &made, &code, error);
+    inflate_result step;
+    hl_status status = inflate_step(base, &stream->zlib, stream->compressed_left, bytes + *count, room, &step,
+                                    error);
     if (status != HL_OK) return status;
-    *count += made;
-    stream->compressed_left -= consumed;
-    stream->plain_left -= made;
+    *count += step.made;
+    stream->compressed_left -= step.consumed;
+    stream->plain_left -= step.made;
     if (stream->plain_left == 0) status = end_block(stream, error);
-    else if (code == Z_STREAM_END || (consumed == 0 && made == 0)) status = fail_block(stream, error);
+    else if (step.code == Z_STREAM_END || (step.consumed == 0 && step.made == 0))
+      status = fail_block(stream, error);
     if (status != HL_OK) return status;
   }
   return HL_OK;
@@ -242,5 +248,130 @@ hl_status hl_stream_push_vtk_blocks(hl_stream **stream, size_t header_bytes, boo
   hl_status status = read_block_header(made, header_bytes, big_endian, promised, error);
   if (status == HL_OK) status = start_zlib(&made->zlib, &made->base, &made->started, error);
   if (status == HL_OK) begin_block(made);
+  return status;
+}
+
+hl_status hl_stream_inflate_if_gzip(hl_stream **stream, hl_error *error) {
+  const unsigned char *bytes;
+  size_t length;
+  hl_status status = hl_stream_peek(*stream, 3, &bytes, &length, error);
+  if (status == HL_OK && length >= 3 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0)
+    status = hl_stream_push_inflate(stream, error);
+  return status;
+}
+
+/* ---- written as text: base64 (RFC 4648) and hexadecimal ----
+ *
+ * White space may stand anywhere. A base64 text may hold several padded parts one after the other (VTK
+ * encodes a header and its data apart); it ends at the first character of another kind, such as '<'. */
+
+enum { NOT_A_DIGIT = 255, SPACE = 254, PADDING = 253 };
+
+typedef struct coded_stream {
+  hl_stream base;
+  unsigned char digit[256]; /* value of each character */
+  unsigned group_digits;    /* digits in a full group: 4 or 2 */
+  unsigned digit_bits;      /* bits in a digit: 6 or 4 */
+  uint32_t bits;            /* of the digits of the group so far */
+  unsigned held, padding;   /* digits and padding characters of the group so far */
+  unsigned char left[3];    /* decoded bytes that did not fit the last pull */
+  unsigned left_count;
+  bool finished;
+} coded_stream;
+
+static hl_status fail_character(const coded_stream *stream, hl_error *error) {
+  const hl_stream *below = stream->base.below;
+  return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)below->offset,
+                        "%s, byte %llu: a group of %s digits breaks off here", stream->base.path,
+                        (unsigned long long)below->offset,
+                        stream->digit_bits == 6 ? "base64" : "hexadecimal");
+}
+
+/* Turns a complete group into bytes; false if its padding is impossible. */
+static bool end_group(coded_stream *stream, unsigned char bytes[3], unsigned *count) {
+  unsigned bits = stream->held * stream->digit_bits;
+  *count = bits / 8;
+  if (*count == 0 || (stream->padding > 0 && stream->held + stream->padding != stream->group_digits))
+    return false;
+  uint32_t aligned = stream->bits << (24 - bits);
+  for (unsigned n = 0; n < *count; n++) bytes[n] = (unsigned char)(aligned >> (16 - 8 * n));
+  stream->bits = 0;
+  stream->held = stream->padding = 0;
+  return true;
+}
+
+static hl_status coded_pull(hl_stream *base, unsigned char *bytes, size_t capacity, size_t *count,
+                            hl_error *error) {
+  coded_stream *stream = (coded_stream *)base;
+  *count = 0;
+  while (stream->left_count > 0 && *count < capacity) {
+    bytes[(*count)++] = stream->left[0];
+    memmove(stream->left, stream->left + 1, --stream->left_count);
+  }
+  while (*count < capacity && !stream->finished) {
+    const unsigned char *text;
+    size_t available, n = 0;
+    hl_status status = hl_stream_peek(base->below, 1, &text, &available, error);
+    if (status != HL_OK) return status;
+    if (available == 0) stream->finished = true;
+    for (; n < available && *count < capacity; n++) {
+      unsigned value = stream->digit[text[n]];
+      if (value == SPACE) continue;
+      if (value == NOT_A_DIGIT || (stream->padding > 0 && value != PADDING)) {
+        stream->finished = true;
+        break;
+      }
+      if (value == PADDING) stream->padding++;
+      else {
+        stream->bits = stream->bits << stream->digit_bits | value;
+        stream->held++;
+      }
+      if (stream->held + stream->padding < stream->group_digits) continue;
+      unsigned char group[3];
+      unsigned made;
+      if (!end_group(stream, group, &made)) return fail_character(stream, error);
+      unsigned kept = made < capacity - *count ? made : (unsigned)(capacity - *count);
+      memcpy(bytes + *count, group, kept);
+      *count += kept;
+      stream->left_count = made - kept;
+      memcpy(stream->left, group + kept, made - kept);
+    }
+    hl_stream_take(base->below, n);
+  }
+  if (stream->finished && stream->held + stream->padding > 0) base->cut_short = true;
+  return HL_OK;
+}
+
+static uint64_t coded_at_most(const hl_stream *base) {
+  const coded_stream *stream = (const coded_stream *)base;
+  uint64_t below = hl_stream_at_most(base->below);
+  if (below == UINT64_MAX) return below;
+  return below / stream->group_digits * (stream->group_digits * stream->digit_bits / 8) + 6;
+}
+
+static hl_status push_coded(hl_stream **stream, const char *digits, unsigned digit_bits, hl_error *error) {
+  coded_stream *made = (coded_stream *)hl_stream_make((*stream)->context, sizeof *made, *stream);
+  if (made == NULL) return hl_fail_memory(error, HL_STREAM_BUFFER_BYTES, (*stream)->path);
+  made->base.pull = coded_pull;
+  made->base.at_most = coded_at_most;
+  made->digit_bits = digit_bits;
+  made->group_digits = digit_bits == 6 ? 4 : 2;
+  memset(made->digit, NOT_A_DIGIT, sizeof made->digit);
+  for (unsigned n = 0; digits[n] != 0; n++)
+    made->digit[(unsigned char)digits[n]] = (unsigned char)(n & ((1u << digit_bits) - 1));
+  for (const char *space = " \t\r\n"; *space != 0; space++) made->digit[(unsigned char)*space] = SPACE;
+  if (digit_bits == 6) made->digit['='] = PADDING;
+  *stream = &made->base;
+  return HL_OK;
+}
+
+hl_status hl_stream_push_base64(hl_stream **stream, hl_error *error) {
+  return push_coded(stream, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/", 6, error);
+}
+
+hl_status hl_stream_push_hex(hl_stream **stream, hl_error *error) {
+  hl_status status = push_coded(stream, "0123456789abcdef", 4, error);
+  coded_stream *made = (coded_stream *)*stream;
+  for (unsigned n = 10; status == HL_OK && n < 16; n++) made->digit['A' + n - 10] = (unsigned char)n;
   return status;
 }

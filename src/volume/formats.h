@@ -1,0 +1,15 @@
+/* volume/formats.h - the registry of formats, in the order in which hl_volume_load asks them.
+ *
+ * Each NAME is a reader: a file NAME.c that defines hl_format_NAME (see format.h). meson.build reads the
+ * names here.
+ */
+/* clang-format off */
+#define HL_FORMATS     \
+  HL_FORMAT(raw)       \
+  HL_FORMAT(nrrd)      \
+  HL_FORMAT(metaimage) \
+  HL_FORMAT(nifti)     \
+  HL_FORMAT(vti)       \
+  HL_FORMAT(legacy_vtk) \
+  HL_FORMAT(npy)       \
+  HL_FORMAT(dat)
