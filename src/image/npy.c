@@ -82,14 +82,14 @@ static hl_status encode_array(const npy_array *array, hl_output *output, hl_erro
   return status;
 }
 
-hl_status hl_npy_encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
+static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error) {
   (void)options; /* depth and background are PNG's */
   const npy_array array = {image->height, image->width, 4, image->pixels};
   return encode_array(&array, output, error);
 }
 
-hl_status hl_npy_encode_layer(const hl_image *image, const hl_image_layer *layer, hl_output *output,
+static hl_status encode_layer(const hl_image *image, const hl_image_layer *layer, hl_output *output,
                               hl_error *error) {
   const npy_array array = {image->height, image->width, strlen(layer->channels), layer->values};
   return encode_array(&array, output, error);
@@ -248,20 +248,20 @@ static void convert_row(const unsigned char *from, size_t value_bytes, uint64_t 
   }
 }
 
-hl_image_claim hl_npy_claim(const unsigned char *bytes, size_t length) {
+static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   npy_cursor cursor = {.name = "", .bytes = bytes};
   npy_header header = {0};
-  hl_image_claim claim = {0};
+  hl_image_claim claimed = {0};
   if (find_header(&cursor, length) != HL_OK || parse_header(&cursor, &header) != HL_OK ||
       check_header(&cursor, &header) != HL_OK)
-    return claim;
-  claim = (hl_image_claim){true, header.shape[1], header.shape[0], 0};
-  if (claim.width <= HL_IMAGE_SIDE_MAX && claim.height <= HL_IMAGE_SIDE_MAX)
-    claim.bytes = claim.width * claim.height * header.shape[2] * (header.type[2] == '8' ? 8 : 4);
-  return claim;
+    return claimed;
+  claimed = (hl_image_claim){true, header.shape[1], header.shape[0], 0};
+  if (claimed.width <= HL_IMAGE_SIDE_MAX && claimed.height <= HL_IMAGE_SIDE_MAX)
+    claimed.bytes = claimed.width * claimed.height * header.shape[2] * (header.type[2] == '8' ? 8 : 4);
+  return claimed;
 }
 
-hl_status hl_npy_decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
+static hl_status decode(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                         hl_image **image, hl_error *error) {
   npy_cursor cursor = {.name = name, .bytes = bytes, .error = error};
   npy_header header = {0};
@@ -289,3 +289,14 @@ hl_status hl_npy_decode(hl_context *context, const char *name, const unsigned ch
   *image = NULL;
   return status;
 }
+
+const hl_image_format hl_npy_format = {
+    .extension = ".npy",
+    .title = "NPY",
+    .mark = {0x93, 'N', 'U', 'M', 'P', 'Y'},
+    .mark_length = 6,
+    .encode = encode,
+    .decode = decode,
+    .claim = claim,
+    .encode_layer = encode_layer,
+};

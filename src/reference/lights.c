@@ -10,6 +10,66 @@
 #include "reference/reference.h"
 #include "scene/light_shape.h"
 
+/* ---- the image that a light projects, eq. (2), and the one on its own surface ----
+ *
+ * The ray from a point of the light meets the screen's parallelogram or passes beside it; images are
+ * bilinear between the middles of their pixels, and held from there to their borders. */
+
+/* Where the ray meets the screen: s along right and t along up, each from -1 to 1 on it. False where it does
+ * not run through the screen's plane. */
+static bool meet_screen(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double *s,
+                        double *t) {
+  vec3 right = vec3_of(texture->screen_right), up = vec3_of(texture->screen_up),
+       normal = vec3_cross(right, up);
+  vec3 start = far ? point : light, way = far ? light : vec3_subtract(point, light);
+  vec3 offset = vec3_subtract(start, vec3_of(texture->screen_center));
+  double distance = -vec3_dot(normal, offset) / vec3_dot(normal, way);
+  if (!isfinite(distance) || (!far && distance <= 0)) return false;
+  vec3 on_screen = vec3_add(offset, vec3_scale(way, distance));
+  *s = vec3_dot(vec3_cross(on_screen, up), normal) / vec3_dot(normal, normal);
+  *t = vec3_dot(vec3_cross(right, on_screen), normal) / vec3_dot(normal, normal);
+  return fabs(*s) <= 1 && fabs(*t) <= 1;
+}
+
+/* The two pixels around a place along one axis, and the way from the first to the second. */
+static double neighbours(double place, int count, size_t pixel[2]) {
+  double at = fmin(fmax(place - 0.5, 0), count - 1);
+  pixel[0] = (size_t)at;
+  pixel[1] = pixel[0] + 1 < (size_t)count ? pixel[0] + 1 : pixel[0];
+  return at - (double)pixel[0];
+}
+
+/* s to the right and t upwards, each from -1 to 1. */
+static void look_up(const float *pixels, int width, int height, double s, double t, double color[3]) {
+  size_t column[2], row[2];
+  double x = neighbours((1 + s) / 2 * width, width, column),
+         y = neighbours((1 - t) / 2 * height, height, row);
+  color[0] = color[1] = color[2] = 0;
+  for (int corner = 0; corner < 4; corner++) {
+    int right = corner & 1, below = corner >> 1;
+    double weight = (right ? x : 1 - x) * (below ? y : 1 - y);
+    const float *pixel = pixels + 3 * (row[below] * (size_t)width + column[right]);
+    for (int c = 0; c < 3; c++) color[c] += weight * (double)pixel[c];
+  }
+}
+
+static void texture_color(const hl_light_texture *texture, bool far, vec3 light, vec3 point,
+                          double color[3]) {
+  double s, t;
+  color[0] = color[1] = color[2] = 0;
+  if (meet_screen(texture, far, light, point, &s, &t))
+    look_up(texture->pixels, texture->width, texture->height, s, t, color);
+}
+
+static void emission_color(const hl_light_emission *emission, const emission_plane *plane, vec3 offset,
+                           double color[3]) {
+  double s, t;
+  hl_emission_place(plane, offset, &s, &t);
+  look_up(emission->pixels, emission->width, emission->height, s, t, color);
+}
+
+/* ---- points on the lights ---- */
+
 /* Optical depth in every channel beyond which nothing is seen of a light: exp(-18) is 2e-8. */
 static const double DARK_DEPTH = 18;
 
@@ -145,7 +205,7 @@ static hl_status find_mean(hl_context *context, reference_light *light, hl_error
   emission_plane plane = hl_emission_plane(light->described, facing);
   for (size_t i = 0; i < MEAN_POINTS; i++) {
     double color[3];
-    hl_reference_emission(light->emission, &plane, offset_of(light, dense.points[i]), color);
+    emission_color(light->emission, &plane, offset_of(light, dense.points[i]), color);
     for (int c = 0; c < 3; c++) light->mean[c] += color[c] / MEAN_POINTS;
   }
   hl_release(context, dense.points);
@@ -203,11 +263,11 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
 }
 
 /* exp(-optical depth) along one ray. */
-static void find_transmittance(const reference *all, vec3 point, vec3 direction, double distance,
-                               crossing *scratch, double passing[3]) {
+static void find_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
+                               double passing[3]) {
   double depth[3] = {0, 0, 0};
   march walk;
-  hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, point, direction, 0, distance, scratch, &walk);
+  hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, ray, scratch, &walk);
   while (hl_reference_march_next(&walk)) {
     for (size_t v = 0; v < walk.count; v++) {
       const crossing *part = &walk.crossings[v];
@@ -222,24 +282,28 @@ static void find_transmittance(const reference *all, vec3 point, vec3 direction,
   for (int c = 0; c < 3; c++) passing[c] = exp(-depth[c]);
 }
 
-/* One point's light: image times transmittance, added to sum. light_point is a direction where directional;
- * plane: of the light's own image, where it counts point by point. */
-static void add_point(const reference *all, const reference_light *light, const emission_plane *plane,
-                      vec3 light_point, vec3 point, bool attenuated, crossing *scratch, double sum[3]) {
-  double distance = INFINITY, pattern[3] = {1, 1, 1}, passing[3] = {1, 1, 1};
-  vec3 direction = light_point;
-  if (plane != NULL) hl_reference_emission(light->emission, plane, offset_of(light, light_point), pattern);
-  else if (light->emission != NULL) memcpy(pattern, light->mean, sizeof pattern);
-  if (light->texture != NULL)
-    hl_reference_texture(light->texture, light->directional, light_point, point, pattern);
-  if (!(pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0)) return;
+/* The colour of the images that a point of the light shows to `point`; false: black. light_point is a
+ * direction where the light is directional. plane: of the light's own image, where it counts point by point;
+ * else null. */
+static bool find_pattern(const reference_light *light, const emission_plane *plane, vec3 light_point,
+                         vec3 point, double pattern[3]) {
+  pattern[0] = pattern[1] = pattern[2] = 1;
+  if (plane != NULL) emission_color(light->emission, plane, offset_of(light, light_point), pattern);
+  else if (light->emission != NULL) memcpy(pattern, light->mean, 3 * sizeof *pattern);
+  if (light->texture != NULL) texture_color(light->texture, light->directional, light_point, point, pattern);
+  return pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0;
+}
+
+/* The transmittance from `point` to a point of the light, as find_pattern() takes it. */
+static void find_passing(const reference *all, const reference_light *light, vec3 light_point, vec3 point,
+                         crossing *scratch, double passing[3]) {
+  vec3 offset = vec3_subtract(light_point, point);
+  reference_ray ray = {.origin = point, .direction = light_point, .farthest = INFINITY};
   if (!light->directional) {
-    vec3 offset = vec3_subtract(light_point, point);
-    distance = vec3_length(offset);
-    direction = vec3_normalise(offset);
+    ray.farthest = vec3_length(offset);
+    ray.direction = vec3_normalise(offset);
   }
-  if (attenuated) find_transmittance(all, point, direction, distance, scratch, passing);
-  for (int c = 0; c < 3; c++) sum[c] += pattern[c] * passing[c];
+  find_transmittance(all, &ray, scratch, passing);
 }
 
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
@@ -258,8 +322,10 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
     vec3 light_point = casts ? light->points[i] : centre;
     if (light->sphere) /* seen from the point: its disk */
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
-    add_point(all, light, extended ? &plane : NULL, light_point, point, casts && attenuated, worker->shadow,
-              sum);
+    double pattern[3], passing[3] = {1, 1, 1};
+    if (!find_pattern(light, extended ? &plane : NULL, light_point, point, pattern)) continue;
+    if (casts && attenuated) find_passing(all, light, light_point, point, worker->shadow, passing);
+    for (int c = 0; c < 3; c++) sum[c] += pattern[c] * passing[c];
   }
   for (int c = 0; c < 3; c++) reach[c] = sum[c] / (double)count;
 }

@@ -24,17 +24,17 @@ static void clip_to_box(crossing *part, double nearest, double farthest) {
   }
 }
 
-void hl_reference_march_begin(const reference *all, reference_role role, vec3 origin, vec3 direction,
-                              double nearest, double farthest, crossing *crossings, march *walk) {
-  *walk = (march){.crossings = crossings, .longest_step = all->step, .end = nearest};
+void hl_reference_march_begin(const reference *all, reference_role role, const reference_ray *ray,
+                              crossing *crossings, march *walk) {
+  *walk = (march){.crossings = crossings, .longest_step = all->step, .end = ray->nearest};
   for (size_t v = 0; v < all->scene->volume_count; v++) {
     const reference_volume *volume = &all->volumes[v];
     if (!(role == REFERENCE_SEEN ? volume->described->visible : volume->described->casts_shadow)) continue;
     crossing *part = &crossings[walk->count];
     *part = (crossing){.volume = volume,
-                       .origin = affine3_apply(volume->world_to_index, origin),
-                       .direction = mat3_apply(volume->world_to_index.linear, direction)};
-    clip_to_box(part, nearest, farthest);
+                       .origin = affine3_apply(volume->world_to_index, ray->origin),
+                       .direction = mat3_apply(volume->world_to_index.linear, ray->direction)};
+    clip_to_box(part, ray->nearest, ray->farthest);
     if (part->enter < part->leave) walk->count++;
   }
 }

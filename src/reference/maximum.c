@@ -82,9 +82,10 @@ static double greatest_along(const crossing *part, double step) {
 void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
                           float rgba[4]) {
   march walk;
-  double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0;
+  bool orthographic = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
+  const reference_ray ray = {origin, direction, orthographic ? -INFINITY : 0, INFINITY};
   for (int c = 0; c < 4; c++) rgba[c] = 0;
-  hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, nearest, INFINITY, worker->eye, &walk);
+  hl_reference_march_begin(all, REFERENCE_SEEN, &ray, worker->eye, &walk);
   for (size_t v = 0; v < walk.count && !hl_pool_stops(all->pool, worker->number); v++) {
     const crossing *part = &walk.crossings[v];
     double greatest = greatest_along(part, all->step), color[3];

@@ -88,7 +88,8 @@ static void sample(const reference *all, const march *walk, vec3 point, vec3 to_
     if (made->weight == 0)
       for (size_t l = 0; l < all->scene->light_count; l++)
         hl_reference_light_arrive(&all->lights[l], point, &worker->arrivals[l]);
-    hl_reference_shade(all, part->volume, point, part->here, value, extinction, to_eye, worker);
+    hl_reference_shade(all, &(reference_sample){part->volume, point, part->here, value, extinction, to_eye},
+                       worker);
   }
   made->depth = made->weight * walk->at;
 }
@@ -119,9 +120,11 @@ static double first_within(double before, double extinction, double start) {
 static double trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker) {
   march walk;
   reference_parts *ray = &worker->ray;
-  double nearest = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC ? -INFINITY : 0, first = INFINITY;
+  bool orthographic = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
+  const reference_ray way = {origin, direction, orthographic ? -INFINITY : 0, INFINITY};
+  double first = INFINITY;
   hl_reference_parts_clear(ray, all->scene->light_count);
-  hl_reference_march_begin(all, REFERENCE_SEEN, origin, direction, nearest, INFINITY, worker->eye, &walk);
+  hl_reference_march_begin(all, REFERENCE_SEEN, &way, worker->eye, &walk);
   while (ray->weight < OPAQUE && !hl_pool_stops(all->pool, worker->number) &&
          hl_reference_march_next(&walk)) {
     double at = walk.at - walk.length / 2, end = at + walk.length, extinction = total_extinction(&walk);

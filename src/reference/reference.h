@@ -5,12 +5,9 @@
  *
  *     reference.c   camera, rows of pixels, the entry point
  *     march.c       a ray through the boxes of the volumes, step by step, jumping over empty bricks
- *     field.c       reconstruction of one volume at a point: value, gradient, extinction
- *     bricks.c      where a volume has nothing
- *     rays.c        how many rays a pixel of a small picture has
- *     texture.c     the image that a light projects, the one on a light
- *     lights.c      points on the lights, and the transmittance towards them
- *     shade.c       the light that one sample sends to the eye
+ *     field.c       reconstruction of one volume at a point: value, gradient, extinction; where it has
+ * nothing rays.c        how many rays a pixel of a small picture has lights.c      points on the lights,
+ * their images, and the transmittance towards them shade.c       the light that one sample sends to the eye
  *     layers.c      that light by its sources, depth and normals
  *     maximum.c     the greatest value along a ray, in place of light
  */
@@ -73,6 +70,11 @@ typedef struct reference {
   bool all_shadows;          /* the transmittance of every light is wanted at every sample */
 } reference;
 
+typedef struct reference_ray {
+  vec3 origin, direction;   /* world; the direction has unit length */
+  double nearest, farthest; /* distances along it, which may be infinite */
+} reference_ray;
+
 /* A ray inside one volume's box. */
 typedef struct crossing {
   const reference_volume *volume;
@@ -117,6 +119,14 @@ typedef struct reference_parts {
   light_part *lights; /* [light_count] */
 } reference_parts;
 
+/* A point of one volume that is shaded. */
+typedef struct reference_sample {
+  const reference_volume *volume;
+  vec3 point, index_point; /* the same point in the world and in index space */
+  double value, weight;
+  vec3 to_eye; /* unit vector */
+} reference_sample;
+
 /* What one thread needs; all arrays are owned by hl_reference_render. */
 typedef struct reference_worker {
   int number;             /* of the pool */
@@ -127,8 +137,6 @@ typedef struct reference_worker {
 
 hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
                                      reference_volume *made, hl_error *error);
-hl_status hl_reference_bricks_create(hl_context *context, reference_volume *volume, hl_pool *pool,
-                                     hl_error *error);
 /* The most rays along a side of a pixel; and how many there are where voxels, `edge` long in world units, are
  * smaller than pixels. */
 enum { HL_REFERENCE_RAYS = 8 };
@@ -147,9 +155,8 @@ double hl_reference_extinction(const reference_volume *volume, double value);
 /* Which volumes a march is about. */
 typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference_role;
 
-/* From `origin` along the unit vector `direction` (world), between two distances, which may be infinite. */
-void hl_reference_march_begin(const reference *all, reference_role role, vec3 origin, vec3 direction,
-                              double nearest, double farthest, crossing *crossings, march *walk);
+void hl_reference_march_begin(const reference *all, reference_role role, const reference_ray *ray,
+                              crossing *crossings, march *walk);
 /* Puts the crossings at a distance within the present stretch; how far from there all of them are empty,
  * 0 where one is not. */
 double hl_reference_march_place(march *walk, double at);
@@ -165,17 +172,8 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
                               reference_worker *worker, double reach[3]);
 
-/* The colour of a texture on the ray from a point of the light (or, far: from a direction) to `point`. */
-void hl_reference_texture(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double color[3]);
-
-/* The colour of a light's own image at an offset of its plane. */
-void hl_reference_emission(const hl_light_emission *emission, const emission_plane *plane, vec3 offset,
-                           double color[3]);
-
-/* Adds what a sample of one volume sends along `to_eye`, times its weight, to the worker's sample.
- * `index_point` is the same point as `point`. */
-void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
-                        double value, double weight, vec3 to_eye, reference_worker *worker);
+/* Adds what the sample sends along to_eye, times its weight, to the worker's sample. */
+void hl_reference_shade(const reference *all, const reference_sample *at, reference_worker *worker);
 
 /* The pixel of a maximum projection: premultiplied RGBA, alpha 1 where a volume shows something. */
 void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,

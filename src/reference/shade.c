@@ -56,25 +56,31 @@ static void find_shadow(const reference *all, const reference_volume *volume, si
   hl_reference_light_reach(all, &plain, point, attenuated, worker, shadow);
 }
 
-/* The light of one source that the sample sends on, for a volume of colour `own`. */
-static void shade_light(const reference *all, const reference_volume *volume, size_t light, vec3 point,
-                        const double own[3], vec3 normal, double surface, vec3 to_eye,
+/* What a sample is to every light. */
+typedef struct surface {
+  double own[3]; /* the volume's colour */
+  vec3 normal;   /* unit length, outward; 0 in a medium */
+  double amount; /* 0: medium, 1: surface */
+} surface;
+
+/* The light of one source that the sample sends on. */
+static void shade_light(const reference *all, const reference_sample *at, const surface *here, size_t light,
                         reference_worker *worker, light_part *part) {
-  const hl_material *material = &volume->described->material;
+  const hl_material *material = &at->volume->described->material;
   const arrival *arrived = &worker->arrivals[light];
-  double cosine = vec3_dot(normal, arrived->towards), gloss = 0;
+  double cosine = vec3_dot(here->normal, arrived->towards), gloss = 0;
   *part = (light_part){{0, 0, 0}, {0, 0, 0}};
-  if (all->all_shadows) find_shadow(all, volume, light, point, worker, part->shadow);
+  if (all->all_shadows) find_shadow(all, at->volume, light, at->point, worker, part->shadow);
   if (cosine > 0) {
     /* R = 2 (N.L) N - L */
-    vec3 reflected = vec3_subtract(vec3_scale(normal, 2 * cosine), arrived->towards);
-    gloss = material->specular * pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
+    vec3 reflected = vec3_subtract(vec3_scale(here->normal, 2 * cosine), arrived->towards);
+    gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   }
-  double matt = surface * material->diffuse * fmax(cosine, 0) + (1 - surface);
+  double matt = here->amount * material->diffuse * fmax(cosine, 0) + (1 - here->amount);
   if (matt <= 0 && gloss <= 0) return;
-  const double *reach = light_reach(all, volume, light, point, worker);
+  const double *reach = light_reach(all, at->volume, light, at->point, worker);
   for (int c = 0; c < 3; c++)
-    part->picture[c] = (own[c] * matt + surface * gloss) * arrived->incoming[c] * reach[c];
+    part->picture[c] = (here->own[c] * matt + here->amount * gloss) * arrived->incoming[c] * reach[c];
 }
 
 /* Flat colours receive no shadow: their layers show full light. */
@@ -83,24 +89,25 @@ static void add_no_light(const reference *all, double weight, reference_parts *s
     for (int c = 0; c < 3; c++) sample->lights[l].shadow[c] += weight;
 }
 
-void hl_reference_shade(const reference *all, const reference_volume *volume, vec3 point, vec3 index_point,
-                        double value, double weight, vec3 to_eye, reference_worker *worker) {
+void hl_reference_shade(const reference *all, const reference_sample *at, reference_worker *worker) {
   reference_parts *sample = &worker->sample;
-  double own[3], surface;
-  hl_transfer_function_color(&volume->described->transfer_function, value, own);
-  vec3 normal = find_normal(volume, index_point, value, &surface);
+  const hl_scene_volume *described = at->volume->described;
+  double weight = at->weight;
+  surface here;
+  hl_transfer_function_color(&described->transfer_function, at->value, here.own);
+  here.normal = find_normal(at->volume, at->index_point, at->value, &here.amount);
   sample->weight += weight;
-  sample->normal = vec3_add(sample->normal, vec3_scale(normal, weight * surface));
-  const hl_material *material = &volume->described->material;
-  bool flat = volume->described->shading == HL_SHADING_FLAT;
+  sample->normal = vec3_add(sample->normal, vec3_scale(here.normal, weight * here.amount));
+  const hl_material *material = &described->material;
+  bool flat = described->shading == HL_SHADING_FLAT;
   for (int c = 0; c < 3; c++) {
-    sample->emission[c] += weight * own[c] * (flat ? 1 : material->emission);
-    if (!flat) sample->ambient[c] += weight * own[c] * material->ambient * all->scene->ambient[c];
+    sample->emission[c] += weight * here.own[c] * (flat ? 1 : material->emission);
+    if (!flat) sample->ambient[c] += weight * here.own[c] * material->ambient * all->scene->ambient[c];
   }
   if (flat) add_no_light(all, weight, sample);
   for (size_t l = 0; l < all->scene->light_count && !flat; l++) {
     light_part part;
-    shade_light(all, volume, l, point, own, normal, surface, to_eye, worker, &part);
+    shade_light(all, at, &here, l, worker, &part);
     for (int c = 0; c < 3; c++) {
       sample->lights[l].picture[c] += weight * part.picture[c];
       sample->lights[l].shadow[c] += weight * part.shadow[c];

@@ -7,7 +7,7 @@
 
 #include <halflight/render.h>
 
-#include "core/reserve.h"
+#include "core/memory.h"
 #include "render/frame.h"
 #include "render/hot.h"
 #include "render/layers.h"

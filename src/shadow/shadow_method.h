@@ -17,7 +17,7 @@
 #ifndef HL_SHADOW_SHADOW_METHOD_H
 #define HL_SHADOW_SHADOW_METHOD_H
 
-#include "core/reserve.h"
+#include "core/memory.h"
 #include "light/light_extent.h"
 #include "light/light_image.h"
 #include "shadow/blur.h"

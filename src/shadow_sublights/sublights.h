@@ -9,8 +9,8 @@
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
+#include "core/memory.h"
 #include "core/pool.h"
-#include "core/reserve.h"
 #include "light/light_extent.h"
 #include "light/light_image.h"
 #include "shadow/shadow_lookup.h"

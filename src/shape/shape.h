@@ -112,13 +112,13 @@ double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, 
 /* What that distance can be within radius of p, and which shapes can have a say there. */
 hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, unsigned char *live);
 
-/* texture.c: the distance of a surface at the given distance once its texture has eaten it. p: own frame. */
+/* The distance of a surface at the given distance once its texture has eaten it. p: own frame. */
 double hl_hypertexture_distance(const hl_shape *shape, double distance, vec3 p, vec3 foot);
 hl_interval hl_hypertexture_bounds(const hl_shape *shape, hl_interval distance);
 /* False where the distance is so large or so small that the texture cannot matter. */
 bool hl_hypertexture_matters(const hl_shape *shape, double distance);
 
-/* orbital.c: the real hydrogen-like wave function, not normalised. p: own frame. */
+/* The real hydrogen-like wave function, not normalised. p: own frame. */
 double hl_orbital_at(const hl_shape *shape, vec3 p);
 
 /* The volume of a list that has been placed for the grid. Orbitals are scaled to a greatest magnitude of 1.

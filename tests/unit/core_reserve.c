@@ -9,7 +9,7 @@
 
 #include <halflight/context.h>
 
-#include "core/reserve.h"
+#include "core/memory.h"
 
 enum { LARGE = 1 << 20, SMALL = 100 };
 

@@ -283,7 +283,7 @@ static void exr_halves_and_offsets_are_read(void **state) {
   put_exr_lines(&b, 3, 2, 7, 5, 3, half_value);
   hl_image *image = NULL;
   hl_error error = {0};
-  if (hl_exr_decode(context, "half.exr", b.data, b.length, &image, &error) != HL_OK)
+  if (hl_exr_format.decode(context, "half.exr", b.data, b.length, &image, &error) != HL_OK)
     fail_msg("%s", error.message);
   assert_int_equal(image->width, 5);
   assert_int_equal(image->height, 3);
@@ -309,7 +309,7 @@ static void exr_grey_and_integers_are_read(void **state) {
   put_exr_lines(&b, 3, 4, 0, 4, 2, count_value);
   hl_image *image = NULL;
   hl_error error = {0};
-  if (hl_exr_decode(context, "grey.exr", b.data, b.length, &image, &error) != HL_OK)
+  if (hl_exr_format.decode(context, "grey.exr", b.data, b.length, &image, &error) != HL_OK)
     fail_msg("%s", error.message);
   for (int y = 0; y < 2; y++)
     for (int x = 0; x < 4; x++) {
@@ -343,7 +343,7 @@ static void exr_of_other_kinds_is_refused(void **state) {
     if (cases[i].width == 4) put_exr_lines(&b, (int)strlen(cases[i].channels), 4, 0, 4, 2, count_value);
     hl_image *image = NULL;
     hl_error error = {0};
-    hl_status status = hl_exr_decode(context, "x.exr", b.data, b.length, &image, &error);
+    hl_status status = hl_exr_format.decode(context, "x.exr", b.data, b.length, &image, &error);
     if (status != cases[i].status || strstr(error.message, cases[i].word) == NULL)
       fail_msg("case %zu: status %d: %s", i, status, error.message);
   }
@@ -362,7 +362,7 @@ static hl_status decode_npy(hl_context *context, int version, const char *header
   put(&b, header, strlen(header));
   put(&b, data, length);
   *image = NULL;
-  return hl_npy_decode(context, "x.npy", b.data, b.length, image, error);
+  return hl_npy_format.decode(context, "x.npy", b.data, b.length, image, error);
 }
 
 static void npy_of_other_shapes_is_read(void **state) {

@@ -121,7 +121,7 @@ static void full_device_is_reported(void **state) {
   hl_image_write_options options;
   hl_image_write_options_defaults(&options);
   hl_status (*encode[])(const hl_image *, const hl_image_write_options *, hl_output *, hl_error *) = {
-      hl_png_encode, hl_exr_encode, hl_npy_encode};
+      hl_png_format.encode, hl_exr_format.encode, hl_npy_format.encode};
   for (int e = 0; e < 3; e++) {
     char name[] = "full.xyz";
     hl_output output = {.context = context, .path = name, .file = fopen("/dev/full", "wb")};

@@ -20,9 +20,9 @@ static hl_context *make_limited_context(void) {
 
 /* What a header announces is told of any bytes, and is right for a picture that can be read. */
 static void check_claim(decoder function, const unsigned char *exact, size_t length, const hl_image *image) {
-  hl_image_claim claim = function == hl_png_decode   ? hl_png_claim(exact, length)
-                         : function == hl_exr_decode ? hl_exr_claim(exact, length)
-                                                     : hl_npy_claim(exact, length);
+  hl_image_claim claim = function == hl_png_format.decode   ? hl_png_format.claim(exact, length)
+                         : function == hl_exr_format.decode ? hl_exr_format.claim(exact, length)
+                                                            : hl_npy_format.claim(exact, length);
   if (image == NULL) return;
   assert_true(claim.known);
   assert_int_equal(claim.width, image->width);
@@ -91,21 +91,21 @@ static void damaged_png(void **state) {
   hl_image_write_options options;
   hl_image_write_options_defaults(&options);
   options.scene_json = "{}";
-  damage("png", hl_png_decode, 9, 7, &options);
+  damage("png", hl_png_format.decode, 9, 7, &options);
   options.png_depth = 16;
   options.background_transparent = 1;
-  damage("png", hl_png_decode, 2, 2, &options);
+  damage("png", hl_png_format.decode, 2, 2, &options);
 }
 
 static void damaged_exr(void **state) {
   (void)state;
-  damage("exr", hl_exr_decode, 9, 7, NULL);
-  damage("exr", hl_exr_decode, 3, 40, NULL);
+  damage("exr", hl_exr_format.decode, 9, 7, NULL);
+  damage("exr", hl_exr_format.decode, 3, 40, NULL);
 }
 
 static void damaged_npy(void **state) {
   (void)state;
-  damage("npy", hl_npy_decode, 5, 4, NULL);
+  damage("npy", hl_npy_format.decode, 5, 4, NULL);
 }
 
 /* PNG's checksums hide what lies behind them from plain damage: mend them after each change. */
@@ -151,7 +151,7 @@ static void damaged_png_with_right_checksums(void **state) {
       memcpy(changed, bytes, length);
       changed[at] = (unsigned char)value;
       mend_checksums(changed, length);
-      (void)decode(context, hl_png_decode, changed, length);
+      (void)decode(context, hl_png_format.decode, changed, length);
     }
   free(changed);
   hl_release(context, bytes);
@@ -169,7 +169,8 @@ static void claims_are_held_against_the_bytes(void **state) {
   mend_checksums(png, sizeof png);
   hl_image *image = NULL;
   hl_error error = {0};
-  assert_int_equal(hl_png_decode(context, "bomb.png", png, sizeof png, &image, &error), HL_ERROR_INPUT);
+  assert_int_equal(hl_png_format.decode(context, "bomb.png", png, sizeof png, &image, &error),
+                   HL_ERROR_INPUT);
   assert_non_null(strstr(error.message, "can hold"));
   assert_true(hl_context_memory_peak(context) < 1 << 20);
   end_context(context);

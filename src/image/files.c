@@ -1,0 +1,178 @@
+/* files.c - which format a picture has, and the ways in and out for all of them.
+ *
+ * Writing goes by the name's extension. Reading goes by the file's first bytes, so that a wrongly
+ * named picture is still read; the extension only serves to explain a failure.
+ */
+#include "image/format.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+
+/* The registry of formats. */
+static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format, &hl_npy_format};
+
+enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
+
+/* What a file may have beyond its pixels: texts, profiles, thumbnails; and what its header may. */
+static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
+
+static const hl_image_format *format_by_name(const char *path) {
+  const char *dot = strrchr(path, '.');
+  for (size_t i = 0; dot != NULL && i < FORMAT_COUNT; i++)
+    if (strcasecmp(dot, formats[i]->extension) == 0) return formats[i];
+  return NULL;
+}
+
+static const hl_image_format *format_by_content(const unsigned char *bytes, size_t length) {
+  for (size_t i = 0; i < FORMAT_COUNT; i++)
+    if (length >= formats[i]->mark_length && memcmp(bytes, formats[i]->mark, formats[i]->mark_length) == 0)
+      return formats[i];
+  return NULL;
+}
+
+/* "folder/picture-layer.npy" for "folder/picture.npy"; owned by the caller; null without memory. */
+static char *layer_path(hl_context *context, const char *path, const char *layer) {
+  const char *dot = strrchr(path, '.');
+  size_t stem = (size_t)(dot - path), length = strlen(path) + strlen(layer) + 2;
+  char *made = hl_allocate(context, length, 1);
+  if (made != NULL) snprintf(made, length, "%.*s-%s%s", (int)stem, path, layer, dot);
+  return made;
+}
+
+static hl_status write_layer_file(const hl_image_format *format, hl_context *context, const hl_image *image,
+                                  const hl_image_layer *layer, const char *path, hl_error *error) {
+  char *name = layer_path(context, path, layer->name);
+  if (name == NULL) return hl_fail_memory(error, strlen(path), path);
+  hl_output output;
+  hl_status status = hl_output_begin(context, name, &output, error);
+  if (status == HL_OK) {
+    status = format->encode_layer(image, layer, &output, error);
+    if (status == HL_OK) status = hl_output_commit(&output, error);
+    hl_output_abort(&output);
+  }
+  hl_release(context, name);
+  return status;
+}
+
+/* Layers that do not go into the picture's own file. */
+static hl_status write_layers(const hl_image_format *format, hl_context *context, const hl_image *image,
+                              const char *path, hl_error *error) {
+  if (image->layer_count == 0 || format->holds_layers) return HL_OK;
+  if (format->encode_layer == NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s cannot hold layers: write .exr or .npy", path,
+                   format->title);
+  hl_status status = HL_OK;
+  for (size_t i = 0; i < image->layer_count && status == HL_OK; i++)
+    status = write_layer_file(format, context, image, &image->layers[i], path, error);
+  return status;
+}
+
+hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
+                         const hl_image_write_options *options, hl_error *error) {
+  if (context == NULL || image == NULL || path == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: context, image and path must not be null");
+  hl_image_write_options chosen;
+  hl_image_write_options_defaults(&chosen);
+  if (options == NULL) options = &chosen;
+  hl_status status = hl_image_check_options(options, "hl_image_write", error);
+  if (status != HL_OK) return status;
+  const hl_image_format *format = format_by_name(path);
+  if (format == NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: unknown picture format: end the name in .png, .exr or .npy", path);
+  status = write_layers(format, context, image, path, error);
+  if (status != HL_OK) return status;
+  hl_output output;
+  status = hl_output_begin(context, path, &output, error);
+  if (status != HL_OK) return status;
+  status = format->encode(image, options, &output, error);
+  if (status == HL_OK) status = hl_output_commit(&output, error);
+  hl_output_abort(&output);
+  if (status == HL_OK) hl_progress(context, "write", 1);
+  return status;
+}
+
+hl_status hl_image_encode(hl_context *context, const hl_image *image, const char *format_name,
+                          const hl_image_write_options *options, unsigned char **bytes, size_t *length,
+                          hl_error *error) {
+  if (context == NULL || image == NULL || format_name == NULL || bytes == NULL || length == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_image_encode: context, image, format, bytes and length must not be null");
+  *bytes = NULL;
+  *length = 0;
+  hl_image_write_options chosen;
+  hl_image_write_options_defaults(&chosen);
+  if (options == NULL) options = &chosen;
+  hl_status status = hl_image_check_options(options, "hl_image_encode", error);
+  if (status != HL_OK) return status;
+  char extension[8];
+  snprintf(extension, sizeof extension, ".%.6s", format_name);
+  const hl_image_format *format = format_by_name(extension);
+  if (format == NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "hl_image_encode: unknown picture format \"%.20s\": give png, exr or npy", format_name);
+  if (image->layer_count > 0 && !format->holds_layers)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "hl_image_encode: %s cannot hold layers in one stream: give exr", format->title);
+  hl_output_memory memory;
+  status = hl_output_memory_begin(context, "a picture in memory", &memory, error);
+  if (status != HL_OK) return status;
+  status = format->encode(image, options, &memory.output, error);
+  if (memory.full) status = hl_fail_memory(error, memory.capacity, "a picture in memory");
+  if (status == HL_OK) status = hl_output_memory_commit(&memory, bytes, length, error);
+  else hl_output_memory_abort(&memory);
+  if (status == HL_OK) hl_progress(context, "write", 1);
+  return status;
+}
+
+void hl_bytes_release(hl_context *context, unsigned char *bytes) { hl_release(context, bytes); }
+
+static hl_status fail_unknown(const char *path, hl_error *error) {
+  const hl_image_format *named = format_by_name(path);
+  if (named != NULL)
+    return hl_fail_offset(error, HL_ERROR_INPUT, 0,
+                          "%s: byte 0: not a %s file: its first bytes are not the mark of one", path,
+                          named->title);
+  return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 0,
+                        "%s: byte 0: unknown picture format: expected a PNG, OpenEXR or NPY file", path);
+}
+
+/* How long the file may be that begins like this. What is compressed may grow by less than half. */
+static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
+                       hl_error *error) {
+  const hl_image_format *format = format_by_content(bytes, length);
+  if (format == NULL) return fail_unknown(path, error);
+  hl_image_claim claim = format->claim(bytes, length);
+  if (!claim.known && length > header_bytes_max)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: no header of a picture within its first %zu bytes: damaged %s file", path,
+                   header_bytes_max, format->title);
+  if (!claim.known) return HL_OK;
+  hl_status status = hl_image_check_size(path, claim.width, claim.height, error);
+  if (status == HL_OK) *limit = (size_t)claim.bytes + (size_t)claim.bytes / 2 + extra_bytes_max;
+  if (status == HL_OK && length > *limit)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: more than %zu bytes, too many for a picture of %" PRIu64 " x %" PRIu64 " pixels",
+                   path, *limit, claim.width, claim.height);
+  return status;
+}
+
+hl_status hl_image_read(hl_context *context, const char *path, hl_image **image, hl_error *error) {
+  if (image != NULL) *image = NULL;
+  if (context == NULL || path == NULL || image == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_read: context, path and image must not be null");
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  hl_status status = hl_file_read_judged(context, path, judge, &bytes, &length, error);
+  if (status != HL_OK) return status;
+  const hl_image_format *format = format_by_content(bytes, length);
+  status = format != NULL ? format->decode(context, path, bytes, length, image, error)
+                          : fail_unknown(path, error);
+  hl_release(context, bytes);
+  return status;
+}
