@@ -73,8 +73,4 @@ hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setti
 /* A scene without files: balls in a box. */
 hl_status bench_scene_built_in(hl_context *context, hl_scene **scene, hl_error *error);
 
-/* Medians over the frames, as JSON or as a table on stdout. */
-void bench_print_json(const bench_result *results, size_t count);
-void bench_print_text(const bench_result *result);
-
 #endif

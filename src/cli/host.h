@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "message.h"
-#include "read_files.h"
+#include "output.h"
 
 typedef struct cli_host {
   hl_context *context;

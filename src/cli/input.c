@@ -19,11 +19,6 @@
 
 const cli_choice input_magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
 
-const char *input_base_name(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash != NULL ? slash + 1 : path;
-}
-
 /* ---- reading whole ---- */
 
 static input_kind kind_by_content(const unsigned char *bytes, size_t length) {

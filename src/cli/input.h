@@ -39,9 +39,6 @@ typedef struct cli_input {
   }
 extern const cli_choice input_magnitudes[];
 
-/* The part of a path after its last slash. */
-const char *input_base_name(const char *path);
-
 /* Finds out what an input is: told by name; where the name says nothing, by its first bytes. limit: bytes
  * that may be held of a pipe; 0: half of the machine's memory. Returns the exit code; close it in any
  * case. */

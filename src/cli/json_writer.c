@@ -4,45 +4,19 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
-/* Bytes of the well-formed UTF-8 sequence at c, 0 if it is none (RFC 3629). */
-static int utf8_length(const unsigned char *c) {
-  static const unsigned char least_second[4] = {0x80, 0x80, 0xa0, 0x90}; /* for 0xe0 and 0xf0: not overlong */
-  int length = c[0] < 0x80 ? 1 : c[0] < 0xc2 ? 0 : c[0] < 0xe0 ? 2 : c[0] < 0xf0 ? 3 : c[0] < 0xf5 ? 4 : 0;
-  for (int i = 1; i < length; i++)
-    if ((c[i] & 0xc0) != 0x80) return 0;
-  if ((c[0] == 0xe0 || c[0] == 0xf0) && c[1] < least_second[length - 1]) return 0;
-  if ((c[0] == 0xed && c[1] > 0x9f) || (c[0] == 0xf4 && c[1] > 0x8f))
-    return 0; /* surrogates; beyond Unicode */
-  return length;
-}
+#include "text/json_value.h"
 
-/* File names need not be UTF-8, JSON must be: other bytes become U+FFFD. */
 static void print_text(const char *text) {
+  char piece[HL_JSON_PIECE_BYTES];
   putchar('"');
-  for (const unsigned char *c = (const unsigned char *)text; *c != '\0';) {
-    int length = utf8_length(c);
-    if (*c == '"' || *c == '\\') printf("\\%c", *c);
-    else if (*c < 0x20) printf("\\u%04x", *c);
-    else if (length == 0) fputs("\\ufffd", stdout);
-    else fwrite(c, 1, (size_t)length, stdout);
-    c += length > 0 ? length : 1;
-  }
+  for (size_t length; (length = hl_json_piece(&text, piece)) > 0;) fwrite(piece, 1, length, stdout);
   putchar('"');
 }
 
-/* The shortest of 15, 16 or 17 digits that reads back as the same number. */
 static void print_number(double value) {
-  if (!isfinite(value)) {
-    fputs("null", stdout);
-    return;
-  }
-  char text[40];
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, sizeof text, "%.*g", digits, value);
-    if (strtod(text, NULL) == value) break;
-  }
+  char text[HL_JSON_NUMBER_BYTES] = "null";
+  if (isfinite(value)) hl_json_number_text(value, text);
   fputs(text, stdout);
 }
 

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "message.h"
+#include "suggest.h"
 
 static const cli_command *const commands[] = {&render_command, &info_command, &make_command, &diff_command,
                                               &bench_command};

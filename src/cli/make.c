@@ -8,6 +8,7 @@
 #include "host.h"
 #include "input.h"
 #include "output.h"
+#include "suggest.h"
 
 enum make_option {
   MAKE_OUTPUT,
@@ -131,7 +132,7 @@ static int make_and_save(const cli_value *values, char *shape, const char *outpu
   cli_host host = {0};
   cli_host_options options = {.quiet = values[MAKE_QUIET].given,
                               .progress = true,
-                              .subject = input_base_name(shape),
+                              .subject = base_name(shape),
                               .memory_limit = values[MAKE_MAX_MEMORY].bytes};
   if (exit_code == EXIT_CODE_OK) exit_code = host_open(&options, &host);
   hl_volume *volume = NULL;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "message.h"
+#include "suggest.h"
 
 static const char *choice_name(const void *choices, size_t index) {
   const cli_choice *choice = (const cli_choice *)choices + index;

@@ -81,20 +81,8 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
 /* Prints the help text of a subcommand on stdout. */
 void options_print_help(const cli_command *command);
 
-/* The subcommand's option that does what a word of other programs means ("rotate" -> "azimuth"); null: none
- * is known. */
-const char *synonym_of(const char *word, const cli_command *command);
-
-/* The setting that a word names and that only a scene has, as the scene writes it ("emission" -> its JSON
- * with an example); null: none is known. */
-const char *scene_setting_of(const char *word);
-
 /* A colour as OPTION_COLOR takes it, as linear RGB: numbers between low and high are linear already, #rgb,
  * #rrggbb and CSS names are sRGB. False if text is none. */
 bool parse_color(const char *text, double low, double high, double color[3]);
-
-/* The candidate nearest to text, or null if none is near. candidate(data, i) is null past the last. */
-const char *nearest_name(const char *text, const char *(*candidate)(const void *data, size_t index),
-                         const void *data);
 
 #endif

@@ -1,4 +1,4 @@
-/* cli/output.c - checks of OUT before the work. */
+/* cli/output.c - names of files, and whether OUT may be written: found out before the work. */
 #define _GNU_SOURCE
 #include "output.h"
 
@@ -10,11 +10,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "input.h"
 #include "message.h"
 
 const char *const picture_extensions[] = {".png", ".exr", ".npy", NULL};
 const char *const volume_extensions[] = {".nrrd", ".raw", ".raw.gz", NULL};
+
+const char *base_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash != NULL ? slash + 1 : path;
+}
 
 bool has_extension(const char *path, const char *extension) {
   size_t length = strlen(path), extension_length = strlen(extension);
@@ -71,7 +75,7 @@ int output_to_stdout(const unsigned char *bytes, size_t length) {
 }
 
 char *output_default_name(const char *input, const char *extension) {
-  const char *base = input_base_name(input);
+  const char *base = base_name(input);
   size_t length = strlen(base);
   if (has_extension(base, ".gz")) length -= 3;
   size_t stem = length;
@@ -82,4 +86,40 @@ char *output_default_name(const char *input, const char *extension) {
   memcpy(name, base, stem);
   strcpy(name + stem, extension);
   return name;
+}
+
+/* ---- files that the run has read ---- */
+
+static bool make_room(cli_read_files *read) {
+  if (read->count < read->capacity) return true;
+  size_t capacity = read->capacity > 0 ? 2 * read->capacity : 16;
+  cli_file_identity *files = realloc(read->files, capacity * sizeof *files);
+  if (files == NULL) return false;
+  read->files = files;
+  read->capacity = capacity;
+  return true;
+}
+
+void read_files_add(cli_read_files *read, const char *path) {
+  struct stat about;
+  if (stat(path, &about) != 0) return; /* gone already: nothing is left to protect */
+  if (make_room(read)) read->files[read->count++] = (cli_file_identity){about.st_dev, about.st_ino};
+  else read->incomplete = true;
+}
+
+void read_files_release(cli_read_files *read) { free(read->files); }
+
+int read_files_protect(const cli_read_files *read, const char *path, const char *reader) {
+  struct stat about;
+  if (stat(path, &about) != 0)
+    return errno != ENAMETOOLONG
+               ? EXIT_CODE_OK
+               : fail(EXIT_CODE_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
+  if (read->incomplete)
+    return fail(EXIT_CODE_FAILURE, "out of memory for the names of the files that were read");
+  for (size_t i = 0; i < read->count; i++)
+    if (about.st_dev == read->files[i].device && about.st_ino == read->files[i].inode)
+      return fail(EXIT_CODE_USAGE, "--output: '%s' is a file that '%s' needs: choose another name", path,
+                  reader);
+  return EXIT_CODE_OK;
 }

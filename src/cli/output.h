@@ -1,9 +1,13 @@
-/* cli/output.h - is OUT a name that can be written to? Found out before the work, not after. */
+/* cli/output.h - names of files, and whether OUT may be written: found out before the work, not after. */
 #ifndef HL_CLI_OUTPUT_H
 #define HL_CLI_OUTPUT_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <sys/types.h>
+
+/* The part of a path after its last slash. */
+const char *base_name(const char *path);
 
 /* True if path ends in extension (".png"), in upper or lower case, and has something before it. */
 bool has_extension(const char *path, const char *extension);
@@ -21,5 +25,26 @@ int output_to_stdout(const unsigned char *bytes, size_t length);
 /* "head.png" for "scans/head.nii.gz" and ".png", in the current folder; owned by the caller (free), null
  * without memory. */
 char *output_default_name(const char *input, const char *extension);
+
+/* ---- files that the run has read, so that it writes over none of them ---- */
+
+/* A file by what it is, whatever its names: links lead to the same. */
+typedef struct cli_file_identity {
+  dev_t device;
+  ino_t inode;
+} cli_file_identity;
+
+typedef struct cli_read_files {
+  cli_file_identity *files; /* owned; [count] */
+  size_t count, capacity;
+  bool incomplete; /* there was no memory for one of them */
+} cli_read_files;
+
+void read_files_add(cli_read_files *read, const char *path);
+void read_files_release(cli_read_files *read);
+
+/* Refuses a path that leads to one of the files, or is too long for any; reader: what read them
+ * ("scene.json"). Returns the exit code. */
+int read_files_protect(const cli_read_files *read, const char *path, const char *reader);
 
 #endif

@@ -77,7 +77,7 @@ static int job_open(render_job *job) {
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,
-                              .subject = input_base_name(job->input),
+                              .subject = base_name(job->input),
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
                               .data_folder = values[RENDER_DATA].text,
                               .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};

@@ -5,8 +5,6 @@
  * line.
  */
 #define _GNU_SOURCE
-#include <locale.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +14,7 @@
 #include "json/read.h"
 #include "json/shapes.h"
 #include "scene/scene.h"
+#include "text/json_value.h"
 
 /* A text that grows. After a failed allocation everything is ignored until the end. */
 typedef struct writer {
@@ -70,33 +69,15 @@ static void close_bracket(writer *w, const char *bracket) {
 }
 
 static void put_number(writer *w, double number) {
-  char text[64];
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, sizeof text, "%.*g", digits, number);
-    if (strtod(text, NULL) == number) break;
-  }
-  const char *point = localeconv()->decimal_point; /* JSON's is always "." */
-  char *found = strcmp(point, ".") != 0 ? strstr(text, point) : NULL;
-  if (found != NULL) {
-    *found = '.';
-    memmove(found + 1, found + strlen(point), strlen(found + strlen(point)) + 1);
-  }
-  if (signbit(number) && number == 0) strcpy(text, "-0.0");
+  char text[HL_JSON_NUMBER_BYTES];
+  hl_json_number_text(number, text);
   put_text(w, text);
 }
 
 static void put_quoted(writer *w, const char *text) {
+  char piece[HL_JSON_PIECE_BYTES];
   put_text(w, "\"");
-  for (const char *c = text; *c != 0; c++) {
-    char escaped[8];
-    if (*c == '"' || *c == '\\') {
-      put_text(w, "\\");
-      put(w, c, 1);
-    } else if ((unsigned char)*c < 0x20) {
-      snprintf(escaped, sizeof escaped, "\\u%04x", (unsigned)*c);
-      put_text(w, escaped);
-    } else put(w, c, 1);
-  }
+  for (size_t length; (length = hl_json_piece(&text, piece)) > 0;) put(w, piece, length);
   put_text(w, "\"");
 }
 

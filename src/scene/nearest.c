@@ -1,40 +1,16 @@
-/* scene/nearest.c - edit distance, and the known name nearest to a mistyped one. */
+/* scene/nearest.c - the known name nearest to a mistyped one. */
 #define _GNU_SOURCE /* strnlen */
 #include "scene/nearest.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#define LONGEST 63
-
-static int least(int a, int b) { return a < b ? a : b; }
-
-/* Optimal string alignment distance (Damerau 1964, each part edited once): three rows of the table
- * suffice. */
-int hl_edit_distance(const char *a, const char *b) {
-  int rows[3][LONGEST + 1];
-  int length_a = (int)strnlen(a, LONGEST), length_b = (int)strnlen(b, LONGEST);
-  int *before = rows[0], *last = rows[1], *row = rows[2];
-  for (int j = 0; j <= length_b; j++) last[j] = j;
-  for (int i = 1; i <= length_a; i++) {
-    row[0] = i;
-    for (int j = 1; j <= length_b; j++) {
-      int replace = last[j - 1] + (a[i - 1] != b[j - 1]);
-      row[j] = least(replace, least(last[j], row[j - 1]) + 1);
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = least(row[j], before[j - 2] + 1);
-    }
-    int *spare = before;
-    before = last;
-    last = row;
-    row = spare;
-  }
-  return last[length_b];
-}
+#include "text/edit_distance.h"
 
 const char *hl_nearest_name(const char *name, const char *const *names) {
   const char *nearest = NULL;
-  int length = (int)strnlen(name, LONGEST), allowed = length * 2 / 5; /* two letters of five may be wrong */
+  int length = (int)strnlen(name, HL_EDIT_LONGEST),
+      allowed = length * 2 / 5; /* two letters of five may be wrong */
   int best = 1 + (allowed < 2 && length > 2 ? 2 : allowed);
   for (size_t n = 0; names[n] != NULL; n++) {
     int distance = hl_edit_distance(name, names[n]);

@@ -10,7 +10,4 @@ const char *hl_nearest_name(const char *name, const char *const *names);
 /* The end of an error line about an unknown name: the nearest one as a question, or all that there are. */
 void hl_suggest_name(const char *name, const char *const *names, char *text, size_t size);
 
-/* Edits (insert, delete, replace, swap neighbours) that turn a into b; lengths beyond 63 are cut. */
-int hl_edit_distance(const char *a, const char *b);
-
 #endif

@@ -5,6 +5,7 @@
 #include "scene/nearest.h"
 #include "scene/transfer_function.h"
 #include "scene_parts.h"
+#include "text/edit_distance.h"
 
 enum { N = 40 };
 

@@ -1,12 +1,31 @@
-/* cli/synonyms.c - what people type who know ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba or a
- * plotting library.
+/* cli/suggest.c - what somebody who typed an unknown name may have meant.
  *
- * A word leads to the option that does the same; a subcommand that lacks this option offers nothing. Settings
- * that only scenes have lead to what the scene writes.
+ * Known names that are nearly the same come first. Words of ParaView, VTK, ImageMagick, ffmpeg, Blender,
+ * Mitsuba and plotting libraries lead to the option that does the same; a subcommand that lacks this option
+ * offers nothing. Settings that only scenes have lead to what the scene writes.
  */
+#include "suggest.h"
+
 #include <string.h>
 
-#include "options.h"
+#include "text/edit_distance.h"
+
+const char *nearest_name(const char *text, const char *(*candidate)(const void *data, size_t index),
+                         const void *data) {
+  size_t length = strlen(text);
+  const char *best = NULL, *name;
+  size_t best_distance = 2 + length / 4; /* farther names would puzzle more than help */
+  if (length > HL_EDIT_LONGEST) return NULL;
+  for (size_t i = 0; (name = candidate(data, i)) != NULL; i++) {
+    bool part_of_it = length >= 3 && strstr(name, text) != NULL;
+    size_t distance = part_of_it ? 1 : (size_t)hl_edit_distance(text, name);
+    if (distance < best_distance && 2 * distance < strlen(name)) {
+      best = name;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
 
 /* words: separated by blanks, in lower case */
 static const struct {

@@ -1,0 +1,29 @@
+/* text/edit_distance.c - optimal string alignment distance (Damerau 1964, each part edited once). */
+#define _GNU_SOURCE /* strnlen */
+#include "text/edit_distance.h"
+
+#include <string.h>
+
+static int least(int a, int b) { return a < b ? a : b; }
+
+/* Three rows of the usual table suffice. */
+int hl_edit_distance(const char *a, const char *b) {
+  int rows[3][HL_EDIT_LONGEST + 1];
+  int length_a = (int)strnlen(a, HL_EDIT_LONGEST), length_b = (int)strnlen(b, HL_EDIT_LONGEST);
+  int *before = rows[0], *last = rows[1], *row = rows[2];
+  for (int j = 0; j <= length_b; j++) last[j] = j;
+  for (int i = 1; i <= length_a; i++) {
+    row[0] = i;
+    for (int j = 1; j <= length_b; j++) {
+      int replace = last[j - 1] + (a[i - 1] != b[j - 1]);
+      row[j] = least(replace, least(last[j], row[j - 1]) + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = least(row[j], before[j - 2] + 1);
+    }
+    int *spare = before;
+    before = last;
+    last = row;
+    row = spare;
+  }
+  return last[length_b];
+}
