@@ -43,7 +43,7 @@ typedef struct slab_run {
  * volume's box cuts none of these. */
 typedef struct relevant_blocks {
   uint16_t blocks[RUN_SLABS];
-  uint16_t whole; /* one bit for each slab */
+  uint16_t uncut; /* one bit for each slab */
 } relevant_blocks;
 
 /* Fills `found` for the slabs with a bit; the others stay as they are. need: the blocks of interest. */

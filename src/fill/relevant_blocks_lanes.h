@@ -76,10 +76,10 @@ LANES_INLINE uint32_t visible_boxes(const grid *grid, const lanes_box *box) {
 
 /* The blocks whose boxes lie where the volume's box cuts nothing. */
 LANES_INLINE uint32_t uncut_blocks(const slab_run *run, const lanes_box *box) {
-  lanes_int whole = lanes_set_int(-1);
+  lanes_int uncut = lanes_set_int(-1);
   for (int axis = 0; axis < 3; axis++)
-    whole &= (box->low[axis] >= run->low[axis]) & (box->high[axis] <= run->high[axis]);
-  return lanes_bits(whole);
+    uncut &= (box->low[axis] >= run->low[axis]) & (box->high[axis] <= run->high[axis]);
+  return lanes_bits(uncut);
 }
 
 static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, uint32_t slabs, uint32_t need,
@@ -95,8 +95,8 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
     uint32_t visible = visible_boxes(run->grid, &box);
     /* where the eye is in the slab, rays begin there, which cuts blocks too */
-    int whole = rays[0].step * rays[1].step > 0 && (visible & ~uncut_blocks(run, &box)) == 0;
-    found->whole = (uint16_t)((found->whole & ~(1u << slab)) | (uint32_t)whole << slab);
+    int uncut = rays[0].step * rays[1].step > 0 && (visible & ~uncut_blocks(run, &box)) == 0;
+    found->uncut = (uint16_t)((found->uncut & ~(1u << slab)) | (uint32_t)uncut << slab);
     found->blocks[slab] = (uint16_t)(visible & need);
   }
 }

@@ -48,7 +48,7 @@ LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, in
  * and b + 2 c, and its knots, each the mean of the thirds on its two sides: (b + 4 c + d) / 6 = ((b + 2 c) /
  * 3 + (2 c + d) / 3) / 2. */
 typedef struct bits_thirds {
-  lanes near, far; /* nearer to b, nearer to c */
+  lanes first, second; /* a third and two thirds of the way from b to c */
 } bits_thirds;
 
 LANES_INLINE bits_thirds thirds_between(lanes b, lanes c) {
@@ -57,8 +57,8 @@ LANES_INLINE bits_thirds thirds_between(lanes b, lanes c) {
 }
 
 LANES_INLINE lanes greatest_of_cell(bits_thirds before, bits_thirds cell, bits_thirds after) {
-  lanes first = (before.far + cell.near) * 0.5f, last = (cell.far + after.near) * 0.5f;
-  return lanes_max(lanes_max(first, last), lanes_max(cell.near, cell.far));
+  lanes first = (before.second + cell.first) * 0.5f, last = (cell.second + after.first) * 0.5f;
+  return lanes_max(lanes_max(first, last), lanes_max(cell.first, cell.second));
 }
 
 LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[HL_BRICK_CELLS]) {

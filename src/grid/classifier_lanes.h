@@ -1,72 +1,74 @@
-/* grid/classifier_lanes.h - classification of the way from one sheet to the next, sixteen rays at a time. */
+/* grid/classifier_lanes.h - classification of rays on their way from one sheet to the next, sixteen at a
+ * time. */
 #ifndef HL_GRID_CLASSIFIER_LANES_H
 #define HL_GRID_CLASSIFIER_LANES_H
 
 #include "grid/classifier.h"
 #include "simd/lanes.h"
 
-/* A place in the tables: entry + fraction. */
-typedef struct table_place {
+/* A coordinate in the classifier's tables: x = entry + fraction. */
+typedef struct table_coordinate {
   lanes x;
   lanes_int entry;
   lanes fraction;
-} table_place;
+} table_coordinate;
 
-LANES_INLINE table_place place_of_coordinate(lanes x) {
+LANES_INLINE table_coordinate split_coordinate(lanes x) {
   lanes_int entry = lanes_truncate(x);
-  return (table_place){x, entry, x - lanes_from_int(entry)};
+  return (table_coordinate){x, entry, x - lanes_from_int(entry)};
 }
 
-LANES_INLINE table_place classify_place(const classifier *classifier, lanes density) {
-  return place_of_coordinate(
+LANES_INLINE table_coordinate coordinate_of_density(const classifier *classifier, lanes density) {
+  return split_coordinate(
       lanes_clamp(lanes_line(density, classifier->scale, classifier->offset), 0, CLASSIFIER_ENTRIES));
 }
 
-/* The values of a table's columns at a place. */
-LANES_INLINE void table_values(float (*table)[4], table_place place, lanes values[3]) {
+/* The values of a table's first three columns at a coordinate. */
+LANES_INLINE void table_values(float (*table)[4], table_coordinate at, lanes values[3]) {
   lanes a[3], b[3];
-  lanes_gather_row_pairs(&table[0][0], place.entry, a, b);
-  for (int i = 0; i < 3; i++) values[i] = lanes_fma(b[i] - a[i], place.fraction, a[i]);
+  lanes_gather_row_pairs(&table[0][0], at.entry, a, b);
+  for (int i = 0; i < 3; i++) values[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
 }
 
-/* Closer than this many entries the integral's difference loses digits; the ends' mean is as good there. */
-static const float NEAR_ENTRIES = 4;
+/* Where the ends of the way are closer than this many entries, the difference of integrals loses digits; the
+ * mean of the ends is as good there. */
+static const float CLOSE_ENTRIES = 4;
 
-/* The way from place a to place b. */
+/* Integrals I over the way from coordinate a to coordinate b. */
 typedef struct way_sums {
-  lanes extinction; /* its mean, (I(b) - I(a)) / (b - a) */
-  lanes whole;      /* I(b) - I(a), 0 where the places are near */
-  lanes moment;     /* the same of extinction * entry */
+  lanes extinction; /* the mean, (I(b) - I(a)) / (b - a) */
+  lanes integral;   /* I(b) - I(a), 0 where the ends are close */
+  lanes moment;     /* the same for extinction * entry */
 } way_sums;
 
-LANES_INLINE way_sums sums_of_way(const classifier *classifier, table_place a, table_place b) {
+LANES_INLINE way_sums sums_of_way(const classifier *classifier, table_coordinate a, table_coordinate b) {
   lanes at_a[3], at_b[3];
   table_values(classifier->sums, a, at_a);
   table_values(classifier->sums, b, at_b);
   lanes ends = (at_a[0] + at_b[0]) * 0.5f, distance = b.x - a.x;
-  lanes_int far = lanes_abs(distance) > NEAR_ENTRIES;
+  lanes_int far = lanes_abs(distance) > CLOSE_ENTRIES;
   way_sums sums = {ends, lanes_keep(far, at_b[1] - at_a[1]), at_b[2] - at_a[2]};
-  lanes mean = lanes_max(sums.whole / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0));
+  lanes mean = lanes_max(sums.integral / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0));
   sums.extinction = lanes_select(far, mean, ends);
   return sums;
 }
 
-/* Lanes in which anything between the two places can have extinction. */
-LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_place a, table_place b) {
+/* Lanes in which some density between a and b can have extinction. */
+LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_coordinate a, table_coordinate b) {
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
-/* How far from a and from b on the way between them, weighted by extinction, the density lies, in entries; 1
- * and 1 where the way is short or holds nothing. */
-typedef struct way_parts {
+/* The mean distance of the density from a and from b on the way between them, weighted by extinction, in
+ * entries; 1 and 1 where the way is short or has no extinction. */
+typedef struct way_means {
   lanes from_a, from_b;
-} way_parts;
+} way_means;
 
-LANES_INLINE way_parts parts_of_way(lanes a, lanes b, const way_sums *sums) {
-  lanes_int usable = lanes_abs(sums->whole) > 0.0f;
-  lanes mean = sums->moment / lanes_select(usable, sums->whole, lanes_set(1.0f));
+LANES_INLINE way_means means_of_way(lanes a, lanes b, const way_sums *sums) {
+  lanes_int usable = lanes_abs(sums->integral) > 0.0f;
+  lanes mean = sums->moment / lanes_select(usable, sums->integral, lanes_set(1.0f));
   mean = lanes_min(lanes_max(mean, lanes_min(a, b)), lanes_max(a, b));
-  return (way_parts){lanes_select(usable, lanes_abs(mean - a), lanes_set(1.0f)),
+  return (way_means){lanes_select(usable, lanes_abs(mean - a), lanes_set(1.0f)),
                      lanes_select(usable, lanes_abs(mean - b), lanes_set(1.0f))};
 }
 

@@ -85,8 +85,8 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   lanes late = lanes_min(d->seen / lanes_max(d->evenly, lanes_set(1e-3f)), lanes_set(4.0f));
   lanes seen = coordinate_seen(d);
   lanes start = lanes_fma(dot3(d->slope, towards), way * classifier->scale, seen);
-  way_sums sums = sums_of_way(classifier, place_of_coordinate(lanes_clamp(start, 0, CLASSIFIER_ENTRIES)),
-                              place_of_coordinate(seen));
+  way_sums sums = sums_of_way(classifier, split_coordinate(lanes_clamp(start, 0, CLASSIFIER_ENTRIES)),
+                              split_coordinate(seen));
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
@@ -103,7 +103,7 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
     if (!d->there) continue;
-    int cut = d->patch->enter != NULL && !d->patch->whole;
+    int cut = d->patch->enter != NULL && !d->patch->uncut;
     ways_in_box own = cut ? ways_of_light(d->patch->volume, start, way, towards, all) : all;
     d->light_first = own.first;
     d->light_last = own.last;
@@ -184,7 +184,7 @@ typedef struct table_origin {
 } table_origin;
 
 LANES_INLINE table_origin origin_at(const classifier *classifier, lanes x) {
-  table_place place = place_of_coordinate(lanes_clamp(x, 0, CLASSIFIER_ENTRIES));
+  table_coordinate place = split_coordinate(lanes_clamp(x, 0, CLASSIFIER_ENTRIES));
   lanes values[3];
   table_values(classifier->sums, place, values);
   return (table_origin){place.x, values[0], values[1]};
@@ -193,7 +193,7 @@ LANES_INLINE table_origin origin_at(const classifier *classifier, lanes x) {
 /* P(to) - P(from). */
 LANES_INLINE lanes integral_between(const table_origin *from, const table_origin *to) {
   lanes distance = to->x - from->x;
-  return lanes_select(lanes_abs(distance) > NEAR_ENTRIES, to->integral - from->integral,
+  return lanes_select(lanes_abs(distance) > CLOSE_ENTRIES, to->integral - from->integral,
                       (to->extinction + from->extinction) * 0.5f * distance);
 }
 

@@ -9,7 +9,7 @@
  * none. */
 LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high) {
   lanes of_entry[3], of_next[3];
-  lanes_gather_row_pairs(&shown[0][0], place_of_coordinate(high).entry, of_entry, of_next);
+  lanes_gather_row_pairs(&shown[0][0], split_coordinate(high).entry, of_entry, of_next);
   lanes within = lanes_min(high, of_entry[SHOWN_TO]);
   lanes value = lanes_select(high > of_entry[SHOWN_FROM], within, of_entry[SHOWN_BELOW]);
   return lanes_select(value >= low, value, lanes_set(-1.0f));
@@ -29,8 +29,8 @@ LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *pat
                                     float *values) {
   const shade_volume *volume = patch->volume;
   block_way way = way_of_block(job, patch, block);
-  table_place a = classify_place(volume->classifier, way.first),
-              b = classify_place(volume->classifier, way.last);
+  table_coordinate a = coordinate_of_density(volume->classifier, way.first),
+                   b = coordinate_of_density(volume->classifier, way.last);
   if (patch->enter != NULL) cut_way(way.part, &a, &b);
   float *greatest = values + block * BLOCK_PIXELS, *before = greatest + MAXIMUM_BEFORE * TILE_PIXELS;
   float *sheet = greatest + MAXIMUM_SHEET * TILE_PIXELS;

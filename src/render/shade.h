@@ -35,7 +35,7 @@ typedef struct shade_patch {
   const float *before, *current; /* [256], block-major; on sheets k-1 and k */
   uint32_t blocks;               /* those with density on either */
   const float *enter, *leave;    /* [256], block-major; null: the box does not cut anything visible */
-  int whole;                     /* it cuts neither the slab here nor the ways of light through it */
+  int uncut;                     /* the box cuts neither the slab here nor the ways of light through it */
 } shade_patch;
 
 typedef struct shade_light {

@@ -135,7 +135,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geomet
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible) continue;
-    table_place place = place_of_coordinate(coordinate_seen(d));
+    table_coordinate place = split_coordinate(coordinate_seen(d));
     color_lanes color;
     table_values(d->patch->volume->classifier->color, place, color.c);
     color_lanes lit = illuminate(job, d, g, lights, color);

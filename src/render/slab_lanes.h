@@ -54,7 +54,7 @@ LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t 
  * box. */
 typedef struct block_way {
   lanes first, last;
-  covered_part part;
+  covered_span part;
 } block_way;
 
 typedef struct block_density {
@@ -81,8 +81,8 @@ static const float THIN_DEPTH = 1.0f / 64;
 LANES_INLINE lanes_int visible_in_patch(const shade_patch *patch, int block) {
   const classifier *classifier = patch->volume->classifier;
   return may_be_visible(classifier,
-                        classify_place(classifier, lanes_load(patch->before + block * BLOCK_PIXELS)),
-                        classify_place(classifier, lanes_load(patch->current + block * BLOCK_PIXELS)));
+                        coordinate_of_density(classifier, lanes_load(patch->before + block * BLOCK_PIXELS)),
+                        coordinate_of_density(classifier, lanes_load(patch->current + block * BLOCK_PIXELS)));
 }
 
 /* A block's way through one volume. */
@@ -90,14 +90,15 @@ LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *pat
   block_way way;
   way.first = lanes_load(patch->before + block * BLOCK_PIXELS);
   way.last = lanes_load(patch->current + block * BLOCK_PIXELS);
-  way.part = covered_block(patch->enter, patch->leave, patch->whole, block, job->height, job->spacing);
+  way.part = covered_block(patch->enter, patch->leave, patch->uncut, block, job->height, job->spacing);
   return way;
 }
 
 /* Step 13 for one volume: the sums over a part of its way through the slab, as if it had no box. */
-LANES_INLINE void classify_way(block_density *d, covered_part part) {
+LANES_INLINE void classify_way(block_density *d, covered_span part) {
   const classifier *classifier = d->patch->volume->classifier;
-  table_place a = classify_place(classifier, d->way.first), b = classify_place(classifier, d->way.last);
+  table_coordinate a = coordinate_of_density(classifier, d->way.first),
+                   b = coordinate_of_density(classifier, d->way.last);
   if (d->patch->enter != NULL) cut_way(part, &a, &b);
   d->before = a.x;
   d->after = b.x;
@@ -106,7 +107,7 @@ LANES_INLINE void classify_way(block_density *d, covered_part part) {
 
 /* How far on the way from before to after its extinction lies on average. */
 LANES_INLINE lanes centre_of_way(const block_density *d) {
-  way_parts m = parts_of_way(d->before, d->after, &d->sums);
+  way_means m = means_of_way(d->before, d->after, &d->sums);
   return m.from_a / (m.from_a + m.from_b);
 }
 
@@ -132,7 +133,7 @@ typedef struct block_slab {
   lanes_int open;          /* those that can still show something */
   uint32_t starts;         /* lanes at which those of one block follow those of another; the first included */
   block_geometry geometry; /* its position: where the slab is seen on average, and lit */
-  covered_part part;       /* from where the first volume that is seen begins to where the last one ends */
+  covered_span part;       /* from where the first volume that is seen begins to where the last one ends */
   lanes_int joined;        /* where some of several volumes fill less than that */
   lanes centre;            /* there: where in the slab extinction lies on average */
   lanes total, depth;      /* extinction averaged over the slab; optical depth */
@@ -174,7 +175,7 @@ LANES_INLINE lanes place_of_part(block_density *densities, int count, const bloc
     d->seen = lanes_set(0.5f);
     d->evenly = u;
     if (!d->patch->volume->visible) continue;
-    way_parts m = parts_of_way(d->before, d->after, &d->sums);
+    way_means m = means_of_way(d->before, d->after, &d->sums);
     d->seen = way_of_depth(m.from_a, m.from_b, u);
     lanes place = lanes_fma(slab->part.length, d->seen, slab->part.begin);
     if (count == 1) return place;
@@ -268,7 +269,7 @@ LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches
 LANES_INLINE void join_parts(const block_density *densities, int count, block_slab *slab) {
   lanes begin = lanes_set(1.0f), end = lanes_set(0);
   for (int i = 0; i < count; i++) {
-    const covered_part *part = &densities[i].way.part;
+    const covered_span *part = &densities[i].way.part;
     if (!densities[i].there || !densities[i].patch->volume->visible) continue;
     lanes_int some = part->length > 0.0f;
     begin = lanes_min(begin, lanes_select(some, part->begin, lanes_set(1.0f)));

@@ -40,7 +40,7 @@ typedef struct patch_run {
   int32_t end;               /* of the bundle among them that was asked for last */
   uint16_t asked;            /* the blocks that were looked at */
   uint16_t filled;           /* the blocks that the bundle was filled for */
-  relevant_blocks near;      /* where something may be, of those that were looked at */
+  relevant_blocks relevant;  /* where something may be, of those that were looked at */
   uint16_t shows[RUN_SLABS]; /* where something may be seen, of those that were filled for; of the bundle's
                                 slabs */
 } patch_run;
@@ -185,15 +185,15 @@ uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view, double spare
 /* Before patches of a sheet are asked for. */
 void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets);
 /* Of the needed blocks, those in which a patch's slab may hold anything, as far as is known. */
-uint32_t hl_patch_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet,
-                       uint32_t need);
+uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch,
+                           int sheet, uint32_t need);
 /* Of those, one at least, the patch's densities on the sheet and the one before, [256] block-major, in the
  * blocks in which any may show: kept from a slab before, or filled now. */
 typedef struct patch_slab {
   const float *before, *current; /* valid in blocks */
   const float *enter,
-      *leave; /* of the box, [256] block-major; null where it cuts nothing visible, unset where whole */
-  int whole;  /* it cuts nothing in this slab, and no light on its way through it to the eye's pixels */
+      *leave; /* of the box, [256] block-major; null where it cuts nothing visible, unset where uncut */
+  int uncut;  /* the box cuts nothing in this slab, and no light on its way through it to the eye's pixels */
   uint32_t blocks;
 } patch_slab;
 /* need: what the bundle's next slabs may ask for. pixels: is raised by the pixels filled. */

@@ -47,14 +47,14 @@ static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker,
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
     uint32_t g = sheets->occupancy.patch_grid[p];
-    uint32_t near = hl_patch_near(sweep, sheets, tile, p, sweep->sheet, need);
+    uint32_t near = hl_patch_relevant(sweep, sheets, tile, p, sweep->sheet, need);
     if (near == 0) continue;
     fetch_opacities(sweep->pixels + tile * 4 * TILE_PIXELS, near);
     patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, &counts->pixels_image);
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
     patches[count++] = (shade_patch){
-        &sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter, slab.leave, slab.whole};
+        &sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter, slab.leave, slab.uncut};
   }
   return count;
 }
@@ -150,7 +150,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
     uint32_t g = sheets->occupancy.patch_grid[p];
     const hl_scene_volume *scene = sweep->volumes[g].scene;
     if (!scene->casts_shadow) continue;
-    if (hl_patch_near(sweep, sheets, tile, p, sweep->sheet, need) == 0) continue;
+    if (hl_patch_relevant(sweep, sheets, tile, p, sweep->sheet, need) == 0) continue;
     patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, pixels);
     if (slab.blocks == 0) continue;
     volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier,
@@ -159,7 +159,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
                                         .density = slab.current,
                                         .enter = slab.enter,
                                         .leave = slab.leave,
-                                        .whole = slab.whole};
+                                        .uncut = slab.uncut};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
     count++;
   }

@@ -180,10 +180,10 @@ static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets 
                           (int)sheets->occupancy.patch_grid[patch]];
 }
 
-/* Where the slabs of a run may hold something of a patch in the needed blocks, found for all of them at once.
- * Soft light may ask for more blocks later. */
-static void look_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, uint32_t need,
-                      patch_run *run) {
+/* Finds the relevant blocks of a patch, among those needed, in all slabs of a run at once. Soft light may ask
+ * for more blocks later. */
+static void find_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch,
+                          uint32_t need, patch_run *run) {
   const occupancy *o = &sheets->occupancy;
   uint32_t more = need & ~(uint32_t)run->asked, slabs = 0;
   if (more == 0) return;
@@ -191,11 +191,11 @@ static void look_near(const sweep *sweep, const view_sheets *sheets, size_t tile
     slabs |= (uint32_t)(hl_occupancy_has(o, patch, run->first + i) |
                         hl_occupancy_has(o, patch, run->first + i + 1))
              << i;
-  relevant_blocks near = {0};
+  relevant_blocks relevant = {0};
   sweep->hot->fill.relevant_blocks(&sheets->runs[o->patch_grid[patch]], (int)(tile % (size_t)o->tiles_x),
-                                   (int)(tile / (size_t)o->tiles_x), slabs, more, &near);
-  for (int i = 0; i < RUN_SLABS; i++) run->near.blocks[i] |= near.blocks[i];
-  run->near.whole = near.whole;
+                                   (int)(tile / (size_t)o->tiles_x), slabs, more, &relevant);
+  for (int i = 0; i < RUN_SLABS; i++) run->relevant.blocks[i] |= relevant.blocks[i];
+  run->relevant.uncut = relevant.uncut;
   run->asked = (uint16_t)(run->asked | more);
 }
 
@@ -203,32 +203,36 @@ static float *density_on_sheet(const view_sheets *sheets, size_t patch, int shee
   return sheets->density + (patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)) * TILE_PIXELS;
 }
 
-/* A bundle's slabs of a patch while it is filled. Its sheets are numbered from the one before it. */
+/* A patch while it is filled on the sheets of a bundle. Sheets are numbered from the one before the bundle.
+ */
 typedef struct patch_bundle {
   const sweep *sweep;
   const view_sheets *sheets;
   size_t tile, patch;
-  int first, slabs;         /* the sheet before it; how many it has */
-  uint32_t near[RUN_SLABS]; /* where it may hold something, slab by slab */
-  uint64_t pixels;          /* filled */
+  int first, slabs;             /* the sheet before the bundle; the bundle's number of slabs */
+  uint32_t relevant[RUN_SLABS]; /* blocks where each slab may show something */
+  uint64_t pixels;              /* filled */
 } patch_bundle;
 
-/* The blocks of a sheet that show something, of those that are filled. */
-static uint32_t showing_on(const patch_bundle *b, int i) {
+/* The filled blocks of a sheet that show something. */
+static uint32_t visible_on(const patch_bundle *b, int i) {
   return i < 0 || i > b->slabs ? 0 : patch_on_sheet(b->sheets, b->patch, b->first + i)->blocks;
 }
 
-/* The blocks of a sheet in which a slab beside it may hold something, and those in which that slab's other
- * sheet shows it. */
-static uint32_t near_slab(const patch_bundle *b, int slab) {
-  return slab < 0 || slab >= b->slabs ? 0 : b->near[slab];
+/* The blocks that are relevant in a slab; those that are in a slab beside a sheet; and those among them where
+ * the slab's other sheet shows something. */
+static uint32_t relevant_in_slab(const patch_bundle *b, int slab) {
+  return slab < 0 || slab >= b->slabs ? 0 : b->relevant[slab];
 }
-static uint32_t near_sheet(const patch_bundle *b, int i) { return near_slab(b, i - 1) | near_slab(b, i); }
-static uint32_t beside_showing(const patch_bundle *b, int i) {
-  return (near_slab(b, i - 1) & showing_on(b, i - 1)) | (near_slab(b, i) & showing_on(b, i + 1));
+static uint32_t relevant_beside(const patch_bundle *b, int i) {
+  return relevant_in_slab(b, i - 1) | relevant_in_slab(b, i);
+}
+static uint32_t beside_visible(const patch_bundle *b, int i) {
+  return (relevant_in_slab(b, i - 1) & visible_on(b, i - 1)) |
+         (relevant_in_slab(b, i) & visible_on(b, i + 1));
 }
 
-/* Fills what of the wanted blocks is missing on a sheet: those, and of the others those that may show
+/* Fills the blocks of a sheet that are not filled yet: the wanted ones, and of the others those that may show
  * something. */
 static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others) {
   const occupancy *o = &b->sheets->occupancy;
@@ -249,9 +253,9 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
  * where its cells may show something; those between them where that was true, and where their own cells may;
  * then the first ones where they turn out to be wanted. */
 static void fill_sheets(patch_bundle *b) {
-  for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, 0, near_sheet(b, i));
-  for (int i = 0; i <= b->slabs; i += 2) fill_sheet(b, i, beside_showing(b, i), near_sheet(b, i));
-  for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, beside_showing(b, i), 0);
+  for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, 0, relevant_beside(b, i));
+  for (int i = 0; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), relevant_beside(b, i));
+  for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), 0);
 }
 
 /* Fills a bundle for some more blocks. Returns the pixels filled. */
@@ -264,24 +268,24 @@ static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_
                     .patch = patch,
                     .first = sheet - 1,
                     .slabs = run->end - sheet};
-  for (int i = 0; i < b.slabs; i++) b.near[i] = more & run->near.blocks[slab + i];
+  for (int i = 0; i < b.slabs; i++) b.relevant[i] = more & run->relevant.blocks[slab + i];
   fill_sheets(&b);
   for (int i = 0; i < b.slabs; i++)
-    run->shows[slab + i] |= (uint16_t)(b.near[i] & (showing_on(&b, i) | showing_on(&b, i + 1)));
+    run->shows[slab + i] |= (uint16_t)(b.relevant[i] & (visible_on(&b, i) | visible_on(&b, i + 1)));
   run->filled = (uint16_t)(run->filled | more);
   return b.pixels;
 }
 
-uint32_t hl_patch_near(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch, int sheet,
-                       uint32_t need) {
+uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch,
+                           int sheet, uint32_t need) {
   patch_run *run = &sheets->patch_runs[patch];
   int first = first_of_run(sheet), slab = sheet - 1 - first, end = end_of_bundle(sheets, sheet);
   if (run->first != first) *run = (patch_run){.first = first};
   if (run->end != end) run->filled = 0;
   run->end = end;
-  look_near(sweep, sheets, tile, patch, need, run);
+  find_relevant(sweep, sheets, tile, patch, need, run);
   bool filled = (need & ~(uint32_t)run->filled) == 0;
-  return need & (filled ? run->shows[slab] : run->near.blocks[slab]);
+  return need & (filled ? run->shows[slab] : run->relevant.blocks[slab]);
 }
 
 patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet,
@@ -291,12 +295,12 @@ patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, s
   uint32_t more = need & ~(uint32_t)run->filled;
   if (more != 0) *pixels += fill_bundle(sweep, sheets, tile, patch, sheet, more, run);
   bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
-  bool whole = run->near.whole >> slab & 1;
-  const float *enter = !cut ? NULL : whole ? sheets->entries : entries_of(sweep, sheets, tile, patch);
+  bool uncut = run->relevant.uncut >> slab & 1;
+  const float *enter = !cut ? NULL : uncut ? sheets->entries : entries_of(sweep, sheets, tile, patch);
   return (patch_slab){.before = density_on_sheet(sheets, patch, sheet - 1),
                       .current = density_on_sheet(sheets, patch, sheet),
                       .enter = enter,
                       .leave = cut ? enter + TILE_PIXELS : NULL,
-                      .whole = whole,
+                      .uncut = uncut,
                       .blocks = run->shows[slab] & need};
 }

@@ -15,7 +15,7 @@ typedef struct attenuate_volume {
   const float *enter, *leave; /* [256], block-major; null: the box does not cut anything visible */
   uint32_t blocks;            /* blocks with density on either */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
-  int whole;                  /* the box does not cut the slab here */
+  int uncut;                  /* the box does not cut the slab here */
 } attenuate_volume;
 
 typedef struct attenuate_job {

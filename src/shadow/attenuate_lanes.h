@@ -24,12 +24,12 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
   return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
-/* The part of the slab before the sheet that lies in the volume's box, block by block. whole: all of it
+/* The part of the slab before the sheet that lies in the volume's box, block by block. uncut: all of it
  * does. */
-LANES_INLINE covered_part covered_block(const float *enter, const float *leave, int whole, int block,
+LANES_INLINE covered_span covered_block(const float *enter, const float *leave, int uncut, int block,
                                         float height, float spacing) {
-  if (enter == NULL) return (covered_part){lanes_set(0), lanes_set(1.0f)};
-  if (whole) return covered(lanes_set(-1e30f), lanes_set(1e30f), height, spacing);
+  if (enter == NULL) return (covered_span){lanes_set(0), lanes_set(1.0f)};
+  if (uncut) return covered(lanes_set(-1e30f), lanes_set(1e30f), height, spacing);
   return covered(lanes_load(enter + block * BLOCK_PIXELS), lanes_load(leave + block * BLOCK_PIXELS), height,
                  spacing);
 }
@@ -49,10 +49,10 @@ static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], i
 }
 
 /* Density runs linearly through the slab: the ends of its covered part in the tables. */
-LANES_INLINE void cut_way(covered_part part, table_place *a, table_place *b) {
+LANES_INLINE void cut_way(covered_span part, table_coordinate *a, table_coordinate *b) {
   lanes from = a->x, way = b->x - a->x;
-  *a = place_of_coordinate(lanes_fma(way, part.begin, from));
-  *b = place_of_coordinate(lanes_fma(way, lanes_min(part.begin + part.length, lanes_set(1.0f)), from));
+  *a = split_coordinate(lanes_fma(way, part.begin, from));
+  *b = split_coordinate(lanes_fma(way, lanes_min(part.begin + part.length, lanes_set(1.0f)), from));
 }
 
 typedef struct attenuated_block {
@@ -66,10 +66,12 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
     if (volume_count > 1 && (volume->blocks >> block & 1) == 0) continue;
-    table_place a = classify_place(volume->classifier, lanes_load(volume->before + block * BLOCK_PIXELS));
-    table_place b = classify_place(volume->classifier, lanes_load(volume->density + block * BLOCK_PIXELS));
+    table_coordinate a = coordinate_of_density(volume->classifier,
+                                               lanes_load(volume->before + block * BLOCK_PIXELS));
+    table_coordinate b = coordinate_of_density(volume->classifier,
+                                               lanes_load(volume->density + block * BLOCK_PIXELS));
     if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
-    covered_part part = covered_block(volume->enter, volume->leave, volume->whole, block, job->height,
+    covered_span part = covered_block(volume->enter, volume->leave, volume->uncut, block, job->height,
                                       job->spacing);
     if (volume->enter != NULL) cut_way(part, &a, &b);
     lanes extinction = sums_of_way(volume->classifier, a, b).extinction * part.length;

@@ -23,8 +23,9 @@ typedef int32_t lanes_int __attribute__((vector_size(64)));
 
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 
-/* Functions that are one instruction or a few where there are vectors of the size, and long without: there
- * they are called, which keeps the baseline's code (and its compile time under sanitizers) within bounds. */
+/* For functions that are one instruction or a few with AVX2, and long without: without it they are called
+ * instead of inlined, which keeps the baseline's code (and its compile time under sanitizers) within bounds.
+ */
 #if defined(__AVX2__)
 #define LANES_CALL LANES_INLINE
 #else
@@ -42,7 +43,7 @@ LANES_INLINE lanes lanes_load(const float *p) {
 }
 LANES_INLINE void lanes_store(float *p, lanes v) { memcpy(p, &v, sizeof v); }
 
-/* Sixteen numbers of 16 bits. */
+/* Sixteen 16-bit numbers. */
 typedef uint16_t lanes_short __attribute__((vector_size(32)));
 LANES_INLINE lanes_int lanes_load_short_int(const uint16_t *p) {
   lanes_short v;
@@ -142,7 +143,7 @@ LANES_INLINE int any_lane(lanes_int mask) {
   return any != 0;
 }
 
-/* The lower 32 bits of each. */
+/* The lower 32 bits of each double. */
 LANES_INLINE lanes_int lower_words(lanes_double x) {
   lanes_words words = (lanes_words)x;
   return __builtin_shufflevector(words, words, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
@@ -242,7 +243,7 @@ LANES_CALL lanes lanes_sqrt(lanes x) {
 #endif
 }
 
-/* Four bytes from anywhere, in the processor's order. */
+/* Four bytes from any address, in the processor's byte order. */
 LANES_INLINE int32_t lanes_word(const unsigned char *p) {
   int32_t word;
   memcpy(&word, p, sizeof word);
@@ -251,12 +252,12 @@ LANES_INLINE int32_t lanes_word(const unsigned char *p) {
 
 LANES_INLINE lanes lanes_from_int(lanes_int x) { return __builtin_convertvector(x, lanes); }
 LANES_INLINE lanes_int lanes_truncate(lanes x) { return __builtin_convertvector(x, lanes_int); }
-/* From 0 to 65535. */
+/* v: from 0 to 65535. */
 LANES_INLINE void lanes_store_short_int(uint16_t *p, lanes_int v) {
   lanes_short narrow = __builtin_convertvector(v, lanes_short);
   memcpy(p, &narrow, sizeof narrow);
 }
-/* Of numbers from 0 on, rounded, 65535 at most. */
+/* v: not negative; rounded, and at most 65535. */
 LANES_INLINE void lanes_store_short(uint16_t *p, lanes v) {
   lanes_store_short_int(p, lanes_truncate(lanes_min(v, lanes_set(65535.0f)) + 0.5f));
 }
@@ -287,7 +288,7 @@ LANES_INLINE void lanes_store_offsets(lanes_offsets *offsets, lanes_int value) {
   __asm__ volatile(""
                    :
                    : "r"(offsets)
-                   : "memory"); /* keeps the compiler from taking them from the register after all */
+                   : "memory"); /* keeps the compiler from reading the register after all */
 }
 
 /* Sixteen 4-byte loads at base + offset (bytes). Plain loads: gather instructions were measured four times
@@ -308,7 +309,7 @@ LANES_INLINE lanes_int lanes_gather_bytes(const unsigned char *base, lanes_int o
   return lanes_load_words(base, &offsets);
 }
 
-/* One of sixteen words for every lane. */
+/* words[index] for every lane. */
 LANES_CALL lanes_int lanes_look_up(lanes_int words, lanes_int index) {
 #if defined(__AVX512F__)
   return (lanes_int)_mm512_permutexvar_epi32((__m512i)index, (__m512i)words);
@@ -426,7 +427,8 @@ LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lane
 }
 
 #if defined(__AVX2__)
-/* Two pairs of floats from anywhere: memcpy, for a double's load would want eight bytes' alignment. */
+/* Two pairs of floats from any addresses: by memcpy, as loading a double would require alignment to eight
+ * bytes. */
 LANES_INLINE __m128 two_pairs(const float *table, int32_t first, int32_t second) {
   double pair[2];
   memcpy(&pair[0], table + first, sizeof(double));
@@ -471,7 +473,7 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
 #endif
 }
 
-/* The same of numbers of 16 bits: one load of four bytes a lane. */
+/* The same for 16-bit numbers: one load of four bytes a lane. */
 LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int index, lanes_int *first,
                                            lanes_int *second) {
   lanes_int pair = lanes_gather_bytes((const unsigned char *)table, index * 2);
@@ -485,7 +487,7 @@ typedef struct lanes_squares {
 } lanes_squares;
 
 #if defined(__AVX512BW__)
-/* The least column and row of the active lanes, in 16 bits each of every lane; both are below 65535. */
+/* The least column and row of the active lanes, in all lanes, 16 bits each; both are below 65535. */
 LANES_INLINE __m512i least_corner(__m512i corners, __mmask16 active) {
   __m512i held = _mm512_mask_mov_epi32(_mm512_set1_epi32(-1), active, corners);
   __m256i of_eight = _mm256_min_epu16(_mm512_castsi512_si256(held), _mm512_extracti64x4_epi64(held, 1));
@@ -502,8 +504,8 @@ LANES_INLINE __m512i four_rows(const uint16_t *from, size_t stride) {
   return _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + 3 * stride)), 3);
 }
 
-/* Squares of lanes near each other, one active lane at least, lie in eight rows of eight numbers. False where
- * they do not. */
+/* Takes the lanes' squares from one window of eight rows of eight numbers. False where the squares are too
+ * far apart. At least one lane is active. */
 LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_squares squares,
                                    uint32_t active, __m512i pair[2]) {
   __m512i corners = _mm512_or_si512((__m512i)squares.column, _mm512_slli_epi32((__m512i)squares.row, 16));
@@ -522,8 +524,9 @@ LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_s
 }
 #endif
 
-/* Of each active lane table[stride * row + column], the number beside it, the one below and the one beside
- * that. Columns and rows are below 65535; six more of them may be read. */
+/* For each active lane table[stride * row + column] as square[0], the next number in the row as square[1],
+ * and those of the next row as square[2] and square[3]. Columns and rows are below 65535; up to six further
+ * ones may be read. */
 LANES_CALL void lanes_gather_short_squares(const uint16_t *table, size_t stride, lanes_squares squares,
                                            uint32_t active, lanes_int square[4]) {
 #if defined(__AVX512BW__)
@@ -556,7 +559,7 @@ LANES_CALL lanes lanes_exp2(lanes x) {
   p = lanes_fma(p, f, lanes_set(1.0f));
   return p * (lanes)((n + 127) << 23);
 }
-/* exp(-x) for x >= 0; below 1e-37 it is held there. */
+/* exp(-x) for x >= 0, at least 1e-37. */
 LANES_CALL lanes lanes_exp_negative(lanes x) {
   return lanes_exp2(lanes_max(x * -1.44269504089f, lanes_set(-123.0f)));
 }
@@ -575,7 +578,7 @@ LANES_CALL lanes lanes_log2(lanes x) {
 }
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* The least lane of each of four. */
+/* The least lane of each of four vectors. */
 LANES_INLINE __m128i lanes_least_of_each(const lanes_int x[4]) {
   __m128i of_four[4];
   for (int i = 0; i < 4; i++) {

@@ -92,15 +92,16 @@ static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *e
   }
 }
 
-/* Where the covered part of the slab [height - spacing, height] begins and how long it is, in slabs. */
-typedef struct covered_part {
+/* The part of the slab [height - spacing, height] that lies in the box: where it begins and its length, in
+ * slabs. */
+typedef struct covered_span {
   lanes begin, length;
-} covered_part;
+} covered_span;
 
-LANES_INLINE covered_part covered(lanes enter, lanes leave, float height, float spacing) {
+LANES_INLINE covered_span covered(lanes enter, lanes leave, float height, float spacing) {
   lanes top = lanes_min(leave, lanes_set(height));
   lanes bottom = lanes_max(enter, lanes_set(height - spacing));
-  return (covered_part){lanes_min((bottom - (height - spacing)) * (1.0f / spacing), lanes_set(1.0f)),
+  return (covered_span){lanes_min((bottom - (height - spacing)) * (1.0f / spacing), lanes_set(1.0f)),
                         lanes_max((top - bottom) * (1.0f / spacing), lanes_set(0))};
 }
 

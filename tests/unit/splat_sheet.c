@@ -488,7 +488,7 @@ static void test_relevant_blocks_miss_nothing(void **state) {
 
 /* The rays of all pixels in the blocks that matter stay in the box through slabs that are said to be
  * whole. */
-static void test_whole_slabs_are_not_cut(void **state) {
+static void test_uncut_slabs_are_not_cut(void **state) {
   (void)state;
   static uint8_t voxels[NOISE_SIDE * NOISE_SIDE * NOISE_SIDE];
   fill_noise(voxels, 73);
@@ -496,7 +496,7 @@ static void test_whole_slabs_are_not_cut(void **state) {
   bench_open(&bench, (size_t[3]){NOISE_SIDE, NOISE_SIDE, NOISE_SIDE}, HL_STORAGE_U8, voxels,
              bench_oblique_axes());
   uint32_t seed = 8;
-  long whole = 0, cut = 0;
+  long uncut = 0, cut = 0;
   for (int round = 0; round < 2 * ORIENTATIONS; round++) {
     look_at_random(&bench, &seed, round, 0.2, HL_KERNEL_BSPLINE);
     slab_run run = bench_run(&bench, 0);
@@ -514,13 +514,13 @@ static void test_whole_slabs_are_not_cut(void **state) {
           if (!(found.blocks[slab] >> (i / BLOCK_PIXELS) & 1)) continue;
           bool inside = enter[i] <= slab * bench.sheets.spacing &&
                         leave[i] >= (slab + 1) * bench.sheets.spacing;
-          if (found.whole >> slab & 1) assert_true(inside);
-          whole += found.whole >> slab & 1;
+          if (found.uncut >> slab & 1) assert_true(inside);
+          uncut += found.uncut >> slab & 1;
           cut += !inside;
         }
     }
   }
-  assert_true(whole > 1000 && cut > 1000);
+  assert_true(uncut > 1000 && cut > 1000);
   bench_close(&bench);
 }
 
@@ -581,7 +581,7 @@ int main(void) {
       cmocka_unit_test(test_cells_are_what_their_voxels_say),
       cmocka_unit_test(test_bits_are_what_cells_can_show),
       cmocka_unit_test(test_relevant_blocks_miss_nothing),
-      cmocka_unit_test(test_whole_slabs_are_not_cut),
+      cmocka_unit_test(test_uncut_slabs_are_not_cut),
       cmocka_unit_test(test_kernels_sum_to_one),
       cmocka_unit_test(test_projection_inverts_rays),
   };
