@@ -6,7 +6,9 @@
 
 int hl_cpu_has_instruction_set(hl_instruction_set set) {
   if (set == HL_INSTRUCTION_SET_SCALAR) return 1;
-#if defined(__x86_64__)
+#if defined(HL_SCALAR_ONLY)
+  return 0;
+#elif defined(__x86_64__)
   __builtin_cpu_init();
   if (set == HL_INSTRUCTION_SET_AVX2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   int wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&

@@ -29,7 +29,9 @@ extern const hot_functions hl_hot_neon;
 #endif
 
 static inline const hot_functions *hl_hot_functions(hl_instruction_set set) {
-#if defined(__x86_64__)
+#if defined(HL_SCALAR_ONLY)
+  /* no other table is built */
+#elif defined(__x86_64__)
   if (set == HL_INSTRUCTION_SET_AVX512_VBMI) return &hl_hot_avx512_vbmi;
   if (set == HL_INSTRUCTION_SET_AVX512) return &hl_hot_avx512;
   if (set == HL_INSTRUCTION_SET_AVX2) return &hl_hot_avx2;

@@ -5,7 +5,7 @@
  * Prints one line per scene and shadow setting: the root mean square, greatest and mean signed differences
  * of renderer - reference over R, G, B, A, and the pixel of the greatest one. Without options it is a test:
  * exit status 1 if a picture is further from the reference than its bar. --only picks scenes by part of their
- * name, --soft adds the soft methods (without bars), --write keeps the pictures as
+ * name, --soft adds the soft methods where they have no bars, --write keeps the pictures as
  * FOLDER/NAME-SHADOWS-renderer.npy and -reference.npy.
  */
 #include <setjmp.h>
@@ -33,7 +33,9 @@ typedef struct shadow_setting {
   hl_soft_method method;
 } shadow_setting;
 
-static const shadow_setting SETTINGS[] = {
+enum { FIRST_SOFT = 2, SETTINGS_COUNT = 5 };
+
+static const shadow_setting SETTINGS[SETTINGS_COUNT] = {
     {"off", HL_SHADOWS_OFF, HL_SOFT_CASCADE},          {"hard", HL_SHADOWS_HARD, HL_SOFT_CASCADE},
     {"cascade", HL_SHADOWS_SOFT, HL_SOFT_CASCADE},     {"paper", HL_SHADOWS_SOFT, HL_SOFT_PAPER},
     {"sublights", HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS},
@@ -94,9 +96,11 @@ static int compare_one(stage *set, const scenario *scene, const shadow_setting *
   keep(set->context, chosen, scene->name, setting->name, "reference", reference);
   keep(set->context, chosen, scene->name, setting->name, "renderer", rendered);
   hl_image_destroy(rendered);
-  int barred = setting->shadows != HL_SHADOWS_SOFT && scene->bar > 0 && chosen->spacing <= 0.5 &&
-               chosen->size >= 64;
-  return !barred || difference.rmse <= scene->bar;
+  int soft = setting->shadows == HL_SHADOWS_SOFT;
+  double bar = soft ? scene->soft_bars[setting - &SETTINGS[FIRST_SOFT]] : scene->bar;
+  int barred = bar > 0 && chosen->spacing <= 0.5 && chosen->size >= 64 &&
+               (!soft || chosen->light_points >= 16);
+  return !barred || difference.rmse <= bar;
 }
 
 /* Every setting of one scene; the reference is rendered again only where its picture changes. Returns how
@@ -115,7 +119,8 @@ static int compare_all(const scenario *scene, const choices *chosen) {
   hl_reference_options_defaults(&options);
   options.light_points = chosen->light_points;
   set.scene.render.shadows = HL_SHADOWS_DEFAULT;
-  for (size_t s = 0; s < (chosen->soft ? 5 : 2); s++) {
+  size_t count = chosen->soft || scene->soft_bars[0] > 0 ? SETTINGS_COUNT : FIRST_SOFT;
+  for (size_t s = 0; s < count; s++) {
     int same = set.scene.render.shadows == SETTINGS[s].shadows;
     set.scene.render.shadows = SETTINGS[s].shadows;
     set.scene.render.soft_method = SETTINGS[s].method;
@@ -128,7 +133,7 @@ static int compare_all(const scenario *scene, const choices *chosen) {
 }
 
 static int read_choices(int argc, char **argv, choices *chosen) {
-  *chosen = (choices){.size = 64, .spacing = 0.5, .light_points = 64};
+  *chosen = (choices){.size = 64, .spacing = 0.5, .light_points = 16};
   for (int i = 1; i < argc; i++) {
     const char *value = i + 1 < argc ? argv[i + 1] : NULL;
     if (strcmp(argv[i], "--soft") == 0) {

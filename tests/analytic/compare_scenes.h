@@ -7,7 +7,9 @@
 typedef struct scenario {
   const char *name;
   void (*make)(stage *set);
-  double bar; /* RMSE at sheet spacing 0.5 and 64 pixels or more; 0: none yet */
+  double bar;          /* RMSE at sheet spacing 0.5 and 64 pixels or more; 0: none yet */
+  double soft_bars[3]; /* likewise of cascade, paper and sub-lights, the reference's lights of 16 points or
+                          more; 0: none */
 } scenario;
 
 const scenario *compare_scenarios(size_t *count);

@@ -80,6 +80,63 @@ def sum_layers(picture, *layers):
             assert abs(total - numbers[4 * i + c]) < 2e-6, f"pixel {i}: {total} is not {numbers[4 * i + c]}"
 
 
+def exr_channels(path):
+    """{channel name: rows of floats} of an OpenEXR file of 32-bit floats in scan lines, ZIP compressed
+    (openexr.com, "OpenEXR file layout"): chunks of 16 lines, each line one channel after the other."""
+    data = open(path, "rb").read()
+    assert data[:8] == bytes([0x76, 0x2F, 0x31, 1, 2, 0, 0, 0]), f"{path} is no OpenEXR file of scan lines"
+    at, attributes = 8, {}
+    while data[at] != 0:
+        name, kind = data.index(0, at), data.index(0, data.index(0, at) + 1)
+        size, = struct.unpack("<i", data[kind + 1:kind + 5])
+        attributes[data[at:name].decode()] = data[kind + 5:kind + 5 + size]
+        at = kind + 5 + size
+    left, top, right, bottom = struct.unpack("<4i", attributes["dataWindow"])
+    width, height = right - left + 1, bottom - top + 1
+    assert attributes["compression"] == b"\x03", "not ZIP"
+    names, channels = [], attributes["channels"]
+    while channels[0] != 0:
+        end = channels.index(0)
+        names.append(channels[:end].decode())
+        assert struct.unpack("<i", channels[end + 1:end + 5])[0] == 2, "not 32-bit floats"
+        channels = channels[end + 17:]
+    rows = {name: [None] * height for name in names}
+    chunk_count = (height + 15) // 16
+    for offset in struct.unpack(f"<{chunk_count}Q", data[at + 1:at + 1 + 8 * chunk_count]):
+        first, size = struct.unpack("<ii", data[offset:offset + 8])
+        chunk, lines = data[offset + 8:offset + 8 + size], min(16, top + height - first)
+        if size < lines * width * 4 * len(names):  # else it is stored as it is
+            coded = bytearray(zlib.decompress(chunk))
+            for i in range(1, len(coded)):
+                coded[i] = (coded[i - 1] + coded[i] - 128) & 255
+            half, chunk = (len(coded) + 1) // 2, bytearray(len(coded))
+            chunk[0::2], chunk[1::2] = coded[:half], coded[half:]
+        numbers = struct.unpack(f"<{lines * width * len(names)}f", chunk)
+        for line in range(lines):
+            for i, name in enumerate(names):
+                start = (line * len(names) + i) * width
+                rows[name][first - top + line] = numbers[start:start + width]
+    return rows
+
+
+def exr_holds(exr, picture, *layers):
+    """The OpenEXR file's channels are those of the .npy picture (R G B A) and of LAYER=CHANNELS (light0=RGB: channels
+    light0.R, light0.G, light0.B of PICTURE-light0.npy), no more, and have the same numbers. Two channels that are alike would not
+    show that they were exchanged: they are refused."""
+    rows, held, stem = exr_channels(exr), {}, picture.removesuffix(".npy")
+    for layer in ("=RGBA", *layers):
+        name, letters = layer.split("=")
+        height, width, channels, numbers = read_npy(f"{stem}-{name}.npy" if name else picture)
+        assert channels == len(letters), f"{layer}: {channels} channels"
+        for c, letter in enumerate(letters):
+            held[f"{name}.{letter}" if name else letter] = numbers[c::channels]
+    assert sorted(rows) == sorted(held), f"channels {sorted(rows)}, not {sorted(held)}"
+    for name, numbers in held.items():
+        found = tuple(value for row in rows[name] for value in row)
+        assert found == numbers, f"{name}: other numbers than in the .npy"
+    assert len(set(held.values())) == len(held), "two channels are alike"
+
+
 def png_chunks(path):
     data = open(path, "rb").read()
     assert data[:8] == b"\x89PNG\r\n\x1a\n", f"{path} is no PNG file"
@@ -157,7 +214,7 @@ def json_get(path, expression):
 
 
 COMMANDS = {"ball": ball, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
-            "sum_layers": sum_layers,
+            "sum_layers": sum_layers, "exr-holds": exr_holds,
             "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel,
             "ppm-of-png": ppm_of_png, "json": json_get}
 COMMANDS[sys.argv[1]](*sys.argv[2:])

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -242,12 +243,55 @@ static void test_after_fork(void **state) {
   hl_context_destroy(context);
 }
 
-/* A child made while other threads render. */
+/* A frame that stops at one of its questions whether to go on, until it may: its other threads are at work or
+ * wait for it. */
+typedef struct held_frame {
+  pthread_t thread;
+  int question;  /* the one at which it stops, from 0 */
+  int asked;     /* questions of the frame so far */
+  bool in_frame; /* false while the scene is made, which asks, too */
+  sem_t reached, go_on;
+  bool right;
+} held_frame;
+
+static int hold_frame(void *data) {
+  held_frame *held = data;
+  if (!held->in_frame || held->asked++ != held->question) return 0;
+  sem_post(&held->reached);
+  while (sem_wait(&held->go_on) != 0) continue;
+  return 0;
+}
+
+static void *render_held(void *data) {
+  held_frame *held = data;
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.user_data = held;
+  options.cancelled = hold_frame;
+  hl_context *context = NULL;
+  hl_renderer *renderer = NULL;
+  if (hl_context_create(&options, &context, NULL) != HL_OK ||
+      hl_renderer_create(context, &renderer, NULL) != HL_OK)
+    abort();
+  hl_scene *scene = make_scene(context, 0, RENDER_THREADS);
+  held->in_frame = true;
+  held->right = renders(renderer, scene, 0) && held->asked > held->question + 1;
+  if (held->asked <= held->question) sem_post(&held->reached); /* or the test would wait for ever */
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+  hl_context_destroy(context);
+  return NULL;
+}
+
+/* A child made while another thread is within a frame: at its first question, and later ones. */
 static void test_fork_in_the_middle(void **state) {
   (void)state;
-  visitor busy = {.number = 0};
-  assert_int_equal(pthread_create(&busy.thread, NULL, visit, &busy), 0);
   for (int i = 0; i < 5; i++) {
+    held_frame held = {.question = 4 * i};
+    assert_int_equal(sem_init(&held.reached, 0, 0), 0);
+    assert_int_equal(sem_init(&held.go_on, 0, 0), 0);
+    assert_int_equal(pthread_create(&held.thread, NULL, render_held, &held), 0);
+    while (sem_wait(&held.reached) != 0) continue;
     pid_t child = fork();
     if (child == 0) {
       hl_context *context = make_context();
@@ -255,9 +299,12 @@ static void test_fork_in_the_middle(void **state) {
       _exit(renders_afresh(context, scene, 1) ? 0 : 1);
     }
     assert_child_does_well(child);
+    sem_post(&held.go_on);
+    pthread_join(held.thread, NULL);
+    assert_true(held.right);
+    sem_destroy(&held.reached);
+    sem_destroy(&held.go_on);
   }
-  pthread_join(busy.thread, NULL);
-  assert_true(busy.right);
 }
 #endif
 

@@ -7,43 +7,57 @@
 #include "guess/sample.h"
 #include "scene_parts.h"
 
-static const char *data_folder(void) {
+static const struct {
+  const char *file;
+  hl_data_kind kind;
+  double border;
+} SETS[] = {{"bonsai/bonsai.nrrd", HL_DATA_SURFACES, 0.2},
+            {"boston_teapot/boston_teapot.nrrd", HL_DATA_SURFACES, 0.01},
+            {"bucky/Bucky_32x32x32_uint8.raw", HL_DATA_FIELD, 0.08},
+            {"cranium_mha/cranium.mha", HL_DATA_SURFACES, 0.15},
+            {"engine/engine.nrrd", HL_DATA_SURFACES, 0.12},
+            {"fuel/fuel_64x64x64_uint8.raw", HL_DATA_SURFACES, 0.01},
+            {"headmr_mhd/HeadMRVolume.mhd", HL_DATA_SURFACES, 0.05},
+            {"hydrogen_orbital/hydrogen.vti", HL_DATA_FIELD, 0.01},
+            {"hipip_signed/hipip_signed_64x64x64_int16.nrrd", HL_DATA_SIGNED, 0.12},
+            {"ironprot/ironProt.vtk", HL_DATA_FIELD, 0.01},
+            {"mrbrain/head256x256x109_uint8.raw.gz", HL_DATA_SURFACES, 0.06},
+            {"neghip/neghip_64x64x64_uint8.raw", HL_DATA_FIELD, 0.05},
+            {"nucleon/nucleon.nrrd", HL_DATA_FIELD, 0.01},
+            {"silicium/silicium_98x34x34_uint8.raw", HL_DATA_SURFACES, 0.01},
+            {"skull_malformed_nrrd/skull_256x256x68_uint8_fixed.nrrd", HL_DATA_SURFACES, 0.02},
+            {"smoke_plume_pbrt/smoke_plume_100x100x40_float.nrrd", HL_DATA_MEDIUM, 0.06},
+            {"smoke_vdb/smoke_density.nrrd", HL_DATA_MEDIUM, 0.06},
+            {"stent/stent.nrrd", HL_DATA_SURFACES, 0.12},
+            {"stroke_t1_nii/T1.nii.gz", HL_DATA_SURFACES, 0.01},
+            {"wdas_cloud/wdas_cloud_sixteenth_density.nrrd", HL_DATA_MEDIUM, 0.01}};
+
+enum { SET_COUNT = sizeof SETS / sizeof *SETS };
+
+/* The folder named in HALFLIGHT_DATA; null: none is named. */
+static const char *named_folder(void) {
   const char *folder = getenv("HALFLIGHT_DATA");
-  return folder != NULL ? folder : HALFLIGHT_SOURCE "/../shared/data";
+  return folder != NULL && folder[0] != 0 ? folder : NULL;
+}
+
+static void path_of(size_t n, char path[500]) {
+  const char *folder = named_folder();
+  snprintf(path, 500, "%s/%s", folder != NULL ? folder : HALFLIGHT_SOURCE "/../shared/data", SETS[n].file);
 }
 
 /* Real volumes: hardly any of the border is visible, something is, and little of it is not in the picture. */
 static void real_volumes(void **state) {
   (void)state;
-  static const struct {
-    const char *file;
-    hl_data_kind kind;
-    double border;
-  } sets[] = {{"bonsai/bonsai.nrrd", HL_DATA_SURFACES, 0.2},
-              {"boston_teapot/boston_teapot.nrrd", HL_DATA_SURFACES, 0.01},
-              {"bucky/Bucky_32x32x32_uint8.raw", HL_DATA_FIELD, 0.08},
-              {"cranium_mha/cranium.mha", HL_DATA_SURFACES, 0.15},
-              {"engine/engine.nrrd", HL_DATA_SURFACES, 0.12},
-              {"fuel/fuel_64x64x64_uint8.raw", HL_DATA_SURFACES, 0.01},
-              {"headmr_mhd/HeadMRVolume.mhd", HL_DATA_SURFACES, 0.05},
-              {"hydrogen_orbital/hydrogen.vti", HL_DATA_FIELD, 0.01},
-              {"hipip_signed/hipip_signed_64x64x64_int16.nrrd", HL_DATA_SIGNED, 0.12},
-              {"ironprot/ironProt.vtk", HL_DATA_FIELD, 0.01},
-              {"mrbrain/head256x256x109_uint8.raw.gz", HL_DATA_SURFACES, 0.06},
-              {"neghip/neghip_64x64x64_uint8.raw", HL_DATA_FIELD, 0.05},
-              {"nucleon/nucleon.nrrd", HL_DATA_FIELD, 0.01},
-              {"silicium/silicium_98x34x34_uint8.raw", HL_DATA_SURFACES, 0.01},
-              {"skull_malformed_nrrd/skull_256x256x68_uint8_fixed.nrrd", HL_DATA_SURFACES, 0.02},
-              {"smoke_plume_pbrt/smoke_plume_100x100x40_float.nrrd", HL_DATA_MEDIUM, 0.06},
-              {"smoke_vdb/smoke_density.nrrd", HL_DATA_MEDIUM, 0.06},
-              {"stent/stent.nrrd", HL_DATA_SURFACES, 0.12},
-              {"stroke_t1_nii/T1.nii.gz", HL_DATA_SURFACES, 0.01},
-              {"wdas_cloud/wdas_cloud_sixteenth_density.nrrd", HL_DATA_MEDIUM, 0.01}};
   hl_context *context = make_context();
-  for (size_t n = 0; n < sizeof sets / sizeof *sets; n++) {
+  for (size_t n = 0; n < SET_COUNT; n++) {
     char path[500];
-    snprintf(path, sizeof path, "%s/%s", data_folder(), sets[n].file);
-    if (access(path, R_OK) != 0) continue;
+    path_of(n, path);
+    if (access(path, R_OK) != 0) {
+      /* A folder that is named must hold what is to be tested; the one found by chance may hold some. */
+      if (named_folder() != NULL) fail_msg("HALFLIGHT_DATA names a folder without %s", SETS[n].file);
+      print_message("# %s is not there\n", SETS[n].file);
+      continue;
+    }
     hl_volume *volume = NULL;
     hl_error error = {0};
     if (hl_volume_load(context, path, &volume, &error) != HL_OK) fail_msg("%s", error.message);
@@ -67,8 +81,8 @@ static void real_volumes(void **state) {
                      0.02;
     double part = (double)seen / (double)sample.count,
            border = (double)seen_border / (double)sample.border_count;
-    if (a.kind != sets[n].kind || border > sets[n].border || part < 0.005 || part > 0.5)
-      fail_msg("%s: kind %d, %.4f of the voxels and %.4f of the border visible", sets[n].file, (int)a.kind,
+    if (a.kind != SETS[n].kind || border > SETS[n].border || part < 0.005 || part > 0.5)
+      fail_msg("%s: kind %d, %.4f of the voxels and %.4f of the border visible", SETS[n].file, (int)a.kind,
                part, border);
     assert_true(high && (low == (a.kind == HL_DATA_SIGNED)));
     hl_sample_release(&sample);
@@ -79,9 +93,19 @@ static void real_volumes(void **state) {
   hl_context_destroy(context);
 }
 
+static size_t volumes_at_hand(void) {
+  size_t count = 0;
+  for (size_t n = 0; n < SET_COUNT; n++) {
+    char path[500];
+    path_of(n, path);
+    count += access(path, R_OK) == 0;
+  }
+  return count;
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(real_volumes)};
-  if (access(data_folder(), R_OK) == 0) return cmocka_run_group_tests(tests, NULL, NULL);
-  printf("1..0 # SKIP the real volumes are not there: name their folder in HALFLIGHT_DATA\n");
+  if (named_folder() != NULL || volumes_at_hand() > 0) return cmocka_run_group_tests(tests, NULL, NULL);
+  puts("1..0 # SKIP the real volumes are not there: name their folder in HALFLIGHT_DATA");
   return 0;
 }
