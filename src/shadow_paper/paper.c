@@ -1,44 +1,62 @@
-/* shadow_paper/paper.c - the convolution of the accumulated shadow buffer. */
-#include "shadow_paper/paper.h"
+/* shadow_paper/paper.c - the paper's soft shadows (sections 5.1 and 5.2), kept faithful as the baseline.
+ *
+ * One accumulated buffer, convolved again and again with a box of the width that eq. (5) gives for the step
+ * from the last convolved sheet to the next one, or with the light's own image at that width. Under
+ * convolution variances add, not widths: the penumbra grows as the square root of distance. This is the
+ * paper's method, and the error that other methods improve on. */
+#include <string.h>
 
 #include "light/light_extent.h"
+#include "shadow/blur.h"
+#include "shadow/shadow_method.h"
 
-#include <string.h>
+typedef struct soft_paper {
+  const light_image *image; /* null: boxes */
+  bool parallel;
+  double size;         /* L of the virtual light; parallel: L / Z */
+  double light_height; /* of the light along the sheets' normal (not parallel) */
+  double pixel;        /* buffer pixel: frame units; not parallel: at distance 1 */
+  double last;         /* height of the last convolved sheet */
+  double remainder;    /* accumulated width not yet convolved, pixels */
+  int reach;           /* pixels beyond a tile that the buffer's margin lets blurs read */
+} soft_paper;
 
 /* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets
  * (section 5.2, (1)), of average size (section 5.2, (3)): a disk of diameter L tilted by t becomes an ellipse
  * with axes L and L cos t. Z is measured along the sheets' normal; for parallel light L / Z then is (L / D) /
  * cos t with L / D = 2 tan(angle / 2) along the ray (derived). */
-void hl_soft_paper_begin(soft_paper *soft, const light_source *source, vec3 normal, double first,
-                         const view *view, light_image *image) {
+static void see_light(soft_paper *soft, const shadow_setup *setup, const view *view) {
+  const light_source *source = setup->source;
+  vec3 normal = setup->sheets->normal;
   double tilt = fmax(vec3_dot(source->direction, normal), 1e-3);
   soft->parallel = source->parallel;
   soft->size = hl_light_average_size(source, normal);
-  if (image != NULL) hl_light_image_project(source, view, soft->size, image);
-  soft->image = image;
+  if (setup->image != NULL) hl_light_image_project(source, view, soft->size, setup->image);
+  soft->image = setup->image;
   if (source->parallel) soft->size /= tilt;
   soft->light_height = vec3_dot(source->position, normal);
   soft->pixel = vec3_length(view->du);
-  soft->last = first;
+  soft->last = setup->sheets->first;
   soft->remainder = 0;
 }
 
 /* eq. (5): dx = L dZ / Z; seen from the light's centre at distance 1, dx / (Z + dZ) = L (1/Z - 1/(Z +
  * dZ)). */
-double hl_soft_paper_width(const soft_paper *soft, double from, double to) {
+static double width_between(const soft_paper *soft, double from, double to) {
   if (soft->parallel) return soft->size * (to - from) / soft->pixel;
   double near = from - soft->light_height, far = to - soft->light_height;
   if (near <= 0 || far <= near) return 0;
   return soft->size * (1 / near - 1 / far) / soft->pixel;
 }
 
-/* The first convolution comes after two sheets. */
-int hl_soft_paper_reach(soft_paper *soft, double first, double spacing, int sheets) {
-  double widest = hl_soft_paper_width(soft, first, first + 2 * spacing);
-  for (int k = 1; k < sheets; k++)
-    widest = fmax(widest, hl_soft_paper_width(soft, first + k * spacing, first + (k + 1) * spacing));
-  soft->reach = (int)fmin(soft->image != NULL ? soft->image->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
-  return soft->reach;
+/* The widest box that a sweep of these sheets can need, pixels. The first convolution comes after two
+ * sheets. */
+static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
+  double first = sheets->first, spacing = sheets->spacing;
+  double widest = width_between(soft, first, first + 2 * spacing);
+  for (int k = 1; k < sheets->count; k++)
+    widest = fmax(widest, width_between(soft, first + k * spacing, first + (k + 1) * spacing));
+  return (int)fmin(soft->image != NULL ? soft->image->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
 }
 
 /* One convolution: from the buffer to the scratch and back, tile by tile, all channels of a tile in one
@@ -160,17 +178,39 @@ static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, h
 
 /* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest.
  * An image has one tap a pixel and no more of them than cells: wider steps are several. */
-void hl_soft_paper_convolve(soft_paper *soft, shadow_buffer *buffer, double next, hl_pool *pool,
-                            const blur_functions *blur) {
-  double width = soft->remainder + hl_soft_paper_width(soft, soft->last, next);
+static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int sheet) {
+  (void)occupancy;
+  soft_paper *soft = shadow->state;
+  double next = hl_sheet_height(shadow->setup.sheets, sheet + 1);
+  double width = soft->remainder + width_between(soft, soft->last, next);
   double most = soft->image == NULL ? 2 * soft->reach
                                     : IMAGE_SIDE; /* no box reads beyond the buffer's margin */
   if (width <= 2) return;
   do {
     double whole = fmin(floor(width), most);
-    convolve(soft, buffer, (int)whole, pool, blur);
+    convolve(soft, shadow->buffer, (int)whole, shadow->setup.pool,
+             &shadow->setup.functions->blur);
     width -= whole;
   } while (width > 2 && soft->image != NULL);
   soft->remainder = width;
   soft->last = next;
 }
+
+static void plan_paper(light_shadow *shadow) {
+  const shadow_setup *setup = &shadow->setup;
+  const sheet_stack *sheets = setup->sheets;
+  shadow_plan *plan = &shadow->plan;
+  soft_paper *soft = shadow->state;
+  plan->cubic = setup->settings->shadow_lookup == HL_LOOKUP_CUBIC;
+  plan->second = true; /* between two blurs */
+  hl_plan_soft(shadow, hl_blurred_pixel(setup, plan->cubic));
+  hl_shadow_view(setup->source, sheets->normal, &plan->extent, &plan->view);
+  see_light(soft, setup, &plan->view);
+  plan->reach = soft->reach = widest_reach(soft, sheets);
+}
+
+const shadow_method hl_shadow_paper = {.name = "paper",
+                                       .state_bytes = sizeof(soft_paper),
+                                       .first_slab = 1,
+                                       .plan = plan_paper,
+                                       .advance = advance_paper};

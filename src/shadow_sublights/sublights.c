@@ -4,32 +4,29 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "light/light_extent.h"
+#include "shadow/shadow_method.h"
 
 /* More than this is refused beforehand. */
 static const double GREATEST_BYTES = 4294967296.0;
 
 enum { MOVED_IMAGES = SLAB_IMAGES - 1 };
 
-/* What part i of side x side sees; the greatest numbers of tiles. */
-static void place_part(const light_source *source, const light_image *image, int side, int i, vec3 normal,
-                       const shadow_extent *extent, view *view, int *tiles_x, int *tiles_y) {
+/* What sub-light i sees; raises the greatest numbers of tiles. */
+static void place_part(const light_shadow *shadow, int i, view *view, int *tiles_x, int *tiles_y) {
+  const shadow_setup *setup = &shadow->setup;
+  const light_source *source = setup->source;
+  int side = setup->settings->light_samples;
   double square[2];
   light_source part = *source;
-  if (image == NULL) hl_light_part(source, side, i / side, i % side, square);
+  if (setup->image == NULL) hl_light_part(source, side, i / side, i % side, square);
   else hl_light_grid_part(side, i / side, i % side, square);
   vec3 offset = hl_light_point(source, square[0], square[1]);
   if (source->parallel) part.direction = vec3_normalise(vec3_add(source->direction, offset));
   else part.position = vec3_add(source->position, offset);
-  hl_shadow_view(&part, normal, extent, view);
+  hl_shadow_view(&part, setup->sheets->normal, &shadow->plan.extent, view);
   if (hl_tiles(view->width) > *tiles_x) *tiles_x = hl_tiles(view->width);
   if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
-}
-
-static void place_parts(sublights *sublights, const light_source *source, const light_image *image, int side,
-                        vec3 normal, const shadow_extent *extent) {
-  for (int i = 0; i < sublights->count; i++)
-    place_part(source, image, side, i, normal, extent, &sublights->parts[i].view, &sublights->tiles_x,
-               &sublights->tiles_y);
 }
 
 /* A margin of a tile on either side, where tiles of the slab reach across the edges; look-ups may read rows
@@ -40,22 +37,24 @@ static void lay_out_planes(sublights *sublights) {
   sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
 
-uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
-                            const shadow_extent *extent, int channels, const view *slab, int reach) {
+static shadow_bytes bytes_of_sublights(const light_shadow *shadow) {
+  const shadow_setup *setup = &shadow->setup;
+  const view *slab = &shadow->plan.view;
+  int side = setup->settings->light_samples, channels = setup->channels, reach = shadow->plan.reach;
   sublights planned = {.channels = channels};
   uint64_t count = (uint64_t)side * (uint64_t)side,
            slab_tiles = (uint64_t)hl_tiles(slab->width) * (uint64_t)hl_tiles(slab->height);
   view view;
-  for (int i = 0; i < side * side; i++)
-    place_part(source, image, side, i, normal, extent, &view, &planned.tiles_x, &planned.tiles_y);
+  for (int i = 0; i < side * side; i++) place_part(shadow, i, &view, &planned.tiles_x, &planned.tiles_y);
   lay_out_planes(&planned);
   uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
-  return count * (uint64_t)channels * planned.plane * sizeof(part_pixel) +
-         count * tiles * (sizeof *planned.flags + 1) +
-         slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
-         count * (sizeof *planned.parts + sizeof *planned.lookups) +
-         hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) -
-         hl_shadow_buffer_bytes(slab, 0, false, reach);
+  uint64_t bytes = count * (uint64_t)channels * planned.plane * sizeof(part_pixel) +
+                   count * tiles * (sizeof *planned.flags + 1) +
+                   slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
+                   count * (sizeof *planned.parts + sizeof *planned.lookups) +
+                   hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) -
+                   hl_shadow_buffer_bytes(slab, 0, false, reach);
+  return (shadow_bytes){.passing = bytes};
 }
 
 static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const shadow_buffer *slab,
@@ -108,18 +107,21 @@ static hl_status weigh_parts(hl_context *context, sublights *sublights, const li
   return HL_OK;
 }
 
-hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights,
-                             const light_source *source, const light_image *image, int side, vec3 normal,
-                             const shadow_extent *extent, const shadow_buffer *slab, hl_error *error) {
-  hl_context *context = reserve->context;
+static hl_status begin_sublights(light_shadow *shadow, shadow_memory *memory, hl_error *error) {
+  (void)memory;
+  const shadow_setup *setup = &shadow->setup;
+  hl_context *context = setup->context;
+  sublights *sublights = shadow->state;
+  int side = setup->settings->light_samples;
   size_t count = (size_t)side * (size_t)side;
   sublights->parts = hl_allocate_zeroed(context, count, sizeof *sublights->parts);
   if (sublights->parts == NULL)
     return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
   sublights->count = (int)count;
-  sublights->channels = slab->channels;
-  place_parts(sublights, source, image, side, normal, extent);
-  hl_status status = allocate(reserve, pool, sublights, slab, error);
+  sublights->channels = setup->channels;
+  for (int i = 0; i < sublights->count; i++)
+    place_part(shadow, i, &sublights->parts[i].view, &sublights->tiles_x, &sublights->tiles_y);
+  hl_status status = allocate(setup->reserve, setup->pool, sublights, shadow->buffer, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < count; i++) {
     sublights->lookups[i] = (part_lookup){.map = hl_map_of_view(&sublights->parts[i].view),
@@ -128,16 +130,19 @@ hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *subl
     for (int c = 0; c < sublights->channels; c++)
       sublights->lookups[i].left[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
   }
-  return image != NULL ? weigh_parts(context, sublights, source, side, error) : HL_OK;
+  shadow->sublights = sublights->lookups;
+  shadow->sublight_count = sublights->count;
+  return setup->image != NULL ? weigh_parts(context, sublights, setup->source, side, error) : HL_OK;
 }
 
-void hl_sublights_release(hl_reserve *reserve, sublights *sublights) {
+static void end_sublights(light_shadow *shadow) {
+  hl_reserve *reserve = shadow->setup.reserve;
+  sublights *sublights = shadow->state;
   void *owned[] = {sublights->parts, sublights->lookups, sublights->flags,
                    sublights->marks, sublights->rows,    sublights->found};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(reserve->context, owned[i]);
   hl_reserve_return(reserve, sublights->memory);
   hl_reserve_return(reserve, sublights->moved);
-  memset(sublights, 0, sizeof *sublights);
 }
 
 /* ---- compositing ---- */
@@ -376,11 +381,16 @@ static void place_run(sublights *sublights, const shadow_buffer *slab, vec3 norm
   }
 }
 
-void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to,
-                          hl_pool *pool, const sublight_functions *functions) {
+static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, int sheet) {
+  (void)occupancy;
+  const sheet_stack *sheets = shadow->setup.sheets;
+  double from = hl_sheet_height(sheets, sheet - 1), to = hl_sheet_height(sheets, sheet);
+  sublights *sublights = shadow->state;
+  shadow_buffer *slab = shadow->buffer;
+  hl_pool *pool = shadow->setup.pool;
   for (int i = 0; i < sublights->count; i++)
-    map_part(sublights, &sublights->parts[i], slab, normal, (from + to) / 2);
-  sublight_task task = {.sublights = sublights, .slab = slab, .functions = functions};
+    map_part(sublights, &sublights->parts[i], slab, sheets->normal, (from + to) / 2);
+  sublight_task task = {.sublights = sublights, .slab = slab, .functions = shadow->setup.functions->sublights};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
   int run = run_of_slab(sublights->slabs++);
   task.ends_run = run_of_slab(sublights->slabs) != run;
@@ -388,7 +398,7 @@ void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal
   if (task.x1 >= 0 || task.ends_run)
     hl_pool_run(pool, (size_t)sublights->count * (size_t)sublights->tiles_y, advance_row, &task);
   hl_pool_run(pool, (size_t)slab->tiles_y, clear_row, &task);
-  if (task.ends_run) place_run(sublights, slab, normal, to, to - from);
+  if (task.ends_run) place_run(sublights, slab, sheets->normal, to, to - from);
 }
 
 /* ---- what light reaches ---- */
@@ -483,3 +493,31 @@ void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size
   slab->tile_lit[tile] = (uint16_t)lit;
   sublights->found[tile] = run;
 }
+
+/* ---- the method ---- */
+
+static const double SUBLIGHT_PIXEL_PER_IMAGE_PIXEL = 1.5;
+
+static void plan_sublights(light_shadow *shadow) {
+  const shadow_setup *setup = &shadow->setup;
+  shadow_plan *plan = &shadow->plan;
+  hl_plan_soft(shadow, fmin(SUBLIGHT_PIXEL_PER_IMAGE_PIXEL * setup->middle_pixel,
+                            hl_shadow_pixel(setup, plan->cubic)));
+  plan->extent.u = plan->seen.u;
+  plan->reach = SUBLIGHT_REACH;
+  hl_shadow_view(setup->source, setup->sheets->normal, &plan->extent, &plan->view);
+}
+
+static void find_lit(light_shadow *shadow, size_t tile) {
+  hl_sublights_find_lit(shadow->state, shadow->buffer, tile);
+}
+
+const shadow_method hl_shadow_sublights = {.name = "sublights",
+                                           .state_bytes = sizeof(sublights),
+                                           .first_slab = 1,
+                                           .plan = plan_sublights,
+                                           .bytes = bytes_of_sublights,
+                                           .begin = begin_sublights,
+                                           .find_lit = find_lit,
+                                           .advance = advance_sublights,
+                                           .end = end_sublights};

@@ -9,10 +9,6 @@
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
-#include "core/memory.h"
-#include "core/pool.h"
-#include "light/light_extent.h"
-#include "light/light_image.h"
 #include "shadow/shadow_lookup.h"
 #include "shadow_sublights/sublight_field.h"
 
@@ -51,20 +47,6 @@ typedef struct sublights {
   uint32_t
       *found; /* owned; [tiles of the slab]; the run of slabs for which its lit blocks were found; 0: none */
 } sublights;
-
-/* image: the light's, null where it is even. side: M. slab: the buffer of one slab at a time. */
-hl_status hl_sublights_begin(hl_reserve *reserve, hl_pool *pool, sublights *sublights,
-                             const light_source *source, const light_image *image, int side, vec3 normal,
-                             const shadow_extent *extent, const shadow_buffer *slab, hl_error *error);
-/* The bytes that they then hold. slab, reach: of that buffer. */
-uint64_t hl_sublights_bytes(const light_source *source, const light_image *image, int side, vec3 normal,
-                            const shadow_extent *extent, int channels, const view *slab, int reach);
-void hl_sublights_release(hl_reserve *reserve, sublights *sublights);
-
-/* After the slab between these heights was composited into slab, a buffer that held ones: composites it into
- * all parts, and makes slab ones again. */
-void hl_sublights_advance(sublights *sublights, shadow_buffer *slab, vec3 normal, double from, double to,
-                          hl_pool *pool, const sublight_functions *functions);
 
 /* Finds the blocks of a tile of the next slab that some part's light still reaches: slab's tile_lit. One task
  * has a tile. */
