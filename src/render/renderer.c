@@ -418,7 +418,7 @@ static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_descrip
     status = hl_fail_memory(error, (size_t)work->sweep_count * sizeof *bytes, "the frame");
   for (int s = 0; s < work->sweep_count && status == HL_OK; s++) {
     sweep planned = sweep_of(renderer, scene, work, s);
-    bytes[s] = hl_sweep_bytes(&planned, points, hl_pool_threads(renderer->pool));
+    status = hl_sweep_bytes(&planned, points, hl_pool_threads(renderer->pool), &bytes[s], error);
   }
   uint64_t needed = status == HL_OK ? hl_sweeps_bytes(bytes, work->sweep_count, work->layers.wanted != NULL)
                                     : 0;

@@ -157,7 +157,7 @@ typedef struct sweep_bytes {
 
 /* The sweep's context, scene, frame, geometry, grids and channels must be set. points: room for the corners
  * that hl_frame_visible_points() gives. threads: of the pool. */
-sweep_bytes hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads);
+hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error);
 
 /* The sheet loop: steps 3 to 18. */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);

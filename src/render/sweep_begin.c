@@ -60,10 +60,11 @@ static hl_status add_light_bytes(const sweep *sweep, int index, light_image *ima
   hl_status status = hl_light_shadow_plan(&shadow, &setup, error);
   if (status == HL_OK && shadow.method != NULL) {
     const view *view = &shadow.plan.view;
-    shadow_bytes of_method = hl_light_shadow_bytes(&shadow);
+    shadow_layouts of_method = hl_light_shadow_count(&shadow);
     bytes->buffers += hl_light_shadow_buffer_bytes(&shadow);
-    bytes->memory[index] = of_method.kept;
-    bytes->passing += of_method.passing + shadow.method->state_bytes + (image != NULL ? sizeof *image : 0) +
+    bytes->memory[index] = of_method.kept.bytes;
+    bytes->passing += of_method.passing.bytes + shadow.method->state_bytes +
+                      (image != NULL ? sizeof *image : 0) +
                       hl_view_sheets_bytes(sweep, view, shadow.plan.spare) +
                       (uint64_t)hl_tiles(view->width) * (uint64_t)hl_tiles(view->height) *
                           sizeof *sweep->tasks;
@@ -72,22 +73,22 @@ static hl_status add_light_bytes(const sweep *sweep, int index, light_image *ima
   return status;
 }
 
-sweep_bytes hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads) {
+hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error) {
   uint64_t a_grid = SHADE_SCRATCH_BYTES + sizeof *sweep->scratch_volumes + 2 * sizeof *sweep->shade_patches;
   uint64_t tiles = (uint64_t)hl_tiles(sweep->frame->width) * (uint64_t)hl_tiles(sweep->frame->height);
-  sweep_bytes bytes = {.passing = hl_view_sheets_bytes(sweep, &sweep->frame->eye, PIXEL_TO_SPARE)};
-  bytes.passing += tiles * (sizeof *sweep->tasks + sizeof *sweep->open) +
-                   (uint64_t)threads * (uint64_t)sweep->volume_count * a_grid;
-  if (sweep->geometry->back_to_front) bytes.passing += tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
-  for (int i = 0; i < sweep->geometry->light_count; i++) {
+  *bytes = (sweep_bytes){.passing = hl_view_sheets_bytes(sweep, &sweep->frame->eye, PIXEL_TO_SPARE)};
+  bytes->passing += tiles * (sizeof *sweep->tasks + sizeof *sweep->open) +
+                    (uint64_t)threads * (uint64_t)sweep->volume_count * a_grid;
+  if (sweep->geometry->back_to_front) bytes->passing += tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
+  hl_status status = HL_OK;
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
     light_image *image = NULL;
-    hl_status status = hl_light_image_create(sweep->context, &sweep->frame->lights[sweep->geometry->light[i]],
-                                             &image, NULL);
-    /* without memory for these hl_sweep_begin fails */
-    if (status == HL_OK) (void)add_light_bytes(sweep, i, image, points, &bytes, NULL);
+    status = hl_light_image_create(sweep->context, &sweep->frame->lights[sweep->geometry->light[i]], &image,
+                                   error);
+    if (status == HL_OK) status = add_light_bytes(sweep, i, image, points, bytes, error);
     hl_release(sweep->context, image);
   }
-  return bytes;
+  return status;
 }
 
 static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source,

@@ -20,8 +20,33 @@ uint64_t hl_light_shadow_buffer_bytes(const light_shadow *shadow) {
   return hl_shadow_buffer_bytes(&plan->view, shadow->setup.channels, plan->second, plan->reach);
 }
 
-shadow_bytes hl_light_shadow_bytes(const light_shadow *shadow) {
-  return shadow->method->bytes == NULL ? (shadow_bytes){0} : shadow->method->bytes(shadow);
+shadow_layouts hl_light_shadow_count(light_shadow *shadow) {
+  shadow_layouts layouts = {0};
+  if (shadow->method->lay_out != NULL) shadow->method->lay_out(shadow, &layouts);
+  return layouts;
+}
+
+/* Room for what the method keeps from frame to frame. */
+static hl_status grow(hl_context *context, shadow_memory *memory, size_t bytes, hl_error *error) {
+  if (memory->capacity >= bytes) return HL_OK;
+  hl_release(context, memory->planes);
+  *memory = (shadow_memory){.planes = hl_allocate(context, bytes, 1)};
+  if (memory->planes == NULL) return hl_fail_memory(error, bytes, "a light's shadows");
+  memory->capacity = bytes;
+  return HL_OK;
+}
+
+static hl_status hand_out(light_shadow *shadow, shadow_memory *kept, hl_error *error) {
+  const shadow_setup *setup = &shadow->setup;
+  shadow_layouts counted = hl_light_shadow_count(shadow);
+  hl_status status = grow(setup->context, kept, counted.kept.bytes, error);
+  if (status != HL_OK) return status;
+  shadow->passing = hl_reserve_take(setup->reserve, counted.passing.bytes, 1);
+  if (shadow->passing == NULL) return hl_fail_memory(error, counted.passing.bytes, "a light's shadows");
+  shadow->kept = kept;
+  shadow_layouts handed = {.kept.base = kept->planes, .passing.base = shadow->passing};
+  shadow->method->lay_out(shadow, &handed);
+  return HL_OK;
 }
 
 hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, shadow_memory *memory,
@@ -34,12 +59,15 @@ hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, sha
   shadow->lookup.map = hl_map_of_view(&plan->view);
   shadow->lookup.map.stride = buffer->stride;
   for (int c = 0; c < setup->channels; c++) shadow->lookup.transmittance[c] = buffer->transmittance[c];
-  if (status == HL_OK && shadow->method->begin != NULL) status = shadow->method->begin(shadow, memory, error);
+  if (status == HL_OK && shadow->method->check != NULL) status = shadow->method->check(shadow, error);
+  if (status == HL_OK && shadow->method->lay_out != NULL) status = hand_out(shadow, memory, error);
+  if (status == HL_OK && shadow->method->begin != NULL) status = shadow->method->begin(shadow, error);
   return status;
 }
 
 void hl_light_shadow_end(light_shadow *shadow) {
   if (shadow->method != NULL && shadow->method->end != NULL) shadow->method->end(shadow);
+  if (shadow->passing != NULL) hl_reserve_return(shadow->setup.reserve, shadow->passing);
   hl_release(shadow->setup.context, shadow->state);
   *shadow = (light_shadow){0};
 }

@@ -151,6 +151,12 @@ static size_t lay_out(const view *view, int reach, shadow_buffer *buffer) {
   return margin;
 }
 
+size_t hl_shadow_plane(const view *view, int reach) {
+  shadow_buffer buffer = {0};
+  (void)lay_out(view, reach, &buffer);
+  return buffer.plane;
+}
+
 uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach) {
   shadow_buffer buffer = {0};
   (void)lay_out(view, reach, &buffer);

@@ -48,6 +48,8 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
  * needed. reach: pixels that blurs read beyond a tile. */
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view,
                                  int channels, bool second, int reach, hl_error *error);
+/* Floats of one channel of a buffer for a view, its margins included. */
+size_t hl_shadow_plane(const view *view, int reach);
 /* The bytes that it then holds. */
 uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach);
 /* Finds a tile's tile_lit anew after a blur. both: what the second planes hold is light, too. */

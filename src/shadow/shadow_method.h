@@ -5,7 +5,8 @@
  * sweep calls, for each light that casts shadows:
  *
  *     plan                once: where the buffer lies, how fine it is, how it is read
- *     begin               once: the method's memory; the buffer holds full light
+ *     lay_out             its memory: counted for the estimate, then handed out
+ *     begin               once: what memory holds at first; the buffer holds full light
  *     for each sheet, of the slab between it and the sheet before
  *       before_shading      what the picture looks up in this slab
  *       before_slab
@@ -17,6 +18,7 @@
 #ifndef HL_SHADOW_SHADOW_METHOD_H
 #define HL_SHADOW_SHADOW_METHOD_H
 
+#include "core/layout.h"
 #include "core/memory.h"
 #include "light/light_extent.h"
 #include "light/light_image.h"
@@ -84,14 +86,16 @@ typedef struct light_shadow {
   shadow_lookup lookup;         /* how the picture reads the buffer */
   const part_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
   int sublight_count;
-  void *state; /* owned; method->state_bytes */
+  void *state;         /* owned; method->state_bytes */
+  shadow_memory *kept; /* the renderer's */
+  void *passing;       /* lent by the reserve */
 } light_shadow;
 
-/* Bytes that a method holds besides the buffer. */
-typedef struct shadow_bytes {
-  uint64_t kept;    /* in a shadow_memory */
-  uint64_t passing; /* until the sweep ends */
-} shadow_bytes;
+/* What a method holds besides the buffer. */
+typedef struct shadow_layouts {
+  hl_layout kept;    /* stays from frame to frame, see shadow_memory */
+  hl_layout passing; /* until the sweep ends; uninitialised */
+} shadow_layouts;
 
 struct shadow_method {
   const char *name;
@@ -99,8 +103,10 @@ struct shadow_method {
   int first_slab; /* 0: of the slab that a point light lies in, the part beyond it counts; 1: from the next
                      slab on */
   void (*plan)(light_shadow *shadow);
-  shadow_bytes (*bytes)(const light_shadow *shadow);
-  hl_status (*begin)(light_shadow *shadow, shadow_memory *memory, hl_error *error);
+  /* Refuses what is too large. */
+  hl_status (*check)(const light_shadow *shadow, hl_error *error);
+  void (*lay_out)(light_shadow *shadow, shadow_layouts *layouts);
+  hl_status (*begin)(light_shadow *shadow, hl_error *error);
   void (*before_shading)(light_shadow *shadow, int sheet);
   void (*before_slab)(light_shadow *shadow, int sheet);
   /* Finds buffer->tile_lit of a tile; null: the sweep keeps it. One task has a tile. */
@@ -119,13 +125,13 @@ const shadow_method *hl_shadow_method(const light_source *source);
 
 /* Chooses and plans. shadow->method is null afterwards where there is nothing to do. */
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
-/* After plan: the bytes of the buffer, which stays, and of the method. */
+/* After plan: the bytes of the buffer, which stays, and of what the method holds. */
 uint64_t hl_light_shadow_buffer_bytes(const light_shadow *shadow);
-shadow_bytes hl_light_shadow_bytes(const light_shadow *shadow);
+shadow_layouts hl_light_shadow_count(light_shadow *shadow);
 /* After plan: buffer and memory are the renderer's. */
 hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, shadow_memory *memory,
                                 hl_error *error);
-/* After plan or begin, or of zeros. */
+/* After plan or begin, failed ones too, or of zeros. */
 void hl_light_shadow_end(light_shadow *shadow);
 
 /* ---- for methods (shadow_plan.c) ---- */

@@ -1,265 +1,10 @@
 /* shadow_cascade/cascade.c - the groups of a cascade, and the light that they leave. */
-#include "shadow_cascade/cascade.h"
-
 #include <string.h>
 
-#include "core/memory.h"
 #include "shadow_cascade/cascade_passes.h"
-
-/* Chunks that a sweep is cut into at most; where they need not be thin, pixels of omega; the least of one,
- * pixels. */
-static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.15;
-
-static double omega_at(const soft_cascade *cascade, double height) {
-  if (cascade->parallel) return cascade->rate * height;
-  double distance = height - cascade->light_height;
-  return distance > 0 ? -cascade->rate / distance : -INFINITY;
-}
-
-/* Chunks between a receiver and a level's groups at least: level 0 keeps three groups, level 1 two, every
- * other five. */
-static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
 
 /* Chunks after which a level's sums are found anew. */
 static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
-
-/* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give. What
- * resampling blurs is taken off the penumbra (resampled_by), but for an image, which keeps four. */
-static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = cascade->chunk * chunks_before(level) * cascade->least_part,
-         own = cascade->image == NULL ? 1.5 : 4;
-  int scale = 1, greatest = level < 2
-                                ? 1 << level
-                                : 1 << (level - 1); /* coarser ones were less exact, and hardly cheaper */
-  while (2 * scale * own <= penumbra && scale < greatest) scale *= 2;
-  return scale;
-}
-
-static cascade_field field_of_plane(const cascade_level *level, size_t plane) {
-  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  return (cascade_field){level->memory + plane * level->plane + level->origin, level->flags + plane * tiles};
-}
-
-/* Hands out the next plane of a level's memory. */
-static cascade_field next_field(const cascade_level *level, size_t *used) {
-  return field_of_plane(level, (*used)++);
-}
-
-/* How wide each column or row of tiles sees the light. */
-static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
-                      cascade_box *boxes) {
-  for (int tile = 0; tile < count; tile++) {
-    double slope = cascade->slope_start[axis] + cascade->slope_step[axis] * (tile + 0.5) * TILE * scale;
-    boxes[tile].part = hl_sheet_light_squared_width(light, axis, slope) / (cascade->widest * cascade->widest);
-  }
-}
-
-/* A plane of floats. */
-enum { MOMENT_PLANES = sizeof(float) / sizeof(field_pixel) };
-
-static void lay_out_level(soft_cascade *cascade, int index, const shadow_buffer *buffer) {
-  cascade_level *level = &cascade->level[index];
-  size_t channels = (size_t)cascade->channels;
-  level->scale = level_scale(cascade, index);
-  if (index > 0 && level->scale > 2 * cascade->level[index - 1].scale)
-    level->scale = 2 * cascade->level[index - 1].scale;
-  level->tiles_x = (buffer->tiles_x + level->scale - 1) / level->scale;
-  level->tiles_y = (buffer->tiles_y + level->scale - 1) / level->scale;
-  level->stride = (size_t)level->tiles_x * TILE + CASCADE_MARGIN;
-  level->plane = ((size_t)level->tiles_y * TILE + CASCADE_MARGIN) * level->stride;
-  level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
-  level->capacity = index < 2 ? CASCADE_FEW_GROUPS : CASCADE_GROUPS;
-  level->planes = channels * (2 * (size_t)level->capacity + 2) +
-                  (index == 0 ? 2 * channels * MOMENT_PLANES : 1);
-  if (cascade->image != NULL) level->planes += 2 * channels;
-  level->pixels = level->planes * level->plane + (CASCADE_MARGIN + 1) * level->stride;
-}
-
-/* Zeros for all levels, handed out to them. */
-static hl_status open_memory(hl_context *context, hl_pool *pool, shadow_memory *memory, soft_cascade *cascade,
-                             hl_error *error) {
-  size_t bytes = 0;
-  for (int i = 0; i < cascade->level_count; i++) bytes += cascade->level[i].pixels * sizeof(field_pixel);
-  if (memory->capacity < bytes) {
-    hl_release(context, memory->planes);
-    memory->planes = hl_allocate(context, bytes, 1);
-    memory->capacity = memory->planes == NULL ? 0 : bytes;
-    memory->zeros = false;
-    if (memory->planes == NULL) return hl_fail_memory(error, bytes, "a cascade of shadows");
-  }
-  if (!memory->zeros) hl_pool_clear(pool, memory->planes, memory->capacity);
-  memory->zeros = false;
-  field_pixel *next = memory->planes;
-  for (int i = 0; i < cascade->level_count; next += cascade->level[i].pixels, i++)
-    cascade->level[i].memory = next;
-  return HL_OK;
-}
-
-static void sum_up_parts(cascade_level *level) {
-  const int count[2] = {level->tiles_x, level->tiles_y};
-  const cascade_box *box = level->boxes;
-  level->greatest_part = 0;
-  for (int axis = 0; axis < 2; axis++) {
-    level->part[axis] = 0;
-    for (int i = 0; i < count[axis]; i++, box++) {
-      level->part[axis] += box->part / count[axis];
-      level->greatest_part = fmax(level->greatest_part, box->part);
-    }
-  }
-}
-
-static hl_status open_level(hl_context *context, soft_cascade *cascade, int index, const sheet_light *light,
-                            hl_error *error) {
-  cascade_level *level = &cascade->level[index];
-  size_t channels = (size_t)cascade->channels, used = 0,
-         tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  level->flags = hl_allocate(context, level->planes, tiles);
-  level->boxes = hl_allocate(context, (size_t)(level->tiles_x + level->tiles_y), sizeof *level->boxes);
-  if (level->flags == NULL || level->boxes == NULL)
-    return hl_fail_memory(error, level->planes * tiles, "a cascade of shadows");
-  memset(level->flags, 1, level->planes * tiles);
-  set_parts(cascade, light, 0, level->tiles_x, level->scale, level->boxes);
-  set_parts(cascade, light, 1, level->tiles_y, level->scale, level->boxes + level->tiles_x);
-  sum_up_parts(level);
-  for (size_t c = 0; c < channels; c++) {
-    for (int g = 0; g < level->capacity; g++) {
-      level->group[g].absorbed[c] = next_field(level, &used);
-      level->group[g].thin[c] = next_field(level, &used);
-    }
-    for (int i = 0; i < 2; i++) level->sum[i][c] = next_field(level, &used);
-  }
-  if (index > 0) level->scratch = next_field(level, &used);
-  for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++)
-    level->mean[c % 2][c / 2] = next_field(level, &used);
-  for (size_t c = 0; c < channels && index == 0; c++) {
-    cascade->shade[c] = level->sum[0][c];
-    cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
-    used += MOMENT_PLANES;
-    cascade->lacked[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
-    used += MOMENT_PLANES;
-  }
-  return HL_OK;
-}
-
-/* Chunks and levels for a buffer whose view, tiles and channels are known. */
-static void plan(soft_cascade *cascade, const light_shadow *shadow, const shadow_buffer *buffer) {
-  const sheet_light *light = &shadow->plan.seen;
-  const sheet_stack *sheets = shadow->setup.sheets;
-  vec3 normal = sheets->normal;
-  double first = sheets->first, last = hl_last_height(sheets), pixel = vec3_length(buffer->view.du);
-  double widest = fmax(light->width_u, light->width_v);
-  *cascade = (soft_cascade){.parallel = light->parallel,
-                            .channels = buffer->channels,
-                            .rate = widest / pixel,
-                            .widest = widest,
-                            .least_part = fmin(light->width_u, light->width_v) / widest,
-                            .light_height = vec3_dot(light->middle, normal),
-                            .image = shadow->setup.image};
-  const vec3 along[2] = {light->u, light->v};
-  for (int axis = 0; axis < 2; axis++) {
-    cascade->slope_start[axis] = vec3_dot(buffer->view.corner, along[axis]);
-    cascade->slope_step[axis] = vec3_dot(axis == 0 ? buffer->view.du : buffer->view.dv, along[axis]);
-  }
-  double start = omega_at(cascade, first), end = omega_at(cascade, last);
-  /* a light close to the sheets: penumbrae twice as wide as the buffer are as good as wider ones */
-  start = fmax(start, end - 2 * TILE * fmax(buffer->tiles_x, buffer->tiles_y));
-  double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
-  cascade->chunk_start = start;
-  cascade->chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
-  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels
-   * 0 and 1) */
-  int levels = 2 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
-  cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
-  for (int i = 0; i < cascade->level_count; i++) lay_out_level(cascade, i, buffer);
-}
-
-shadow_bytes hl_soft_cascade_bytes(const light_shadow *shadow) {
-  const view *view = &shadow->plan.view;
-  soft_cascade cascade;
-  shadow_buffer buffer = {.view = *view,
-                          .channels = shadow->setup.channels,
-                          .tiles_x = hl_tiles(view->width),
-                          .tiles_y = hl_tiles(view->height)};
-  plan(&cascade, shadow, &buffer);
-  shadow_bytes bytes = {.passing = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y * 2 +
-                                   ((uint64_t)buffer.tiles_x + 1) * ((uint64_t)buffer.tiles_y + 1) * 4};
-  for (int i = 0; i < cascade.level_count; i++) {
-    const cascade_level *level = &cascade.level[i];
-    uint64_t tiles_x = (uint64_t)level->tiles_x, tiles_y = (uint64_t)level->tiles_y;
-    bytes.kept += level->pixels * sizeof(field_pixel);
-    bytes.passing += level->planes * tiles_x * tiles_y + (tiles_x + tiles_y) * sizeof *level->boxes;
-  }
-  return bytes;
-}
-
-/* A bilinear look-up weighs two pixels by their distances p and 1 - p: a variance of p (1 - p), 1/6 on
- * average. Cubic convolution has none. */
-static double lookup_variance(bool cubic) { return cubic ? 0 : 1.0 / 6; }
-
-hl_status hl_soft_cascade_begin(light_shadow *shadow, shadow_memory *memory, hl_error *error) {
-  hl_context *context = shadow->setup.context;
-  soft_cascade *cascade = shadow->state;
-  const shadow_buffer *buffer = shadow->buffer;
-  plan(cascade, shadow, buffer);
-  cascade->lookup_variance = lookup_variance(shadow->plan.cubic);
-  for (int c = 0; c < buffer->channels; c++) shadow->lookup.older[c] = buffer->second[c];
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
-  cascade->touched = hl_allocate_zeroed(context, tiles, 1);
-  cascade->refilled = hl_allocate_zeroed(context, tiles, 1);
-  cascade->reads = (cascade_reads){buffer->tiles_x, buffer->tiles_y, NULL};
-  cascade->reads.before = hl_allocate(context, (size_t)(buffer->tiles_x + 1) * (size_t)(buffer->tiles_y + 1),
-                                      sizeof(uint32_t));
-  if (cascade->touched == NULL || cascade->refilled == NULL || cascade->reads.before == NULL)
-    return hl_fail_memory(error, 5 * tiles, "a cascade of shadows");
-  hl_status status = open_memory(context, shadow->setup.pool, memory, cascade, error);
-  for (int i = 0; i < cascade->level_count && status == HL_OK; i++)
-    status = open_level(context, cascade, i, &shadow->plan.seen, error);
-  if (status == HL_OK) cascade->memory = memory;
-  cascade->level[0].count = 1; /* at the first chunk's start */
-  cascade->level[0].group[0].omega = cascade->chunk_start;
-  return status;
-}
-
-/* One plane of a level; those of the moments have no flags of their own. */
-static void clear_plane(void *data, size_t index, int worker) {
-  (void)worker;
-  const cascade_level *level = data;
-  const cascade_field field = field_of_plane(level, index);
-  for (int y = 0; y < level->tiles_y; y++)
-    for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
-}
-
-/* What the last, unfinished chunk's slabs took, and what light they found. */
-static void clear_moments(const soft_cascade *cascade) {
-  const cascade_level *level = &cascade->level[0];
-  for (size_t tile = 0; tile < (size_t)level->tiles_x * (size_t)level->tiles_y; tile++) {
-    size_t at = tile / (size_t)level->tiles_x * TILE * level->stride + tile % (size_t)level->tiles_x * TILE;
-    for (int c = 0; c < cascade->channels && cascade->touched[tile]; c++)
-      for (size_t row = 0; row < TILE; row++)
-        memset(cascade->moment[c] + at + row * level->stride, 0, TILE * sizeof(float));
-  }
-  for (int c = 0; c < cascade->channels; c++)
-    memset(cascade->lacked[c], 0, (size_t)level->tiles_y * TILE * level->stride * sizeof(float));
-}
-
-static void give_back_memory(hl_pool *pool, soft_cascade *cascade) {
-  for (int i = 0; i < cascade->level_count; i++)
-    hl_pool_run(pool, cascade->level[i].planes, clear_plane, &cascade->level[i]);
-  clear_moments(cascade);
-  cascade->memory->zeros = !hl_pool_cancelled(pool);
-}
-
-void hl_soft_cascade_release(hl_context *context, hl_pool *pool, soft_cascade *cascade) {
-  if (cascade->memory != NULL) give_back_memory(pool, cascade);
-  for (int i = 0; i < CASCADE_LEVELS; i++) {
-    hl_release(context, cascade->level[i].flags);
-    hl_release(context, cascade->level[i].boxes);
-  }
-  hl_release(context, cascade->touched);
-  hl_release(context, cascade->refilled);
-  hl_release(context, cascade->reads.before);
-  *cascade = (soft_cascade){0};
-}
 
 /* Of boxes, in pixels of the buffer, where the light is widest. */
 static double variance_between(double wide, double narrow) {
@@ -402,26 +147,7 @@ static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, doubl
 
 /* In the middle of the slab before the sheet. */
 static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
-  return omega_at(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
-}
-
-void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
-  double middle = slab_omega(cascade, sheets, sheet);
-  cascade->slab = isfinite(middle) ? middle - cascade->chunk_start : 0;
-}
-
-float hl_soft_cascade_age(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
-  double middle = slab_omega(cascade, sheets, sheet);
-  return isfinite(middle) ? (float)fmin(fmax((middle - cascade->chunk_start) / cascade->chunk, 0), 1) : 0;
-}
-
-void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_job *job) {
-  const cascade_level *level = &cascade->level[0];
-  size_t tile_x = tile % (size_t)level->tiles_x, tile_y = tile / (size_t)level->tiles_x;
-  for (int c = 0; c < cascade->channels; c++)
-    job->moment[c] = cascade->moment[c] + tile_y * TILE * level->stride + tile_x * TILE;
-  job->moment_stride = level->stride;
-  job->place = (float)cascade->slab;
+  return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
 
 /* Reaches add up, but for what is read everywhere. */
@@ -481,7 +207,7 @@ static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const 
                        int sheet) {
   int last = sheet;
   while (last < sheets->count - 1 &&
-         omega_at(cascade, hl_sheet_height(sheets, last)) - cascade->chunk_start < cascade->chunk)
+         hl_cascade_omega(cascade, hl_sheet_height(sheets, last)) - cascade->chunk_start < cascade->chunk)
     last++;
   hl_cascade_reads_find(&cascade->reads, occupancy, sheet, last);
 }
@@ -615,16 +341,63 @@ static void begin_chunk(soft_cascade *cascade) {
     cascade->refilled[tile] = cascade->refilled[tile] & REFILLED_NOW ? REFILLED_BEFORE : 0;
 }
 
-void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
-                             const sheet_stack *sheets, int sheet, hl_pool *pool,
-                             const cascade_functions *functions) {
-  double omega = omega_at(cascade, hl_sheet_height(sheets, sheet));
+static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, int sheet) {
+  soft_cascade *cascade = shadow->state;
+  const sheet_stack *sheets = shadow->setup.sheets;
+  double omega = hl_cascade_omega(cascade, hl_sheet_height(sheets, sheet));
   if (!isfinite(omega) || omega - cascade->chunk_start < cascade->chunk) return;
-  const cascade_crew crew = {pool, functions, &cascade->reads};
+  const cascade_crew crew = {shadow->setup.pool, shadow->setup.functions->cascade, &cascade->reads};
   cascade->chunk_start = omega;
   find_reads(cascade, occupancy, sheets, sheet);
   bool any = find_shade(cascade, omega + cascade->chunk, &crew); /* of the chunks before the one that ends */
-  push_chunk(cascade, buffer, omega, &crew);
-  refill_buffer(cascade, buffer, any, &crew);
+  push_chunk(cascade, shadow->buffer, omega, &crew);
+  refill_buffer(cascade, shadow->buffer, any, &crew);
   begin_chunk(cascade);
 }
+
+/* ---- the method ---- */
+
+/* How far receivers have faded to the buffer from its second planes. */
+static void before_shading(light_shadow *shadow, int sheet) {
+  const soft_cascade *cascade = shadow->state;
+  double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
+  double age = isfinite(middle) ? (middle - cascade->chunk_start) / cascade->chunk : 0;
+  shadow->lookup.young = (float)fmin(fmax(age, 0), 1);
+}
+
+static void before_slab(light_shadow *shadow, int sheet) {
+  soft_cascade *cascade = shadow->state;
+  double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
+  cascade->slab = isfinite(middle) ? middle - cascade->chunk_start : 0;
+}
+
+/* What the slab takes is counted in the moments, and taken from the second planes too. */
+static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *job) {
+  const soft_cascade *cascade = shadow->state;
+  const shadow_buffer *buffer = shadow->buffer;
+  size_t x = tile % (size_t)buffer->tiles_x * TILE, y = tile / (size_t)buffer->tiles_x * TILE;
+  job->moment_stride = cascade->level[0].stride;
+  job->place = (float)cascade->slab;
+  for (int c = 0; c < job->channels; c++) {
+    job->older[c] = buffer->second[c] + y * buffer->stride + x;
+    job->moment[c] = cascade->moment[c] + y * job->moment_stride + x;
+  }
+}
+
+static void after_tile(light_shadow *shadow, size_t tile) {
+  soft_cascade *cascade = shadow->state;
+  cascade->touched[tile] = 1;
+}
+
+const shadow_method hl_shadow_cascade = {.name = "cascade",
+                                         .state_bytes = sizeof(soft_cascade),
+                                         .first_slab = 1,
+                                         .plan = hl_cascade_plan,
+                                         .lay_out = hl_cascade_lay_out,
+                                         .begin = hl_cascade_begin,
+                                         .before_shading = before_shading,
+                                         .before_slab = before_slab,
+                                         .before_tile = before_tile,
+                                         .after_tile = after_tile,
+                                         .advance = advance_cascade,
+                                         .end = hl_cascade_end};

@@ -84,8 +84,7 @@ typedef struct cascade_level {
 } cascade_level;
 
 typedef struct soft_cascade {
-  shadow_memory *memory; /* the renderer's: pixels of all levels, given back as zeros: the cascade knows where
-                            it wrote, which costs less than making zeros of all of them */
+  bool begun; /* its memory holds more than zeros */
   bool parallel;
   double rate; /* parallel: omega per height; else L in units of a pixel at distance 1 */
   double light_height;
@@ -117,27 +116,20 @@ typedef struct cascade_crew {
   const cascade_reads *reads;
 } cascade_crew;
 
-/* As shadow_method has them. The buffer's view, and what look-ups blur, are the plan's. */
-shadow_bytes hl_soft_cascade_bytes(const light_shadow *shadow);
-hl_status hl_soft_cascade_begin(light_shadow *shadow, shadow_memory *memory, hl_error *error);
-void hl_soft_cascade_release(hl_context *context, hl_pool *pool, soft_cascade *cascade);
+/* cascade_levels.c: as shadow_method has them. */
+void hl_cascade_plan(light_shadow *shadow);
+void hl_cascade_lay_out(light_shadow *shadow, shadow_layouts *layouts);
+hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error);
+void hl_cascade_end(light_shadow *shadow);
 
-/* Before the slab before the sheet is composited into the buffer, and before each of its tiles is: what it
- * takes is to be counted. Tiles where it takes some are then to be marked as touched. */
-void hl_soft_cascade_reach(soft_cascade *cascade, const sheet_stack *sheets, int sheet);
-void hl_soft_cascade_count(const soft_cascade *cascade, size_t tile, attenuate_job *job);
+/* Of a height. */
+static inline double hl_cascade_omega(const soft_cascade *cascade, double height) {
+  if (cascade->parallel) return cascade->rate * height;
+  double distance = height - cascade->light_height;
+  return distance > 0 ? -cascade->rate / distance : -INFINITY;
+}
 
-/* Of the slab before the sheet, before it is shaded: how far receivers have faded to the buffer from its
- * second planes, 0 to 1. */
-float hl_soft_cascade_age(const soft_cascade *cascade, const sheet_stack *sheets, int sheet);
-
-/* After the slab was composited. occupancy: what the light sees; the buffer is found anew only where the next
- * slabs lie. */
-void hl_soft_cascade_advance(soft_cascade *cascade, shadow_buffer *buffer, const occupancy *occupancy,
-                             const sheet_stack *sheets, int sheet, hl_pool *pool,
-                             const cascade_functions *functions);
-
-/* soft_cascade_image.c: what receivers around omega = receiver lack, through the light's image, in shade
+/* cascade_image.c: what receivers around omega = receiver lack, through the light's image, in shade
  * where it is read; false if nothing is in the way. */
 bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, const cascade_crew *crew);
 

@@ -37,61 +37,36 @@ static void lay_out_planes(sublights *sublights) {
   sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
 
-static shadow_bytes bytes_of_sublights(const light_shadow *shadow) {
-  const shadow_setup *setup = &shadow->setup;
+static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
+  sublights *all = shadow->state;
+  hl_layout *layout = &layouts->passing;
+  size_t count = (size_t)all->count, channels = (size_t)all->channels;
+  size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y;
   const view *slab = &shadow->plan.view;
-  int side = setup->settings->light_samples, channels = setup->channels, reach = shadow->plan.reach;
-  sublights planned = {.channels = channels};
-  uint64_t count = (uint64_t)side * (uint64_t)side,
-           slab_tiles = (uint64_t)hl_tiles(slab->width) * (uint64_t)hl_tiles(slab->height);
-  view view;
-  for (int i = 0; i < side * side; i++) place_part(shadow, i, &view, &planned.tiles_x, &planned.tiles_y);
-  lay_out_planes(&planned);
-  uint64_t tiles = (uint64_t)planned.tiles_x * (uint64_t)planned.tiles_y;
-  uint64_t bytes = count * (uint64_t)channels * planned.plane * sizeof(part_pixel) +
-                   count * tiles * (sizeof *planned.flags + 1) +
-                   slab_tiles * (sizeof *planned.rows + sizeof *planned.found) +
-                   count * (sizeof *planned.parts + sizeof *planned.lookups) +
-                   hl_shadow_buffer_bytes(slab, MOVED_IMAGES * channels, false, reach) -
-                   hl_shadow_buffer_bytes(slab, 0, false, reach);
-  return (shadow_bytes){.passing = bytes};
+  size_t slab_tiles = (size_t)hl_tiles(slab->width) * (size_t)hl_tiles(slab->height);
+  all->memory = hl_layout_take(layout, count * channels, all->plane * sizeof *all->memory);
+  all->moved_floats = MOVED_IMAGES * channels * hl_shadow_plane(slab, shadow->plan.reach);
+  all->moved = hl_layout_take(layout, all->moved_floats, sizeof *all->moved);
+  all->parts = hl_layout_take(layout, count, sizeof *all->parts);
+  all->lookups = hl_layout_take(layout, count, sizeof *all->lookups);
+  all->flags = hl_layout_take(layout, count * tiles, sizeof *all->flags);
+  all->marks = hl_layout_take(layout, count * tiles, sizeof *all->marks);
+  all->rows = hl_layout_take(layout, slab_tiles, sizeof *all->rows);
+  all->found = hl_layout_take(layout, slab_tiles, sizeof *all->found);
 }
 
-static hl_status allocate(hl_reserve *reserve, hl_pool *pool, sublights *sublights, const shadow_buffer *slab,
-                          hl_error *error) {
-  size_t count = (size_t)sublights->count, channels = (size_t)sublights->channels;
-  size_t tiles = (size_t)sublights->tiles_x * (size_t)sublights->tiles_y;
-  lay_out_planes(sublights);
-  size_t pixels = count * channels * sublights->plane, moved = MOVED_IMAGES * channels * slab->plane;
-  if ((double)pixels * sizeof(part_pixel) > GREATEST_BYTES)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "/render/light_samples: %zu parts of a light need %.1f GB of shadow buffers, more than "
-                   "4.3: use fewer, or a "
-                   "lower shadow_resolution",
-                   count, (double)pixels * sizeof(part_pixel) / 1e9);
-  hl_context *context = reserve->context;
-  sublights->memory = hl_reserve_take(reserve, pixels, sizeof(part_pixel));
-  sublights->flags = hl_allocate(context, count * tiles, sizeof *sublights->flags);
-  sublights->marks = hl_allocate_zeroed(context, count, tiles);
-  sublights->lookups = hl_allocate(context, count, sizeof *sublights->lookups);
-  sublights->moved = hl_reserve_take(reserve, moved, sizeof(float));
-  size_t slab_tiles = (size_t)slab->tiles_x * (size_t)slab->tiles_y;
-  sublights->rows = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->rows);
-  sublights->found = hl_allocate_zeroed(context, slab_tiles, sizeof *sublights->found);
-  if (sublights->memory == NULL || sublights->flags == NULL || sublights->marks == NULL ||
-      sublights->lookups == NULL || sublights->moved == NULL || sublights->rows == NULL ||
-      sublights->found == NULL)
-    return hl_fail_memory(error, pixels * sizeof(part_pixel) + moved * sizeof(float), "the parts of a light");
-  hl_pool_set(pool, sublights->memory, pixels * sizeof(part_pixel), 0xff); /* PART_ONE */
-  hl_pool_fill(pool, sublights->moved, moved, 1);
-  for (size_t i = 0; i < count; i++) {
-    sublight *part = &sublights->parts[i];
-    part->pixels = sublights->memory + i * channels * sublights->plane + TILE;
-    part->lit = sublights->flags + i * tiles;
-    part->touched = sublights->marks + i * tiles;
-  }
-  for (size_t i = 0; i < count * tiles; i++) sublights->flags[i] = ALL_BLOCKS;
-  return HL_OK;
+/* Full light everywhere. */
+static void fill_sublights(const light_shadow *shadow, sublights *all) {
+  hl_pool *pool = shadow->setup.pool;
+  size_t count = (size_t)all->count, pixels = count * (size_t)all->channels * all->plane;
+  size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y;
+  size_t slab_tiles = (size_t)shadow->buffer->tiles_x * (size_t)shadow->buffer->tiles_y;
+  hl_pool_set(pool, all->memory, pixels * sizeof(part_pixel), 0xff); /* PART_ONE */
+  hl_pool_fill(pool, all->moved, all->moved_floats, 1);
+  for (size_t i = 0; i < count * tiles; i++) all->flags[i] = ALL_BLOCKS;
+  memset(all->marks, 0, count * tiles * sizeof *all->marks);
+  memset(all->rows, 0, slab_tiles * sizeof *all->rows);
+  memset(all->found, 0, slab_tiles * sizeof *all->found);
 }
 
 /* The parts of a light with an image send its colours. */
@@ -107,42 +82,28 @@ static hl_status weigh_parts(hl_context *context, sublights *sublights, const li
   return HL_OK;
 }
 
-static hl_status begin_sublights(light_shadow *shadow, shadow_memory *memory, hl_error *error) {
-  (void)memory;
-  const shadow_setup *setup = &shadow->setup;
-  hl_context *context = setup->context;
-  sublights *sublights = shadow->state;
-  int side = setup->settings->light_samples;
-  size_t count = (size_t)side * (size_t)side;
-  sublights->parts = hl_allocate_zeroed(context, count, sizeof *sublights->parts);
-  if (sublights->parts == NULL)
-    return hl_fail_memory(error, count * sizeof *sublights->parts, "the parts of a light");
-  sublights->count = (int)count;
-  sublights->channels = setup->channels;
-  for (int i = 0; i < sublights->count; i++)
-    place_part(shadow, i, &sublights->parts[i].view, &sublights->tiles_x, &sublights->tiles_y);
-  hl_status status = allocate(setup->reserve, setup->pool, sublights, shadow->buffer, error);
-  if (status != HL_OK) return status;
-  for (size_t i = 0; i < count; i++) {
-    sublights->lookups[i] = (part_lookup){.map = hl_map_of_view(&sublights->parts[i].view),
-                                          .weight = {1, 1, 1}};
-    sublights->lookups[i].map.stride = sublights->stride;
-    for (int c = 0; c < sublights->channels; c++)
-      sublights->lookups[i].left[c] = sublights->parts[i].pixels + (size_t)c * sublights->plane;
-  }
-  shadow->sublights = sublights->lookups;
-  shadow->sublight_count = sublights->count;
-  return setup->image != NULL ? weigh_parts(context, sublights, setup->source, side, error) : HL_OK;
+static void begin_part(const light_shadow *shadow, sublights *all, int i) {
+  sublight *part = &all->parts[i];
+  size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y, first = (size_t)i * tiles;
+  int unused_x = 0, unused_y = 0;
+  *part = (sublight){.pixels = all->memory + (size_t)i * (size_t)all->channels * all->plane + TILE,
+                     .lit = all->flags + first,
+                     .touched = all->marks + first};
+  place_part(shadow, i, &part->view, &unused_x, &unused_y);
+  all->lookups[i] = (part_lookup){.map = hl_map_of_view(&part->view), .weight = {1, 1, 1}};
+  all->lookups[i].map.stride = all->stride;
+  for (int c = 0; c < all->channels; c++) all->lookups[i].left[c] = part->pixels + (size_t)c * all->plane;
 }
 
-static void end_sublights(light_shadow *shadow) {
-  hl_reserve *reserve = shadow->setup.reserve;
-  sublights *sublights = shadow->state;
-  void *owned[] = {sublights->parts, sublights->lookups, sublights->flags,
-                   sublights->marks, sublights->rows,    sublights->found};
-  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(reserve->context, owned[i]);
-  hl_reserve_return(reserve, sublights->memory);
-  hl_reserve_return(reserve, sublights->moved);
+static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
+  const shadow_setup *setup = &shadow->setup;
+  sublights *all = shadow->state;
+  fill_sublights(shadow, all);
+  for (int i = 0; i < all->count; i++) begin_part(shadow, all, i);
+  shadow->sublights = all->lookups;
+  shadow->sublight_count = all->count;
+  if (setup->image == NULL) return HL_OK;
+  return weigh_parts(setup->context, all, setup->source, setup->settings->light_samples, error);
 }
 
 /* ---- compositing ---- */
@@ -506,6 +467,23 @@ static void plan_sublights(light_shadow *shadow) {
   plan->extent.u = plan->seen.u;
   plan->reach = SUBLIGHT_REACH;
   hl_shadow_view(setup->source, setup->sheets->normal, &plan->extent, &plan->view);
+  sublights *all = shadow->state;
+  int side = setup->settings->light_samples;
+  view unused;
+  all->count = side * side;
+  all->channels = setup->channels;
+  for (int i = 0; i < all->count; i++) place_part(shadow, i, &unused, &all->tiles_x, &all->tiles_y);
+  lay_out_planes(all);
+}
+
+static hl_status check_sublights(const light_shadow *shadow, hl_error *error) {
+  const sublights *all = shadow->state;
+  double bytes = (double)all->count * all->channels * (double)all->plane * sizeof(part_pixel);
+  if (bytes <= GREATEST_BYTES) return HL_OK;
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "/render/light_samples: %d parts of a light need %.1f GB of shadow buffers, more than "
+                 "4.3: use fewer, or a lower shadow_resolution",
+                 all->count, bytes / 1e9);
 }
 
 static void find_lit(light_shadow *shadow, size_t tile) {
@@ -516,8 +494,8 @@ const shadow_method hl_shadow_sublights = {.name = "sublights",
                                            .state_bytes = sizeof(sublights),
                                            .first_slab = 1,
                                            .plan = plan_sublights,
-                                           .bytes = bytes_of_sublights,
+                                           .check = check_sublights,
+                                           .lay_out = lay_out_sublights,
                                            .begin = begin_sublights,
                                            .find_lit = find_lit,
-                                           .advance = advance_sublights,
-                                           .end = end_sublights};
+                                           .advance = advance_sublights};

@@ -35,17 +35,17 @@ typedef struct sublight {
 typedef struct sublights {
   int count, channels, tiles_x, tiles_y;
   size_t stride, plane;
-  int slabs;            /* composited so far */
-  sublight *parts;      /* owned; [count] */
-  part_lookup *lookups; /* owned; [count] */
-  part_pixel *memory;   /* lent; [count][channels] planes */
-  uint16_t *flags;      /* owned; [count][tiles] */
-  unsigned char *marks; /* owned; [count][tiles] */
-  float *moved; /* lent; [channels][SLAB_IMAGES - 1] planes of the slab, half a pixel further along u, v and
-                   both */
-  slab_rows *rows; /* owned; [tiles of the slab] */
-  uint32_t
-      *found; /* owned; [tiles of the slab]; the run of slabs for which its lit blocks were found; 0: none */
+  int slabs; /* composited so far */
+  /* in one block, see lay_out_sublights() */
+  sublight *parts;      /* [count] */
+  part_lookup *lookups; /* [count] */
+  part_pixel *memory;   /* [count][channels] planes */
+  uint16_t *flags;      /* [count][tiles] */
+  unsigned char *marks; /* [count][tiles] */
+  float *moved; /* [channels][SLAB_IMAGES - 1] planes of the slab, half a pixel further along u, v and both */
+  size_t moved_floats;
+  slab_rows *rows; /* [tiles of the slab] */
+  uint32_t *found; /* [tiles of the slab]; the run of slabs for which its lit blocks were found; 0: none */
 } sublights;
 
 /* Finds the blocks of a tile of the next slab that some part's light still reaches: slab's tile_lit. One task

@@ -1,0 +1,267 @@
+/* shadow_cascade/cascade_levels.c - where a cascade's buffer lies, its chunks, and the levels' memory. */
+#include <string.h>
+
+#include "shadow_cascade/cascade_passes.h"
+
+/* Chunks that a sweep is cut into at most; where they need not be thin, pixels of omega; the least of one,
+ * pixels. */
+static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.15;
+
+/* Chunks between a receiver and a level's groups at least: level 0 keeps three groups, level 1 two, every
+ * other five. */
+static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
+
+/* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give. What
+ * resampling blurs is taken off the penumbra (resampled_by), but for an image, which keeps four. */
+static int level_scale(const soft_cascade *cascade, int level) {
+  double penumbra = cascade->chunk * chunks_before(level) * cascade->least_part,
+         own = cascade->image == NULL ? 1.5 : 4;
+  int scale = 1, greatest = level < 2
+                                ? 1 << level
+                                : 1 << (level - 1); /* coarser ones were less exact, and hardly cheaper */
+  while (2 * scale * own <= penumbra && scale < greatest) scale *= 2;
+  return scale;
+}
+
+static cascade_field field_of_plane(const cascade_level *level, size_t plane) {
+  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
+  return (cascade_field){level->memory + plane * level->plane + level->origin, level->flags + plane * tiles};
+}
+
+/* Hands out the next plane of a level's memory. */
+static cascade_field next_field(const cascade_level *level, size_t *used) {
+  return field_of_plane(level, (*used)++);
+}
+
+/* How wide each column or row of tiles sees the light. */
+static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
+                      cascade_box *boxes) {
+  for (int tile = 0; tile < count; tile++) {
+    double slope = cascade->slope_start[axis] + cascade->slope_step[axis] * (tile + 0.5) * TILE * scale;
+    boxes[tile].part = hl_sheet_light_squared_width(light, axis, slope) / (cascade->widest * cascade->widest);
+  }
+}
+
+/* A plane of floats. */
+enum { MOMENT_PLANES = sizeof(float) / sizeof(field_pixel) };
+
+static void plan_level(soft_cascade *cascade, int index, int tiles_x, int tiles_y) {
+  cascade_level *level = &cascade->level[index];
+  size_t channels = (size_t)cascade->channels;
+  level->scale = level_scale(cascade, index);
+  if (index > 0 && level->scale > 2 * cascade->level[index - 1].scale)
+    level->scale = 2 * cascade->level[index - 1].scale;
+  level->tiles_x = (tiles_x + level->scale - 1) / level->scale;
+  level->tiles_y = (tiles_y + level->scale - 1) / level->scale;
+  level->stride = (size_t)level->tiles_x * TILE + CASCADE_MARGIN;
+  level->plane = ((size_t)level->tiles_y * TILE + CASCADE_MARGIN) * level->stride;
+  level->origin = CASCADE_MARGIN * level->stride + CASCADE_MARGIN;
+  level->capacity = index < 2 ? CASCADE_FEW_GROUPS : CASCADE_GROUPS;
+  level->planes = channels * (2 * (size_t)level->capacity + 2) +
+                  (index == 0 ? 2 * channels * MOMENT_PLANES : 1);
+  if (cascade->image != NULL) level->planes += 2 * channels;
+  level->pixels = level->planes * level->plane + (CASCADE_MARGIN + 1) * level->stride;
+}
+
+static void sum_up_parts(cascade_level *level) {
+  const int count[2] = {level->tiles_x, level->tiles_y};
+  const cascade_box *box = level->boxes;
+  level->greatest_part = 0;
+  for (int axis = 0; axis < 2; axis++) {
+    level->part[axis] = 0;
+    for (int i = 0; i < count[axis]; i++, box++) {
+      level->part[axis] += box->part / count[axis];
+      level->greatest_part = fmax(level->greatest_part, box->part);
+    }
+  }
+}
+
+/* A level's planes in the order of its memory. */
+static void place_fields(soft_cascade *cascade, int index) {
+  cascade_level *level = &cascade->level[index];
+  size_t channels = (size_t)cascade->channels, used = 0;
+  for (size_t c = 0; c < channels; c++) {
+    for (int g = 0; g < level->capacity; g++) {
+      level->group[g].absorbed[c] = next_field(level, &used);
+      level->group[g].thin[c] = next_field(level, &used);
+    }
+    for (int i = 0; i < 2; i++) level->sum[i][c] = next_field(level, &used);
+  }
+  if (index > 0) level->scratch = next_field(level, &used);
+  for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++)
+    level->mean[c % 2][c / 2] = next_field(level, &used);
+  for (size_t c = 0; c < channels && index == 0; c++) {
+    cascade->shade[c] = level->sum[0][c];
+    cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
+    used += MOMENT_PLANES;
+    cascade->lacked[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
+    used += MOMENT_PLANES;
+  }
+}
+
+static void begin_level(soft_cascade *cascade, int index, const sheet_light *light) {
+  cascade_level *level = &cascade->level[index];
+  memset(level->flags, 1, level->planes * (size_t)level->tiles_x * (size_t)level->tiles_y);
+  set_parts(cascade, light, 0, level->tiles_x, level->scale, level->boxes);
+  set_parts(cascade, light, 1, level->tiles_y, level->scale, level->boxes + level->tiles_x);
+  sum_up_parts(level);
+  place_fields(cascade, index);
+}
+
+/* A bilinear look-up weighs two pixels by their distances p and 1 - p: a variance of p (1 - p), 1/6 on
+ * average. Cubic convolution has none. */
+static double lookup_variance(bool cubic) { return cubic ? 0 : 1.0 / 6; }
+
+/* Chunks and levels for a buffer whose view is planned. */
+static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
+  const sheet_light *light = &shadow->plan.seen;
+  const view *view = &shadow->plan.view;
+  int tiles_x = hl_tiles(view->width), tiles_y = hl_tiles(view->height);
+  const sheet_stack *sheets = shadow->setup.sheets;
+  vec3 normal = sheets->normal;
+  double first = sheets->first, last = hl_last_height(sheets), pixel = vec3_length(view->du);
+  double widest = fmax(light->width_u, light->width_v);
+  *cascade = (soft_cascade){.parallel = light->parallel,
+                            .channels = shadow->setup.channels,
+                            .lookup_variance = lookup_variance(shadow->plan.cubic),
+                            .rate = widest / pixel,
+                            .widest = widest,
+                            .least_part = fmin(light->width_u, light->width_v) / widest,
+                            .light_height = vec3_dot(light->middle, normal),
+                            .image = shadow->setup.image};
+  const vec3 along[2] = {light->u, light->v};
+  for (int axis = 0; axis < 2; axis++) {
+    cascade->slope_start[axis] = vec3_dot(view->corner, along[axis]);
+    cascade->slope_step[axis] = vec3_dot(axis == 0 ? view->du : view->dv, along[axis]);
+  }
+  double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
+  /* a light close to the sheets: penumbrae twice as wide as the buffer are as good as wider ones */
+  start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
+  double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
+  cascade->chunk_start = start;
+  cascade->chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
+  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels
+   * 0 and 1) */
+  int levels = 2 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
+  cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
+  for (int i = 0; i < cascade->level_count; i++) plan_level(cascade, i, tiles_x, tiles_y);
+  cascade->reads = (cascade_reads){.tiles_x = tiles_x, .tiles_y = tiles_y};
+}
+
+static bool is_read_cubic(const shadow_setup *setup) {
+  hl_shadow_lookup lookup = setup->settings->shadow_lookup;
+  return lookup == HL_LOOKUP_AUTO ? setup->image == NULL : lookup == HL_LOOKUP_CUBIC;
+}
+
+/* The greatest tangent of a view's rays against the sheets' normal (a quadrangle's rays meet a sheet in one:
+ * corners are farthest). Infinite where some rays run along the sheets. */
+static double steepest_tangent(const view *view, vec3 normal) {
+  double greatest = 0, first = 0;
+  for (int corner = 0; corner < 4; corner++) {
+    vec3 start, way;
+    hl_view_ray(view, corner % 2 * view->width, corner / 2 * view->height, &start, &way);
+    double climb = vec3_dot(way, normal);
+    if (corner == 0) first = climb;
+    if (!(climb * first > 0)) return INFINITY;
+    greatest = fmax(greatest, vec3_length(vec3_subtract(way, vec3_scale(normal, climb))) / fabs(climb));
+  }
+  return greatest;
+}
+
+/* A cascade keeps its buffer where it is looked up. What is seen of a brick is looked up in the middle of the
+ * slab, up to half a slab further along the eye's ray: derived, in a buffer parallel to the sheets that is
+ * half their distance times the difference of the two rays' tangents away. Near a light within the content a
+ * tile must do. */
+static double look_up_spare(const shadow_setup *setup, const shadow_plan *plan) {
+  const sheet_stack *sheets = setup->sheets;
+  const view *view = &plan->view;
+  double nearest = 1, pixel = fmin(vec3_length(view->du), vec3_length(view->dv));
+  if (view->perspective) nearest = fmax(sheets->first - vec3_dot(view->origin, sheets->normal), 1e-9 * pixel);
+  double tangents = steepest_tangent(setup->eye, sheets->normal) + steepest_tangent(view, sheets->normal);
+  int taps = plan->cubic ? 2 * PIXEL_TO_SPARE : PIXEL_TO_SPARE;
+  return taps + fmin(0.5 * sheets->spacing * tangents / (pixel * nearest), TILE);
+}
+
+void hl_cascade_plan(light_shadow *shadow) {
+  const shadow_setup *setup = &shadow->setup;
+  shadow_plan *plan = &shadow->plan;
+  light_source middle = *setup->source;
+  plan->cubic = is_read_cubic(setup);
+  plan->second = true; /* the light that receivers fade from */
+  hl_plan_soft(shadow, hl_blurred_pixel(setup, plan->cubic));
+  plan->extent.u = plan->seen.u;
+  if (middle.parallel) middle.direction = vec3_normalise(plan->seen.middle);
+  else middle.position = plan->seen.middle;
+  hl_shadow_view(&middle, setup->sheets->normal, &plan->extent, &plan->view);
+  plan->spare = look_up_spare(setup, plan);
+  if (setup->image != NULL)
+    hl_light_image_see(setup->source, &plan->seen, setup->sheets->normal, setup->image);
+  plan_levels(shadow->state, shadow);
+}
+
+void hl_cascade_lay_out(light_shadow *shadow, shadow_layouts *layouts) {
+  soft_cascade *cascade = shadow->state;
+  cascade_reads *reads = &cascade->reads;
+  size_t tiles = (size_t)reads->tiles_x * (size_t)reads->tiles_y;
+  cascade->touched = hl_layout_take(&layouts->passing, tiles, 1);
+  cascade->refilled = hl_layout_take(&layouts->passing, tiles, 1);
+  reads->before = hl_layout_take(
+      &layouts->passing, (size_t)(reads->tiles_x + 1) * (size_t)(reads->tiles_y + 1), sizeof *reads->before);
+  for (int i = 0; i < cascade->level_count; i++) {
+    cascade_level *level = &cascade->level[i];
+    size_t tiles_x = (size_t)level->tiles_x, tiles_y = (size_t)level->tiles_y;
+    level->memory = hl_layout_take(&layouts->kept, level->pixels, sizeof *level->memory);
+    level->flags = hl_layout_take(&layouts->passing, level->planes, tiles_x * tiles_y);
+    level->boxes = hl_layout_take(&layouts->passing, tiles_x + tiles_y, sizeof *level->boxes);
+  }
+}
+
+hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error) {
+  (void)error;
+  soft_cascade *cascade = shadow->state;
+  shadow_memory *memory = shadow->kept;
+  size_t tiles = (size_t)cascade->reads.tiles_x * (size_t)cascade->reads.tiles_y;
+  memset(cascade->touched, 0, tiles);
+  memset(cascade->refilled, 0, tiles);
+  if (!memory->zeros) hl_pool_clear(shadow->setup.pool, memory->planes, memory->capacity);
+  memory->zeros = false;
+  for (int i = 0; i < cascade->level_count; i++) begin_level(cascade, i, &shadow->plan.seen);
+  cascade->level[0].count = 1; /* at the first chunk's start */
+  cascade->level[0].group[0].omega = cascade->chunk_start;
+  cascade->begun = true;
+  for (int c = 0; c < shadow->setup.channels; c++) shadow->lookup.older[c] = shadow->buffer->second[c];
+  return HL_OK;
+}
+
+/* One plane of a level; those of the moments have no flags of their own. */
+static void clear_plane(void *data, size_t index, int worker) {
+  (void)worker;
+  const cascade_level *level = data;
+  const cascade_field field = field_of_plane(level, index);
+  for (int y = 0; y < level->tiles_y; y++)
+    for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
+}
+
+/* What the last, unfinished chunk's slabs took, and what light they found. */
+static void clear_moments(const soft_cascade *cascade) {
+  const cascade_level *level = &cascade->level[0];
+  for (size_t tile = 0; tile < (size_t)level->tiles_x * (size_t)level->tiles_y; tile++) {
+    size_t at = tile / (size_t)level->tiles_x * TILE * level->stride + tile % (size_t)level->tiles_x * TILE;
+    for (int c = 0; c < cascade->channels && cascade->touched[tile]; c++)
+      for (size_t row = 0; row < TILE; row++)
+        memset(cascade->moment[c] + at + row * level->stride, 0, TILE * sizeof(float));
+  }
+  for (int c = 0; c < cascade->channels; c++)
+    memset(cascade->lacked[c], 0, (size_t)level->tiles_y * TILE * level->stride * sizeof(float));
+}
+
+/* Gives the memory back as zeros. */
+void hl_cascade_end(light_shadow *shadow) {
+  const soft_cascade *cascade = shadow->state;
+  hl_pool *pool = shadow->setup.pool;
+  if (!cascade->begun) return;
+  for (int i = 0; i < cascade->level_count; i++)
+    hl_pool_run(pool, cascade->level[i].planes, clear_plane, (void *)&cascade->level[i]);
+  clear_moments(cascade);
+  shadow->kept->zeros = !hl_pool_cancelled(pool);
+}
