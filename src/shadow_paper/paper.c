@@ -188,8 +188,7 @@ static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int 
   if (width <= 2) return;
   do {
     double whole = fmin(floor(width), most);
-    convolve(soft, shadow->buffer, (int)whole, shadow->setup.pool,
-             &shadow->setup.functions->blur);
+    convolve(soft, shadow->buffer, (int)whole, shadow->setup.pool, &shadow->setup.functions->blur);
     width -= whole;
   } while (width > 2 && soft->image != NULL);
   soft->remainder = width;

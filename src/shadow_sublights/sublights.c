@@ -351,7 +351,8 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   hl_pool *pool = shadow->setup.pool;
   for (int i = 0; i < sublights->count; i++)
     map_part(sublights, &sublights->parts[i], slab, sheets->normal, (from + to) / 2);
-  sublight_task task = {.sublights = sublights, .slab = slab, .functions = shadow->setup.functions->sublights};
+  sublight_task task = {
+      .sublights = sublights, .slab = slab, .functions = shadow->setup.functions->sublights};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
   int run = run_of_slab(sublights->slabs++);
   task.ends_run = run_of_slab(sublights->slabs) != run;
