@@ -80,8 +80,8 @@ typedef struct hl_context_options {
   uint64_t memory_limit;              /* bytes held through this context at once; 0: no limit */
   hl_instruction_set instruction_set; /* an unsupported choice is refused */
   const char *data_folder;            /* where "data:" in a scene's file names leads; copied; null: nowhere */
-  /* Told the path of every file that is opened to be read: scenes, volumes and the data files that their
-   * headers name, transfer functions, pictures. Who then writes a file can see that it is none of them. */
+  /* Called with the path of every file that is opened for reading: scenes, volumes, the data files that their
+   * headers name, transfer functions, pictures. A program can so avoid writing over one of them. */
   void (*reads)(void *user_data, const char *path);
 } hl_context_options;
 

@@ -34,7 +34,7 @@ typedef struct hl_render_statistics {
   double seconds_composite_light; /* the part of seconds_fill_light that is classification and
                                      composite */
   uint64_t pixels_filled_image,
-      pixels_filled_light; /* sheet pixels reconstructed, to tell what is hidden too */
+      pixels_filled_light; /* sheet pixels reconstructed, those for finding hidden blocks included */
   uint64_t pixels_skipped_image, pixels_skipped_light; /* in occupied places, but already opaque or dark */
 } hl_render_statistics;
 
@@ -51,8 +51,8 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const 
                                                    float *pixels, size_t row_stride,
                                                    hl_render_statistics *statistics, hl_error *error);
 
-/* The same, and the layers that are asked for. Takes longer: each light is shaded once more for its picture
- * and once for its shadow. */
+/* Renders the picture and the requested layers. Takes longer: each light is shaded once more for its picture
+ * and once more for its shadow. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene,
                                                           float *pixels, size_t row_stride,
                                                           const hl_layers *layers,
@@ -78,7 +78,7 @@ HL_API HL_WARN_UNUSED hl_status hl_reference_render(hl_context *context, const h
                                                     const hl_reference_options *options, float *pixels,
                                                     size_t row_stride, hl_error *error);
 
-/* The same, and the layers that are asked for. */
+/* Renders the picture and the requested layers. */
 HL_API HL_WARN_UNUSED hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
                                                            const hl_reference_options *options, float *pixels,
                                                            size_t row_stride, const hl_layers *layers,

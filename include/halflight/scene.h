@@ -89,7 +89,7 @@ typedef struct hl_light {
   hl_falloff falloff;
   hl_shadows shadows;
   hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */
-  hl_light_emission emission; /* likewise; not beside a texture */
+  hl_light_emission emission; /* on the light itself; copied with its pixels; not beside a texture */
 } hl_light;
 
 typedef struct hl_opacity_point {

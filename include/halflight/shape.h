@@ -34,7 +34,7 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_from_shapes(hl_context *context, const
 /* Ready-made texts: "furry-sphere", "eroded-cube", "fire-ball", "cloud", "rings", "orbital", ... */
 HL_API const char *hl_shape_preset_name(size_t index);     /* null past the last */
 HL_API const char *hl_shape_preset_summary(size_t index);  /* one line for a person; null past the last */
-HL_API const char *hl_shape_preset_text(const char *name); /* null if there is none of this name */
+HL_API const char *hl_shape_preset_text(const char *name); /* null for an unknown name */
 
 #ifdef __cplusplus
 }

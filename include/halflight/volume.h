@@ -76,9 +76,9 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
                                                  const hl_volume_description *description, hl_volume **volume,
                                                  hl_error *error);
 
-/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk and NumPy .npy files (axes [z][y][x]),
- * told by content first and by name where the content has no mark. Of several arrays and components one is
- * taken by default (hl_volume_load_options), and a warning tells it. */
+/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk and NumPy .npy files (axes [z][y][x]).
+ * The format is recognised by the content, or by the name where the content has no mark. Of several arrays or
+ * components one is read by default (hl_volume_load_options), and a warning says which. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume,
                                                hl_error *error);
 
@@ -103,15 +103,15 @@ typedef struct hl_volume_load_options {
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);
 
-/* hl_volume_load() of what the options (null: the defaults) say. A name or a component that is not there is
- * HL_ERROR_INPUT, with a list of what there is. */
+/* hl_volume_load() with options (null: the defaults). An array or component that the file does not have is
+ * HL_ERROR_INPUT, and the message lists those it has. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const char *path,
                                                     const hl_volume_load_options *options, hl_volume **volume,
                                                     hl_error *error);
 
-/* Writes .nrrd (gzip), .raw or .raw.gz, told by the name's end; bare voxels need their size and type in the
- * name, as for reading. Data values are kept: as 8 or 16 bit integers where the volume has such without a
- * scale, else as float. The file appears whole or not at all. */
+/* Writes .nrrd (gzip), .raw or .raw.gz, by the name's ending; the name of a raw file must state size and
+ * type, as for reading. Data values are kept: as integers of 8 or 16 bits where the volume holds such without
+ * a scale, else as float. The file appears whole or not at all. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path,
                                                hl_error *error);
 
@@ -127,8 +127,8 @@ typedef struct hl_volume_array {
   size_t components;  /* values per voxel, or volumes of a series */
   hl_voxel_type type; /* 0: of a kind that is not read */
   int of_cells;       /* VTK: values between the points */
-  int chosen;         /* the volume is made of it */
-  int component;      /* of the chosen one: what was read; HL_COMPONENT_MAGNITUDE for that */
+  int chosen;         /* the volume was read from this array */
+  int component;      /* of the chosen array: the component that was read, or HL_COMPONENT_MAGNITUDE */
 } hl_volume_array;
 
 /* How many arrays the file has (those beyond 256 are not listed); 0: the volume came from memory or

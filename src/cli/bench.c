@@ -207,7 +207,7 @@ static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   return EXIT_CODE_OK;
 }
 
-/* Settings take turns within each frame, so that a machine that slows down slows all of them. */
+/* Settings take turns within each frame: a machine that slows down then slows all settings alike. */
 static int run_frames(bench_job *job) {
   for (int frame = -1; frame < job->result->frames; frame++)
     for (int setting = 0; setting < SETTING_COUNT; setting++) {
@@ -247,7 +247,8 @@ static double seconds_of(const bench_sample *sample, int stage) {
   return stage == WHOLE_FRAME ? sample->frame : stage == PROCESSOR ? sample->processor : sample->stage[stage];
 }
 
-/* The first kind of shadows that was measured: what it says of the volume and the machine holds for all. */
+/* The first kind of shadows that was measured; its figures of the volume and the machine hold for every kind.
+ */
 static const bench_run *first_measured(const bench_result *result) {
   int setting = 0;
   while (setting < SETTING_COUNT - 1 && !result->run[setting].supported) setting++;

@@ -21,7 +21,7 @@ enum bench_option {
   BENCH_OPTION_COUNT
 };
 
-/* What is compared: kinds of shadows. */
+/* The kinds of shadows that are compared. */
 enum bench_setting {
   SETTING_OFF,
   SETTING_HARD,

@@ -68,7 +68,7 @@ static void move_scene(hl_scene_description *description, hl_light *lights, enum
     turn_light(&lights[i], camera->target, axis, light_angle(at));
 }
 
-/* Opacities between three quarters and all of what they are. */
+/* Scales opacities by a factor from 3/4 to 1. */
 static hl_opacity_point *fade(const hl_transfer_function *function, double at) {
   hl_opacity_point *points = malloc((function->opacity_count + 1) * sizeof *points);
   for (size_t i = 0; points != NULL && i < function->opacity_count; i++)

@@ -1,4 +1,4 @@
-/* cli/commands.h - the subcommands, one file each. */
+/* cli/commands.h - the registry of subcommands. */
 #ifndef HL_CLI_COMMANDS_H
 #define HL_CLI_COMMANDS_H
 

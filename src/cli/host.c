@@ -79,7 +79,7 @@ static void listen_to_signals(void) {
   struct sigaction action, before;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART; /* reading goes on until the cancel callback is asked */
+  action.sa_flags = SA_RESTART; /* interrupted reads resume; the cancel callback ends them */
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
@@ -87,8 +87,8 @@ static void listen_to_signals(void) {
     sigaction(SIGHUP, &action, NULL);
 }
 
-/* What a run may hold unless told otherwise: the machine's memory. Asked for more, it fails with a line
- * instead of being killed. */
+/* The default memory limit: the machine's memory. A run that needs more then fails with a message instead of
+ * being killed by the system. */
 static uint64_t physical_memory(void) {
   long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   return pages > 0 && page_bytes > 0 ? (uint64_t)pages * (uint64_t)page_bytes : 0;

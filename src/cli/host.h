@@ -14,8 +14,8 @@ typedef struct cli_host {
   bool color;
   bool drawn;          /* a bar is on the line now */
   double drawn_at;     /* seconds; bars are redrawn ten times a second at most */
-  cli_read_files read; /* what the context has opened to read */
-  char subject[32];    /* what the bar speaks of: as much of it as keeps the line short */
+  cli_read_files read; /* the files that the context has read */
+  char subject[32];    /* the input's name beside the bar, cut to keep the line short */
 } cli_host;
 
 typedef struct cli_host_options {

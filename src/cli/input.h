@@ -1,8 +1,8 @@
 /* cli/input.h - what subcommands take as INPUT: a scene, a picture that carries one, or a bare volume for
  * which one is made.
  *
- * A pipe, "-" among them, is read whole, once: then its first bytes tell what it is, and readers that go back
- * can.
+ * A pipe, "-" among them, is read whole, once: then its first bytes tell what it is, and a reader that needs
+ * to go back can.
  */
 #ifndef HL_CLI_INPUT_H
 #define HL_CLI_INPUT_H

@@ -22,7 +22,8 @@ __attribute__((format(printf, 1, 2))) void warn(const char *format, ...);
 /* The same without a word before it. */
 __attribute__((format(printf, 1, 2))) void say(const char *format, ...);
 
-/* What the failing library call was doing decides whose fault an error is. */
+/* The phase in which a library call failed; it decides whether the user's options, a file or the system is to
+ * blame, and so the exit code. */
 typedef enum cli_phase {
   PHASE_SETUP,  /* from options alone */
   PHASE_READ,   /* reading a file that the user named */

@@ -12,7 +12,7 @@ const char *base_name(const char *path);
 /* True if path ends in extension (".png"), in upper or lower case, and has something before it. */
 bool has_extension(const char *path, const char *extension);
 
-/* The extensions of what is written; null after the last. */
+/* The extensions that can be written; null after the last. */
 extern const char *const picture_extensions[], *const volume_extensions[];
 
 /* Refuses a name without one of the extensions, a folder, a place that cannot be written, and any of
@@ -28,7 +28,7 @@ char *output_default_name(const char *input, const char *extension);
 
 /* ---- files that the run has read, so that it writes over none of them ---- */
 
-/* A file by what it is, whatever its names: links lead to the same. */
+/* Identifies a file whichever of its names or links is used. */
 typedef struct cli_file_identity {
   dev_t device;
   ino_t inode;
@@ -37,7 +37,7 @@ typedef struct cli_file_identity {
 typedef struct cli_read_files {
   cli_file_identity *files; /* owned; [count] */
   size_t count, capacity;
-  bool incomplete; /* there was no memory for one of them */
+  bool incomplete; /* a file is missing for lack of memory */
 } cli_read_files;
 
 void read_files_add(cli_read_files *read, const char *path);

@@ -36,7 +36,7 @@ static const char *wanted_extension(const cli_value *values) {
   return extensions[values[RENDER_FORMAT].given ? values[RENDER_FORMAT].choice : 0];
 }
 
-/* What a picture of this input is called after: pipes have no name of their own. */
+/* The name to derive the picture's name from; pipes have none of their own and get one here. */
 static const char *nameable(const char *input) {
   if (strcmp(input, "-") == 0) return "stdin";
   return strncmp(input, "/dev/fd/", 8) == 0 ? "pipe" : input;
@@ -50,7 +50,7 @@ static char *default_output(const render_job *job) {
   return output_default_name(nameable(job->input), again ? "-again.png" : extension);
 }
 
-/* OUT, or what stands for it. */
+/* Decides where the picture goes: --output, or a name made from INPUT's. */
 static int choose_output(render_job *job) {
   const cli_value *values = job->values, *output = &values[RENDER_OUTPUT];
   job->to_stdout = output->given && strcmp(output->text, "-") == 0;
@@ -210,7 +210,8 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-/* Whose transfer function was chosen for it is told, and what it was taken for. */
+/* Finds out what kind of data a bare volume was taken for, where its transfer function was chosen
+ * automatically. */
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));

@@ -97,7 +97,7 @@ int render_check_names(const cli_value *values, const hl_scene_description *desc
                                    : exit_code;
 }
 
-/* What a repeatable option says of a volume; null: nothing. The last word counts. */
+/* The value that a repeatable option gives a volume; null: none. Of several the last one counts. */
 static const char *said_of(const cli_value *given, const hl_scene_volume *volume, size_t index) {
   char own[256];
   const char *chosen = NULL;
@@ -179,7 +179,7 @@ static int make_opaque_from(const cli_host *host, const hl_volume *volume, doubl
   return EXIT_CODE_OK;
 }
 
-/* A function whose points are the caller's own (free); null where there are none. */
+/* Copies the points, so that the caller owns them (free); null stays null. */
 static int copy_function(const hl_transfer_function *from, hl_transfer_function *to) {
   size_t opacity_bytes = from->opacity_count * sizeof *from->opacity,
          color_bytes = from->color_count * sizeof *from->color;
@@ -197,7 +197,7 @@ void render_release_function(hl_transfer_function *function) {
   free((void *)function->color);
 }
 
-/* The points that there are take the place of the old ones. */
+/* Replaces the old points where new ones are given. */
 static int replace(const hl_transfer_function *loaded, hl_transfer_function *function) {
   hl_transfer_function old = *function, copy;
   hl_transfer_function both = *loaded;
@@ -281,7 +281,7 @@ const cli_choice look_choices[] = {{"auto", LOOK_AUTO}, {"mip", LOOK_MIP}, {NULL
 
 typedef struct look {
   const char *preset;   /* the transfer function of every volume; null: chosen from the volume */
-  bool keeps_functions; /* those that a scene gives stay; bare volumes have none of their own */
+  bool keeps_functions; /* transfer functions that a scene gives are kept */
   bool on_black;        /* the background of a bare volume */
   hl_compositing compositing;
 } look;

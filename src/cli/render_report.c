@@ -1,4 +1,4 @@
-/* cli/render_report.c - what a finished rendering says of itself. */
+/* cli/render_report.c - statistics of a finished rendering. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <sys/resource.h>

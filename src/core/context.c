@@ -13,8 +13,9 @@
 #include "core/cpu.h"
 #include "core/error.h"
 
-/* Large blocks in large pages where the system has them: tiles of a plane lie in as many small pages as they
- * have rows, and finding those took longer than reading them. */
+/* Large blocks are placed in large pages where the system has them. The rows of a tile lie in as many small
+ * pages as there are rows, and translating the addresses of so many pages took longer than reading the rows.
+ */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
 
 static void *default_allocate(void *user_data, size_t size, size_t alignment) {

@@ -8,19 +8,19 @@
 __attribute__((format(printf, 3, 4))) hl_status hl_fail(hl_error *error, hl_status code, const char *format,
                                                         ...);
 
-/* The same with a place: line and column from 1 (0: none). */
+/* hl_fail with a line and a column in the input, from 1 (0: none). */
 __attribute__((format(printf, 5, 6))) hl_status hl_fail_at(hl_error *error, hl_status code, int line,
                                                            int column, const char *format, ...);
 
-/* The same with a byte offset into the input. */
+/* hl_fail with a byte offset into the input. */
 __attribute__((format(printf, 4, 5))) hl_status hl_fail_offset(hl_error *error, hl_status code,
                                                                int64_t offset, const char *format, ...);
 
 /* "out of memory: NAME needs N bytes ..." */
 hl_status hl_fail_memory(hl_error *error, size_t bytes, const char *what);
 
-/* Control characters, which names in foreign files may hold, become '?': a message is one line and steers no
- * terminal. */
+/* Replaces control characters by '?'. Names in foreign files may hold them, but a message must be one line
+ * and must not control the terminal. */
 void hl_make_printable(char *line);
 
 #endif

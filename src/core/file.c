@@ -195,7 +195,7 @@ void hl_output_abort(hl_output *output) {
 
 /* ---- outputs in memory ---- */
 
-/* Makes room for `end` bytes; what was not written before is zero. */
+/* Makes room for `end` bytes; new bytes are zero. */
 static bool reserve(hl_output_memory *memory, size_t end) {
   if (end <= memory->capacity) return true;
   size_t capacity = memory->capacity > 0 ? memory->capacity : 65536;

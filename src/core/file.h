@@ -7,11 +7,11 @@
 
 #include "core/error.h"
 
-/* Opens for reading, and tells the context's `reads` callback; a pipe without a writer does not hold it
- * up. */
+/* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
+ * writer. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Reads up to capacity bytes, 0 at the end. Where there is nothing yet, as in a pipe, it waits and asks
- * whether to stop. */
+/* Reads up to capacity bytes; *count is 0 at the end of the file. While a pipe is empty, waits and keeps
+ * asking the cancel callback. */
 hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity,
                        size_t *count, hl_error *error);
 
@@ -20,14 +20,14 @@ hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, vo
 hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes,
                        size_t *length, hl_error *error);
 
-/* Looks at the first length bytes of a file and says how many it may have in all (*limit), or why it is
- * refused. Asked after 64 KiB, and each time that twice as many have been read; not asked about files of
- * less. */
+/* Given the first length bytes of a file, sets *limit to the most bytes that the whole file may have, or
+ * refuses the file. Called after 64 KiB and each time the number of bytes read has doubled; never for shorter
+ * files. */
 typedef hl_status (*hl_file_judge)(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                                    hl_error *error);
 
-/* The same, with a limit that follows from what the file says of itself: of what never ends little is
- * read. */
+/* Reads a whole file, with a limit that `judge` derives from the file's header: an endless file is given up
+ * early. */
 hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_judge judge,
                               unsigned char **bytes, size_t *length, hl_error *error);
 

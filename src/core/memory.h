@@ -17,7 +17,7 @@ void *hl_allocate_zeroed(hl_context *context, size_t count, size_t size);
 /* Moves a block to a new size, keeping what fits; null leaves the old block as it was. old may be null. */
 void *hl_reallocate(hl_context *context, void *old, size_t count, size_t size);
 
-void hl_release(hl_context *context, void *memory); /* null is allowed for either: nothing is done */
+void hl_release(hl_context *context, void *memory); /* does nothing if either is null */
 
 /* A copy of a null-terminated text; null for null, or when there is no memory. */
 char *hl_copy_text(hl_context *context, const char *text);
@@ -40,22 +40,22 @@ typedef struct reserve_block {
 
 typedef struct hl_reserve {
   hl_context *context;
-  bool keeps;                          /* else what is taken anew is released when it is returned */
+  bool keeps;                          /* false: blocks are allocated and released each time */
   int taken;                           /* blocks of this frame */
   reserve_block block[RESERVE_BLOCKS]; /* zero: none yet */
 } hl_reserve;
 
-/* count * size bytes, uninitialised, from the reserve or as hl_allocate() gives them; null where that
- * does. */
+/* count * size uninitialised bytes, from the reserve or else from hl_allocate(); null when hl_allocate()
+ * fails. */
 void *hl_reserve_take(hl_reserve *reserve, size_t count, size_t size);
-/* Of hl_reserve_take() only; null is allowed. */
+/* Returns a block of hl_reserve_take(); null is allowed. */
 void hl_reserve_return(hl_reserve *reserve, void *memory);
 
 /* Releases the blocks that this frame has not taken yet. */
 void hl_reserve_drop_idle(hl_reserve *reserve);
-/* A frame ends, all is returned: those that it did not take are released. */
+/* Ends a frame, after all blocks were returned: releases the blocks that this frame did not take. */
 void hl_reserve_end_frame(hl_reserve *reserve);
-/* Releases all; nothing may be lent. */
+/* Releases all blocks; none may be lent at the time. */
 void hl_reserve_release(hl_reserve *reserve);
 
 #endif

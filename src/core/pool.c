@@ -29,7 +29,7 @@ enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 /* Between two questions whether to stop, while a job runs: far less than a person notices, far more than
  * asking takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
-/* Calls that take less than this together need no look at the clock in between; so many of them at most. */
+/* The clock is read again only after calls that together may take this long, or after this many calls. */
 static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
 enum { MOST_UNREAD = 15 };
 
@@ -271,7 +271,7 @@ int hl_pool_threads(const hl_pool *pool) { return pool->threads; }
 
 bool hl_pool_is_own(const hl_pool *pool) { return pool->process == getpid(); }
 
-/* Threads inherit the mask of the one that starts them. */
+/* A new thread inherits the signal mask of the thread that starts it. */
 static void start_workers(hl_pool *pool) {
   sigset_t all, own;
   sigfillset(&all);

@@ -4,8 +4,8 @@
  * depend on which worker gets which index; every output has one owner index.
  *
  * Between indices the caller asks the context's cancel callback, every few milliseconds at most. Once it says
- * stop, indices not yet begun are passed over, in this run and in those after it: what was to be computed is
- * then unfinished, and whoever is about to use it asks hl_pool_cancelled first.
+ * stop, indices not yet begun are skipped, in this run and in all later runs. The results are then
+ * incomplete: call hl_pool_cancelled before using them.
  */
 #ifndef HL_CORE_POOL_H
 #define HL_CORE_POOL_H
@@ -31,9 +31,9 @@ int hl_pool_threads(const hl_pool *pool);
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                  void *data);
 
-/* floats[0 .. count) = value, shared out. */
+/* Sets floats[0 .. count) to value, on all threads. */
 void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
-/* Bytes of one value; of zero. */
+/* Sets all bytes to value, or to zero, on all threads. */
 void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
 void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 

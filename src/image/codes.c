@@ -50,7 +50,7 @@ static bool is_empty(const float pixel[4]) {
 /* The linear value that colour c of a pixel is stored as. */
 static float hl_stored_value(const hl_codes *codes, const float pixel[4], int c) {
   if (!codes->transparent) return pixel[c] * codes->exposure + (1 - pixel[3]) * codes->background[c];
-  /* Light above alpha (emission) cannot be told in unassociated colour: it saturates. */
+  /* Unassociated colour cannot express light above alpha, which emission gives: it saturates. */
   return pixel[3] > 0 ? pixel[c] / pixel[3] * codes->exposure : 0;
 }
 

@@ -18,7 +18,7 @@ static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format,
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* What a file may have beyond its pixels: texts, profiles, thumbnails; and what its header may. */
+/* The most bytes that a file may have beyond its pixels (texts, profiles, thumbnails), and in its header. */
 static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const hl_image_format *format_by_name(const char *path) {
@@ -59,7 +59,7 @@ static hl_status write_layer_file(const hl_image_format *format, hl_context *con
   return status;
 }
 
-/* Layers that do not go into the picture's own file. */
+/* Writes each layer as a file of its own, where the format cannot hold layers in the picture's file. */
 static hl_status write_layers(const hl_image_format *format, hl_context *context, const hl_image *image,
                               const char *path, hl_error *error) {
   if (image->layer_count == 0 || format->holds_layers) return HL_OK;
@@ -142,7 +142,7 @@ static hl_status fail_unknown(const char *path, hl_error *error) {
                         "%s: byte 0: unknown picture format: expected a PNG, OpenEXR or NPY file", path);
 }
 
-/* How long the file may be that begins like this. What is compressed may grow by less than half. */
+/* Limits the length of a file by its header. Compression never makes pixels longer by more than half. */
 static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                        hl_error *error) {
   const hl_image_format *format = format_by_content(bytes, length);

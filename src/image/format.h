@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "image/image.h"
 
-/* What a file's first bytes say of the whole. */
+/* The size of a picture, as its file's first bytes state it. */
 typedef struct hl_image_claim {
   bool known; /* false: it takes more bytes to tell */
   uint64_t width, height;
@@ -31,7 +31,7 @@ typedef struct hl_image_format {
   hl_status (*decode)(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                       hl_image **image, hl_error *error);
 
-  /* Reads no more than the header; a broken header claims nothing: decode says what is wrong with it. */
+  /* Reads the header only. Of a broken header nothing is known; decode then reports what is wrong. */
   hl_image_claim (*claim)(const unsigned char *bytes, size_t length);
 
   bool holds_layers; /* encode writes the layers too */
@@ -46,7 +46,8 @@ extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format;
 /* Refuses options that cannot be; caller: the public function that errors name. */
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);
 
-/* Called by encoders before each row: tells of progress, and fails with HL_ERROR_CANCELLED. */
+/* To be called by encoders before each row: reports progress; fails with HL_ERROR_CANCELLED once cancelled.
+ */
 hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error);
 
 /* The line for a failed write to output->file, from errno. */

@@ -7,7 +7,7 @@
 enum {
   HL_IMAGE_SIDE_MAX = 65535,
   HL_IMAGE_EXPOSURE_MAX = 32, /* stops, either way */
-  /* What a reader allocates on a file's word alone: 2^28 pixels, 4 GiB. */
+  /* The most pixels that a reader allocates for a size that a file states: 2^28, 4 GiB. */
   HL_IMAGE_READ_PIXELS_MAX = 1 << 28
 };
 

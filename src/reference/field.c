@@ -78,7 +78,7 @@ static inline size_t clamp_voxel(int64_t voxel, int64_t last) {
   return (size_t)(voxel < 0 ? 0 : voxel > last ? last : voxel);
 }
 
-/* Slopes are filled only where asked for. */
+/* slopes: whether to fill found->slope. */
 static inline void find_taps(const reference_volume *volume, vec3 point, bool slopes, taps *found) {
   const double p[3] = {point.x, point.y, point.z};
   for (int axis = 0; axis < 3; axis++) {
@@ -300,7 +300,7 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
   made->empty_value = hl_scene_volume_empty_value(described);
   made->empty_stored = grid->value_scale != 0 ? (made->empty_value - grid->value_offset) / grid->value_scale
                                               : 0;
-  /* Where no value is transparent the empty value lies below them all, and stands for nothing being there. */
+  /* Where no value is transparent, the empty value lies below all values and means that nothing is there. */
   bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
   made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;
   return create_bricks(all->context, made, pool, error);

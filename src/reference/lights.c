@@ -73,8 +73,8 @@ static void emission_color(const hl_light_emission *emission, const emission_pla
 /* Optical depth in every channel beyond which nothing is seen of a light: exp(-18) is 2e-8. */
 static const double DARK_DEPTH = 18;
 
-/* Part of 1 that is left of i steps of `step` from the middle of the first: a golden section spreads any
- * number of them evenly. */
+/* The fractional part of 1/2 + i step. With the golden section as step, any number of results is spread
+ * evenly over 0 to 1. */
 static double spread(size_t i, double step) {
   double x = 0.5 + (double)i * step;
   return x - floor(x);
@@ -190,7 +190,7 @@ static vec3 offset_of(const reference_light *light, vec3 light_point) {
 
 enum { MEAN_POINTS = 1 << 14 };
 
-/* The image's mean over the light: what is left of it where the light counts as a point. */
+/* The image's mean over the light; a light that counts as a point shines in this colour. */
 static hl_status find_mean(hl_context *context, reference_light *light, hl_error *error) {
   reference_light dense = *light;
   vec3 facing = light->directional ? vec3_scale(light->towards, -1) : (vec3){0, 0, 1};

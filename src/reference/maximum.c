@@ -8,7 +8,7 @@
 
 enum { HALVINGS = 40 };
 
-/* Where a ray is asked for a volume's value, and what has been found there. */
+/* A search along a ray through one volume, and the greatest value found so far. */
 typedef struct search {
   const crossing *part;
   double greatest, where; /* data value, distance; -infinity: nothing shown yet */
@@ -26,7 +26,7 @@ static bool is_shown(const crossing *part, double value) {
          hl_transfer_function_opacity(&part->volume->described->transfer_function, value) > LEAST_OPACITY;
 }
 
-/* True where the value there is shown. */
+/* Whether the transfer function shows the value at this distance. */
 static bool ask(search *found, double at) {
   double value = value_at(found->part, at);
   if (!is_shown(found->part, value)) return false;

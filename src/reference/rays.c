@@ -36,7 +36,7 @@ static bool shown_box(const reference_volume *volume, double low[3], double high
   return any;
 }
 
-/* World: the corners' mean and the least depth among them. */
+/* The corners of what is shown, in the world: their sum and number, and the least depth. */
 typedef struct content {
   vec3 sum;
   double nearest;

@@ -152,7 +152,7 @@ static void write_pixel(const reference_parts *ray, size_t light_count, float rg
   rgba[3] = (float)ray->weight;
 }
 
-/* The mean of a pixel's rays, and where they first meet something, over those that do. */
+/* Averages a pixel's rays, and their first depths over the rays that meet something. */
 static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
   reference_worker *own = &all->workers[worker];
   size_t lights = all->all->scene->light_count, rays = (size_t)all->all->rays, hits = 0;

@@ -137,8 +137,8 @@ typedef struct reference_worker {
 
 hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
                                      reference_volume *made, hl_error *error);
-/* The most rays along a side of a pixel; and how many there are where voxels, `edge` long in world units, are
- * smaller than pixels. */
+/* The number of rays along each side of a pixel, at most HL_REFERENCE_RAYS: more than one where voxels,
+ * `edge` world units long, are smaller than pixels. */
 enum { HL_REFERENCE_RAYS = 8 };
 int hl_reference_rays(const reference *all, double edge);
 /* How far a ray may go from `point` (index space) before it can meet something: 0 where it may be here.
@@ -157,10 +157,10 @@ typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference
 
 void hl_reference_march_begin(const reference *all, reference_role role, const reference_ray *ray,
                               crossing *crossings, march *walk);
-/* Puts the crossings at a distance within the present stretch; how far from there all of them are empty,
- * 0 where one is not. */
+/* Moves all crossings to a distance within the present stretch. Returns how far from there every volume is
+ * empty; 0 where one is not. */
 double hl_reference_march_place(march *walk, double at);
-/* Goes to the middle of the next step at which some crossing is occupied; false at the end. */
+/* Moves to the middle of the next step at which some crossing is occupied; false at the end of the ray. */
 bool hl_reference_march_next(march *walk);
 
 hl_status hl_reference_light_create(const reference *all, const hl_light *light, int point_count,

@@ -11,7 +11,8 @@
 
 #include "reference/reference.h"
 
-/* What reaches a point is found when first asked for: it is by far the dearest part of a sample. */
+/* The light that reaches a point is computed at the first request only: it is by far the costliest part of a
+ * sample. */
 static const double *light_reach(const reference *all, const reference_volume *volume, size_t light,
                                  vec3 point, reference_worker *worker) {
   arrival *arrived = &worker->arrivals[light];
@@ -56,7 +57,7 @@ static void find_shadow(const reference *all, const reference_volume *volume, si
   hl_reference_light_reach(all, &plain, point, attenuated, worker, shadow);
 }
 
-/* What a sample is to every light. */
+/* The properties of a sample that are the same for every light. */
 typedef struct surface {
   double own[3]; /* the volume's colour */
   vec3 normal;   /* unit length, outward; 0 in a medium */

@@ -140,7 +140,7 @@ static void mark(size_t first, size_t end, unsigned char *live, unsigned char va
   for (size_t index = first; index < end; index++) live[index] = value;
 }
 
-/* Whether a shape with these bounds can change the distance of those before it. */
+/* Whether a shape with these bounds can change the distance of the shapes before it. */
 static bool has_say(const hl_shape *shape, hl_interval before, hl_interval own) {
   switch (shape->operation) {
     case HL_SHAPE_ADD: return own.low < before.high + shape->blend;
@@ -165,7 +165,7 @@ static hl_interval list_bounds(const hl_shape_list *list, size_t first, size_t e
     }
     live[index] = 1;
     if (shape->operation == HL_SHAPE_ADD && all.low >= own.high + shape->blend)
-      mark(first, index, live, 0); /* those before are all behind this one */
+      mark(first, index, live, 0); /* all earlier shapes are behind this one */
     bool turned = shape->operation == HL_SHAPE_SUBTRACT;
     all = (hl_interval){join(shape, all.low, turned ? own.high : own.low),
                         join(shape, all.high, turned ? own.low : own.high)};

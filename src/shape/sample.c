@@ -1,7 +1,7 @@
 /* shape/sample.c - from a list of shapes to voxels.
  *
- * Blocks of 8x8x8 voxels are sampled in parallel. Most of them are far from every surface: the bounds of the
- * distance over a block tell so before any voxel is asked. Densities are kept as 16 bit, orbitals as
+ * Blocks of 8x8x8 voxels are sampled in parallel. Most blocks are far from every surface: the bounds of the
+ * distance over a block show this before any voxel is sampled. Densities are kept as 16 bit, orbitals as
  * float. */
 #include <math.h>
 
@@ -113,7 +113,7 @@ static void scale_to_one(float *wave, size_t count) {
     for (size_t n = 0; n < count; n++) wave[n] /= greatest;
 }
 
-/* Layer by layer, so that the caller can be told how far it is and can stop it. */
+/* Works layer by layer, so that it can report progress and be cancelled in between. */
 static hl_status sample(hl_context *context, sampling *s, int threads, const char *subject, hl_error *error) {
   hl_pool *pool = NULL;
   hl_status status = hl_pool_create(context, threads, &pool, error);

@@ -30,7 +30,7 @@ typedef enum hl_shape_type {
   HL_SHAPE_GROUP = 8
 } hl_shape_type;
 
-/* What a shape does to those before it in its list. */
+/* How a shape joins the shapes before it in its list. */
 typedef enum hl_shape_operation {
   HL_SHAPE_ADD = 0,
   HL_SHAPE_SUBTRACT = 1,
@@ -109,13 +109,13 @@ typedef struct hl_interval {
  * the volume's frame. live: [count], from hl_shapes_bounds(); null: all. */
 double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, vec3 p);
 
-/* What that distance can be within radius of p, and which shapes can have a say there. */
+/* Bounds of that distance within radius of p. live: set for the shapes that can affect the distance there. */
 hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, unsigned char *live);
 
 /* The distance of a surface at the given distance once its texture has eaten it. p: own frame. */
 double hl_hypertexture_distance(const hl_shape *shape, double distance, vec3 p, vec3 foot);
 hl_interval hl_hypertexture_bounds(const hl_shape *shape, hl_interval distance);
-/* False where the distance is so large or so small that the texture cannot matter. */
+/* False where the distance is too large or too small for the texture to change the density. */
 bool hl_hypertexture_matters(const hl_shape *shape, double distance);
 
 /* The real hydrogen-like wave function, not normalised. p: own frame. */

@@ -80,7 +80,7 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   return HL_OK;
 }
 
-/* The default, told: nothing is taken silently. */
+/* Chooses the default component, and notes the warning that says so. */
 static int default_component(hl_load_request *request, const char *path, bool is_series, size_t components) {
   bool magnitude = !is_series && components <= 3;
   snprintf(request->component_told, sizeof request->component_told,

@@ -1,9 +1,9 @@
 /* volume/format.h - what a file format is to hl_volume_load, and what the readers of formats share.
  *
- * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. The list of
- * NAMEs in meson.build is the registry. A reader lists the file's arrays in its request, asks for a choice,
- * and reads the chosen array. An array or component that is read without having been named is told by a
- * warning, once the volume is there.
+ * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. formats.h is
+ * the registry of these NAMEs. A reader lists the file's arrays in its request, asks for a choice, and reads
+ * the chosen array. Where the caller did not name the array or component that is read, a warning says which
+ * it is.
  */
 #ifndef HL_VOLUME_FORMAT_H
 #define HL_VOLUME_FORMAT_H
@@ -12,7 +12,7 @@
 
 enum { HL_ARRAYS_MOST = 256 }; /* that are listed of one file */
 
-/* What the caller of a loader wants, and what its format found. */
+/* The caller's wishes, and what the reader found in the file. */
 typedef struct hl_load_request {
   hl_context *context;
   const char *array;      /* null: choose */
@@ -49,7 +49,7 @@ enum { HL_FORMAT_SNIFFED_BYTES = 1024, HL_FORMAT_ENDINGS = 3 };
 typedef struct hl_format {
   const char *name;                       /* in the list of formats of error lines */
   const char *endings[HL_FORMAT_ENDINGS]; /* of names that promise `beginning`; null after the last */
-  const char *beginning; /* what such files begin with, for the error line of one that does not */
+  const char *beginning;                  /* for error lines: how such files must begin */
 
   /* Whether a file that starts with these bytes is of the format. length: HL_FORMAT_SNIFFED_BYTES, less where
    * the file is shorter. */

@@ -22,7 +22,7 @@ typedef struct vtk_header {
   size_t tuples; /* of the POINT_DATA or CELL_DATA section; of the volume's array once it is found */
   hl_load_request *request;
   bool lists;    /* first pass: arrays are listed */
-  bool once;     /* and there is no second one: stop at the first that will do */
+  bool once;     /* there is no second pass: stop at the first suitable array */
   size_t arrays; /* under POINT_DATA so far */
   bool found;    /* the stream is at the voxels */
 } vtk_header;
@@ -143,7 +143,7 @@ static hl_status read_scalars(vtk_header *header, const char *arguments, hl_erro
   return status == HL_OK ? meet_array(header, name, type, components, header->tuples, error) : status;
 }
 
-/* "VECTORS name type", and others of so many components. */
+/* "VECTORS name type" and other keywords with a fixed number of components. */
 static hl_status read_vectors(vtk_header *header, size_t components, const char *arguments, hl_error *error) {
   char name[WORD_BYTES], type[WORD_BYTES];
   const char *cursor = arguments;
@@ -188,7 +188,7 @@ static hl_status read_color_scalars(vtk_header *header, const char *arguments, h
   return status;
 }
 
-/* What newer files say about the array before, up to an empty line. */
+/* Skips what newer files add after an array: lines up to an empty one. */
 static hl_status skip_metadata(vtk_header *header, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended;
@@ -307,7 +307,7 @@ static vtk_header begin(hl_stream *stream, hl_load_request *request, bool lists)
   return header;
 }
 
-/* Whether what was found before the file broke off or was not understood is the volume. */
+/* Whether the wanted array was found before the error. */
 static bool is_enough(const hl_load_request *request, hl_status status) {
   if (status != HL_ERROR_INPUT && status != HL_ERROR_UNSUPPORTED) return false;
   for (size_t n = 0; n < request->array_count; n++)
@@ -317,7 +317,7 @@ static bool is_enough(const hl_load_request *request, hl_status status) {
   return false;
 }
 
-/* Comes to the values of the chosen array. What is wrong behind them does not matter. */
+/* Goes to the values of the chosen array. Errors after them in the file do not matter. */
 static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_header *header,
                              hl_error *error) {
   *header = begin(*stream, request, true);

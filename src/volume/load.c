@@ -1,4 +1,4 @@
-/* volume/load.c - hl_volume_load: tells the format, by content first and by name where it has no mark. */
+/* volume/load.c - hl_volume_load: recognises the format, by content first, then by name. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -48,7 +48,7 @@ static hl_status by_name(hl_stream **stream, const hl_format **format, hl_error 
   return status;
 }
 
-/* Takes the mark with which Windows programs begin UTF-8 text, where the rest is a header of text. */
+/* Skips the byte order mark with which Windows programs begin UTF-8 text, if a known header follows. */
 static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **bytes, size_t *length,
                                       hl_error *error) {
   if (!begins(*bytes, *length, "\xef\xbb\xbf", 3) || by_content(*bytes + 3, *length - 3) == NULL)
@@ -57,7 +57,7 @@ static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **b
   return hl_stream_peek(stream, HL_FORMAT_SNIFFED_BYTES, bytes, length, error);
 }
 
-/* Files that people will try, with what to do about them; null if this is none of them. */
+/* For files of well-known formats that are not read: what to do with such a file; null for all others. */
 static const char *known_but_unsupported(const unsigned char *bytes, size_t length) {
   static const struct {
     size_t place;

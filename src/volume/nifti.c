@@ -105,7 +105,7 @@ static hl_status read_header(hl_stream *stream, nifti_header *header, hl_error *
   return HL_OK;
 }
 
-/* Of the first three axes; *series: the volumes along the fourth, *others: those along the ones after it. */
+/* Sizes of the first three axes; *series: of the fourth; *others: of all later axes together. */
 static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3], size_t *series,
                                  size_t *others, hl_error *error) {
   int64_t count = load_dimension(header, 0);
@@ -159,7 +159,7 @@ static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size
                         header->layout->datatype, (long long)code);
 }
 
-/* A slope of 0, NaN or infinity means that there is none. */
+/* A slope of 0, NaN or infinity means that values are not scaled. */
 static hl_status read_scale(const nifti_header *header, hl_volume_description *grid, hl_error *error) {
   double slope = load_real(header, header->layout->slope, 0),
          intercept = load_real(header, header->layout->intercept, 0);

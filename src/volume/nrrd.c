@@ -204,7 +204,7 @@ static hl_status read_origin(nrrd_header *header, const char *value, hl_error *e
   return HL_OK;
 }
 
-/* What else a space is called says nothing of a body. */
+/* Other names of spaces say nothing about anatomy. */
 static hl_status read_space(nrrd_header *header, const char *value, hl_error *error) {
   (void)error;
   static const struct {

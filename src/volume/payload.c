@@ -31,7 +31,7 @@ static size_t voxel_count(const hl_payload *payload) {
   return dimension[0] * dimension[1] * dimension[2];
 }
 
-/* Of all components; the greatest number there is where there are more. */
+/* The number of values of all components; UINT64_MAX if it is greater. */
 static uint64_t value_count(const hl_payload *payload) {
   uint64_t values;
   return __builtin_mul_overflow((uint64_t)voxel_count(payload), payload->components, &values) ? UINT64_MAX
@@ -51,7 +51,8 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
   if (payload->text)
     promised = value_count(payload) > UINT64_MAX / 2
                    ? UINT64_MAX
-                   : 2 * value_count(payload) - 1; /* a digit each, and what separates them */
+                   : 2 * value_count(payload) -
+                         1; /* at least a digit for each value, and a separator between two */
   if (promised <= most) return HL_OK;
   return hl_fail_offset(
       error, HL_ERROR_INPUT, (int64_t)stream->offset,
@@ -62,7 +63,7 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
       (unsigned long long)most);
 }
 
-/* Progress, and whether to go on. */
+/* Reports progress; fails once cancelled. */
 static hl_status report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
   hl_progress(stream->context, "load", (double)done / (double)count);
   return hl_cancelled(stream->context) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path)
@@ -80,7 +81,7 @@ static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, 
                         stream->cut_short ? ": the file is cut short" : ": correct its sizes or type");
 }
 
-/* done values are read; reads so many more, through raw where that is not their place. */
+/* Reads count values after the first `done`, into raw, and converts them to place; both may be the same. */
 static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                             void *raw, void *place, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
@@ -251,7 +252,7 @@ static void advance(const hl_payload *payload, component_place *place) {
   place->first += payload->block;
 }
 
-/* Passes over a large block that is not wanted. */
+/* Skips the current block if it is large and of a component that is not read. */
 static hl_status skip_block(hl_stream *stream, const hl_payload *payload, component_place *place,
                             bool *skipped, hl_error *error) {
   uint64_t bytes = (uint64_t)payload->block * hl_voxel_type_bytes(payload->grid.type);
@@ -279,7 +280,8 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, v
       done += payload->block;
       continue;
     }
-    uint64_t left = (uint64_t)(count - place.first) * payload->components; /* at least what is left */
+    uint64_t left = (uint64_t)(count - place.first) *
+                    payload->components; /* an upper bound of the values left */
     size_t wanted = left < STAGE_VOXELS ? (size_t)left : STAGE_VOXELS;
     if (payload->block - place.in_block < wanted && payload->block > 1)
       wanted = payload->block - place.in_block;
@@ -326,7 +328,7 @@ static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_erro
   return HL_OK;
 }
 
-/* What the volume is: of a magnitude, floats whose scale is applied. */
+/* The volume's grid. A magnitude is stored as floats to which the scale has been applied. */
 static hl_volume_description grid_of(const hl_payload *payload, const double spacing[3]) {
   hl_volume_description grid = payload->grid;
   if (payload->components > 1 && payload->component == HL_COMPONENT_MAGNITUDE) {

@@ -97,8 +97,8 @@ static void bin_counts(const uint64_t *counts, int values, binning bins, uint64_
     if (counts[value] != 0) histogram[bin_of(bins, value)] += counts[value];
 }
 
-/* Partial results of the voxels whose number is the same modulo LANES, so that they need not wait for each
- * other and compilers can take them together. */
+/* Partial results, one for each remainder of the voxel's number modulo LANES: sums do not wait for one
+ * another, and compilers turn them into vectors. */
 typedef struct lanes_f32 {
   float low[LANES], high[LANES];
   double sum[LANES];

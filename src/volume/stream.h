@@ -29,7 +29,7 @@ struct hl_stream {
   hl_status (*pull)(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count, hl_error *error);
   /* The most bytes that can yet be pulled; UINT64_MAX if unknown. */
   uint64_t (*at_most)(const hl_stream *stream);
-  void (*close)(hl_stream *stream); /* what the kind owns; may be null */
+  void (*close)(hl_stream *stream); /* releases what this kind of stream owns; may be null */
 };
 
 /* Opens a file. regular_only: refuse pipes and devices (files that are named by another file). */

@@ -92,7 +92,7 @@ static bool scan_special(const char *text, size_t length, double *value) {
   return true;
 }
 
-/* For what the exact path cannot do. */
+/* For numbers that the exact path cannot convert. */
 static double convert_slowly(const char *text, size_t length) {
   char copy[HL_NUMBER_CHARACTERS];
   memcpy(copy, text, length);

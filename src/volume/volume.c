@@ -191,7 +191,8 @@ static bool choose_strides(const hl_volume_description *description, ptrdiff_t s
   return memcmp(stride, packed, sizeof packed) == 0;
 }
 
-/* What is stored as it comes and lies as a vector load needs it. */
+/* Whether the voxels can be borrowed: their type is stored unchanged, and they are aligned for vector loads.
+ */
 static bool can_borrow(const hl_volume_description *description) {
   hl_voxel_type type = description->type;
   return (type == HL_VOXEL_U8 || type == HL_VOXEL_U16 || type == HL_VOXEL_F32) &&

@@ -319,7 +319,7 @@ static hl_status choose_array(const vti_header *header, hl_error *error) {
                  header->has_extent ? "DataArray in PointData or CellData" : "WholeExtent or Extent");
 }
 
-/* Goes to the chosen array and makes the volume of it. */
+/* Goes to the chosen array and reads it as the volume. */
 static hl_status read_array(hl_stream **stream, const vti_header *header, hl_volume **volume,
                             hl_error *error) {
   hl_load_request *request = header->request;
