@@ -49,6 +49,7 @@
 #include "layers.h"
 #include "render.h"
 #include "scene.h"
+#include "settings.h"
 #include "shape.h"
 #include "volume.h"
 

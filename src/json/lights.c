@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "json/parts.h"
+#include "json/settings.h"
 #include "scene/check.h"
 #include "scene/scene.h"
 
@@ -97,18 +98,6 @@ hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_
 
 /* ---- lights ---- */
 
-/* What each type of light may say, in the order of hl_light_type. */
-#define COMMON_KEYS "frame", "color", "intensity", "falloff", "shadows", "texture", "emission", NULL
-static const char *const directional_keys[] = {"type", "direction", "angular_diameter_deg", COMMON_KEYS};
-static const char *const point_keys[] = {"type", "position", "radius", COMMON_KEYS};
-static const char *const spot_keys[] = {
-    "type", "position", "direction", "opening_angle_deg", "falloff_angle_deg", "radius", COMMON_KEYS};
-static const char *const rect_keys[] = {"type", "position", "edge1", "edge2", COMMON_KEYS};
-static const char *const disk_keys[] = {"type", "position", "normal", "radius", COMMON_KEYS};
-static const char *const polygon_keys[] = {"type", "vertices", COMMON_KEYS};
-static const char *const *const light_keys[] = {directional_keys, point_keys, spot_keys,
-                                                rect_keys,        disk_keys,  polygon_keys};
-
 /* The vertices in memory of the light's own. */
 static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_light *light) {
   const json_t *value = json_object_get(object, "vertices");
@@ -134,65 +123,24 @@ static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_
 }
 
 /* Without a word on it the edge is as wide as a narrow cone allows. */
-static hl_status read_cone(hl_json_reader *reader, const json_t *value, hl_light *light) {
-  hl_status status = hl_json_number(reader, value, "opening_angle_deg", &light->opening_angle_deg);
-  if (light->falloff_angle_deg > light->opening_angle_deg / 2)
+static void narrow_edge(const json_t *value, hl_light *light) {
+  if (json_object_get(value, "falloff_angle_deg") == NULL &&
+      light->falloff_angle_deg > light->opening_angle_deg / 2)
     light->falloff_angle_deg = light->opening_angle_deg / 2;
-  return status == HL_OK ? hl_json_number(reader, value, "falloff_angle_deg", &light->falloff_angle_deg)
-                         : status;
-}
-
-static hl_status read_light_place(hl_json_reader *reader, const json_t *value, hl_light *light) {
-  hl_status status = hl_json_numbers(reader, value, "direction", 3, light->direction);
-  if (status == HL_OK)
-    status = hl_json_number(reader, value, "angular_diameter_deg", &light->angular_diameter_deg);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "position", 3, light->position);
-  if (status == HL_OK) status = hl_json_number(reader, value, "radius", &light->radius);
-  if (status == HL_OK) status = read_cone(reader, value, light);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "normal", 3, light->normal);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "edge1", 3, light->edge1);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "edge2", 3, light->edge2);
-  return status == HL_OK && light->type == HL_LIGHT_POLYGON ? read_vertices(reader, value, light) : status;
 }
 
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light) {
-  static const char *const all[] = {"type",
-                                    "direction",
-                                    "angular_diameter_deg",
-                                    "position",
-                                    "radius",
-                                    "normal",
-                                    "edge1",
-                                    "edge2",
-                                    "opening_angle_deg",
-                                    "falloff_angle_deg",
-                                    "vertices",
-                                    "frame",
-                                    "color",
-                                    "intensity",
-                                    "falloff",
-                                    "shadows",
-                                    "texture",
-                                    "emission",
-                                    NULL};
+  static const char *const others[] = {"vertices", "texture", "emission", NULL};
   hl_light_defaults(light);
-  int type = (int)light->type, frame = (int)light->frame, falloff = (int)light->falloff,
-      shadows = (int)light->shadows;
-  hl_status status = hl_json_object(reader, value, all);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "type", hl_light_type_names, 0, &type);
-  if (status != HL_OK) return status;
-  if ((status = hl_json_object(reader, value, light_keys[type])) != HL_OK) return status;
-  light->type = (hl_light_type)type;
-  status = hl_json_choice(reader, value, "frame", hl_light_frame_names, 0, &frame);
-  light->frame = (hl_light_frame)frame;
-  if (status == HL_OK) status = read_light_place(reader, value, light);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "color", 3, light->color);
-  if (status == HL_OK) status = hl_json_number(reader, value, "intensity", &light->intensity);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "falloff", hl_falloff_names, 0, &falloff);
+  hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_LIGHT, -1, others);
+  if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_LIGHT, "type", light);
+  const bool polygon = light->type == HL_LIGHT_POLYGON;
   if (status == HL_OK)
-    status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
-  light->falloff = (hl_falloff)falloff;
-  light->shadows = (hl_shadows)shadows;
+    status = hl_json_settings_object(reader, value, HL_SETTINGS_LIGHT, (int)light->type,
+                                     others + (polygon ? 0 : 1));
+  if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_LIGHT, (int)light->type, light);
+  narrow_edge(value, light);
+  if (status == HL_OK && polygon) status = read_vertices(reader, value, light);
   if (status == HL_OK)
     status = hl_json_read_texture(reader, json_object_get(value, "texture"), &light->texture);
   if (status == HL_OK)

@@ -7,19 +7,6 @@
 
 #include "scene/nearest.h"
 
-const char *const hl_camera_type_names[] = {"perspective", "orthographic", NULL};
-const char *const hl_light_type_names[] = {"directional", "point", "spot", "rect", "disk", "polygon", NULL};
-const char *const hl_shadows_names[] = {"off", "hard", "soft", NULL}; /* from HL_SHADOWS_OFF on */
-const char *const hl_light_frame_names[] = {"world", "camera", NULL};
-const char *const hl_falloff_names[] = {"none", "inverse_square", NULL};
-const char *const hl_shading_names[] = {"phong", "none", "flat", NULL};
-const char *const hl_soft_method_names[] = {"cascade", "paper", "sublights", NULL};
-const char *const hl_kernel_names[] = {"bspline", "gaussian", "linear", NULL};
-const char *const hl_reconstruction_names[] = {"auto", "splat", "gather", NULL};
-const char *const hl_compositing_names[] = {"light", "maximum", NULL};
-const char *const hl_slicing_names[] = {"half-vector", "image-aligned", NULL};
-const char *const hl_shadow_lookup_names[] = {"bilinear", "nearest", "cubic", "auto", NULL};
-
 json_t *hl_json_copy(const json_t *value) {
   json_t *copy = json_copy((json_t *)value);
   if (json_object_size(copy) == json_object_size(value))

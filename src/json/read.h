@@ -62,17 +62,4 @@ hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *k
 hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count,
                           double *numbers);
 
-/* The names that JSON has for enumerators, in their order; null-terminated. */
-extern const char *const hl_camera_type_names[],
-    *const hl_light_type_names[], *const hl_shadows_names[],
-                                      *const hl_light_frame_names[],
-                                          *const hl_falloff_names[],
-                                              *const hl_shading_names[],
-                                                  *const hl_soft_method_names[],
-                                                      *const hl_kernel_names[],
-                                                          *const hl_reconstruction_names[],
-                                                              *const hl_slicing_names[],
-                                                                  *const hl_shadow_lookup_names[],
-                                                                      *const hl_compositing_names[];
-
 #endif

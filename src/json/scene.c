@@ -11,9 +11,11 @@
 #include "core/memory.h"
 #include "guess/for_volume.h"
 #include "json/parts.h"
+#include "json/settings.h"
 #include "json/shapes.h"
 #include "scene/check.h"
 #include "scene/scene.h"
+#include "scene/settings.h"
 
 /* What reading gathers and must let go of, whatever happens. */
 typedef struct gathered {
@@ -41,27 +43,23 @@ static void release(hl_context *context, gathered *g) {
   hl_release(context, g->lights);
 }
 
+/* The ranges of a table are checked where what follows in the file depends on them. */
+static hl_status check_settings(hl_json_reader *reader, hl_setting_kind kind, const void *object,
+                                const char *place) {
+  hl_status status = hl_settings_check(kind, object, 0, place, reader->error);
+  if (status == HL_ERROR_INPUT) hl_json_prefix(reader, NULL);
+  return status;
+}
+
 static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene_description *d) {
-  static const char *const keys[] = {"width",    "height", "background", "background_transparent",
-                                     "exposure", NULL};
   const json_t *value = json_object_get(root, "image");
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "image");
-  hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = hl_json_integer(reader, value, "width", &d->width);
-  if (status == HL_OK) status = hl_json_integer(reader, value, "height", &d->height);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "background", 3, d->background);
-  if (status == HL_OK)
-    status = hl_json_flag(reader, value, "background_transparent", &d->background_transparent);
-  if (status == HL_OK) status = hl_json_number(reader, value, "exposure", &d->exposure);
-  if (status != HL_OK) return status;
-  if (d->width < 1 || d->height < 1 || d->width > HL_LIMIT_PIXELS || d->height > HL_LIMIT_PIXELS)
-    return hl_json_fail(reader, HL_ERROR_INPUT,
-                        d->width < 1 || d->width > HL_LIMIT_PIXELS ? "width" : "height",
-                        "%d is out of range: give a number of pixels from 1 to %d",
-                        d->width < 1 || d->width > HL_LIMIT_PIXELS ? d->width : d->height, HL_LIMIT_PIXELS);
-  hl_json_leave(reader, mark);
-  return HL_OK;
+  hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_IMAGE, -1, NULL);
+  if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_IMAGE, 0, d);
+  if (status == HL_OK) status = check_settings(reader, HL_SETTINGS_IMAGE, d, "/image");
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
 }
 
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
@@ -73,39 +71,36 @@ static hl_status refuse_key(hl_json_reader *reader, const json_t *object, const 
 
 /* What the camera would be if the file said no more than its type and field of view. */
 static hl_status frame(hl_json_reader *reader, const hl_scene_description *d, hl_camera *camera) {
-  if (camera->type == HL_CAMERA_PERSPECTIVE && !(camera->fovy_deg >= 1e-6 && camera->fovy_deg <= 179.999))
-    return hl_json_fail(reader, HL_ERROR_INPUT, "fovy_deg",
-                        "%.9g is out of range: give an angle in degrees, above 0 and below 180",
-                        camera->fovy_deg);
-  hl_status status = hl_scene_frame(d, camera, reader->error);
+  hl_status status = camera->type == HL_CAMERA_PERSPECTIVE
+                         ? hl_settings_check_key(HL_SETTINGS_CAMERA, "fovy_deg", camera, "/camera",
+                                                 reader->error)
+                         : HL_OK;
+  if (status != HL_OK) return hl_json_prefix(reader, NULL), status;
+  status = hl_scene_frame(d, camera, reader->error);
   if (status == HL_OK || status == HL_ERROR_MEMORY || status == HL_ERROR_CANCELLED) return status;
   return hl_json_fail(reader, status, NULL, "the volumes cannot be framed: give a position and a target");
 }
 
 static hl_status read_camera_members(hl_json_reader *reader, const json_t *value, hl_scene_description *d) {
-  static const char *const keys[] = {"type", "position", "target", "up", "fovy_deg", "height", NULL};
+  static const char *const with_position[] = {"target", "up"};
   hl_camera *camera = &d->camera;
-  int type = (int)camera->type;
-  hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "type", hl_camera_type_names, 0, &type);
-  camera->type = (hl_camera_type)type;
-  if (status == HL_OK && type == HL_CAMERA_PERSPECTIVE)
+  hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_CAMERA, -1, NULL);
+  if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_CAMERA, "type", camera);
+  if (status == HL_OK && camera->type == HL_CAMERA_PERSPECTIVE)
     status = refuse_key(reader, value, "height",
                         "is for orthographic cameras: give fovy_deg, or \"type\": \"orthographic\"");
-  if (status == HL_OK && type == HL_CAMERA_ORTHOGRAPHIC)
+  if (status == HL_OK && camera->type == HL_CAMERA_ORTHOGRAPHIC)
     status = refuse_key(reader, value, "fovy_deg",
                         "is for perspective cameras: give height, or \"type\": \"perspective\"");
   if (status == HL_OK && !has(value, "position"))
-    for (int k = 2; status == HL_OK && k < 4; k++)
-      status = refuse_key(reader, value, keys[k],
+    for (int k = 0; status == HL_OK && k < 2; k++)
+      status = refuse_key(reader, value, with_position[k],
                           "needs a position: give both, or neither to frame the volumes");
-  if (status == HL_OK) status = hl_json_number(reader, value, "fovy_deg", &camera->fovy_deg);
+  if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_CAMERA, "fovy_deg", camera);
   if (status == HL_OK) status = frame(reader, d, camera);
   if (status == HL_OK && has(value, "position")) memcpy(camera->up, (double[3]){0, 0, 1}, sizeof camera->up);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "position", 3, camera->position);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "target", 3, camera->target);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "up", 3, camera->up);
-  return status == HL_OK ? hl_json_number(reader, value, "height", &camera->height) : status;
+  return status == HL_OK ? hl_json_settings(reader, value, HL_SETTINGS_CAMERA, (int)camera->type, camera)
+                         : status;
 }
 
 /* The camera (value null: absent) of a description whose image and volumes are known: what is absent is
@@ -117,58 +112,13 @@ static hl_status read_camera(hl_json_reader *reader, const json_t *value, hl_sce
   return status;
 }
 
-static hl_status read_shadow_resolution(hl_json_reader *reader, const json_t *value, int *resolution) {
-  const json_t *member = json_object_get(value, "shadow_resolution");
-  if (json_is_string(member) && strcmp(json_string_value(member), "auto") == 0) {
-    *resolution = 0;
-    return HL_OK;
-  }
-  if (member == NULL) return HL_OK;
-  if (json_is_integer(member) && json_integer_value(member) >= 1 &&
-      json_integer_value(member) <= HL_LIMIT_SHADOW_RESOLUTION) {
-    *resolution = (int)json_integer_value(member);
-    return HL_OK;
-  }
-  return hl_json_fail(reader, HL_ERROR_INPUT, "shadow_resolution",
-                      "give \"auto\" or a whole number of pixels from 1 to %d", HL_LIMIT_SHADOW_RESOLUTION);
-}
-
 static hl_status read_render(hl_json_reader *reader, const json_t *value, hl_render_settings *render) {
-  static const char *const keys[] = {
-      "shadows", "soft_method",   "light_samples",     "sheet_spacing", "kernel",      "reconstruction",
-      "slicing", "shadow_lookup", "shadow_resolution", "threads",       "compositing", NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "render");
-  int shadows = (int)render->shadows, method = (int)render->soft_method, kernel = (int)render->kernel,
-      reconstruction = (int)render->reconstruction, slicing = (int)render->slicing,
-      lookup = (int)render->shadow_lookup, compositing = (int)render->compositing;
-  hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK)
-    status = hl_json_choice(reader, value, "shadows", hl_shadows_names, HL_SHADOWS_OFF, &shadows);
-  if (status == HL_OK)
-    status = hl_json_choice(reader, value, "soft_method", hl_soft_method_names, 0, &method);
-  if (status == HL_OK) status = hl_json_integer(reader, value, "light_samples", &render->light_samples);
-  if (status == HL_OK) status = hl_json_number(reader, value, "sheet_spacing", &render->sheet_spacing);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "kernel", hl_kernel_names, 0, &kernel);
-  if (status == HL_OK)
-    status = hl_json_choice(reader, value, "reconstruction", hl_reconstruction_names, 0, &reconstruction);
-  if (status == HL_OK) status = hl_json_choice(reader, value, "slicing", hl_slicing_names, 0, &slicing);
-  if (status == HL_OK)
-    status = hl_json_choice(reader, value, "shadow_lookup", hl_shadow_lookup_names, 0, &lookup);
-  if (status == HL_OK)
-    status = hl_json_choice(reader, value, "compositing", hl_compositing_names, 0, &compositing);
-  if (status == HL_OK) status = read_shadow_resolution(reader, value, &render->shadow_resolution);
-  if (status == HL_OK) status = hl_json_integer(reader, value, "threads", &render->threads);
-  if (status != HL_OK) return status;
-  render->shadows = (hl_shadows)shadows;
-  render->soft_method = (hl_soft_method)method;
-  render->kernel = (hl_kernel)kernel;
-  render->reconstruction = (hl_reconstruction)reconstruction;
-  render->slicing = (hl_slicing)slicing;
-  render->shadow_lookup = (hl_shadow_lookup)lookup;
-  render->compositing = (hl_compositing)compositing;
-  hl_json_leave(reader, mark);
-  return HL_OK;
+  hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_RENDER, -1, NULL);
+  if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_RENDER, 0, render);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
 }
 
 static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gathered *g) {
@@ -248,16 +198,16 @@ static hl_status read_version(hl_json_reader *reader, const json_t *root) {
 }
 
 static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
-  static const char *const keys[] = {"halflight", "description", "image",  "camera",  "ambient", "lights",
-                                     "groups",    "volumes",     "render", "$schema", NULL};
+  static const char *const others[] = {"halflight", "description", "image",  "camera",  "lights",
+                                       "groups",    "volumes",     "render", "$schema", NULL};
   hl_scene_description *d = &g->description;
   const char *schema = NULL;
-  hl_status status = hl_json_object(reader, root, keys);
+  hl_status status = hl_json_settings_object(reader, root, HL_SETTINGS_SCENE, -1, others);
   if (status == HL_OK) status = read_version(reader, root);
   if (status == HL_OK) status = hl_json_text(reader, root, "$schema", &schema);
   if (status == HL_OK) status = hl_json_text(reader, root, "description", &d->description);
   if (status == HL_OK) status = read_image(reader, root, d);
-  if (status == HL_OK) status = hl_json_numbers(reader, root, "ambient", 3, d->ambient);
+  if (status == HL_OK) status = hl_json_settings(reader, root, HL_SETTINGS_SCENE, 0, d);
   if (status == HL_OK) status = read_render(reader, json_object_get(root, "render"), &d->render);
   if (status == HL_OK) status = hl_json_check_groups(reader, json_object_get(root, "groups"));
   if (status == HL_OK) status = read_volumes(reader, root, g);

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "json/parts.h"
+#include "json/settings.h"
 #include "scene/check.h"
 #include "scene/scene.h"
 
@@ -198,7 +199,7 @@ static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_fu
                                      "range",         "preset",  "file",  NULL};
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = read_ground(reader, value, subject, function);
-  if (status == HL_OK) status = hl_json_number(reader, value, "unit_distance", &function->unit_distance);
+  if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
   if (status == HL_OK) status = read_points(reader, value, subject.is_solid, function);
   return status == HL_OK ? read_colormap(reader, value, subject.volume, function) : status;
 }

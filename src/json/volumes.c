@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "guess/analysis.h"
 #include "json/parts.h"
+#include "json/settings.h"
 #include "json/shapes.h"
 #include "scene/scene.h"
 
@@ -27,8 +28,10 @@ static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_sce
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "rotate");
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "axis", 3, volume->rotate_axis);
-  if (status == HL_OK) status = hl_json_number(reader, value, "angle_deg", &volume->rotate_angle_deg);
+  if (status == HL_OK)
+    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "transform/rotate/axis", volume);
+  if (status == HL_OK)
+    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "transform/rotate/angle_deg", volume);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
@@ -40,7 +43,7 @@ static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_scen
   if (scale != NULL && !json_is_number(scale))
     return hl_json_fail(reader, HL_ERROR_INPUT, "scale", "is %s: give a number or three, [x, y, z]",
                         hl_json_type_name(scale));
-  return hl_json_number(reader, value, "scale", &volume->scale);
+  return hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "transform/scale", volume);
 }
 
 static hl_status read_transform(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
@@ -50,21 +53,17 @@ static hl_status read_transform(hl_json_reader *reader, const json_t *value, hl_
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = read_scale(reader, value, volume);
   if (status == HL_OK) status = read_rotate(reader, json_object_get(value, "rotate"), volume);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "translate", 3, volume->translate);
+  if (status == HL_OK)
+    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "transform/translate", volume);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
 
 static hl_status read_material(hl_json_reader *reader, const json_t *value, hl_material *material) {
-  static const char *const keys[] = {"ambient", "diffuse", "specular", "shininess", "emission", NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "material");
-  hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = hl_json_number(reader, value, "ambient", &material->ambient);
-  if (status == HL_OK) status = hl_json_number(reader, value, "diffuse", &material->diffuse);
-  if (status == HL_OK) status = hl_json_number(reader, value, "specular", &material->specular);
-  if (status == HL_OK) status = hl_json_number(reader, value, "shininess", &material->shininess);
-  if (status == HL_OK) status = hl_json_number(reader, value, "emission", &material->emission);
+  hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_MATERIAL, -1, NULL);
+  if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_MATERIAL, 0, material);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
@@ -77,8 +76,8 @@ static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene
   for (int k = 0; status == HL_OK && k < 2; k++)
     if (json_object_get(value, keys[k]) == NULL)
       status = hl_json_fail(reader, HL_ERROR_INPUT, keys[k], "is missing: give both min and max");
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "min", 3, volume->clip_min);
-  if (status == HL_OK) status = hl_json_numbers(reader, value, "max", 3, volume->clip_max);
+  if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "clip/min", volume);
+  if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "clip/max", volume);
   volume->clipped = 1;
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
@@ -239,18 +238,15 @@ static bool is_solid(const hl_scene_volume *volume) {
 }
 
 /* Without a word on it, smoke is a medium and the rest has surfaces. */
-static hl_status read_shading(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
-  int shading = HL_SHADING_PHONG;
-  if (json_object_get(value, "shading") == NULL && json_object_get(value, "transfer_function") == NULL &&
-      volume->shapes == NULL) {
-    hl_data_analysis analysis;
-    hl_status status = hl_data_analyse(volume->volume, &analysis, reader->error);
-    if (status != HL_OK) return hl_json_prefix(reader, reader->place), status;
-    if (analysis.kind == HL_DATA_MEDIUM) shading = HL_SHADING_NONE;
-  }
-  hl_status status = hl_json_choice(reader, value, "shading", hl_shading_names, 0, &shading);
-  volume->shading = (hl_shading)shading;
-  return status;
+static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  if (json_object_get(value, "shading") != NULL || json_object_get(value, "transfer_function") != NULL ||
+      volume->shapes != NULL)
+    return HL_OK;
+  hl_data_analysis analysis;
+  hl_status status = hl_data_analyse(volume->volume, &analysis, reader->error);
+  if (status != HL_OK) return hl_json_prefix(reader, reader->place), status;
+  if (analysis.kind == HL_DATA_MEDIUM) volume->shading = HL_SHADING_NONE;
+  return HL_OK;
 }
 
 static bool is_there(const hl_json_reader *reader, const char *file) {
@@ -300,14 +296,10 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   if (status == HL_OK) status = hl_json_text(reader, value, "name", &volume->name);
   if (status == HL_OK) status = read_transform(reader, json_object_get(value, "transform"), volume);
   if (status == HL_OK) status = read_material(reader, json_object_get(value, "material"), &volume->material);
-  if (status == HL_OK)
-    status = hl_json_numbers(reader, value, "attenuation_color", 3, volume->attenuation_color);
-  if (status == HL_OK) status = hl_json_flag(reader, value, "visible", &volume->visible);
-  if (status == HL_OK) status = hl_json_flag(reader, value, "casts_shadow", &volume->casts_shadow);
-  if (status == HL_OK) status = hl_json_flag(reader, value, "receives_shadow", &volume->receives_shadow);
+  if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_VOLUME, 0, volume);
   if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);
-  if (status == HL_OK) status = read_shading(reader, value, volume);
+  if (status == HL_OK) status = choose_shading(reader, value, volume);
   if (status != HL_OK) return status;
   hl_function_subject subject = {volume->volume, is_solid(volume), shelf->projected};
   return hl_json_read_transfer_function(reader, json_object_get(value, "transfer_function"), subject,

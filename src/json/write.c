@@ -6,6 +6,7 @@
  */
 #define _GNU_SOURCE
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,7 @@
 #include "json/read.h"
 #include "json/shapes.h"
 #include "scene/scene.h"
+#include "scene/settings.h"
 #include "text/json_value.h"
 
 /* A text that grows. After a failed allocation everything is ignored until the end. */
@@ -106,25 +108,39 @@ static void write_flag(writer *w, const char *key, int flag) {
   put_text(w, flag ? "true" : "false");
 }
 
-static void write_image(writer *w, const hl_scene_description *d) {
-  open_bracket(w, "image", "{");
-  write_number(w, "width", d->width);
-  write_number(w, "height", d->height);
-  write_row(w, "background", d->background, 3);
-  if (d->background_transparent) write_flag(w, "background_transparent", 1);
-  if (d->exposure != 0) write_number(w, "exposure", d->exposure);
-  close_bracket(w, "}");
+static void write_setting(writer *w, const hl_setting *setting, const void *object) {
+  const char *slash = strrchr(setting->key, '/'), *key = slash != NULL ? slash + 1 : setting->key;
+  const double *numbers = hl_setting_field_const(setting, object);
+  const char *name = NULL;
+  switch (setting->type) {
+    case HL_SETTING_FLAG: write_flag(w, key, hl_setting_whole(setting, object)); break;
+    case HL_SETTING_NUMBER: write_number(w, key, numbers[0]); break;
+    case HL_SETTING_POINT:
+    case HL_SETTING_DIRECTION:
+    case HL_SETTING_COLOR: write_row(w, key, numbers, 3); break;
+    case HL_SETTING_WHOLE:
+    case HL_SETTING_CHOICE:
+      name = hl_setting_choice_name(setting, hl_setting_whole(setting, object));
+      if (name != NULL) write_name(w, key, name);
+      else write_number(w, key, hl_setting_whole(setting, object));
+  }
 }
 
-static void write_camera(writer *w, const hl_camera *camera) {
-  open_bracket(w, "camera", "{");
-  write_name(w, "type", hl_camera_type_names[camera->type]);
-  write_row(w, "position", camera->position, 3);
-  write_row(w, "target", camera->target, 3);
-  write_row(w, "up", camera->up, 3);
-  if (camera->type == HL_CAMERA_PERSPECTIVE) write_number(w, "fovy_deg", camera->fovy_deg);
-  else write_number(w, "height", camera->height);
-  close_bracket(w, "}");
+static void write_key(writer *w, hl_setting_kind kind, const char *key, const void *object) {
+  write_setting(w, hl_setting_find(kind, key), object);
+}
+
+/* Nothing for a key that objects of this type do not have, or whose default goes without saying. */
+static void write_if_told(writer *w, const hl_setting *setting, int type, const void *object) {
+  if (!hl_setting_is_for(setting, type)) return;
+  if (!setting->optional || !hl_setting_is_standard(setting, object)) write_setting(w, setting, object);
+}
+
+/* The keys of a table without a "/". */
+static void write_settings(writer *w, hl_setting_kind kind, int type, const void *object) {
+  for (size_t s = 0; s < hl_setting_count(kind); s++)
+    if (strchr(hl_setting_get(kind, s)->key, '/') == NULL)
+      write_if_told(w, hl_setting_get(kind, s), type, object);
 }
 
 static void write_texture(writer *w, const hl_light_texture *texture) {
@@ -147,43 +163,20 @@ static void write_emission(writer *w, const hl_light *light) {
   close_bracket(w, "}");
 }
 
-static void write_light_place(writer *w, const hl_light *light) {
-  if (light->type == HL_LIGHT_DIRECTIONAL) {
-    write_row(w, "direction", light->direction, 3);
-    write_number(w, "angular_diameter_deg", light->angular_diameter_deg);
-    return;
-  }
-  if (light->type == HL_LIGHT_POLYGON) {
-    open_bracket(w, "vertices", "[");
-    for (size_t v = 0; v < light->vertex_count; v++) write_row(w, NULL, light->vertices[v], 3);
-    close_bracket(w, "]");
-    return;
-  }
-  write_row(w, "position", light->position, 3);
-  if (light->type == HL_LIGHT_RECT) {
-    write_row(w, "edge1", light->edge1, 3);
-    write_row(w, "edge2", light->edge2, 3);
-    return;
-  }
-  if (light->type == HL_LIGHT_DISK) write_row(w, "normal", light->normal, 3);
-  if (light->type == HL_LIGHT_SPOT) {
-    write_row(w, "direction", light->direction, 3);
-    write_number(w, "opening_angle_deg", light->opening_angle_deg);
-    write_number(w, "falloff_angle_deg", light->falloff_angle_deg);
-  }
-  write_number(w, "radius", light->radius);
+static void write_vertices(writer *w, const hl_light *light) {
+  open_bracket(w, "vertices", "[");
+  for (size_t v = 0; v < light->vertex_count; v++) write_row(w, NULL, light->vertices[v], 3);
+  close_bracket(w, "]");
 }
 
 static void write_light(writer *w, const hl_light *light) {
   open_bracket(w, NULL, "{");
-  write_name(w, "type", hl_light_type_names[light->type]);
-  if (light->frame != HL_LIGHT_FRAME_WORLD) write_name(w, "frame", hl_light_frame_names[light->frame]);
-  write_light_place(w, light);
-  if (light->type != HL_LIGHT_DIRECTIONAL) write_name(w, "falloff", hl_falloff_names[light->falloff]);
-  write_row(w, "color", light->color, 3);
-  write_number(w, "intensity", light->intensity);
-  if (light->shadows != HL_SHADOWS_DEFAULT)
-    write_name(w, "shadows", hl_shadows_names[light->shadows - HL_SHADOWS_OFF]);
+  for (size_t s = 0; s < hl_setting_count(HL_SETTINGS_LIGHT); s++) {
+    const hl_setting *setting = hl_setting_get(HL_SETTINGS_LIGHT, s);
+    bool falloff = setting->offset == offsetof(hl_light, falloff);
+    if (falloff && light->type == HL_LIGHT_POLYGON) write_vertices(w, light);
+    if (!falloff || light->type != HL_LIGHT_DIRECTIONAL) write_if_told(w, setting, (int)light->type, light);
+  }
   write_texture(w, &light->texture);
   write_emission(w, light);
   close_bracket(w, "}");
@@ -191,7 +184,7 @@ static void write_light(writer *w, const hl_light *light) {
 
 static void write_transfer_function(writer *w, const hl_transfer_function *function) {
   open_bracket(w, "transfer_function", "{");
-  write_number(w, "unit_distance", function->unit_distance);
+  write_settings(w, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
   open_bracket(w, "opacity", "[");
   for (size_t p = 0; p < function->opacity_count; p++) {
     const hl_opacity_point *point = &function->opacity[p];
@@ -217,10 +210,10 @@ static void write_transform(writer *w, const hl_scene_volume *volume) {
                           hl_scene_volume_scale(volume, 2)},
               3);
   open_bracket(w, "rotate", "{");
-  write_row(w, "axis", volume->rotate_axis, 3);
-  write_number(w, "angle_deg", volume->rotate_angle_deg);
+  write_key(w, HL_SETTINGS_VOLUME, "transform/rotate/axis", volume);
+  write_key(w, HL_SETTINGS_VOLUME, "transform/rotate/angle_deg", volume);
   close_bracket(w, "}");
-  write_row(w, "translate", volume->translate, 3);
+  write_key(w, HL_SETTINGS_VOLUME, "transform/translate", volume);
   close_bracket(w, "}");
 }
 
@@ -283,42 +276,20 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
   else write_source(w, volume);
   write_transform(w, volume);
   write_transfer_function(w, &volume->transfer_function);
-  write_name(w, "shading", hl_shading_names[volume->shading]);
+  write_key(w, HL_SETTINGS_VOLUME, "shading", volume);
   open_bracket(w, "material", "{");
-  write_number(w, "ambient", volume->material.ambient);
-  write_number(w, "diffuse", volume->material.diffuse);
-  write_number(w, "specular", volume->material.specular);
-  write_number(w, "shininess", volume->material.shininess);
-  if (volume->material.emission != 0) write_number(w, "emission", volume->material.emission);
+  write_settings(w, HL_SETTINGS_MATERIAL, 0, &volume->material);
   close_bracket(w, "}");
-  write_row(w, "attenuation_color", volume->attenuation_color, 3);
-  write_flag(w, "visible", volume->visible);
-  write_flag(w, "casts_shadow", volume->casts_shadow);
-  write_flag(w, "receives_shadow", volume->receives_shadow);
+  write_key(w, HL_SETTINGS_VOLUME, "attenuation_color", volume);
+  write_key(w, HL_SETTINGS_VOLUME, "visible", volume);
+  write_key(w, HL_SETTINGS_VOLUME, "casts_shadow", volume);
+  write_key(w, HL_SETTINGS_VOLUME, "receives_shadow", volume);
   if (volume->clipped) {
     open_bracket(w, "clip", "{");
-    write_row(w, "min", volume->clip_min, 3);
-    write_row(w, "max", volume->clip_max, 3);
+    write_key(w, HL_SETTINGS_VOLUME, "clip/min", volume);
+    write_key(w, HL_SETTINGS_VOLUME, "clip/max", volume);
     close_bracket(w, "}");
   }
-  close_bracket(w, "}");
-}
-
-static void write_render(writer *w, const hl_render_settings *render) {
-  open_bracket(w, "render", "{");
-  write_name(w, "shadows", hl_shadows_names[render->shadows - HL_SHADOWS_OFF]);
-  write_name(w, "soft_method", hl_soft_method_names[render->soft_method]);
-  write_number(w, "light_samples", render->light_samples);
-  write_number(w, "sheet_spacing", render->sheet_spacing);
-  write_name(w, "kernel", hl_kernel_names[render->kernel]);
-  write_name(w, "reconstruction", hl_reconstruction_names[render->reconstruction]);
-  write_name(w, "slicing", hl_slicing_names[render->slicing]);
-  write_name(w, "shadow_lookup", hl_shadow_lookup_names[render->shadow_lookup]);
-  if (render->shadow_resolution == 0) write_name(w, "shadow_resolution", "auto");
-  else write_number(w, "shadow_resolution", render->shadow_resolution);
-  write_number(w, "threads", render->threads);
-  if (render->compositing != HL_COMPOSITING_LIGHT)
-    write_name(w, "compositing", hl_compositing_names[render->compositing]);
   close_bracket(w, "}");
 }
 
@@ -326,16 +297,22 @@ static void write_scene(writer *w, const hl_scene_description *d) {
   open_bracket(w, NULL, "{");
   write_number(w, "halflight", 1);
   if (d->description != NULL) write_name(w, "description", d->description);
-  write_image(w, d);
-  write_camera(w, &d->camera);
-  write_row(w, "ambient", d->ambient, 3);
+  open_bracket(w, "image", "{");
+  write_settings(w, HL_SETTINGS_IMAGE, 0, d);
+  close_bracket(w, "}");
+  open_bracket(w, "camera", "{");
+  write_settings(w, HL_SETTINGS_CAMERA, (int)d->camera.type, &d->camera);
+  close_bracket(w, "}");
+  write_settings(w, HL_SETTINGS_SCENE, 0, d);
   open_bracket(w, "lights", "[");
   for (size_t l = 0; l < d->light_count; l++) write_light(w, &d->lights[l]);
   close_bracket(w, "]");
   open_bracket(w, "volumes", "[");
   for (size_t v = 0; v < d->volume_count; v++) write_volume(w, &d->volumes[v]);
   close_bracket(w, "]");
-  write_render(w, &d->render);
+  open_bracket(w, "render", "{");
+  write_settings(w, HL_SETTINGS_RENDER, 0, &d->render);
+  close_bracket(w, "}");
   close_bracket(w, "}");
   put_text(w, "\n");
 }

@@ -1,4 +1,5 @@
-/* scene/check.h - is a description possible? The one place where limits of scenes are written down. */
+/* scene/check.h - is a description possible? Limits that several checks share; the range of each setting is
+ * in settings.c. */
 #ifndef HL_SCENE_CHECK_H
 #define HL_SCENE_CHECK_H
 
@@ -19,17 +20,14 @@
   1e35 /* where light falls with the square of a distance that may be in nanometres */
 #define HL_LIMIT_BRIGHTNESS \
   1e20 /* of a light a smallest voxel's edge away: what floats hold with materials and sums */
-#define HL_LIMIT_REACH              1e12 /* distances and lengths, in smallest voxel edges */
-#define HL_LIMIT_TEXTURE_VALUE      1e6
-#define HL_LIMIT_VOXEL_VALUE        1e36 /* differences and sums of these are floats */
-#define HL_LIMIT_LIGHT_SAMPLES      64
-#define HL_LIMIT_SHADOW_RESOLUTION  16384
-#define HL_LIMIT_THREADS            1024
-#define HL_LIMIT_SHININESS          10000
-#define HL_LIMIT_EMISSION           1e6
-#define HL_LIMIT_EXPOSURE           32 /* stops, either way */
-#define HL_LIMIT_SHEET_SPACING_LOW  0.01
-#define HL_LIMIT_SHEET_SPACING_HIGH 100
+#define HL_LIMIT_REACH         1e12 /* distances and lengths, in smallest voxel edges */
+#define HL_LIMIT_TEXTURE_VALUE 1e6
+#define HL_LIMIT_VOXEL_VALUE   1e36 /* differences and sums of these are floats */
+#define HL_LIMIT_LIGHT_SAMPLES 64
+#define HL_LIMIT_THREADS       1024
+#define HL_LIMIT_SHININESS     10000
+#define HL_LIMIT_EMISSION      1e6
+#define HL_LIMIT_EXPOSURE      32 /* stops, either way */
 
 /* Every field of a description; the first fault is reported as "JSON pointer: what is wrong: the mend". */
 hl_status hl_description_check(const hl_scene_description *description, hl_error *error);

@@ -10,61 +10,29 @@
 #include "core/memory.h"
 #include "scene/check.h"
 #include "scene/placement.h"
+#include "scene/settings.h"
 
 void hl_light_defaults(hl_light *light) {
   if (light == NULL) return;
-  *light = (hl_light){
-      .type = HL_LIGHT_DIRECTIONAL,
-      .direction = {0, 0, -1},
-      .normal = {0, 0, -1},
-      .edge1 = {1, 0, 0},
-      .edge2 = {0, 1, 0},
-      .opening_angle_deg = 40,
-      .falloff_angle_deg = 5,
-      .color = {1, 1, 1},
-      .intensity = 1,
-      .falloff = HL_FALLOFF_NONE,
-      .shadows = HL_SHADOWS_DEFAULT,
-      .emission = {.up = {0, 0, 1}},
-  };
+  *light = (hl_light){.emission = {.up = {0, 0, 1}}};
+  hl_settings_defaults(HL_SETTINGS_LIGHT, light);
 }
 
 void hl_scene_volume_defaults(hl_scene_volume *volume) {
   if (volume == NULL) return;
-  *volume = (hl_scene_volume){
-      .component = HL_COMPONENT_DEFAULT,
-      .scale = 1,
-      .rotate_axis = {0, 0, 1},
-      .transfer_function = {.unit_distance = 1},
-      .shading = HL_SHADING_PHONG,
-      .material = {.ambient = 1, .diffuse = 0.7, .specular = 0.3, .shininess = 32},
-      .attenuation_color = {1, 1, 1},
-      .visible = 1,
-      .casts_shadow = 1,
-      .receives_shadow = 1,
-      .axis_scale = {1, 1, 1},
-  };
+  *volume = (hl_scene_volume){.component = HL_COMPONENT_DEFAULT, .axis_scale = {1, 1, 1}};
+  hl_settings_defaults(HL_SETTINGS_VOLUME, volume);
+  hl_settings_defaults(HL_SETTINGS_MATERIAL, &volume->material);
+  hl_settings_defaults(HL_SETTINGS_TRANSFER_FUNCTION, &volume->transfer_function);
 }
 
 void hl_scene_description_defaults(hl_scene_description *description) {
   if (description == NULL) return;
-  *description = (hl_scene_description){
-      .struct_size = sizeof(hl_scene_description),
-      .width = 512,
-      .height = 512,
-      .camera = {.type = HL_CAMERA_PERSPECTIVE,
-                 .position = {0, -1, 0},
-                 .up = {0, 0, 1},
-                 .fovy_deg = 30,
-                 .height = 1},
-      .ambient = {0.2, 0.2, 0.2},
-      .render = {.shadows = HL_SHADOWS_SOFT,
-                 .soft_method = HL_SOFT_CASCADE,
-                 .light_samples = 4,
-                 .sheet_spacing = 0.5,
-                 .kernel = HL_KERNEL_BSPLINE,
-                 .shadow_lookup = HL_LOOKUP_AUTO},
-  };
+  *description = (hl_scene_description){.struct_size = sizeof(hl_scene_description)};
+  hl_settings_defaults(HL_SETTINGS_SCENE, description);
+  hl_settings_defaults(HL_SETTINGS_IMAGE, description);
+  hl_settings_defaults(HL_SETTINGS_CAMERA, &description->camera);
+  hl_settings_defaults(HL_SETTINGS_RENDER, &description->render);
 }
 
 static void release_volume(hl_context *context, hl_scene_volume *volume) {

@@ -1,0 +1,72 @@
+/* halflight/settings.h - the tables of settings: what each key of a scene may be.
+ *
+ * One row per key. Reading and writing scene files, the checks of hl_scene_create() and the defaults follow
+ * these rows; editors and documents can be made from them.
+ */
+#ifndef HALFLIGHT_SETTINGS_H
+#define HALFLIGHT_SETTINGS_H
+
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Which table, the struct that its rows are fields of, and the place of its keys in a scene file. */
+typedef enum hl_setting_kind {
+  HL_SETTINGS_SCENE = 0,             /* hl_scene_description; the file's top level */
+  HL_SETTINGS_IMAGE = 1,             /* hl_scene_description; "image" */
+  HL_SETTINGS_CAMERA = 2,            /* hl_camera; "camera" */
+  HL_SETTINGS_LIGHT = 3,             /* hl_light; each of "lights" */
+  HL_SETTINGS_VOLUME = 4,            /* hl_scene_volume; each of "volumes" */
+  HL_SETTINGS_MATERIAL = 5,          /* hl_material; a volume's "material" */
+  HL_SETTINGS_TRANSFER_FUNCTION = 6, /* hl_transfer_function; a volume's "transfer_function" */
+  HL_SETTINGS_RENDER = 7             /* hl_render_settings; "render" */
+} hl_setting_kind;
+
+/* The type of the field, and of its value in a scene file. */
+typedef enum hl_setting_type {
+  HL_SETTING_FLAG = 0,      /* int, 0 or 1; true or false */
+  HL_SETTING_WHOLE = 1,     /* int; a whole number, or one of the choices' names */
+  HL_SETTING_NUMBER = 2,    /* double; a number */
+  HL_SETTING_CHOICE = 3,    /* an enum; one of the choices' names */
+  HL_SETTING_POINT = 4,     /* double[3]; [x, y, z] */
+  HL_SETTING_DIRECTION = 5, /* double[3]; [x, y, z], not all 0 */
+  HL_SETTING_COLOR = 6      /* double[3]; [r, g, b] */
+} hl_setting_type;
+
+typedef struct hl_setting_choice {
+  const char *name; /* null ends the list */
+  int value;
+} hl_setting_choice;
+
+typedef struct hl_setting {
+  const char *key;   /* in a scene file; "transform/translate" is the key translate in the object transform */
+  const char *field; /* in the struct */
+  hl_setting_type type;
+  const char *unit;                 /* "degrees", "world units", ...; "" for none */
+  double low, high;                 /* the range of a number, and of each of three numbers; ends included */
+  int open_low;                     /* non-zero: low itself is refused */
+  double standard[3];               /* the default: its first number, or three */
+  const hl_setting_choice *choices; /* null: none */
+  size_t offset;                    /* of the field in the struct */
+  unsigned only_for; /* lights and cameras: the types that have the key, bit (1 << type) each; 0: all */
+  int optional;      /* non-zero: hl_scene_to_json() leaves it out where it has its default */
+  const char *sentence;
+  const char *mend;   /* what an error about the value asks for; {low} and {high} stand for the range */
+  const char *option; /* of `halflight render`, without dashes; null: none */
+} hl_setting;
+
+/* The rows of a table; 0 for an unknown kind. */
+HL_API size_t hl_setting_count(hl_setting_kind kind);
+
+/* A row, which stays valid: null past the last. */
+HL_API const hl_setting *hl_setting_get(hl_setting_kind kind, size_t index);
+
+/* The row of a key; null: there is none. */
+HL_API const hl_setting *hl_setting_find(hl_setting_kind kind, const char *key);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,191 @@
+/* scene/check_volume.c - is a volume of a scene possible: its transfer function, where it stands, its values?
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "core/vector.h"
+#include "scene/check_tools.h"
+#include "scene/scene.h"
+
+/* Sorted, and at most two points at one value: two make a step. */
+static hl_status check_order(const hl_checker *check, const char *key, size_t index, double before2,
+                             double before, double value) {
+  if (value < before)
+    return hl_fail(check->error, HL_ERROR_INPUT,
+                   "%s/%s/%zu/0: %.9g comes after %.9g: sort the points by value", check->place, key, index,
+                   value, before);
+  if (index >= 2 && value == before && before == before2)
+    return hl_fail(
+        check->error, HL_ERROR_INPUT,
+        "%s/%s/%zu/0: %.9g is there a third time: two points at one value make a step, remove the others",
+        check->place, key, index, value);
+  return HL_OK;
+}
+
+static hl_status check_value(const hl_checker *check, const char *key, size_t index, double value) {
+  char element[48];
+  snprintf(element, sizeof element, "%s/%zu/0", key, index);
+  return hl_check_range(check, element, value, -1e30, 1e30, "give a data value between -1e30 and 1e30");
+}
+
+static hl_status check_opacity_points(const hl_checker *check, const hl_transfer_function *function) {
+  hl_status status = hl_check_count(check, "opacity", function->opacity, function->opacity_count,
+                                    HL_LIMIT_POINTS);
+  for (size_t p = 0; status == HL_OK && p < function->opacity_count; p++) {
+    const hl_opacity_point *point = &function->opacity[p];
+    char element[48];
+    snprintf(element, sizeof element, "opacity/%zu/1", p);
+    if ((status = check_value(check, "opacity", p, point->value)) != HL_OK) return status;
+    if (p > 0)
+      status = check_order(check, "opacity", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
+    if (status == HL_OK)
+      status = hl_check_range(check, element, point->opacity, 0, 1, "give an opacity from 0 to 1");
+  }
+  return status;
+}
+
+static hl_status check_color_points(const hl_checker *check, const hl_transfer_function *function) {
+  hl_status status = hl_check_count(check, "color", function->color, function->color_count, HL_LIMIT_POINTS);
+  for (size_t p = 0; status == HL_OK && p < function->color_count; p++) {
+    const hl_color_point *point = &function->color[p];
+    if ((status = check_value(check, "color", p, point->value)) != HL_OK) return status;
+    if (p > 0)
+      status = check_order(check, "color", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
+    for (int channel = 0; status == HL_OK && channel < 3; channel++) {
+      char element[48];
+      snprintf(element, sizeof element, "color/%zu/%d", p, channel + 1);
+      status = hl_check_range(check, element, point->color[channel], 0, 1,
+                              "give linear RGB, each from 0 to 1");
+    }
+  }
+  return status;
+}
+
+hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place,
+                                     hl_error *error) {
+  hl_checker check = {error, ""};
+  snprintf(check.place, sizeof check.place, "%s", place);
+  hl_status status = hl_check_settings(&check, HL_SETTINGS_TRANSFER_FUNCTION, function, 0);
+  if (status == HL_OK) status = check_opacity_points(&check, function);
+  return status == HL_OK ? check_color_points(&check, function) : status;
+}
+
+/* Three factors, the products of the common one and each axis's own, of which each is told. */
+static hl_status check_axis_scales(const hl_checker *check, const hl_scene_volume *volume) {
+  const double *axis = volume->axis_scale;
+  if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) return HL_OK;
+  for (int a = 0; a < 3; a++) {
+    double scale = hl_scene_volume_scale(volume, a);
+    if (scale > 0 && scale <= HL_LIMIT_LENGTH) continue;
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s/transform/scale/%d: %.9g %s: give a factor above 0",
+                   check->place, a, scale,
+                   isnan(scale) ? "is not a number"
+                   : scale <= 0 ? "is not above 0"
+                                : "is out of range");
+  }
+  return HL_OK;
+}
+
+static hl_status check_transform(const hl_checker *check, const hl_scene_volume *volume) {
+  hl_status status = hl_check_key(check, HL_SETTINGS_VOLUME, "transform/scale", volume);
+  if (status == HL_OK) status = check_axis_scales(check, volume);
+  if (status == HL_OK && volume->rotate_angle_deg != 0)
+    status = hl_check_key(check, HL_SETTINGS_VOLUME, "transform/rotate/axis", volume);
+  if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "transform/rotate/angle_deg", volume);
+  return status == HL_OK ? hl_check_key(check, HL_SETTINGS_VOLUME, "transform/translate", volume) : status;
+}
+
+static hl_status check_clip(const hl_checker *check, const hl_scene_volume *volume) {
+  if (!volume->clipped) return HL_OK;
+  hl_status status = hl_check_key(check, HL_SETTINGS_VOLUME, "clip/min", volume);
+  if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "clip/max", volume);
+  for (int a = 0; a < 3 && status == HL_OK; a++)
+    if (volume->clip_min[a] >= volume->clip_max[a])
+      return hl_fail(check->error, HL_ERROR_INPUT,
+                     "%s/clip/max/%d: %.9g is not above min, %.9g: nothing would be left, enlarge the box",
+                     check->place, a, volume->clip_max[a], volume->clip_min[a]);
+  return status;
+}
+
+static double farthest_corner(const hl_scene_volume *volume, affine3 placement) {
+  double farthest = 0;
+  for (int corner = 0; corner < 8; corner++) {
+    vec3 index;
+    index.x = corner & 1 ? (double)volume->volume->dimension[0] : 0;
+    index.y = corner & 2 ? (double)volume->volume->dimension[1] : 0;
+    index.z = corner & 4 ? (double)volume->volume->dimension[2] : 0;
+    farthest = fmax(farthest, vec3_length(affine3_apply(placement, index)));
+  }
+  return farthest;
+}
+
+/* The whole placement, since factors that are fine alone may vanish or overflow together. */
+static hl_status check_placement(const hl_checker *check, const hl_scene_volume *volume) {
+  affine3 placement = hl_scene_volume_index_to_world(volume), inverse;
+  for (int a = 0; a < 3; a++) {
+    double edge = vec3_length(mat3_column(placement.linear, a));
+    if (edge <= HL_LIMIT_LENGTH && edge >= 1 / HL_LIMIT_LENGTH) continue;
+    const double *by_axis = volume->axis_scale;
+    if (volume->scale != 1 || by_axis[0] != 1 || by_axis[1] != 1 || by_axis[2] != 1)
+      return hl_fail(check->error, HL_ERROR_INPUT,
+                     "%s/transform: makes the edges of voxels %.9g long: give a scale with which they are "
+                     "from 1e-15 to 1e15",
+                     check->place, edge);
+    return hl_fail(check->error, HL_ERROR_INPUT,
+                   "%s/file: its voxels are %.9g long, and can be from 1e-15 to 1e15: correct the "
+                   "file's spacing, or give a transform.scale",
+                   check->place, edge);
+  }
+  if (!(vec3_length(placement.offset) <= 1e3 * HL_LIMIT_LENGTH))
+    return hl_check_refuse(check, "transform",
+                           "moves the volume too far away to compute with: use a shorter translate");
+  double reach = farthest_corner(volume, placement);
+  if (!(reach <= HL_LIMIT_CORNER))
+    return hl_fail(check->error, HL_ERROR_INPUT,
+                   "%s/file: reaches %.3g from the origin, and can reach as far as 1e14, so that a camera "
+                   "may stand off: correct its "
+                   "spacing and origin, or give a smaller transform.scale",
+                   check->place, reach);
+  if (!affine3_invert(placement, &inverse))
+    return hl_check_refuse(check, "file",
+                           "the volume's axes lie in one plane: mend its spacing or direction");
+  return HL_OK;
+}
+
+/* Data values and, where they are kept as floats, stored ones. */
+static hl_status check_values(const hl_checker *check, const hl_volume *volume) {
+  double greatest = fmax(fabs(volume->minimum), fabs(volume->maximum)), stored = 0;
+  if (volume->storage == HL_STORAGE_F32)
+    stored = (greatest + fabs(volume->value_offset)) / fabs(volume->value_scale);
+  if (greatest <= HL_LIMIT_VOXEL_VALUE && stored <= HL_LIMIT_VOXEL_VALUE) return HL_OK;
+  return hl_fail(check->error, HL_ERROR_INPUT,
+                 "%s/file: its voxels reach %.3g, more than the 1e36 that pictures can be computed with: "
+                 "scale them, and mark "
+                 "missing ones by NaN",
+                 check->place, fmax(greatest, stored));
+}
+
+static hl_status check_look(const hl_checker *check, const hl_scene_volume *volume) {
+  char place[120];
+  snprintf(place, sizeof place, "%s/transfer_function", check->place);
+  hl_status status = hl_transfer_function_check(&volume->transfer_function, place, check->error);
+  if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "shading", volume);
+  snprintf(place, sizeof place, "%s/material", check->place);
+  if (status == HL_OK)
+    status = hl_settings_check(HL_SETTINGS_MATERIAL, &volume->material, 0, place, check->error);
+  return status == HL_OK ? hl_check_key(check, HL_SETTINGS_VOLUME, "attenuation_color", volume) : status;
+}
+
+hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_error *error) {
+  hl_checker check = {error, ""};
+  snprintf(check.place, sizeof check.place, "/volumes/%zu", index);
+  if (volume->volume == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s/volume: is null: give a volume", check.place);
+  if (volume->file != NULL && volume->shapes != NULL)
+    return hl_check_refuse(&check, "shapes", "and file exclude each other: the voxels came from one of them");
+  hl_status status = check_values(&check, volume->volume);
+  if (status == HL_OK) status = check_transform(&check, volume);
+  if (status == HL_OK) status = check_placement(&check, volume);
+  if (status == HL_OK) status = check_look(&check, volume);
+  return status == HL_OK ? check_clip(&check, volume) : status;
+}

@@ -1,0 +1,263 @@
+/* scene/settings_table.c - the tables of settings: one row says all that is known about a key of a scene.
+ *
+ * A new setting is a field of a public struct and a row here. Ranges, defaults and names stand nowhere else.
+ */
+#include <stddef.h>
+
+#include <halflight/settings.h>
+
+#include "scene/check.h"
+#include "scene/settings.h"
+
+/* A row takes a few lines. */
+/* clang-format off */
+
+static const hl_setting_choice camera_types[] = {
+    {"perspective", HL_CAMERA_PERSPECTIVE}, {"orthographic", HL_CAMERA_ORTHOGRAPHIC}, {NULL, 0}};
+static const hl_setting_choice light_types[] = {{"directional", HL_LIGHT_DIRECTIONAL},
+                                                {"point", HL_LIGHT_POINT},
+                                                {"spot", HL_LIGHT_SPOT},
+                                                {"rect", HL_LIGHT_RECT},
+                                                {"disk", HL_LIGHT_DISK},
+                                                {"polygon", HL_LIGHT_POLYGON},
+                                                {NULL, 0}};
+static const hl_setting_choice light_frames[] = {
+    {"world", HL_LIGHT_FRAME_WORLD}, {"camera", HL_LIGHT_FRAME_CAMERA}, {NULL, 0}};
+static const hl_setting_choice falloffs[] = {
+    {"none", HL_FALLOFF_NONE}, {"inverse_square", HL_FALLOFF_INVERSE_SQUARE}, {NULL, 0}};
+static const hl_setting_choice shadows[] = {
+    {"off", HL_SHADOWS_OFF}, {"hard", HL_SHADOWS_HARD}, {"soft", HL_SHADOWS_SOFT}, {NULL, 0}};
+static const hl_setting_choice shadings[] = {
+    {"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {"flat", HL_SHADING_FLAT}, {NULL, 0}};
+static const hl_setting_choice soft_methods[] = {
+    {"cascade", HL_SOFT_CASCADE}, {"paper", HL_SOFT_PAPER}, {"sublights", HL_SOFT_SUBLIGHTS}, {NULL, 0}};
+static const hl_setting_choice kernels[] = {{"bspline", HL_KERNEL_BSPLINE},
+                                            {"gaussian", HL_KERNEL_GAUSSIAN},
+                                            {"linear", HL_KERNEL_LINEAR},
+                                            {NULL, 0}};
+static const hl_setting_choice reconstructions[] = {{"auto", HL_RECONSTRUCTION_AUTO},
+                                                    {"splat", HL_RECONSTRUCTION_SPLAT},
+                                                    {"gather", HL_RECONSTRUCTION_GATHER},
+                                                    {NULL, 0}};
+static const hl_setting_choice slicings[] = {
+    {"half-vector", HL_SLICING_HALF_VECTOR}, {"image-aligned", HL_SLICING_IMAGE_ALIGNED}, {NULL, 0}};
+static const hl_setting_choice lookups[] = {{"auto", HL_LOOKUP_AUTO},
+                                            {"bilinear", HL_LOOKUP_BILINEAR},
+                                            {"cubic", HL_LOOKUP_CUBIC},
+                                            {"nearest", HL_LOOKUP_NEAREST},
+                                            {NULL, 0}};
+static const hl_setting_choice compositings[] = {
+    {"light", HL_COMPOSITING_LIGHT}, {"maximum", HL_COMPOSITING_MAXIMUM}, {NULL, 0}};
+static const hl_setting_choice automatic_resolution[] = {{"auto", 0}, {NULL, 0}};
+
+#define ONE(type) (1u << (type))
+#define PLACED    (ONE(HL_LIGHT_POINT) | ONE(HL_LIGHT_SPOT) | ONE(HL_LIGHT_RECT) | ONE(HL_LIGHT_DISK))
+
+/* What rows of these types have in common. */
+#define FIELD(structure, name) .field = #name, .offset = offsetof(structure, name)
+#define A_POINT                                                                                      \
+  .type = HL_SETTING_POINT, .unit = "world units", .low = -HL_LIMIT_LENGTH, .high = HL_LIMIT_LENGTH, \
+  .mend = "give a coordinate between {low} and {high}"
+#define A_DIRECTION                                                                           \
+  .type = HL_SETTING_DIRECTION, .unit = "", .low = -HL_LIMIT_LENGTH, .high = HL_LIMIT_LENGTH, \
+  .mend = "give a coordinate between {low} and {high}"
+#define A_CHOICE(names) .type = HL_SETTING_CHOICE, .unit = "", .choices = names
+#define A_FLAG          .type = HL_SETTING_FLAG, .unit = "", .high = 1
+
+static const hl_setting scene_rows[] = {
+    {.key = "ambient", FIELD(hl_scene_description, ambient), .type = HL_SETTING_COLOR, .unit = "linear RGB",
+     .high = HL_LIMIT_LENGTH, .standard = {0.2, 0.2, 0.2}, .option = "ambient",
+     .sentence = "Light from everywhere.", .mend = "give linear RGB, none below 0"}};
+
+static const hl_setting image_rows[] = {
+    {.key = "width", FIELD(hl_scene_description, width), .type = HL_SETTING_WHOLE, .unit = "pixels",
+     .low = 1, .high = HL_LIMIT_PIXELS, .standard = {512}, .option = "size",
+     .sentence = "Pixels across the picture.", .mend = "give a number of pixels from {low} to {high}"},
+    {.key = "height", FIELD(hl_scene_description, height), .type = HL_SETTING_WHOLE, .unit = "pixels",
+     .low = 1, .high = HL_LIMIT_PIXELS, .standard = {512}, .option = "size",
+     .sentence = "Pixels down the picture.", .mend = "give a number of pixels from {low} to {high}"},
+    {.key = "background", FIELD(hl_scene_description, background), .type = HL_SETTING_COLOR,
+     .unit = "linear RGB", .high = 1, .option = "background",
+     .sentence = "The colour behind the volumes in a PNG.",
+     .mend = "give linear RGB, each from {low} to {high}"},
+    {.key = "background_transparent", FIELD(hl_scene_description, background_transparent), A_FLAG,
+     .optional = 1, .option = "background",
+     .sentence = "A PNG keeps its alpha, and no background is added."},
+    {.key = "exposure", FIELD(hl_scene_description, exposure), .type = HL_SETTING_NUMBER, .unit = "stops",
+     .low = -HL_LIMIT_EXPOSURE, .high = HL_LIMIT_EXPOSURE, .optional = 1, .option = "exposure",
+     .sentence = "A PNG shows the volumes' light times 2^exposure.",
+     .mend = "give stops from {low} to {high}: each doubles the light"}};
+
+static const hl_setting camera_rows[] = {
+    {.key = "type", FIELD(hl_camera, type), A_CHOICE(camera_types), .option = "ortho",
+     .sentence = "The projection."},
+    {.key = "position", FIELD(hl_camera, position), A_POINT, .standard = {0, -1, 0}, .sentence = "The eye."},
+    {.key = "target", FIELD(hl_camera, target), A_POINT,
+     .sentence = "The point in the middle of the picture."},
+    {.key = "up", FIELD(hl_camera, up), A_DIRECTION, .standard = {0, 0, 1}, .option = "up",
+     .sentence = "The direction that points up in the picture."},
+    {.key = "fovy_deg", FIELD(hl_camera, fovy_deg), .type = HL_SETTING_NUMBER, .unit = "degrees",
+     .low = 1e-6, .high = 179.999, .standard = {30}, .only_for = ONE(HL_CAMERA_PERSPECTIVE),
+     .option = "fovy", .sentence = "The vertical field of view.",
+     .mend = "give an angle in degrees, above 0 and below 180"},
+    {.key = "height", FIELD(hl_camera, height), .type = HL_SETTING_NUMBER, .unit = "world units",
+     .high = HL_LIMIT_LENGTH, .open_low = 1, .standard = {1}, .only_for = ONE(HL_CAMERA_ORTHOGRAPHIC),
+     .sentence = "The height of the world that the picture shows.",
+     .mend = "give the picture's height in world units, above 0"}};
+
+static const hl_setting light_rows[] = {
+    {.key = "type", FIELD(hl_light, type), A_CHOICE(light_types), .sentence = "The shape of the light."},
+    {.key = "frame", FIELD(hl_light, frame), A_CHOICE(light_frames), .optional = 1,
+     .sentence = "The axes that the light's positions and directions are in; a light in the camera's "
+                 "goes with it."},
+    {.key = "position", FIELD(hl_light, position), A_POINT, .only_for = PLACED,
+     .sentence = "The centre of the light."},
+    {.key = "direction", FIELD(hl_light, direction), A_DIRECTION, .standard = {0, 0, -1},
+     .only_for = ONE(HL_LIGHT_DIRECTIONAL) | ONE(HL_LIGHT_SPOT), .option = "light",
+     .sentence = "The way the light travels."},
+    {.key = "angular_diameter_deg", FIELD(hl_light, angular_diameter_deg), .type = HL_SETTING_NUMBER,
+     .unit = "degrees", .high = 120, .only_for = ONE(HL_LIGHT_DIRECTIONAL), .option = "light-size",
+     .sentence = "The diameter of the disk that the light comes from, as seen from the volumes; above 0 "
+                 "its shadows are soft.",
+     .mend = "give an angle in degrees from {low} (a sharp light) to {high}"},
+    {.key = "edge1", FIELD(hl_light, edge1), A_POINT, .standard = {1, 0, 0}, .only_for = ONE(HL_LIGHT_RECT),
+     .sentence = "One full edge of the parallelogram."},
+    {.key = "edge2", FIELD(hl_light, edge2), A_POINT, .standard = {0, 1, 0}, .only_for = ONE(HL_LIGHT_RECT),
+     .sentence = "The other full edge of the parallelogram."},
+    {.key = "normal", FIELD(hl_light, normal), A_DIRECTION, .standard = {0, 0, -1},
+     .only_for = ONE(HL_LIGHT_DISK), .sentence = "The direction that the disk faces."},
+    {.key = "opening_angle_deg", FIELD(hl_light, opening_angle_deg), .type = HL_SETTING_NUMBER,
+     .unit = "degrees", .low = 0.01, .high = 179, .standard = {40}, .only_for = ONE(HL_LIGHT_SPOT),
+     .sentence = "The full angle of the cone, beyond which it is dark.",
+     .mend = "give the cone's full angle in degrees, from {low} to {high}"},
+    {.key = "falloff_angle_deg", FIELD(hl_light, falloff_angle_deg), .type = HL_SETTING_NUMBER,
+     .unit = "degrees", .high = 89.5, .standard = {5}, .only_for = ONE(HL_LIGHT_SPOT),
+     .sentence = "The width of the smooth edge inside the cone, at most half the opening angle.",
+     .mend = "give the width of the cone's smooth edge in degrees, from {low} to half the opening angle"},
+    {.key = "radius", FIELD(hl_light, radius), .type = HL_SETTING_NUMBER, .unit = "world units",
+     .high = HL_LIMIT_LENGTH, .only_for = ONE(HL_LIGHT_POINT) | ONE(HL_LIGHT_SPOT) | ONE(HL_LIGHT_DISK),
+     .sentence = "The radius of the sphere or the disk.",
+     .mend = "give a length in world units, {low} for a point"},
+    {.key = "falloff", FIELD(hl_light, falloff), A_CHOICE(falloffs),
+     .sentence = "How the light falls with the distance from its centre."},
+    {.key = "color", FIELD(hl_light, color), .type = HL_SETTING_COLOR, .unit = "linear RGB",
+     .high = HL_LIMIT_LENGTH, .standard = {1, 1, 1}, .sentence = "The colour of the light.",
+     .mend = "give linear RGB, none below 0"},
+    {.key = "intensity", FIELD(hl_light, intensity), .type = HL_SETTING_NUMBER, .unit = "",
+     .high = HL_LIMIT_INTENSITY, .standard = {1}, .sentence = "A factor on the colour.",
+     .mend = "give a factor, {low} or more"},
+    {.key = "shadows", FIELD(hl_light, shadows), A_CHOICE(shadows), .standard = {HL_SHADOWS_DEFAULT},
+     .optional = 1, .option = "shadows",
+     .sentence = "The light's shadows; by default as the render settings say."}};
+
+#define MATERIAL_MEND "give a factor from {low} to {high}"
+static const hl_setting material_rows[] = {
+    {.key = "ambient", FIELD(hl_material, ambient), .type = HL_SETTING_NUMBER, .unit = "", .high = 1000,
+     .standard = {1}, .sentence = "ka: the factor on the light from everywhere.", .mend = MATERIAL_MEND},
+    {.key = "diffuse", FIELD(hl_material, diffuse), .type = HL_SETTING_NUMBER, .unit = "", .high = 1000,
+     .standard = {0.7}, .sentence = "kd: the factor on light that is scattered evenly.",
+     .mend = MATERIAL_MEND},
+    {.key = "specular", FIELD(hl_material, specular), .type = HL_SETTING_NUMBER, .unit = "", .high = 1000,
+     .standard = {0.3}, .sentence = "ks: the factor on the highlight.", .mend = MATERIAL_MEND},
+    {.key = "shininess", FIELD(hl_material, shininess), .type = HL_SETTING_NUMBER, .unit = "",
+     .high = HL_LIMIT_SHININESS, .standard = {32},
+     .sentence = "n: the exponent of the highlight; larger is smaller.",
+     .mend = "give an exponent from {low} to {high}"},
+    {.key = "emission", FIELD(hl_material, emission), .type = HL_SETTING_NUMBER, .unit = "",
+     .high = HL_LIMIT_EMISSION, .optional = 1,
+     .sentence = "ke: the fraction of the colour that shines by itself.",
+     .mend = "give the part of the colour that shines by itself, from {low} to {high}"}};
+
+static const hl_setting transfer_function_rows[] = {
+    {.key = "unit_distance", FIELD(hl_transfer_function, unit_distance), .type = HL_SETTING_NUMBER,
+     .unit = "world units", .high = HL_LIMIT_LENGTH, .open_low = 1, .standard = {1},
+     .sentence = "The length that the opacities are for.",
+     .mend = "give the length in world units that the opacities are for, above 0"}};
+
+static const hl_setting volume_rows[] = {
+    {.key = "transform/scale", FIELD(hl_scene_volume, scale), .type = HL_SETTING_NUMBER, .unit = "",
+     .high = HL_LIMIT_LENGTH, .open_low = 1, .standard = {1},
+     .sentence = "A factor, or three along the axes of the volume's own file.",
+     .mend = "give a factor above 0"},
+    {.key = "transform/rotate/axis", FIELD(hl_scene_volume, rotate_axis), A_DIRECTION, .standard = {0, 0, 1},
+     .sentence = "The axis that the volume is turned about."},
+    {.key = "transform/rotate/angle_deg", FIELD(hl_scene_volume, rotate_angle_deg),
+     .type = HL_SETTING_NUMBER, .unit = "degrees", .low = -1e6, .high = 1e6,
+     .sentence = "The angle that the volume is turned by.", .mend = "give an angle in degrees"},
+    {.key = "transform/translate", FIELD(hl_scene_volume, translate), A_POINT,
+     .sentence = "The vector that the volume is moved by, after it was scaled and turned."},
+    {.key = "shading", FIELD(hl_scene_volume, shading), A_CHOICE(shadings), .option = "shading",
+     .sentence = "Surfaces, a medium such as smoke, or the colours themselves without light."},
+    {.key = "attenuation_color", FIELD(hl_scene_volume, attenuation_color), .type = HL_SETTING_COLOR,
+     .unit = "", .high = 1000, .standard = {1, 1, 1},
+     .sentence = "Relative extinction of red, green and blue.",
+     .mend = "give relative extinctions from {low} to {high}, 1 for as much as the opacity says"},
+    {.key = "visible", FIELD(hl_scene_volume, visible), A_FLAG, .standard = {1},
+     .sentence = "The eye sees the volume; a volume that it does not see still casts shadows."},
+    {.key = "casts_shadow", FIELD(hl_scene_volume, casts_shadow), A_FLAG, .standard = {1},
+     .sentence = "The volume takes light from what lies behind it."},
+    {.key = "receives_shadow", FIELD(hl_scene_volume, receives_shadow), A_FLAG, .standard = {1},
+     .sentence = "The volume is darkened by shadows."},
+    {.key = "clip/min", FIELD(hl_scene_volume, clip_min), A_POINT,
+     .sentence = "The least corner of the box that is kept, in the units of the volume's own file."},
+    {.key = "clip/max", FIELD(hl_scene_volume, clip_max), A_POINT,
+     .sentence = "The greatest corner of the box that is kept."}};
+
+static const hl_setting render_rows[] = {
+    {.key = "shadows", FIELD(hl_render_settings, shadows), A_CHOICE(shadows), .standard = {HL_SHADOWS_SOFT},
+     .option = "shadows", .sentence = "The shadows of all lights that do not say otherwise."},
+    {.key = "soft_method", FIELD(hl_render_settings, soft_method), A_CHOICE(soft_methods),
+     .standard = {HL_SOFT_CASCADE}, .option = "soft-method", .sentence = "How soft shadows are made."},
+    {.key = "light_samples", FIELD(hl_render_settings, light_samples), .type = HL_SETTING_WHOLE, .unit = "",
+     .low = 1, .high = HL_LIMIT_LIGHT_SAMPLES, .standard = {4}, .option = "light-samples",
+     .sentence = "M: sublights stand for a light by M x M points.",
+     .mend = "give M from {low} to {high}, for M x M parts of the light"},
+    {.key = "sheet_spacing", FIELD(hl_render_settings, sheet_spacing), .type = HL_SETTING_NUMBER,
+     .unit = "smallest voxel edges", .low = 0.01, .high = 100, .standard = {0.5}, .option = "sheet-spacing",
+     .sentence = "The distance of neighbouring sheets; more than 4 is as 4.",
+     .mend = "give voxels between sheets, from {low} to {high}"},
+    {.key = "kernel", FIELD(hl_render_settings, kernel), A_CHOICE(kernels), .standard = {HL_KERNEL_BSPLINE},
+     .option = "kernel", .sentence = "The function that spreads a voxel's value around it."},
+    {.key = "reconstruction", FIELD(hl_render_settings, reconstruction), A_CHOICE(reconstructions),
+     .option = "reconstruction",
+     .sentence = "Whether voxels are splatted onto sheets or samples gather voxels."},
+    {.key = "slicing", FIELD(hl_render_settings, slicing), A_CHOICE(slicings), .option = "slicing",
+     .sentence = "The direction that the sheets are perpendicular to."},
+    {.key = "shadow_lookup", FIELD(hl_render_settings, shadow_lookup), A_CHOICE(lookups),
+     .standard = {HL_LOOKUP_AUTO}, .option = "shadow-lookup",
+     .sentence = "How light is read between the pixels of a shadow buffer."},
+    {.key = "shadow_resolution", FIELD(hl_render_settings, shadow_resolution), .type = HL_SETTING_WHOLE,
+     .unit = "pixels", .low = 1, .high = 16384, .choices = automatic_resolution,
+     .option = "shadow-resolution", .sentence = "Pixels along the longer side of a shadow buffer.",
+     .mend = "give pixels from {low} to {high}, or auto"},
+    {.key = "threads", FIELD(hl_render_settings, threads), .type = HL_SETTING_WHOLE, .unit = "",
+     .high = HL_LIMIT_THREADS, .option = "threads", .sentence = "0: one thread per processor.",
+     .mend = "give a number of threads up to {high}, 0 for one per processor"},
+    {.key = "compositing", FIELD(hl_render_settings, compositing), A_CHOICE(compositings), .optional = 1,
+     .sentence = "What a pixel shows: lit matter, or the greatest value along its ray, without light."}};
+
+/* clang-format on */
+
+#define TABLE(rows) \
+  { rows, sizeof rows / sizeof *rows }
+static const struct {
+  const hl_setting *rows;
+  size_t count;
+} tables[] = {
+    [HL_SETTINGS_SCENE] = TABLE(scene_rows),
+    [HL_SETTINGS_IMAGE] = TABLE(image_rows),
+    [HL_SETTINGS_CAMERA] = TABLE(camera_rows),
+    [HL_SETTINGS_LIGHT] = TABLE(light_rows),
+    [HL_SETTINGS_VOLUME] = TABLE(volume_rows),
+    [HL_SETTINGS_MATERIAL] = TABLE(material_rows),
+    [HL_SETTINGS_RENDER] = TABLE(render_rows),
+    [HL_SETTINGS_TRANSFER_FUNCTION] = TABLE(transfer_function_rows),
+};
+
+size_t hl_setting_count(hl_setting_kind kind) {
+  return (int)kind >= 0 && (size_t)kind < sizeof tables / sizeof *tables ? tables[kind].count : 0;
+}
+
+const hl_setting *hl_setting_get(hl_setting_kind kind, size_t index) {
+  return index < hl_setting_count(kind) ? &tables[kind].rows[index] : NULL;
+}
