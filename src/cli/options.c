@@ -172,6 +172,19 @@ static const cli_option *find_letter(const cli_command *command, char letter) {
   return NULL;
 }
 
+/* The option with the range and the choices of its setting. */
+static cli_option with_setting(const cli_option *option) {
+  cli_option full = *option;
+  const hl_setting *setting = option->setting != NULL ? hl_setting_find(option->setting_kind, option->setting)
+                                                      : NULL;
+  if (setting == NULL) return full;
+  full.choices = setting->choices;
+  full.low = setting->low;
+  full.high = setting->high;
+  full.above = setting->open_low != 0;
+  return full;
+}
+
 static int refuse_unknown(const cli_command *command, const char *argument) {
   char name[80];
   size_t length = argument[1] == '-' ? strcspn(argument + 2, "=") : 0;
@@ -210,6 +223,8 @@ static int parse_option(const cli_command *command, int argument_count, char **a
   if (option->reserved)
     return fail(EXIT_CODE_UNSUPPORTED, "--%s is not yet in this version (%s)", option->name, hl_version());
   cli_value *value = &values[option - command->options];
+  const cli_option full = with_setting(option);
+  option = &full;
   if (value->given && !option->repeatable)
     return fail(EXIT_CODE_USAGE, "--%s is given twice: give it once", option->name);
   if (option->kind == OPTION_SWITCH) {
@@ -295,7 +310,7 @@ void options_print_help(const cli_command *command) {
   printf("usage: halflight %s %s [OPTION ...]\n\n%s\n", command->name, command->operands,
          command->description);
   for (size_t i = 0; i < command->option_count; i++) {
-    const cli_option *option = &command->options[i];
+    const cli_option full = with_setting(&command->options[i]), *option = &full;
     if (option->reserved) continue;
     if (option->group != NULL) printf("\n%s\n", option->group);
     char heading[120];

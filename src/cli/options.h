@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <halflight/settings.h>
+
 typedef enum cli_option_kind {
   OPTION_SWITCH,  /* takes no value */
   OPTION_TEXT,    /* any text but an empty one */
@@ -23,10 +25,7 @@ typedef enum cli_option_kind {
 /* The value of a choice that is known, but not in this version: not listed, refused when given. */
 enum { CHOICE_RESERVED = -1 };
 
-typedef struct cli_choice {
-  const char *name; /* null ends the list */
-  int value;
-} cli_choice;
+typedef hl_setting_choice cli_choice; /* a null name ends the list */
 
 typedef struct cli_option {
   const char *name; /* without the dashes */
@@ -36,13 +35,15 @@ typedef struct cli_option {
   const char *help;     /* lines, the first one short */
   const char *group;    /* heading above this option in help; null: same group as the one before */
   const cli_choice *choices;
-  int count;        /* OPTION_NUMBERS: 1 to 3 */
-  char separator;   /* between them: ',' or 'x' */
-  bool whole;       /* whole numbers only */
-  bool above;       /* low itself is excluded */
-  double low, high; /* the accepted range */
-  bool repeatable;  /* OPTION_TEXT: each time adds a text */
-  bool reserved;    /* known, but not in this version: not shown in help, refused when given */
+  int count;           /* OPTION_NUMBERS: 1 to 3 */
+  char separator;      /* between them: ',' or 'x' */
+  bool whole;          /* whole numbers only */
+  bool above;          /* low itself is excluded */
+  double low, high;    /* the accepted range */
+  const char *setting; /* the key of a setting, whose range and choices the option has; null: its own */
+  hl_setting_kind setting_kind;
+  bool repeatable; /* OPTION_TEXT: each time adds a text */
+  bool reserved;   /* known, but not in this version: not shown in help, refused when given */
 } cli_option;
 
 enum { MAXIMUM_REPEATS = 32 };

@@ -57,7 +57,7 @@ enum render_option {
 };
 
 /* Choices that other commands have too. */
-extern const cli_choice look_choices[], kernel_choices[], reconstruction_choices[], instruction_set_choices[];
+extern const cli_choice look_choices[], instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
 

@@ -15,28 +15,6 @@ static const cli_choice sides[] = {
 /* The value is 2 axis + sign. */
 static const cli_choice axes[] = {{"+x", 0}, {"-x", 1}, {"+y", 2}, {"-y", 3}, {"+z", 4},
                                   {"-z", 5}, {"x", 0},  {"y", 2},  {"z", 4},  {NULL, 0}};
-static const cli_choice shadings[] = {
-    {"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {"flat", HL_SHADING_FLAT}, {NULL, 0}};
-static const cli_choice shadow_kinds[] = {
-    {"off", HL_SHADOWS_OFF}, {"hard", HL_SHADOWS_HARD}, {"soft", HL_SHADOWS_SOFT}, {NULL, 0}};
-static const cli_choice soft_methods[] = {
-    {"cascade", HL_SOFT_CASCADE}, {"paper", HL_SOFT_PAPER}, {"sublights", HL_SOFT_SUBLIGHTS}, {NULL, 0}};
-static const cli_choice resolutions[] = {{"auto", 0}, {NULL, 0}};
-static const cli_choice lookups[] = {{"auto", HL_LOOKUP_AUTO},
-                                     {"bilinear", HL_LOOKUP_BILINEAR},
-                                     {"cubic", HL_LOOKUP_CUBIC},
-                                     {"nearest", HL_LOOKUP_NEAREST},
-                                     {NULL, 0}};
-const cli_choice kernel_choices[] = {{"bspline", HL_KERNEL_BSPLINE},
-                                     {"gaussian", HL_KERNEL_GAUSSIAN},
-                                     {"linear", HL_KERNEL_LINEAR},
-                                     {NULL, 0}};
-const cli_choice reconstruction_choices[] = {{"auto", HL_RECONSTRUCTION_AUTO},
-                                             {"splat", HL_RECONSTRUCTION_SPLAT},
-                                             {"gather", HL_RECONSTRUCTION_GATHER},
-                                             {NULL, 0}};
-static const cli_choice slicings[] = {
-    {"half-vector", HL_SLICING_HALF_VECTOR}, {"image-aligned", HL_SLICING_IMAGE_ALIGNED}, {NULL, 0}};
 const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"scalar", HL_INSTRUCTION_SET_SCALAR},
                                               {"avx2", HL_INSTRUCTION_SET_AVX2},
@@ -64,8 +42,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                      .count = 2,
                      .separator = 'x',
                      .whole = true,
-                     .low = 1,
-                     .high = 32768},
+                     .setting_kind = HL_SETTINGS_IMAGE,
+                     .setting = "width"},
     [RENDER_DEPTH] = {.name = "depth",
                       .kind = OPTION_CHOICE,
                       .choices = depths,
@@ -84,8 +62,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .argument = "STOPS",
          .help = "a .png shows the volumes' light times 2^STOPS\n(default 0; the background stays)",
          .count = 1,
-         .low = -32,
-         .high = 32},
+         .setting_kind = HL_SETTINGS_IMAGE,
+         .setting = "exposure"},
     [RENDER_LAYERS] =
         {.name = "layers",
          .kind = OPTION_SWITCH,
@@ -208,9 +186,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .repeatable = true},
     [RENDER_SHADING] = {.name = "shading",
                         .kind = OPTION_CHOICE,
-                        .choices = shadings,
                         .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light "
-                                "(default phong;\nof smoke none)"},
+                                "(default phong;\nof smoke none)",
+                        .setting_kind = HL_SETTINGS_VOLUME,
+                        .setting = "shading"},
 
     [RENDER_AMBIENT] = {.name = "ambient",
                         .kind = OPTION_COLOR,
@@ -235,38 +214,40 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .help = "angular diameter of the first light; 0 is hard\n(default 7; with --light "
                                    "in a scene that has no\nlight 0)",
                            .count = 1,
-                           .low = 0,
-                           .high = 90},
+                           .setting_kind = HL_SETTINGS_LIGHT,
+                           .setting = "angular_diameter_deg"},
     [RENDER_SHADOWS] = {.name = "shadows",
                         .kind = OPTION_CHOICE,
-                        .choices = shadow_kinds,
-                        .help = "of all lights that cast any (default soft)"},
+                        .help = "of all lights that cast any (default soft)",
+                        .setting_kind = HL_SETTINGS_RENDER,
+                        .setting = "shadows"},
     [RENDER_SOFT_METHOD] = {.name = "soft-method",
                             .kind = OPTION_CHOICE,
-                            .choices = soft_methods,
-                            .help = "how soft shadows are made (default cascade)"},
+                            .help = "how soft shadows are made (default cascade)",
+                            .setting_kind = HL_SETTINGS_RENDER,
+                            .setting = "soft_method"},
     [RENDER_LIGHT_SAMPLES] = {.name = "light-samples",
                               .kind = OPTION_NUMBERS,
                               .argument = "M",
                               .help = "sublights: M x M parts of each light (default 4)",
                               .count = 1,
                               .whole = true,
-                              .low = 1,
-                              .high = 64},
+                              .setting_kind = HL_SETTINGS_RENDER,
+                              .setting = "light_samples"},
     [RENDER_SHADOW_RESOLUTION] = {.name = "shadow-resolution",
                                   .kind = OPTION_NUMBERS,
                                   .argument = "N|auto",
                                   .help = "longer side of the shadow buffer, in pixels\n(default auto: as "
                                           "fine as the volumes and the\npicture want)",
-                                  .choices = resolutions,
                                   .count = 1,
                                   .whole = true,
-                                  .low = 1,
-                                  .high = 32768},
+                                  .setting_kind = HL_SETTINGS_RENDER,
+                                  .setting = "shadow_resolution"},
     [RENDER_SHADOW_LOOKUP] = {.name = "shadow-lookup",
                               .kind = OPTION_CHOICE,
-                              .choices = lookups,
-                              .help = "how the shadow buffer is read (default auto: cubic\nor bilinear)"},
+                              .help = "how the shadow buffer is read (default auto: cubic\nor bilinear)",
+                              .setting_kind = HL_SETTINGS_RENDER,
+                              .setting = "shadow_lookup"},
 
     [RENDER_SHEET_SPACING] =
         {.name = "sheet-spacing",
@@ -276,21 +257,24 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .help =
              "distance of sheets in smallest voxel edges\n(default 0.5; of bare volumes 0.25 to 1, chosen)",
          .count = 1,
-         .low = 0.01,
-         .high = 100},
+         .setting_kind = HL_SETTINGS_RENDER,
+         .setting = "sheet_spacing"},
     [RENDER_KERNEL] = {.name = "kernel",
                        .kind = OPTION_CHOICE,
-                       .choices = kernel_choices,
-                       .help = "of each voxel (default bspline; of bare volumes of\nlabels linear)"},
+                       .help = "of each voxel (default bspline; of bare volumes of\nlabels linear)",
+                       .setting_kind = HL_SETTINGS_RENDER,
+                       .setting = "kernel"},
     [RENDER_RECONSTRUCTION] =
         {.name = "reconstruction",
          .kind = OPTION_CHOICE,
-         .choices = reconstruction_choices,
-         .help = "push footprints, or pull samples: the same\npicture to rounding (default auto)"},
+         .help = "push footprints, or pull samples: the same\npicture to rounding (default auto)",
+         .setting_kind = HL_SETTINGS_RENDER,
+         .setting = "reconstruction"},
     [RENDER_SLICING] = {.name = "slicing",
                         .kind = OPTION_CHOICE,
-                        .choices = slicings,
-                        .help = "direction of the sheets (default half-vector)"},
+                        .help = "direction of the sheets (default half-vector)",
+                        .setting_kind = HL_SETTINGS_RENDER,
+                        .setting = "slicing"},
 
     [RENDER_REFERENCE] = {.name = "reference",
                           .kind = OPTION_SWITCH,
@@ -325,8 +309,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .help = "0: one per processor (default)",
                         .count = 1,
                         .whole = true,
-                        .low = 0,
-                        .high = 1024},
+                        .setting_kind = HL_SETTINGS_RENDER,
+                        .setting = "threads"},
     [RENDER_INSTRUCTION_SET] =
         {.name = "instruction-set",
          .kind = OPTION_CHOICE,

@@ -208,22 +208,22 @@ static int change_volumes(scene_change *change) {
   return exit_code;
 }
 
+/* Each option of a render setting is written into the setting's field. */
+static void change_render_settings(const cli_value *values, hl_render_settings *render) {
+  for (int which = 0; which < RENDER_OPTION_COUNT; which++) {
+    const cli_option *option = &render_options[which];
+    if (!values[which].given || option->setting == NULL || option->setting_kind != HL_SETTINGS_RENDER)
+      continue;
+    const hl_setting *setting = hl_setting_find(HL_SETTINGS_RENDER, option->setting);
+    const int whole = values[which].chosen ? values[which].choice : (int)values[which].number[0];
+    void *field = (char *)render + setting->offset;
+    if (setting->type == HL_SETTING_NUMBER) memcpy(field, values[which].number, sizeof(double));
+    else memcpy(field, &whole, sizeof whole);
+  }
+}
+
 static void change_settings(const cli_value *values, hl_scene_description *description) {
-  hl_render_settings *settings = &description->render;
-  if (values[RENDER_SOFT_METHOD].given)
-    settings->soft_method = (hl_soft_method)values[RENDER_SOFT_METHOD].choice;
-  if (values[RENDER_LIGHT_SAMPLES].given)
-    settings->light_samples = (int)values[RENDER_LIGHT_SAMPLES].number[0];
-  if (values[RENDER_SHADOW_RESOLUTION].given) /* 0 for "auto" */
-    settings->shadow_resolution = (int)values[RENDER_SHADOW_RESOLUTION].number[0];
-  if (values[RENDER_SHADOW_LOOKUP].given)
-    settings->shadow_lookup = (hl_shadow_lookup)values[RENDER_SHADOW_LOOKUP].choice;
-  if (values[RENDER_SHEET_SPACING].given) settings->sheet_spacing = values[RENDER_SHEET_SPACING].number[0];
-  if (values[RENDER_KERNEL].given) settings->kernel = (hl_kernel)values[RENDER_KERNEL].choice;
-  if (values[RENDER_RECONSTRUCTION].given)
-    settings->reconstruction = (hl_reconstruction)values[RENDER_RECONSTRUCTION].choice;
-  if (values[RENDER_SLICING].given) settings->slicing = (hl_slicing)values[RENDER_SLICING].choice;
-  if (values[RENDER_THREADS].given) settings->threads = (int)values[RENDER_THREADS].number[0];
+  change_render_settings(values, &description->render);
   if (values[RENDER_AMBIENT].given)
     memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
   if (values[RENDER_EXPOSURE].given) description->exposure = values[RENDER_EXPOSURE].number[0];
