@@ -20,31 +20,38 @@ static frame_sweep turned_round(const frame_sweep *geometry) {
  * - k from the light. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
-uint32_t hl_shown_blocks(const int32_t shown_from[TILE_BLOCKS], int slab) {
-  uint32_t shown = 0;
-  for (int block = 0; block < TILE_BLOCKS; block++) shown |= (uint32_t)(shown_from[block] <= slab) << block;
-  return shown;
+/* What is found: the action's data. */
+typedef struct hidden_search {
+  int32_t *shown_from; /* [tiles][16]; 0: the block is not covered yet */
+  bool trying;         /* blocks stay open when they are opaque */
+} hidden_search;
+
+static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {
+  uint32_t blocks = 0;
+  for (int block = 0; block < TILE_BLOCKS; block++) blocks |= (uint32_t)(shown_from[block] == 0) << block;
+  return blocks;
 }
 
-uint32_t hl_sweep_cover(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile,
-                        uint32_t blocks, int worker, void *scratch) {
-  sweep_counts *counts = &sweep->counts[worker];
-  int32_t *shown_from = sweep->covering + tile * TILE_BLOCKS;
-  uint32_t seen = blocks & hl_shown_blocks(shown_from, 0); /* 0: not covered yet */
-  counts->pixels_covered += hl_pixels_of_blocks(blocks & ~seen);
+/* The action: opacity alone. */
+static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
+  const hidden_search *search = sweep->action;
+  sweep_counts *counts = &sweep->counts[slab->worker];
+  int32_t *shown_from = search->shown_from + slab->tile * TILE_BLOCKS;
+  uint32_t seen = slab->blocks & uncovered_blocks(shown_from);
+  counts->pixels_covered += hl_pixels_of_blocks(slab->blocks & ~seen);
   counts->pixels_seen += hl_pixels_of_blocks(seen);
-  uint32_t open = sweep->hot->render.cover(&sweep->shade, patches, patch_count,
-                                           (int)(tile % (size_t)sweep->tiles_x),
-                                           (int)(tile / (size_t)sweep->tiles_x), seen, scratch,
-                                           sweep->pixels + tile * 4 * TILE_PIXELS, &counts->samples);
+  uint32_t open = sweep->content.hot->render.cover(
+      &sweep->shade, slab->patches, slab->patch_count, hl_tile_x(sweep, slab->tile),
+      hl_tile_y(sweep, slab->tile), seen, slab->scratch, sweep->pixels + slab->tile * 4 * TILE_PIXELS,
+      &counts->samples);
   for (uint32_t closed = seen & ~open; closed != 0; closed &= closed - 1)
     shown_from[__builtin_ctz(closed)] = first_shown(sweep, sweep->sheet);
-  return sweep->trying ? blocks : open;
+  return search->trying ? slab->blocks : open;
 }
 
 /* One tile in 32, none near another. */
 static bool is_tried(const sweep *sweep, size_t tile) {
-  return (tile % (size_t)sweep->tiles_x + tile / (size_t)sweep->tiles_x * 11) % 32 == 0;
+  return (hl_tile_x(sweep, tile) + hl_tile_y(sweep, tile) * 11) % 32 == 0;
 }
 
 /* To find what covers a pixel takes about half of what it takes to fill and to light one that is covered
@@ -53,7 +60,7 @@ static const double COVERED_PER_SEEN = 0.75;
 
 static bool is_worth_while(const sweep *front) {
   uint64_t seen = 0, covered = 0;
-  for (int i = 0; i < hl_pool_threads(front->pool); i++) {
+  for (int i = 0; i < hl_pool_threads(front->content.pool); i++) {
     seen += front->counts[i].pixels_seen;
     covered += front->counts[i].pixels_covered;
   }
@@ -61,8 +68,8 @@ static bool is_worth_while(const sweep *front) {
 }
 
 /* The tiles that are tried, also behind what covers them, to see whether there is much; or the others. */
-static hl_status go_through(sweep *front, bool trying, hl_error *error) {
-  front->trying = trying;
+static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
+  search->trying = trying;
   for (size_t tile = 0; tile < front->tiles; tile++)
     if (is_tried(front, tile) != trying) front->open[tile] = 0;
   return hl_sweep_run(front, error);
@@ -72,21 +79,26 @@ hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, h
   size_t tiles = (size_t)hl_tiles(sweep->frame->width) * (size_t)hl_tiles(sweep->frame->height);
   frame_sweep turned = turned_round(sweep->geometry);
   struct sweep front = *sweep;
-  sweep->shown_from = hl_allocate_zeroed(sweep->context, tiles * TILE_BLOCKS, sizeof *sweep->shown_from);
+  hl_context *context = sweep->content.context;
+  sweep->shown_from = hl_allocate_zeroed(context, tiles * TILE_BLOCKS, sizeof *sweep->shown_from);
   if (sweep->shown_from == NULL)
     return hl_fail_memory(error, tiles * TILE_BLOCKS * sizeof *sweep->shown_from, "what is hidden");
+  hidden_search search = {.shown_from = sweep->shown_from};
   front.geometry = &turned;
   front.layer_pixels = NULL;
   front.first = front.measures = false;
-  front.covering = sweep->shown_from;
+  front.preparatory = true;
+  front.act = cover_tile;
+  front.action = &search;
   hl_status status = hl_sweep_begin(&front, NULL, NULL, error);
-  if (status == HL_OK) status = go_through(&front, true, error);
+  if (status == HL_OK) status = go_through(&front, &search, true, error);
   if (status == HL_OK && is_worth_while(&front)) {
     hl_sweep_open(&front);
-    status = go_through(&front, false, error);
+    status = go_through(&front, &search, false, error);
   }
   if (status == HL_OK) hl_sweep_count(&front, statistics);
   hl_sweep_end(&front);
-  hl_pool_clear(sweep->pool, sweep->pixels, tiles * TILE_PIXELS * 4 * sizeof *sweep->pixels); /* opacities */
+  /* the opacities that it left */
+  hl_pool_clear(sweep->content.pool, sweep->pixels, tiles * TILE_PIXELS * 4 * sizeof *sweep->pixels);
   return status;
 }

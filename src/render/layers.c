@@ -77,8 +77,8 @@ static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
     layers->ones[i][0] = layers->ones[i][1] = layers->ones[i][2] = 1;
-  for (int g = 0; g < sweep->volume_count; g++) {
-    layers->white[g] = sweep->volumes[g].classifier;
+  for (int g = 0; g < sweep->content.volume_count; g++) {
+    layers->white[g] = sweep->content.volumes[g].classifier;
     layers->white[g].color = layers->ones;
     layers->white_volumes[g] = sweep->shade_volumes[g];
     layers->white_volumes[g].classifier = &layers->white[g];
@@ -96,13 +96,13 @@ static void set_up_white_light(const shade_light *from, shade_light *white) {
 }
 
 static hl_status allocate_passes(sweep *sweep, hl_error *error) {
-  hl_context *context = sweep->context;
+  hl_context *context = sweep->content.context;
   sweep_layers *layers = &sweep->layers;
-  size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->volume_count;
+  size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count;
   layers->passes = hl_allocate_zeroed(context, 2 * lights + 3, sizeof *layers->passes);
   layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
   layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
-  layers->white_patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->pool),
+  layers->white_patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->content.pool),
                                       sizeof *layers->white_patches);
   layers->white = hl_allocate_zeroed(context, volumes, sizeof *layers->white);
   layers->ones = hl_allocate(context, CLASSIFIER_ENTRIES + 2, sizeof *layers->ones);
@@ -117,7 +117,7 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
   layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
-  *pass = (layer_pass){sweep->hot->render.shade, sweep->shade, false, pixels, COLORS * TILE_PIXELS};
+  *pass = (layer_pass){sweep->content.hot->render.shade, sweep->shade, false, pixels, COLORS * TILE_PIXELS};
   pass->job.lights = lights;
   pass->job.light_count = light_count;
   for (int c = 0; c < 3; c++) pass->job.ambient[c] = 0;
@@ -145,7 +145,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   if (emission != NULL) emission->job.emission = sweep->shade.emission;
   layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
   if (measures != NULL) {
-    measures->shade = sweep->hot->render.measure;
+    measures->shade = sweep->content.hot->render.measure;
     measures->tile_floats = MEASURES * TILE_PIXELS;
   }
   return HL_OK;
@@ -155,7 +155,7 @@ void hl_sweep_layers_end(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   void *owned[] = {layers->passes,        layers->white_lights, layers->white_volumes,
                    layers->white_patches, layers->white,        layers->ones};
-  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
+  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->content.context, owned[i]);
 }
 
 void hl_sweep_layers_sheet(sweep *sweep) {
@@ -167,26 +167,25 @@ void hl_sweep_layers_sheet(sweep *sweep) {
 }
 
 /* The tile's patches, of the white volumes. */
-static const shade_patch *white_patches(const sweep *sweep, const shade_patch *patches, int patch_count,
-                                        int worker) {
-  shade_patch *white = sweep->layers.white_patches + (size_t)worker * (size_t)sweep->volume_count;
-  for (int i = 0; i < patch_count; i++) {
-    white[i] = patches[i];
-    white[i].volume = &sweep->layers.white_volumes[patches[i].volume - sweep->shade_volumes];
+static const shade_patch *white_patches(const sweep *sweep, const tile_slab *slab) {
+  shade_patch *white = sweep->layers.white_patches +
+                       (size_t)slab->worker * (size_t)sweep->content.volume_count;
+  for (int i = 0; i < slab->patch_count; i++) {
+    white[i] = slab->patches[i];
+    white[i].volume = &sweep->layers.white_volumes[slab->patches[i].volume - sweep->shade_volumes];
   }
   return white;
 }
 
-void hl_sweep_layers_tile(const sweep *sweep, const shade_patch *patches, int patch_count, size_t tile,
-                          uint32_t blocks, int worker, void *scratch) {
-  int tile_x = (int)(tile % (size_t)sweep->tiles_x), tile_y = (int)(tile / (size_t)sweep->tiles_x);
+void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
   if (sweep->layers.pass_count == 0) return;
-  const shade_patch *white = white_patches(sweep, patches, patch_count, worker);
+  const shade_patch *white = white_patches(sweep, slab);
   for (int i = 0; i < sweep->layers.pass_count; i++) {
     const layer_pass *pass = &sweep->layers.passes[i];
     uint64_t samples = 0; /* the picture's own are the ones that count */
-    (void)pass->shade(&pass->job, pass->white ? white : patches, patch_count, tile_x, tile_y, blocks, scratch,
-                      pass->pixels + tile * pass->tile_floats, &samples);
+    (void)pass->shade(&pass->job, pass->white ? white : slab->patches, slab->patch_count,
+                      hl_tile_x(sweep, slab->tile), hl_tile_y(sweep, slab->tile), slab->blocks, slab->scratch,
+                      pass->pixels + slab->tile * pass->tile_floats, &samples);
   }
 }
 

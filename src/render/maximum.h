@@ -22,6 +22,9 @@ void hl_maximum_release(hl_context *context, maximum_values *maximum);
 /* What hl_maximum_create() would hold, bytes. */
 uint64_t hl_maximum_bytes(const hl_scene_description *scene, uint64_t tiles);
 
+/* A sweep's action, in place of steps 12 to 16. */
+uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab);
+
 /* The picture's pixels, [tiles][16][R G B A][16]: of each channel the greatest among the volumes' colours;
  * alpha 1 where any volume shows something. */
 void hl_maximum_color(const maximum_values *maximum, const hl_scene_description *scene,

@@ -2,7 +2,23 @@
 #ifndef HL_RENDER_PREPARE_H
 #define HL_RENDER_PREPARE_H
 
-#include "render/sweep.h"
+#include "core/pool.h"
+#include "grid/classifier.h"
+#include "grid/grid.h"
+#include "render/hot.h"
+
+/* A volume made ready: kept between frames while its voxels and transfer function stay. */
+typedef struct prepared_volume {
+  const hl_scene_volume *scene; /* the frame's scene */
+  hl_volume *volume;            /* retained */
+  grid grid;
+  classifier classifier;
+  double empty;                  /* data value */
+  hl_kernel kernel;              /* the grid's cells are bounded for this kernel */
+  hl_transfer_function function; /* points owned; the classifier was made of these */
+  double clip[6];
+  int clipped;
+} prepared_volume;
 
 /* Brings prepared[0 .. count) up to date with the scene's volumes; reuses what has not changed. scene: in
  * frame space (framed_scene.h). */

@@ -5,7 +5,6 @@
 
 #include "core/context.h"
 #include "core/memory.h"
-#include "render/clock.h"
 #include "render/estimate.h"
 #include "render/framed_scene.h"
 #include "render/maximum.h"
@@ -377,18 +376,21 @@ static int attenuation_channels(const hl_scene_description *scene) {
 
 static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work,
                       int index) {
-  return (sweep){.context = renderer->context,
-                 .pool = renderer->pool,
-                 .reserve = &renderer->reserve,
+  const frame_sweep *geometry = &work->sweeps[index];
+  return (sweep){.content = {.context = renderer->context,
+                             .pool = renderer->pool,
+                             .reserve = &renderer->reserve,
+                             .hot = hl_hot_functions(renderer->context->options.instruction_set),
+                             .sheets = &geometry->sheets,
+                             .volumes = renderer->prepared,
+                             .grids = work->grids,
+                             .volume_count = (int)scene->volume_count,
+                             .kernel = hl_kernel_get(scene->render.kernel),
+                             .splat = scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT},
                  .scene = scene,
                  .frame = &work->frame,
-                 .hot = hl_hot_functions(renderer->context->options.instruction_set),
-                 .geometry = &work->sweeps[index],
-                 .volumes = renderer->prepared,
-                 .grids = work->grids,
-                 .volume_count = (int)scene->volume_count,
-                 .kernel = hl_kernel_get(scene->render.kernel),
-                 .splat = scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT,
+                 .geometry = geometry,
+                 .act = is_maximum(scene) ? hl_maximum_tile : hl_light_tile,
                  .first = index == 0,
                  .layer_pixels = &work->layers,
                  .maximum = &work->maximum,

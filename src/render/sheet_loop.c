@@ -25,9 +25,9 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     hl_sweep_shade(sweep, sheet);
     hl_sweep_attenuate(sweep, sheet);
     hl_sweep_soften(sweep, sheet);
-    if ((sheet & 7) == 0 && sweep->covering == NULL)
-      hl_progress(sweep->context, "render", (double)sheet / sheets);
-    if (hl_pool_cancelled(sweep->pool))
+    if ((sheet & 7) == 0 && !sweep->preparatory)
+      hl_progress(sweep->content.context, "render", (double)sheet / sheets);
+    if (hl_pool_cancelled(sweep->content.pool))
       return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   }
   return HL_OK;

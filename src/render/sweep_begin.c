@@ -1,24 +1,14 @@
 /* render/sweep_begin.c - steps 1 to 4: views, sorting, memory, full light. */
-#include "core/memory.h"
-#include "light/light_extent.h"
-#include "render/clock.h"
-#include "render/sweep.h"
+#include <string.h>
 
-static hl_status allocate_image(sweep *sweep, hl_error *error) {
-  sweep->tiles_x = sweep->image.occupancy.tiles_x;
-  sweep->tiles_y = sweep->image.occupancy.tiles_y;
-  sweep->tiles = (size_t)sweep->tiles_x * (size_t)sweep->tiles_y;
-  sweep->open = hl_allocate(sweep->context, sweep->tiles, sizeof *sweep->open);
-  if (sweep->open == NULL)
-    return hl_fail_memory(error, sweep->tiles * sizeof *sweep->open, "the image's tiles");
-  return HL_OK;
-}
+#include "core/memory.h"
+#include "render/sweep.h"
 
 /* Blocks outside the picture are closed from the start. */
 void hl_sweep_open(sweep *sweep) {
   for (size_t tile = 0; tile < sweep->tiles; tile++) {
     uint32_t open = 0;
-    int x0 = (int)(tile % (size_t)sweep->tiles_x) * TILE, y0 = (int)(tile / (size_t)sweep->tiles_x) * TILE;
+    int x0 = hl_tile_x(sweep, tile) * TILE, y0 = hl_tile_y(sweep, tile) * TILE;
     for (int block = 0; block < TILE_BLOCKS; block++) {
       int x = x0 + block % 4 * BLOCK, y = y0 + block / 4 * BLOCK;
       if (x < sweep->frame->width && y < sweep->frame->height) open |= 1u << block;
@@ -31,10 +21,10 @@ void hl_sweep_open(sweep *sweep) {
 static shadow_setup setup_of_light(const sweep *sweep, const light_source *source, light_image *image,
                                    const vec3 *seen, int seen_count) {
   const frame *frame = sweep->frame;
-  return (shadow_setup){.context = sweep->context,
-                        .pool = sweep->pool,
-                        .reserve = sweep->reserve,
-                        .functions = &sweep->hot->shadow,
+  return (shadow_setup){.context = sweep->content.context,
+                        .pool = sweep->content.pool,
+                        .reserve = sweep->content.reserve,
+                        .functions = &sweep->content.hot->shadow,
                         .settings = &sweep->scene->render,
                         .source = source,
                         .image = image == NULL || image->even ? NULL : image,
@@ -51,9 +41,9 @@ static shadow_setup setup_of_light(const sweep *sweep, const light_source *sourc
                         .content_count = frame->point_count};
 }
 
-/* One light's part of hl_sweep_bytes; as begin_light takes it. */
+/* What begin_light would hold of one light; raises the tasks by the tiles of its view. */
 static hl_status add_light_bytes(const sweep *sweep, int index, light_image *image, vec3 *points,
-                                 sweep_bytes *bytes, hl_error *error) {
+                                 sweep_bytes *bytes, size_t *tasks, hl_error *error) {
   light_shadow shadow;
   shadow_setup setup = setup_of_light(sweep, &sweep->frame->lights[sweep->geometry->light[index]], image,
                                       points, hl_frame_visible_points(sweep->frame, points));
@@ -65,29 +55,52 @@ static hl_status add_light_bytes(const sweep *sweep, int index, light_image *ima
     bytes->memory[index] = of_method.kept.bytes;
     bytes->passing += of_method.passing.bytes + shadow.method->state_bytes +
                       (image != NULL ? sizeof *image : 0) +
-                      hl_view_sheets_bytes(sweep, view, shadow.plan.spare) +
-                      (uint64_t)hl_tiles(view->width) * (uint64_t)hl_tiles(view->height) *
-                          sizeof *sweep->tasks;
+                      hl_view_sheets_bytes(&sweep->content, view, shadow.plan.spare);
+    *tasks += (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
   }
   hl_light_shadow_end(&shadow);
   return status;
 }
 
+/* tasks: tiles of the picture and of all lights. */
+static void lay_out(sweep *sweep, size_t tasks, int threads, hl_layout *layout) {
+  size_t volumes = (size_t)sweep->content.volume_count, places = (size_t)threads * volumes;
+  sweep->open = hl_layout_take(layout, sweep->tiles, sizeof *sweep->open);
+  sweep->tasks = hl_layout_take(layout, tasks, sizeof *sweep->tasks);
+  sweep->shade_volumes = hl_layout_take(layout, volumes, sizeof *sweep->shade_volumes);
+  sweep->shade_patches = hl_layout_take(layout, places, sizeof *sweep->shade_patches);
+  sweep->scratch = hl_layout_take(layout, places, SHADE_SCRATCH_BYTES);
+  sweep->scratch_volumes = hl_layout_take(layout, places, sizeof *sweep->scratch_volumes);
+  sweep->counts = hl_layout_take(layout, (size_t)threads, sizeof *sweep->counts);
+}
+
+static void find_tiles(sweep *sweep) {
+  sweep->tiles_x = hl_tiles(sweep->frame->width);
+  sweep->tiles_y = hl_tiles(sweep->frame->height);
+  sweep->tiles = (size_t)sweep->tiles_x * (size_t)sweep->tiles_y;
+}
+
 hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error) {
-  uint64_t a_grid = SHADE_SCRATCH_BYTES + sizeof *sweep->scratch_volumes + 2 * sizeof *sweep->shade_patches;
-  uint64_t tiles = (uint64_t)hl_tiles(sweep->frame->width) * (uint64_t)hl_tiles(sweep->frame->height);
-  *bytes = (sweep_bytes){.passing = hl_view_sheets_bytes(sweep, &sweep->frame->eye, PIXEL_TO_SPARE)};
-  bytes->passing += tiles * (sizeof *sweep->tasks + sizeof *sweep->open) +
-                    (uint64_t)threads * (uint64_t)sweep->volume_count * a_grid;
-  if (sweep->geometry->back_to_front) bytes->passing += tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
+  struct sweep planned = *sweep;
+  hl_layout counted = {0};
+  size_t tasks;
+  find_tiles(&planned);
+  planned.content.sheets = &sweep->geometry->sheets;
+  tasks = planned.tiles;
+  *bytes = (sweep_bytes){
+      .passing = hl_view_sheets_bytes(&planned.content, &sweep->frame->eye, PIXEL_TO_SPARE)};
+  if (sweep->geometry->back_to_front)
+    bytes->passing += planned.tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
   hl_status status = HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
     light_image *image = NULL;
-    status = hl_light_image_create(sweep->context, &sweep->frame->lights[sweep->geometry->light[i]], &image,
-                                   error);
-    if (status == HL_OK) status = add_light_bytes(sweep, i, image, points, bytes, error);
-    hl_release(sweep->context, image);
+    status = hl_light_image_create(sweep->content.context, &sweep->frame->lights[sweep->geometry->light[i]],
+                                   &image, error);
+    if (status == HL_OK) status = add_light_bytes(&planned, i, image, points, bytes, &tasks, error);
+    hl_release(sweep->content.context, image);
   }
+  lay_out(&planned, tasks, threads, &counted);
+  bytes->passing += counted.bytes;
   return status;
 }
 
@@ -95,10 +108,10 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
                              shadow_buffer *buffer, shadow_memory *memory, vec3 *points, hl_error *error) {
   const frame *frame = sweep->frame;
   light->source = source;
-  hl_status status = hl_light_image_create(sweep->context, source, &light->image, error);
+  hl_status status = hl_light_image_create(sweep->content.context, source, &light->image, error);
   if (status == HL_OK)
-    status = hl_light_screen_create(sweep->context, source, frame->points, frame->point_count, frame->middle,
-                                    frame->middle_pixel, &light->screen, error);
+    status = hl_light_screen_create(sweep->content.context, source, frame->points, frame->point_count,
+                                    frame->middle, frame->middle_pixel, &light->screen, error);
   if (status != HL_OK) return status;
   light_shadow *shadow = &light->shadow;
   shadow_setup setup = setup_of_light(sweep, source, light->image, points,
@@ -107,37 +120,35 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   if (status != HL_OK || shadow->method == NULL) return status;
   status = hl_light_shadow_begin(shadow, buffer, memory, error);
   if (status == HL_OK)
-    status = hl_view_sheets_begin(sweep, &shadow->plan.view, shadow->plan.spare, &light->sheets, error);
+    status = hl_view_sheets_begin(&sweep->content, &shadow->plan.view, shadow->plan.spare, &light->sheets,
+                                  error);
   return status;
 }
 
-static hl_status allocate_stages(sweep *sweep, hl_error *error) {
-  hl_context *context = sweep->context;
-  size_t grids = (size_t)sweep->volume_count, threads = (size_t)hl_pool_threads(sweep->pool);
-  sweep->task_capacity = sweep->tiles;
+static hl_status allocate(sweep *sweep, hl_error *error) {
+  int threads = hl_pool_threads(sweep->content.pool);
+  size_t tasks = sweep->tiles;
   for (int i = 0; i < sweep->geometry->light_count; i++)
-    sweep->task_capacity += (size_t)sweep->lights[i].sheets.occupancy.tiles_x *
-                            (size_t)sweep->lights[i].sheets.occupancy.tiles_y;
-  sweep->tasks = hl_allocate(context, sweep->task_capacity, sizeof *sweep->tasks);
-  sweep->shade_volumes = hl_allocate_zeroed(context, grids, sizeof *sweep->shade_volumes);
-  sweep->shade_patches = hl_allocate(context, threads * grids, sizeof *sweep->shade_patches);
-  sweep->scratch = hl_allocate(context, threads * grids, SHADE_SCRATCH_BYTES);
-  sweep->scratch_volumes = hl_allocate(context, threads * grids, sizeof *sweep->scratch_volumes);
-  sweep->counts = hl_allocate_zeroed(context, threads, sizeof *sweep->counts);
-  if (sweep->tasks == NULL || sweep->shade_volumes == NULL || sweep->shade_patches == NULL ||
-      sweep->scratch == NULL || sweep->scratch_volumes == NULL || sweep->counts == NULL)
-    return hl_fail_memory(error, sweep->task_capacity * sizeof *sweep->tasks, "the sheet loop");
+    tasks += (size_t)sweep->lights[i].sheets.occupancy.tiles_x *
+             (size_t)sweep->lights[i].sheets.occupancy.tiles_y;
+  hl_layout counted = {0};
+  lay_out(sweep, tasks, threads, &counted);
+  sweep->memory = hl_allocate(sweep->content.context, counted.bytes, 1);
+  if (sweep->memory == NULL) return hl_fail_memory(error, counted.bytes, "the sheet loop");
+  hl_layout handed = {.base = sweep->memory};
+  lay_out(sweep, tasks, threads, &handed);
+  memset(sweep->counts, 0, (size_t)threads * sizeof *sweep->counts);
   return HL_OK;
 }
 
 static void set_up_shading(sweep *sweep) {
   int rank = 0;
-  for (int g = 0; g < sweep->volume_count; g++) {
-    const hl_scene_volume *volume = sweep->volumes[g].scene;
+  for (int g = 0; g < sweep->content.volume_count; g++) {
+    const hl_scene_volume *volume = sweep->content.volumes[g].scene;
     shade_volume *shade = &sweep->shade_volumes[g];
-    *shade = (shade_volume){.classifier = &sweep->volumes[g].classifier,
-                            .grid = &sweep->grids[g],
-                            .kernel = sweep->kernel,
+    *shade = (shade_volume){.classifier = &sweep->content.volumes[g].classifier,
+                            .grid = &sweep->content.grids[g],
+                            .kernel = sweep->content.kernel,
                             .phong = volume->shading == HL_SHADING_PHONG,
                             .lit = volume->shading != HL_SHADING_FLAT,
                             .visible = volume->visible,
@@ -155,7 +166,7 @@ static void set_up_shading(sweep *sweep) {
     }
     for (int c = 0; c < HL_CHANNELS; c++)
       shade->cast[c] = volume->casts_shadow ? (float)volume->attenuation_color[c] : 0;
-    const grid *grid = &sweep->grids[g];
+    const grid *grid = &sweep->content.grids[g];
     double finest = 0;
     for (int axis = 0; axis < 3; axis++)
       finest = fmax(finest, vec3_length(grid->frame_to_index.linear.row[axis]));
@@ -229,7 +240,7 @@ static void set_up_jobs(sweep *sweep) {
   }
 }
 
-/* Below this share of its way, light that climbs over the sheets counts as running along them. */
+/* Light that climbs by less than this fraction of its way counts as running along the sheets. */
 static const double LEAST_CLIMB = 0.05;
 
 /* Directions within some angle of the normal form a cone: between the content's corners light climbs as at
@@ -252,41 +263,47 @@ static double longest_way(const sweep *sweep) {
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
-hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
-  double start = hl_clock_seconds();
-  hl_status status = hl_view_sheets_begin(sweep, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image, error);
-  if (status == HL_OK) status = allocate_image(sweep, error);
-  if (status != HL_OK) return status;
-  hl_sweep_open(sweep);
-  vec3 *points = hl_allocate(sweep->context, (size_t)sweep->volume_count * CONTENT_POINTS + 1,
+static hl_status begin_lights(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
+  hl_context *context = sweep->content.context;
+  vec3 *points = hl_allocate(context, (size_t)sweep->content.volume_count * CONTENT_POINTS + 1,
                              sizeof *points);
   if (points == NULL) return hl_fail_memory(error, sizeof *points, "the content's corners");
+  hl_status status = HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
     status = begin_light(sweep, &sweep->lights[i], &sweep->frame->lights[sweep->geometry->light[i]],
                          &buffers[sweep->geometry->light[i]], &memory[i], points, error);
-  hl_release(sweep->context, points);
-  if (status == HL_OK) status = allocate_stages(sweep, error);
+  hl_release(context, points);
+  return status;
+}
+
+hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
+  double start = hl_clock_seconds();
+  sweep->content.sheets = &sweep->geometry->sheets;
+  find_tiles(sweep);
+  hl_status status = hl_view_sheets_begin(&sweep->content, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image,
+                                          error);
+  if (status == HL_OK) status = begin_lights(sweep, buffers, memory, error);
+  if (status == HL_OK) status = allocate(sweep, error);
   if (status != HL_OK) return status;
+  hl_sweep_open(sweep);
   set_up_shading(sweep);
   set_up_jobs(sweep);
-  sweep->longest_way = longest_way(sweep);
+  sweep->image.beside = longest_way(sweep);
   status = hl_sweep_layers_begin(sweep, error);
   sweep->seconds_sort = hl_clock_seconds() - start;
   return status;
 }
 
 void hl_sweep_end(sweep *sweep) {
-  hl_context *context = sweep->context;
+  hl_context *context = sweep->content.context;
   hl_sweep_layers_end(sweep);
   for (int i = 0; i < FRAME_LIGHTS; i++) {
     sweep_light *light = &sweep->lights[i];
-    hl_view_sheets_end(sweep, &light->sheets);
+    hl_view_sheets_end(&light->sheets);
     hl_light_screen_release(context, &light->screen);
     hl_release(context, light->image);
     hl_light_shadow_end(&light->shadow);
   }
-  hl_view_sheets_end(sweep, &sweep->image);
-  void *owned[] = {sweep->open,    sweep->tasks,           sweep->shade_volumes, sweep->shade_patches,
-                   sweep->scratch, sweep->scratch_volumes, sweep->counts};
-  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(context, owned[i]);
+  hl_view_sheets_end(&sweep->image);
+  hl_release(context, sweep->memory);
 }

@@ -1,5 +1,4 @@
 /* render/sweep_stages.c - the stages of a sheet, each a set of tiles shared out to the threads. */
-#include "render/clock.h"
 #include "render/sweep.h"
 
 enum { TILES_A_TASK = 2 };
@@ -32,8 +31,11 @@ static void fetch_opacities(const float *pixels, uint32_t blocks) {
 
 /* The blocks of a tile in which a slab is not hidden. */
 static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
-  return sweep->shown_from == NULL ? ALL_BLOCKS
-                                   : hl_shown_blocks(sweep->shown_from + tile * TILE_BLOCKS, slab);
+  if (sweep->shown_from == NULL) return ALL_BLOCKS;
+  const int32_t *shown_from = sweep->shown_from + tile * TILE_BLOCKS;
+  uint32_t shown = 0;
+  for (int block = 0; block < TILE_BLOCKS; block++) shown |= (uint32_t)(shown_from[block] <= slab) << block;
+  return shown;
 }
 
 /* Sheets are filled for a run of slabs at a time. */
@@ -47,10 +49,11 @@ static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker,
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
     uint32_t g = sheets->occupancy.patch_grid[p];
-    uint32_t near = hl_patch_relevant(sweep, sheets, tile, p, sweep->sheet, need);
+    slab_place place = {tile, p, sweep->sheet};
+    uint32_t near = hl_patch_relevant(sheets, place, need);
     if (near == 0) continue;
     fetch_opacities(sweep->pixels + tile * 4 * TILE_PIXELS, near);
-    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, &counts->pixels_image);
+    patch_slab slab = hl_patch_slab(sheets, place, need, &counts->pixels_image);
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
     patches[count++] = (shade_patch){
@@ -59,26 +62,13 @@ static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker,
   return count;
 }
 
-/* Steps 12 to 16 for one tile. Returns the blocks that stay open. */
-static uint32_t shade_blocks(const sweep *sweep, const shade_patch *patches, int count, size_t tile,
-                             uint32_t blocks, int worker, void *scratch) {
-  uint32_t open = sweep->hot->render.shade(
-      &sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
-      (int)(tile / (size_t)sweep->tiles_x), blocks, scratch, sweep->pixels + tile * 4 * TILE_PIXELS,
-      &sweep->counts[worker].samples);
-  hl_sweep_layers_tile(sweep, patches, count, tile, blocks, worker, scratch);
+uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab) {
+  uint32_t open = sweep->content.hot->render.shade(
+      &sweep->shade, slab->patches, slab->patch_count, hl_tile_x(sweep, slab->tile),
+      hl_tile_y(sweep, slab->tile), slab->blocks, slab->scratch, sweep->pixels + slab->tile * 4 * TILE_PIXELS,
+      &sweep->counts[slab->worker].samples);
+  hl_sweep_layers_tile(sweep, slab);
   return open;
-}
-
-/* Instead of steps 12 to 16, in a maximum projection. */
-static uint32_t find_maximum(const sweep *sweep, const shade_patch *patches, int count, size_t tile,
-                             uint32_t blocks, int worker) {
-  const maximum_values *maximum = sweep->maximum;
-  return sweep->hot->render.maximum(
-      &sweep->shade, patches, count, (int)(tile % (size_t)sweep->tiles_x),
-      (int)(tile / (size_t)sweep->tiles_x), blocks, NULL,
-      maximum->values + tile * maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS,
-      &sweep->counts[worker].samples);
 }
 
 /* Steps 6 and 8 to 16 for one tile. */
@@ -90,7 +80,7 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
     counts->skipped_image++;
     return;
   }
-  shade_patch *patches = sweep->shade_patches + (size_t)worker * (size_t)sweep->volume_count;
+  shade_patch *patches = sweep->shade_patches + (size_t)worker * (size_t)sweep->content.volume_count;
   bool timed = is_timed(tile, sweep->sheet);
   double start = read_clock(timed);
   int count = fill_image_tile(sweep, tile, need, worker, patches, &blocks);
@@ -99,11 +89,9 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   counts->seconds_fill += filled - start;
   blocks &= shown_blocks(sweep, tile, sweep->sheet);
   if (blocks == 0) return;
-  void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->volume_count * SHADE_SCRATCH_BYTES;
-  uint32_t open = sweep->maximum->values != NULL ? find_maximum(sweep, patches, count, tile, blocks, worker)
-                  : sweep->covering != NULL
-                      ? hl_sweep_cover(sweep, patches, count, tile, blocks, worker, scratch)
-                      : shade_blocks(sweep, patches, count, tile, blocks, worker, scratch);
+  void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->content.volume_count * SHADE_SCRATCH_BYTES;
+  const tile_slab slab = {tile, patches, count, blocks, worker, scratch};
+  uint32_t open = sweep->act(sweep, &slab);
   sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);
   counts->seconds_shade += read_clock(timed) - filled;
 }
@@ -125,7 +113,7 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   sweep->sheet = sheet;
   sweep->task_start[1] = list_tiles(&sweep->image.occupancy, sheet, sweep->tasks);
-  hl_view_sheets_reach(sweep, &sweep->frame->eye, sheet, &sweep->image);
+  hl_view_sheets_reach(&sweep->image, sheet);
   hl_view_sheet_rays(&sweep->frame->eye, sheets->normal,
                      hl_sheet_height(sheets, sheet) - 0.5 * sheets->spacing, affine3_identity(),
                      &sweep->shade.rays);
@@ -133,8 +121,8 @@ void hl_sweep_shade(sweep *sweep, int sheet) {
   sweep->shade.sheet = sheet;
   for (int i = 0; i < sweep->geometry->light_count; i++) prepare_lookup(&sweep->lights[i].shadow, sheet);
   hl_sweep_layers_sheet(sweep);
-  hl_pool_run(sweep->pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK, shade_task,
-              sweep);
+  hl_pool_run(sweep->content.pool, (size_t)(sweep->task_start[1] + TILES_A_TASK - 1) / TILES_A_TASK,
+              shade_task, sweep);
   sweep->seconds_image += hl_clock_seconds() - start;
 }
 
@@ -148,12 +136,13 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
     uint32_t g = sheets->occupancy.patch_grid[p];
-    const hl_scene_volume *scene = sweep->volumes[g].scene;
+    const hl_scene_volume *scene = sweep->content.volumes[g].scene;
     if (!scene->casts_shadow) continue;
-    if (hl_patch_relevant(sweep, sheets, tile, p, sweep->sheet, need) == 0) continue;
-    patch_slab slab = hl_patch_slab(sweep, sheets, tile, p, sweep->sheet, need, pixels);
+    slab_place place = {tile, p, sweep->sheet};
+    if (hl_patch_relevant(sheets, place, need) == 0) continue;
+    patch_slab slab = hl_patch_slab(sheets, place, need, pixels);
     if (slab.blocks == 0) continue;
-    volumes[count] = (attenuate_volume){.classifier = &sweep->volumes[g].classifier,
+    volumes[count] = (attenuate_volume){.classifier = &sweep->content.volumes[g].classifier,
                                         .blocks = slab.blocks,
                                         .before = slab.before,
                                         .density = slab.current,
@@ -182,7 +171,7 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   if (method->before_tile != NULL) method->before_tile(shadow, tile, &job);
   uint32_t worked = 0;
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
-  attenuated_blocks blocks = sweep->hot->shadow.attenuate(&job, tile_x, tile_y);
+  attenuated_blocks blocks = sweep->content.hot->shadow.attenuate(&job, tile_x, tile_y);
   if (method->find_lit == NULL) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
   if (blocks.taken == 0) return;
   buffer->tile_touched[tile] = 1;
@@ -199,7 +188,7 @@ static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker
     counts->skipped_light++;
     return;
   }
-  attenuate_volume *volumes = sweep->scratch_volumes + (size_t)worker * (size_t)sweep->volume_count;
+  attenuate_volume *volumes = sweep->scratch_volumes + (size_t)worker * (size_t)sweep->content.volume_count;
   bool timed = is_timed(tile, sweep->sheet);
   double start = read_clock(timed);
   int count = fill_light_tile(sweep, &sweep->lights[light_index], tile, worker, need, volumes);
@@ -237,7 +226,7 @@ static void reach_sheet(sweep *sweep, int light_index, int sheet) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   light_shadow *shadow = &light->shadow;
   const view *view = &shadow->buffer->view;
-  hl_view_sheets_reach(sweep, view, sheet, &light->sheets);
+  hl_view_sheets_reach(&light->sheets, sheet);
   hl_view_sheet_rays(view, sheets->normal, hl_sheet_height(sheets, sheet), affine3_identity(), &job->rays);
   job->height = (float)(sheet * sheets->spacing);
   if (shadow->method->before_slab != NULL) shadow->method->before_slab(shadow, sheet);
@@ -257,7 +246,7 @@ void hl_sweep_attenuate(sweep *sweep, int sheet) {
   }
   size_t tasks = (size_t)sweep->task_start[sweep->geometry->light_count];
   if (tasks == 0) return;
-  hl_pool_run(sweep->pool, (tasks + TILES_A_TASK - 1) / TILES_A_TASK, attenuate_task, sweep);
+  hl_pool_run(sweep->content.pool, (tasks + TILES_A_TASK - 1) / TILES_A_TASK, attenuate_task, sweep);
   sweep->seconds_light += hl_clock_seconds() - start;
 }
 

@@ -1,55 +1,43 @@
 /* render/view_sheets.c - what one view, the eye's or a light's, sees of the last sheets: where, in what
  * order, and the densities of patches, filled when they are asked for and kept for the next slab. */
+#include "render/view_sheets.h"
+
 #include "core/memory.h"
-#include "fill/voxel_lists.h"
-#include "render/sweep.h"
 
 enum { ENTRY_FLOATS = 2 * TILE_PIXELS };
 
-/* Rays against the boxes that cut something visible: where they enter and leave is found when it is asked
- * for. */
-static hl_status set_up_entries(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
-  const sheet_stack *stack = &sweep->geometry->sheets;
-  size_t patches = sheets->occupancy.patch_count;
+#define NO_ENTRY UINT32_MAX
+
+/* Whether some box cuts anything visible: rays then need their entries. */
+static bool any_cut(const sheet_content *content) {
   bool any = false;
-  for (int g = 0; g < sweep->volume_count; g++) any = any || sweep->grids[g].cut;
-  if (!any) return HL_OK;
-  sheets->entries = hl_reserve_take(sweep->reserve, patches * ENTRY_FLOATS, sizeof(float));
-  sheets->entry_of = hl_allocate(sweep->context, patches, sizeof *sheets->entry_of);
-  sheets->box_rays = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->box_rays);
-  if (sheets->entries == NULL || sheets->entry_of == NULL || sheets->box_rays == NULL)
-    return hl_fail_memory(error, patches * ENTRY_FLOATS * sizeof(float), "the rays' entries");
-  for (size_t i = 0; i < patches; i++) sheets->entry_of[i] = NO_ENTRY;
-  for (int g = 0; g < sweep->volume_count; g++) {
-    const grid *grid = &sweep->grids[g];
-    hl_box_rays(view, stack->normal, stack->first, grid->frame_to_index, grid->box_low, grid->box_high,
-                &sheets->box_rays[g]);
-  }
-  return HL_OK;
+  for (int g = 0; g < content->volume_count; g++) any = any || content->grids[g].cut;
+  return any;
 }
 
 /* Entries of a patch, which one task has at a time; they fill as much memory as patches need them. */
-static const float *entries_of(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch) {
-  uint32_t *entry = &sheets->entry_of[patch];
+static const float *entries_of(view_sheets *sheets, slab_place place) {
+  uint32_t *entry = &sheets->entry_of[place.patch];
   if (*entry != NO_ENTRY) return sheets->entries + *entry * (size_t)ENTRY_FLOATS;
   *entry = __atomic_fetch_add(&sheets->entry_count, 1, __ATOMIC_RELAXED);
   float *enter = sheets->entries + *entry * (size_t)ENTRY_FLOATS;
   size_t tiles_x = (size_t)sheets->occupancy.tiles_x;
-  sweep->hot->view.coverage(&sheets->box_rays[sheets->occupancy.patch_grid[patch]], (int)(tile % tiles_x),
-                            (int)(tile / tiles_x), enter, enter + TILE_PIXELS);
+  sheets->content->hot->view.coverage(&sheets->box_rays[sheets->occupancy.patch_grid[place.patch]],
+                                      (int)(place.tile % tiles_x), (int)(place.tile / tiles_x), enter,
+                                      enter + TILE_PIXELS);
   return enter;
 }
 
-static hl_status sort_voxels(const sweep *sweep, const view *view, view_sheets *sheets, hl_error *error) {
-  if (!sweep->splat) return HL_OK;
-  sheets->lists = hl_allocate_zeroed(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->lists);
+static hl_status sort_voxels(view_sheets *sheets, hl_error *error) {
+  const sheet_content *content = sheets->content;
+  if (!content->splat) return HL_OK;
+  sheets->lists = hl_allocate_zeroed(content->context, (size_t)content->volume_count, sizeof *sheets->lists);
   if (sheets->lists == NULL) return hl_fail_memory(error, sizeof *sheets->lists, "the sorted voxels");
   hl_status status = HL_OK;
-  for (int g = 0; g < sweep->volume_count && status == HL_OK; g++)
-    status = hl_voxel_lists_build(
-        sweep->context, sweep->pool,
-        &(voxel_sort){&sweep->grids[g], sweep->kernel, view, &sweep->geometry->sheets}, &sheets->lists[g],
-        error);
+  for (int g = 0; g < content->volume_count && status == HL_OK; g++) {
+    const voxel_sort sort = {&content->grids[g], content->kernel, sheets->view, content->sheets};
+    status = hl_voxel_lists_build(content->context, content->pool, &sort, &sheets->lists[g], error);
+  }
   return status;
 }
 
@@ -63,69 +51,84 @@ static int bundle_of_patches(size_t patches) {
                                                                                     : SMALL_BUNDLE;
 }
 
-static hl_status keep_patches(const sweep *sweep, view_sheets *sheets, hl_error *error) {
-  sheets->bundle = bundle_of_patches(sheets->occupancy.patch_count);
+/* After the patches are counted. Entries come last: memory that no patch asks for is never touched. */
+static void lay_out(view_sheets *sheets, hl_layout *layout) {
+  size_t patches = sheets->occupancy.patch_count, grids = (size_t)sheets->content->volume_count;
+  sheets->bundle = bundle_of_patches(patches);
   sheets->ring = sheets->bundle + 1;
-  size_t count = sheets->occupancy.patch_count * (size_t)sheets->ring;
-  sheets->density = hl_reserve_take(sweep->reserve, count * TILE_PIXELS, sizeof(float));
-  sheets->kept = hl_allocate(sweep->context, count, sizeof *sheets->kept);
-  sheets->sources = hl_allocate(sweep->context, (size_t)sheets->ring * (size_t)sweep->volume_count,
-                                sizeof *sheets->sources);
-  sheets->runs = hl_allocate(sweep->context, (size_t)sweep->volume_count, sizeof *sheets->runs);
-  sheets->patch_runs = hl_allocate(sweep->context, sheets->occupancy.patch_count, sizeof *sheets->patch_runs);
-  if (sheets->density == NULL || sheets->kept == NULL || sheets->sources == NULL || sheets->runs == NULL ||
-      sheets->patch_runs == NULL)
-    return hl_fail_memory(error, count * TILE_PIXELS * sizeof(float), "the last sheets");
-  for (size_t i = 0; i < count; i++) sheets->kept[i] = (kept_patch){.sheet = -1};
-  for (size_t i = 0; i < sheets->occupancy.patch_count; i++) sheets->patch_runs[i] = (patch_run){.first = -1};
-  return HL_OK;
+  size_t ring = (size_t)sheets->ring;
+  sheets->kept = hl_layout_take(layout, patches * ring, sizeof *sheets->kept);
+  sheets->sources = hl_layout_take(layout, ring * grids, sizeof *sheets->sources);
+  sheets->runs = hl_layout_take(layout, grids, sizeof *sheets->runs);
+  sheets->patch_runs = hl_layout_take(layout, patches, sizeof *sheets->patch_runs);
+  sheets->density = hl_layout_take(layout, patches * ring, TILE_PIXELS * sizeof *sheets->density);
+  if (!any_cut(sheets->content)) return;
+  sheets->entry_of = hl_layout_take(layout, patches, sizeof *sheets->entry_of);
+  sheets->box_rays = hl_layout_take(layout, grids, sizeof *sheets->box_rays);
+  sheets->entries = hl_layout_take(layout, patches, ENTRY_FLOATS * sizeof *sheets->entries);
 }
 
-uint64_t hl_view_sheets_bytes(const sweep *sweep, const view *view, double spare) {
-  size_t patches;
-  bool cut = false;
-  for (int g = 0; g < sweep->volume_count; g++) cut = cut || sweep->grids[g].cut;
-  uint64_t bytes = hl_occupancy_bytes(
-      &(occupancy_source){sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, spare},
-      &patches);
-  size_t ring = (size_t)bundle_of_patches(patches) + 1;
-  uint64_t a_patch = ring * (TILE_PIXELS * sizeof(float) + sizeof(kept_patch)) + sizeof(patch_run) +
-                     (cut ? ENTRY_FLOATS * sizeof(float) + sizeof(uint32_t) : 0);
-  return bytes + patches * a_patch;
+uint64_t hl_view_sheets_bytes(const sheet_content *content, const view *view, double spare) {
+  view_sheets planned = {.content = content, .view = view};
+  hl_layout counted = {0};
+  const occupancy_source source = {content->grids, content->volume_count, view, content->sheets, spare};
+  uint64_t bytes = hl_occupancy_bytes(&source, &planned.occupancy.patch_count);
+  lay_out(&planned, &counted);
+  return bytes + counted.bytes;
+}
+
+static hl_status keep_patches(view_sheets *sheets, hl_error *error) {
+  hl_layout counted = {0};
+  lay_out(sheets, &counted);
+  sheets->memory = hl_reserve_take(sheets->content->reserve, counted.bytes, 1);
+  if (sheets->memory == NULL) return hl_fail_memory(error, counted.bytes, "the last sheets");
+  hl_layout handed = {.base = sheets->memory};
+  lay_out(sheets, &handed);
+  size_t patches = sheets->occupancy.patch_count, kept = patches * (size_t)sheets->ring;
+  for (size_t i = 0; i < kept; i++) sheets->kept[i] = (kept_patch){.sheet = -1};
+  for (size_t i = 0; i < patches; i++) sheets->patch_runs[i] = (patch_run){.first = -1};
+  for (size_t i = 0; i < patches && sheets->entry_of != NULL; i++) sheets->entry_of[i] = NO_ENTRY;
+  for (int g = 0; g < sheets->content->volume_count && sheets->box_rays != NULL; g++) {
+    const grid *grid = &sheets->content->grids[g];
+    const sheet_stack *stack = sheets->content->sheets;
+    hl_box_rays(sheets->view, stack->normal, stack->first, grid->frame_to_index, grid->box_low,
+                grid->box_high, &sheets->box_rays[g]);
+  }
+  return HL_OK;
 }
 
 /* The sheet before the run of slabs that has the slab before a sheet. */
 static int first_of_run(int sheet) { return (sheet - 1) / RUN_SLABS * RUN_SLABS; }
 
 /* Box faces cut the eye's part of a slab and the way of light to it, which comes from beside. */
-static void reach_run(const sweep *sweep, const view *view, int first, view_sheets *sheets) {
-  double beside = sheets == &sweep->image ? sweep->longest_way : 0;
-  for (int g = 0; g < sweep->volume_count; g++) {
-    const grid *grid = &sweep->grids[g];
+static void reach_run(view_sheets *sheets, int first) {
+  const sheet_content *content = sheets->content;
+  for (int g = 0; g < content->volume_count; g++) {
+    const grid *grid = &content->grids[g];
     slab_run *run = &sheets->runs[g];
     run->grid = grid;
     for (int axis = 0; axis < 3; axis++) {
-      double reach = beside * vec3_length(grid->frame_to_index.linear.row[axis]);
+      double reach = sheets->beside * vec3_length(grid->frame_to_index.linear.row[axis]);
       run->low[axis] = (float)(grid->box_low[axis] + reach);
       run->high[axis] = (float)(grid->box_high[axis] - reach);
     }
     for (int i = 0; i <= RUN_SLABS; i++)
-      hl_view_sheet_rays(view, sweep->geometry->sheets.normal,
-                         hl_sheet_height(&sweep->geometry->sheets, first + i), grid->frame_to_index,
-                         &run->rays[i]);
+      hl_view_sheet_rays(sheets->view, content->sheets->normal, hl_sheet_height(content->sheets, first + i),
+                         grid->frame_to_index, &run->rays[i]);
   }
 }
 
-static void reach_sheet(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
-  for (int g = 0; g < sweep->volume_count; g++) {
-    fill_source *source = &sheets->sources[sheet % sheets->ring * sweep->volume_count + g];
-    *source = (fill_source){.grid = &sweep->grids[g],
-                            .kernel = sweep->kernel,
+static void reach_sheet(view_sheets *sheets, int sheet) {
+  const sheet_content *content = sheets->content;
+  for (int g = 0; g < content->volume_count; g++) {
+    fill_source *source = &sheets->sources[sheet % sheets->ring * content->volume_count + g];
+    *source = (fill_source){.grid = &content->grids[g],
+                            .kernel = content->kernel,
                             .sheet = sheet,
-                            .classifier = &sweep->volumes[g].classifier,
+                            .classifier = &content->volumes[g].classifier,
                             .lists = sheets->lists == NULL ? NULL : &sheets->lists[g]};
-    hl_view_sheet_rays(view, sweep->geometry->sheets.normal, hl_sheet_height(&sweep->geometry->sheets, sheet),
-                       sweep->grids[g].frame_to_index, &source->rays);
+    hl_view_sheet_rays(sheets->view, content->sheets->normal, hl_sheet_height(content->sheets, sheet),
+                       content->grids[g].frame_to_index, &source->rays);
   }
 }
 
@@ -135,36 +138,34 @@ static int end_of_bundle(const view_sheets *sheets, int sheet) {
   return end < sheets->occupancy.sheets ? end : sheets->occupancy.sheets;
 }
 
-void hl_view_sheets_reach(const sweep *sweep, const view *view, int sheet, view_sheets *sheets) {
-  if (sheet == 1) reach_sheet(sweep, view, 0, sheets);
-  if (first_of_run(sheet) == sheet - 1) reach_run(sweep, view, sheet - 1, sheets);
+void hl_view_sheets_reach(view_sheets *sheets, int sheet) {
+  if (sheet == 1) reach_sheet(sheets, 0);
+  if (first_of_run(sheet) == sheet - 1) reach_run(sheets, sheet - 1);
   if ((sheet - 1) % sheets->bundle != 0) return;
-  for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++)
-    reach_sheet(sweep, view, ahead, sheets);
+  for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++) reach_sheet(sheets, ahead);
 }
 
-hl_status hl_view_sheets_begin(const sweep *sweep, const view *view, double spare, view_sheets *sheets,
-                               hl_error *error) {
-  const occupancy_source source = {sweep->grids, sweep->volume_count, view, &sweep->geometry->sheets, spare};
-  hl_status status = hl_occupancy_build(sweep->context, sweep->pool, sweep->hot->view.brick_ranges, &source,
-                                        &sheets->occupancy, error);
-  if (status == HL_OK) status = sort_voxels(sweep, view, sheets, error);
-  if (status == HL_OK) status = set_up_entries(sweep, view, sheets, error);
-  if (status == HL_OK) status = keep_patches(sweep, sheets, error);
+hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, double spare,
+                               view_sheets *sheets, hl_error *error) {
+  const occupancy_source source = {content->grids, content->volume_count, view, content->sheets, spare};
+  *sheets = (view_sheets){.content = content, .view = view};
+  hl_status status = hl_occupancy_build(content->context, content->pool, content->hot->view.brick_ranges,
+                                        &source, &sheets->occupancy, error);
+  if (status == HL_OK) status = sort_voxels(sheets, error);
+  if (status == HL_OK) status = keep_patches(sheets, error);
   if (status != HL_OK) return status;
-  return hl_pool_cancelled(sweep->pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing")
-                                        : HL_OK;
+  return hl_pool_cancelled(content->pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing")
+                                          : HL_OK;
 }
 
-void hl_view_sheets_end(const sweep *sweep, view_sheets *sheets) {
-  for (int g = 0; sheets->lists != NULL && g < sweep->volume_count; g++)
-    hl_voxel_lists_release(sweep->context, &sheets->lists[g]);
-  hl_reserve_return(sweep->reserve, sheets->entries);
-  hl_reserve_return(sweep->reserve, sheets->density);
-  void *owned[] = {sheets->lists,    sheets->sources,  sheets->runs, sheets->patch_runs,
-                   sheets->entry_of, sheets->box_rays, sheets->kept};
-  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->context, owned[i]);
-  hl_occupancy_release(sweep->context, &sheets->occupancy);
+void hl_view_sheets_end(view_sheets *sheets) {
+  const sheet_content *content = sheets->content;
+  if (content == NULL) return;
+  for (int g = 0; sheets->lists != NULL && g < content->volume_count; g++)
+    hl_voxel_lists_release(content->context, &sheets->lists[g]);
+  hl_release(content->context, sheets->lists);
+  if (sheets->memory != NULL) hl_reserve_return(content->reserve, sheets->memory);
+  hl_occupancy_release(content->context, &sheets->occupancy);
 }
 
 /* What is kept of a patch on a sheet. */
@@ -174,16 +175,15 @@ static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int s
   return kept;
 }
 
-static const fill_source *source_on_sheet(const sweep *sweep, const view_sheets *sheets, size_t patch,
-                                          int sheet) {
-  return &sheets->sources[sheet % sheets->ring * sweep->volume_count +
+static const fill_source *source_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
+  return &sheets->sources[sheet % sheets->ring * sheets->content->volume_count +
                           (int)sheets->occupancy.patch_grid[patch]];
 }
 
 /* Finds the relevant blocks of a patch, among those needed, in all slabs of a run at once. Soft light may ask
  * for more blocks later. */
-static void find_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch,
-                          uint32_t need, patch_run *run) {
+static void find_relevant(const view_sheets *sheets, slab_place place, uint32_t need, patch_run *run) {
+  size_t patch = place.patch;
   const occupancy *o = &sheets->occupancy;
   uint32_t more = need & ~(uint32_t)run->asked, slabs = 0;
   if (more == 0) return;
@@ -192,8 +192,9 @@ static void find_relevant(const sweep *sweep, const view_sheets *sheets, size_t 
                         hl_occupancy_has(o, patch, run->first + i + 1))
              << i;
   relevant_blocks relevant = {0};
-  sweep->hot->fill.relevant_blocks(&sheets->runs[o->patch_grid[patch]], (int)(tile % (size_t)o->tiles_x),
-                                   (int)(tile / (size_t)o->tiles_x), slabs, more, &relevant);
+  sheets->content->hot->fill.relevant_blocks(&sheets->runs[o->patch_grid[patch]],
+                                             (int)(place.tile % (size_t)o->tiles_x),
+                                             (int)(place.tile / (size_t)o->tiles_x), slabs, more, &relevant);
   for (int i = 0; i < RUN_SLABS; i++) run->relevant.blocks[i] |= relevant.blocks[i];
   run->relevant.uncut = relevant.uncut;
   run->asked = (uint16_t)(run->asked | more);
@@ -206,7 +207,6 @@ static float *density_on_sheet(const view_sheets *sheets, size_t patch, int shee
 /* A patch while it is filled on the sheets of a bundle. Sheets are numbered from the one before the bundle.
  */
 typedef struct patch_bundle {
-  const sweep *sweep;
   const view_sheets *sheets;
   size_t tile, patch;
   int first, slabs;             /* the sheet before the bundle; the bundle's number of slabs */
@@ -240,8 +240,9 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
   wanted &= ~(uint32_t)kept->need;
   others &= ~(wanted | kept->need);
   if ((wanted | others) == 0) return;
-  fill_tile_function *fill = b->sweep->splat ? b->sweep->hot->fill.splat : b->sweep->hot->fill.gather;
-  filled_blocks blocks = fill(source_on_sheet(b->sweep, b->sheets, b->patch, b->first + i),
+  const sheet_content *content = b->sheets->content;
+  fill_tile_function *fill = content->splat ? content->hot->fill.splat : content->hot->fill.gather;
+  filled_blocks blocks = fill(source_on_sheet(b->sheets, b->patch, b->first + i),
                               (int)(b->tile % (size_t)o->tiles_x), (int)(b->tile / (size_t)o->tiles_x),
                               wanted, others, density_on_sheet(b->sheets, b->patch, b->first + i));
   kept->need = (uint16_t)(kept->need | blocks.filled);
@@ -259,15 +260,13 @@ static void fill_sheets(patch_bundle *b) {
 }
 
 /* Fills a bundle for some more blocks. Returns the pixels filled. */
-static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch,
-                            int sheet, uint32_t more, patch_run *run) {
-  int slab = sheet - 1 - run->first;
-  patch_bundle b = {.sweep = sweep,
-                    .sheets = sheets,
-                    .tile = tile,
-                    .patch = patch,
-                    .first = sheet - 1,
-                    .slabs = run->end - sheet};
+static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_t more, patch_run *run) {
+  int slab = place.sheet - 1 - run->first;
+  patch_bundle b = {.sheets = sheets,
+                    .tile = place.tile,
+                    .patch = place.patch,
+                    .first = place.sheet - 1,
+                    .slabs = run->end - place.sheet};
   for (int i = 0; i < b.slabs; i++) b.relevant[i] = more & run->relevant.blocks[slab + i];
   fill_sheets(&b);
   for (int i = 0; i < b.slabs; i++)
@@ -276,29 +275,29 @@ static uint64_t fill_bundle(const sweep *sweep, const view_sheets *sheets, size_
   return b.pixels;
 }
 
-uint32_t hl_patch_relevant(const sweep *sweep, const view_sheets *sheets, size_t tile, size_t patch,
-                           int sheet, uint32_t need) {
-  patch_run *run = &sheets->patch_runs[patch];
-  int first = first_of_run(sheet), slab = sheet - 1 - first, end = end_of_bundle(sheets, sheet);
+uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need) {
+  patch_run *run = &sheets->patch_runs[place.patch];
+  int first = first_of_run(place.sheet), slab = place.sheet - 1 - first;
+  int end = end_of_bundle(sheets, place.sheet);
   if (run->first != first) *run = (patch_run){.first = first};
   if (run->end != end) run->filled = 0;
   run->end = end;
-  find_relevant(sweep, sheets, tile, patch, need, run);
+  find_relevant(sheets, place, need, run);
   bool filled = (need & ~(uint32_t)run->filled) == 0;
   return need & (filled ? run->shows[slab] : run->relevant.blocks[slab]);
 }
 
-patch_slab hl_patch_slab(const sweep *sweep, view_sheets *sheets, size_t tile, size_t patch, int sheet,
-                         uint32_t need, uint64_t *pixels) {
+patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, uint64_t *pixels) {
+  size_t patch = place.patch;
   patch_run *run = &sheets->patch_runs[patch];
-  int slab = sheet - 1 - run->first;
+  int slab = place.sheet - 1 - run->first;
   uint32_t more = need & ~(uint32_t)run->filled;
-  if (more != 0) *pixels += fill_bundle(sweep, sheets, tile, patch, sheet, more, run);
-  bool cut = sweep->grids[sheets->occupancy.patch_grid[patch]].cut;
+  if (more != 0) *pixels += fill_bundle(sheets, place, more, run);
+  bool cut = sheets->content->grids[sheets->occupancy.patch_grid[patch]].cut;
   bool uncut = run->relevant.uncut >> slab & 1;
-  const float *enter = !cut ? NULL : uncut ? sheets->entries : entries_of(sweep, sheets, tile, patch);
-  return (patch_slab){.before = density_on_sheet(sheets, patch, sheet - 1),
-                      .current = density_on_sheet(sheets, patch, sheet),
+  const float *enter = !cut ? NULL : uncut ? sheets->entries : entries_of(sheets, place);
+  return (patch_slab){.before = density_on_sheet(sheets, patch, place.sheet - 1),
+                      .current = density_on_sheet(sheets, patch, place.sheet),
                       .enter = enter,
                       .leave = cut ? enter + TILE_PIXELS : NULL,
                       .uncut = uncut,

@@ -1,9 +1,18 @@
-/* render/sweep_count.c - what a sweep counted and how long it took. */
+/* render/sweep_counts.c - what a sweep counted and how long it took. */
+#define _POSIX_C_SOURCE 200809L
+#include <time.h>
+
 #include "render/sweep.h"
+
+double hl_clock_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
 
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics) {
   double fill = 0, shade = 0, light = 0, composite = 0;
-  for (int i = 0; i < hl_pool_threads(sweep->pool); i++) {
+  for (int i = 0; i < hl_pool_threads(sweep->content.pool); i++) {
     statistics->samples_shaded += sweep->counts[i].samples;
     statistics->tiles_filled_image += sweep->counts[i].filled_image;
     statistics->tiles_filled_light += sweep->counts[i].filled_light;
@@ -18,7 +27,7 @@ void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics) {
     light += sweep->counts[i].seconds_light;
     composite += sweep->counts[i].seconds_composite;
   }
-  if (sweep->covering == NULL) statistics->sheets += sweep->geometry->sheets.count;
+  if (!sweep->preparatory) statistics->sheets += sweep->geometry->sheets.count;
   statistics->seconds_sort += sweep->seconds_sort;
   double share = fill + shade > 0 ? fill / (fill + shade) : 1;
   statistics->seconds_fill_image += sweep->seconds_image * share;

@@ -1,0 +1,20 @@
+/* render/sweep_counts.h - what a sweep counts and how long its stages take. */
+#ifndef HL_RENDER_SWEEP_COUNTS_H
+#define HL_RENDER_SWEEP_COUNTS_H
+
+#include <stdint.h>
+
+/* Seconds of a clock that never runs backwards. */
+double hl_clock_seconds(void);
+
+/* One thread's counts, on cache lines of its own. */
+typedef struct sweep_counts {
+  _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image,
+      skipped_light; /* pixels shaded; tiles */
+  uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
+  uint64_t pixels_seen, pixels_covered;    /* by a sweep that finds what is hidden */
+  double seconds_fill, seconds_shade;      /* of the image stage */
+  double seconds_light, seconds_composite; /* of the light stage; the composite is part of it */
+} sweep_counts;
+
+#endif

@@ -1,0 +1,99 @@
+/* render/view_sheets.h - what one view, the eye's or a light's, sees of the last sheets: where anything is,
+ * and the densities of patches, filled when they are asked for and kept for the next slab. */
+#ifndef HL_RENDER_VIEW_SHEETS_H
+#define HL_RENDER_VIEW_SHEETS_H
+
+#include "core/layout.h"
+#include "fill/voxel_lists.h"
+#include "render/frame.h"
+#include "render/hot.h"
+#include "render/prepare.h"
+
+/* What all views of a sweep have in common; borrowed. */
+typedef struct sheet_content {
+  hl_context *context;
+  hl_pool *pool;
+  hl_reserve *reserve;
+  const hot_functions *hot;
+  const sheet_stack *sheets;
+  const prepared_volume *volumes; /* [volume_count] */
+  const grid *grids;              /* [volume_count], the frame's */
+  int volume_count;
+  const kernel *kernel;
+  bool splat; /* else gather */
+} sheet_content;
+
+/* A patch's densities on one sheet, kept for the next slab. */
+typedef struct kept_patch {
+  int32_t sheet;   /* -1: none */
+  uint16_t need;   /* blocks that are filled */
+  uint16_t blocks; /* filled blocks with density */
+} kept_patch;
+
+/* A run of RUN_SLABS slabs in one patch: where the patch may show anything. */
+typedef struct patch_run {
+  int32_t first;             /* the sheet before the run; -1: no run yet */
+  int32_t end;               /* one past the last sheet of the last requested bundle */
+  uint16_t asked;            /* blocks whose relevance is known */
+  uint16_t filled;           /* blocks for which the bundle's densities are filled */
+  relevant_blocks relevant;  /* per slab: the asked blocks in which matter may be visible */
+  uint16_t shows[RUN_SLABS]; /* per slab of the bundle: the filled blocks in which matter is visible */
+} patch_run;
+
+/* The last sheets of one view. */
+typedef struct view_sheets {
+  const sheet_content *content;
+  const view *view;
+  double beside; /* how far from a sample its light may come through the slab, at most; frame units. 0: of a
+                    light */
+  occupancy occupancy;
+  voxel_lists *lists;    /* owned; [grids]; splat only */
+  int bundle;            /* sheets that are filled in one go; a divisor of RUN_SLABS */
+  int ring;              /* bundle + 1: sheets that are kept; sheet k at k % ring */
+  void *memory;          /* lent by the reserve: all arrays that follow */
+  float *density;        /* [patches][ring][256], block-major */
+  kept_patch *kept;      /* [patches][ring]; what is in density */
+  fill_source *sources;  /* [ring][grids] */
+  slab_run *runs;        /* [grids]; the run of the last slab */
+  patch_run *patch_runs; /* [patches] */
+  /* where a box cuts anything visible; else null */
+  uint32_t *entry_of;   /* [patches]; its row of entries; NO_ENTRY where none was asked for */
+  box_rays *box_rays;   /* [grids] */
+  float *entries;       /* [patches][2][256], used up to entry_count: where rays enter a box and leave it */
+  uint32_t entry_count; /* atomic */
+} view_sheets;
+
+/* content and view are borrowed until the end. spare: as hl_occupancy_build has it. hl_view_sheets_end
+ * releases what a failed begin leaves. */
+hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, double spare,
+                               view_sheets *sheets, hl_error *error);
+void hl_view_sheets_end(view_sheets *sheets);
+/* The bytes that hl_view_sheets_begin would hold; without the lists of splatted voxels, whose size is known
+ * only when they are made. */
+uint64_t hl_view_sheets_bytes(const sheet_content *content, const view *view, double spare);
+
+/* Before patches of a sheet are asked for; sheets rise from 1. */
+void hl_view_sheets_reach(view_sheets *sheets, int sheet);
+
+/* A patch of a tile, in the slab before a sheet. */
+typedef struct slab_place {
+  size_t tile, patch;
+  int sheet;
+} slab_place;
+
+/* The needed blocks in which the slab may hold anything visible, as far as is known. */
+uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need);
+
+/* A patch's densities on a slab's two sheets. */
+typedef struct patch_slab {
+  const float *before, *current; /* [256] block-major; valid in blocks */
+  const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible, unset
+                                    where uncut */
+  int uncut; /* the box cuts nothing in this slab, and no light on its way through it to the eye's pixels */
+  uint32_t blocks; /* those in which any density may be visible */
+} patch_slab;
+/* After hl_patch_relevant() gave one block at least. need: what the bundle's next slabs may ask for, too.
+ * pixels: is raised by the pixels filled. */
+patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, uint64_t *pixels);
+
+#endif
