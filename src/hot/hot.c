@@ -27,11 +27,11 @@ static const cascade_functions cascade = {.lit_blocks = lit_blocks_tile,
                                           .add = add_tile,
                                           .add_half = add_half_tile,
                                           .add_double = add_double_tile,
-                                          .left = left_tile,
+                                          .refill = refill_tile,
                                           .absorbed = absorbed_tile,
-                                          .part = part_tile,
+                                          .split = split_tile,
                                           .double_tile = double_tile,
-                                          .image_add = field_image_tile};
+                                          .emission_add = field_emission_tile};
 
 static const sublight_functions sublights = {.composite = sublight_tile,
                                              .composite_row = sublight_row,
@@ -48,7 +48,7 @@ const hot_functions HL_HOT_TABLE = {
     .fill = {relevant_blocks_tile, splat_tile, gather_tile},
     .shadow = {attenuate_tile,
                lit_blocks_tile,
-               {blur_rows_tile, blur_columns_tile, lit_blocks_tile, image_tile},
+               {blur_rows_tile, blur_columns_tile, lit_blocks_tile, emission_tile},
                &cascade,
                &sublights},
     .render = {shade_tile, measure_tile, cover_tile, maximum_tile},

@@ -30,14 +30,14 @@ static hl_status read_screen(hl_json_reader *reader, const json_t *value, hl_lig
 }
 
 /* Where an image goes. */
-typedef struct light_image {
+typedef struct light_emission {
   const char **file;
   const float **pixels;
   int *width, *height;
-} light_image;
+} light_emission;
 
 /* Premultiplied colours are those over black: alpha is left out. */
-static hl_status take_pixels(hl_context *context, const hl_image *image, const light_image *to,
+static hl_status take_pixels(hl_context *context, const hl_image *image, const light_emission *to,
                              hl_error *error) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *from = hl_image_pixels_const(image);
@@ -52,7 +52,7 @@ static hl_status take_pixels(hl_context *context, const hl_image *image, const l
 }
 
 /* The image that an object's "file" names. */
-static hl_status load(hl_json_reader *reader, const json_t *value, const light_image *to) {
+static hl_status load(hl_json_reader *reader, const json_t *value, const light_emission *to) {
   const char *file = NULL;
   hl_status status = hl_json_text(reader, value, "file", &file);
   if (status != HL_OK) return status;
@@ -73,7 +73,7 @@ static hl_status load(hl_json_reader *reader, const json_t *value, const light_i
 
 hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture) {
   static const char *const keys[] = {"file", "screen", NULL};
-  const light_image image = {&texture->file, &texture->pixels, &texture->width, &texture->height};
+  const light_emission image = {&texture->file, &texture->pixels, &texture->width, &texture->height};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "texture");
   hl_status status = hl_json_object(reader, value, keys);
@@ -86,7 +86,7 @@ hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_l
 hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_light_type type,
                                 hl_light_emission *emission) {
   static const char *const keys[] = {"file", "up", NULL}, *const rect_keys[] = {"file", NULL};
-  const light_image image = {&emission->file, &emission->pixels, &emission->width, &emission->height};
+  const light_emission image = {&emission->file, &emission->pixels, &emission->width, &emission->height};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "emission");
   hl_status status = hl_json_object(reader, value, type == HL_LIGHT_RECT ? rect_keys : keys);

@@ -191,7 +191,7 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   for (int i = 0; i < MOMENT_SIDE; i++)
     for (int j = 0; j < MOMENT_SIDE; j++) {
       double square[2];
-      hl_light_grid_part(MOMENT_SIDE, i, j, square);
+      hl_sublight_grid_point(MOMENT_SIDE, i, j, square);
       vec3 point = vec3_subtract(seen_on_plane(source, normal, hl_light_point(source, square[0], square[1])),
                                  centre);
       double u = vec3_dot(point, seen.u), v = vec3_dot(point, seen.v);
@@ -216,14 +216,14 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   return seen;
 }
 
-void hl_sheet_light_place(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset,
-                          double place[3]) {
+void hl_sheet_light_position(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset,
+                             double position[3]) {
   vec3 point = source->parallel ? seen_on_plane(source, normal, offset) : vec3_add(source->position, offset);
   vec3 from_middle = vec3_subtract(point, seen->middle);
   double height = source->parallel ? fmax(vec3_dot(source->direction, normal), 0.1) : 1;
-  place[0] = vec3_dot(from_middle, seen->u) / height;
-  place[1] = vec3_dot(from_middle, seen->v) / height;
-  place[2] = source->parallel ? 0 : vec3_dot(from_middle, normal);
+  position[0] = vec3_dot(from_middle, seen->u) / height;
+  position[1] = vec3_dot(from_middle, seen->v) / height;
+  position[2] = source->parallel ? 0 : vec3_dot(from_middle, normal);
 }
 
 /* Derived: a point of the light at x + z h, seen from a receiver at slope s, lies at x - s z on the plane

@@ -9,13 +9,13 @@
  * disk that faces the content. */
 vec3 hl_light_point(const light_source *source, double a, double b);
 
-/* light_parts.c: part (i, j) of side x side parts, its point of the unit square, of any light. A turned grid:
- * one point in each cell, and seen along either side of the square the points are side^2 even steps. */
-void hl_light_grid_part(int side, int i, int j, double square[2]);
+/* sublight_points.c: part (i, j) of side x side parts, its point of the unit square, of any light. A turned
+ * grid: one point in each cell, and seen along either side of the square the points are side^2 even steps. */
+void hl_sublight_grid_point(int side, int i, int j, double square[2]);
 
 /* The same of that light, where few points do best; not those of cells of the square, as an image's colours
  * are. */
-void hl_light_part(const light_source *source, int side, int i, int j, double square[2]);
+void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]);
 
 /* The light as the content's middle sees it on a plane parallel to the sheets: through the light's centre, or
  * for parallel light through the end of its direction. */
@@ -32,8 +32,8 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal);
 /* Where an offset from the light's centre (hl_light_point) lies, from seen->middle: along u, v and the
  * sheets' normal; of parallel light along u and v a unit of height away. A receiver at a slope sees u and v
  * less by slope times the third. */
-void hl_sheet_light_place(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset,
-                          double place[3]);
+void hl_sheet_light_position(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset,
+                             double position[3]);
 
 /* The square of width_u (axis 0) or width_v (1) as seen at a slope from the light: where a receiver lies that
  * many lengths along the axis a length of height below the light. A light tilted against the sheets looks

@@ -20,9 +20,9 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
   return sectors;
 }
 
-light_share hl_light_share(const light_sectors *sectors, int sector) {
-  light_share share = {.count = sectors == 0 ? 0 : LIGHT_SECTORS, .sector = sector};
-  for (int i = 0; i < share.count; i++) vec3_store(share.axis[i], sectors->axis[i]);
-  share.least = share.count == 0 ? 0 : (float)sectors->least;
-  return share;
+sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector) {
+  sector_fraction fraction = {.count = sectors == 0 ? 0 : LIGHT_SECTORS, .sector = sector};
+  for (int i = 0; i < fraction.count; i++) vec3_store(fraction.axis[i], sectors->axis[i]);
+  fraction.least = fraction.count == 0 ? 0 : (float)sectors->least;
+  return fraction;
 }

@@ -21,14 +21,14 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest);
 
 /* The share of a sector: max(0, cos_i - least)^2 over the sum of that for all sectors, cos_i between a ray
  * and axis i. */
-typedef struct light_share {
+typedef struct sector_fraction {
   int count; /* 0: the light is whole */
   int sector;
   float axis[LIGHT_SECTORS][3];
   float least;
-} light_share;
+} sector_fraction;
 
 /* sectors may be null: a whole light. */
-light_share hl_light_share(const light_sectors *sectors, int sector);
+sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector);
 
 #endif

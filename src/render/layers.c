@@ -90,7 +90,7 @@ static void set_up_white_volumes(sweep *sweep) {
 static void set_up_white_light(const shade_light *from, shade_light *white) {
   *white = *from;
   white->inverse_square = 0;
-  white->screen = (light_screen){0};
+  white->texture = (light_texture){0};
   white->cone = (light_cone){.scale = 0};
   for (int c = 0; c < 3; c++) white->color[c] = 1;
 }

@@ -9,24 +9,25 @@ LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow
   lanes place[3];
   for (int row = 0; row < 3; row++) place[row] = row_of_point(map->rows[row], position);
   if (light->parallel)
-    return taps_of_place(map, light->nearest, place[1], place[2]); /* place[0] is 1 everywhere */
+    return taps_at_position(map, light->nearest, place[1], place[2]); /* place[0] is 1 everywhere */
   lanes_int ahead = place[0] > 0.0f;
   lanes safe = lanes_select(ahead, place[0], lanes_set(1.0f)), outside = lanes_set(-1.0f);
-  return taps_of_place(map, light->nearest, lanes_select(ahead, place[1] / safe, outside),
-                       lanes_select(ahead, place[2] / safe, outside));
+  return taps_at_position(map, light->nearest, lanes_select(ahead, place[1] / safe, outside),
+                          lanes_select(ahead, place[2] / safe, outside));
 }
 
-LANES_INLINE color_lanes mean_of_parts(const shade_light *light, lanes3 position, uint32_t active) {
+LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 position, uint32_t active) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
-  for (int i = 0; i < light->part_count; i++) {
-    const part_lookup *part = &light->parts[i];
-    shadow_taps taps = taps_of_position(light, &part->map, position);
+  for (int i = 0; i < light->sublight_count; i++) {
+    const sublight_lookup *sublight = &light->sublights[i];
+    shadow_taps taps = taps_of_position(light, &sublight->map, position);
     for (int c = 0; c < light->channels; c++)
-      sum.c[c] = lanes_add_scaled(sum.c[c], look_up_part(&part->map, &taps, part->left[c], active),
-                                  part->weight[c]);
+      sum.c[c] = lanes_add_scaled(sum.c[c],
+                                  look_up_sublight(&sublight->map, &taps, sublight->transmittance[c], active),
+                                  sublight->weight[c]);
   }
   for (int c = 0; c < light->channels; c++)
-    sum.c[c] = sum.c[c] / ((float)PART_ONE * (float)light->part_count);
+    sum.c[c] = sum.c[c] / ((float)SUBLIGHT_ONE * (float)light->sublight_count);
   return sum;
 }
 
@@ -91,8 +92,8 @@ LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *t
                                   const light_depths *depths, uint32_t active) {
   uint32_t planes = lanes_bits(depths->plane) & active;
   color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
-  if (light->part_count > 0) {
-    reached = mean_of_parts(light, position, active);
+  if (light->sublight_count > 0) {
+    reached = mean_of_sublights(light, position, active);
     if (planes != 0) correct_parts(depths, light->channels, &reached);
     return reached;
   }
@@ -110,9 +111,9 @@ LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *t
 LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *light, const block_slab *slab,
                                        block_density *densities, int count, lanes3 towards, lanes path) {
   lanes3 position = slab->geometry.position;
-  const shadow_map *map = light->part_count > 0 ? &light->parts[0].map : &light->lookup->map;
+  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &light->lookup->map;
   shadow_taps taps = taps_of_position(light, map, position);
-  near_pixels near = light->part_count > 0 ? pixels_of_parts() : pixels_around(&taps);
+  near_pixels near = light->sublight_count > 0 ? pixels_of_sublights() : pixels_around(&taps);
   find_steps(map, light->parallel, set3(job->normal), position, &near);
   light_depths depths = depths_of_light(job, slab, densities, count, towards, path,
                                         light->nearest ? NULL : &near);

@@ -7,8 +7,8 @@
 #define HL_RENDER_SHADE_H
 
 #include "light/light_cone.h"
-#include "light/light_screen.h"
 #include "light/light_sector.h"
+#include "light/light_texture.h"
 #include "shadow/attenuate.h"
 #include "shadow/shadow_lookup.h"
 
@@ -45,15 +45,15 @@ typedef struct shade_light {
   float color[3];    /* color * intensity */
   int inverse_square;
   int shadowed;
-  float path;                  /* parallel: sheet spacing / |l.h|; else sheet spacing */
-  const shadow_lookup *lookup; /* where shadowed: the light that reaches a sample */
-  const part_lookup *parts;    /* [part_count]; where there are any, it is their mean instead */
-  int part_count, channels;
-  light_screen screen; /* the image that the light projects */
-  light_cone cone;     /* of a spot light */
-  light_share share;   /* of a light within the content */
+  float path;                       /* parallel: sheet spacing / |l.h|; else sheet spacing */
+  const shadow_lookup *lookup;      /* where shadowed: the light that reaches a sample */
+  const sublight_lookup *sublights; /* [sublight_count]; if any, a sample gets the mean of their light */
+  int sublight_count, channels;
+  light_texture texture;  /* the picture that the light projects */
+  light_cone cone;        /* of a spot light */
+  sector_fraction sector; /* of a light within the content */
   int nearest,
-      cubic; /* lookup: nearest pixel, or between four by four, instead of bilinear; parts never cubic */
+      cubic; /* lookup: nearest pixel, or between four by four, instead of bilinear; sub-lights never cubic */
 } shade_light;
 
 typedef struct shade_job {

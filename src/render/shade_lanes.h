@@ -2,7 +2,7 @@
 #ifndef HL_RENDER_SHADE_LANES_H
 #define HL_RENDER_SHADE_LANES_H
 
-#include "light/light_screen_lanes.h"
+#include "light/light_texture_lanes.h"
 #include "render/reaching_lanes.h"
 
 static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
@@ -20,13 +20,13 @@ LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
   return x * x * lanes_line(x, -2.0f, 3.0f);
 }
 
-/* The share of a light's sector (light_sector.h). */
-LANES_INLINE lanes share_of_sector(const light_share *share, lanes3 towards) {
+/* The fraction that a light's sector takes (light_sector.h). */
+LANES_INLINE lanes fraction_of_sector(const sector_fraction *sector, lanes3 towards) {
   lanes own = lanes_set(0), sum = lanes_set(1e-30f);
-  for (int i = 0; i < share->count; i++) {
-    lanes above = lanes_max(-dot3(towards, set3(share->axis[i])) - share->least, lanes_set(0));
+  for (int i = 0; i < sector->count; i++) {
+    lanes above = lanes_max(-dot3(towards, set3(sector->axis[i])) - sector->least, lanes_set(0));
     sum = lanes_fma(above, above, sum);
-    if (i == share->sector) own = above * above;
+    if (i == sector->sector) own = above * above;
   }
   return own / sum;
 }
@@ -62,15 +62,15 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
     lanes climb = lanes_abs(dot3(arriving.towards, set3(job->normal)));
     path = lanes_min(light->path / lanes_max(climb, lanes_set(1e-3f)), distance);
     if (light->inverse_square) strength = 1.0f / squared;
-    if (light->share.count > 0) strength = strength * share_of_sector(&light->share, arriving.towards);
+    if (light->sector.count > 0) strength = strength * fraction_of_sector(&light->sector, arriving.towards);
     if (light->cone.scale > 0) strength = strength * within_cone(&light->cone, arriving.towards);
   }
   arriving.dark = !is_faced(densities, count, slab->seen, arriving.towards);
   if (arriving.dark) return arriving;
   for (int c = 0; c < 3; c++) arriving.full.c[c] = strength * light->color[c];
-  if (light->screen.pixels != NULL) {
+  if (light->texture.pixels != NULL) {
     lanes pattern[3];
-    screen_pattern(&light->screen, g->position, pattern);
+    texture_pattern(&light->texture, g->position, pattern);
     for (int c = 0; c < 3; c++) arriving.full.c[c] = arriving.full.c[c] * pattern[c];
   }
   arriving.shadowed = arriving.full;

@@ -16,9 +16,9 @@
 typedef struct sweep_light {
   const light_source *source;
   light_shadow shadow;
-  view_sheets sheets;  /* of the shadow buffer's view */
-  light_screen screen; /* the image that the light projects */
-  light_image *image;  /* owned; the image on the light itself; null: none */
+  view_sheets sheets;       /* of the shadow buffer's view */
+  light_texture texture;    /* the picture that the light projects */
+  light_emission *emission; /* owned; the picture on the light itself; null: none */
 } sweep_light;
 
 typedef struct sweep sweep;

@@ -18,7 +18,7 @@ void hl_sweep_open(sweep *sweep) {
 }
 
 /* seen: [seen_count] corners of what the eye sees. image: null where the light is even. */
-static shadow_setup setup_of_light(const sweep *sweep, const light_source *source, light_image *image,
+static shadow_setup setup_of_light(const sweep *sweep, const light_source *source, light_emission *emission,
                                    const vec3 *seen, int seen_count) {
   const frame *frame = sweep->frame;
   return (shadow_setup){.context = sweep->content.context,
@@ -27,7 +27,7 @@ static shadow_setup setup_of_light(const sweep *sweep, const light_source *sourc
                         .functions = &sweep->content.hot->shadow,
                         .settings = &sweep->scene->render,
                         .source = source,
-                        .image = image == NULL || image->even ? NULL : image,
+                        .emission = emission == NULL || emission->even ? NULL : emission,
                         .sheets = &sweep->geometry->sheets,
                         .eye = &frame->eye,
                         .channels = sweep->channels,
@@ -42,10 +42,10 @@ static shadow_setup setup_of_light(const sweep *sweep, const light_source *sourc
 }
 
 /* What begin_light would hold of one light; raises the tasks by the tiles of its view. */
-static hl_status add_light_bytes(const sweep *sweep, int index, light_image *image, vec3 *points,
+static hl_status add_light_bytes(const sweep *sweep, int index, light_emission *emission, vec3 *points,
                                  sweep_bytes *bytes, size_t *tasks, hl_error *error) {
   light_shadow shadow;
-  shadow_setup setup = setup_of_light(sweep, &sweep->frame->lights[sweep->geometry->light[index]], image,
+  shadow_setup setup = setup_of_light(sweep, &sweep->frame->lights[sweep->geometry->light[index]], emission,
                                       points, hl_frame_visible_points(sweep->frame, points));
   hl_status status = hl_light_shadow_plan(&shadow, &setup, error);
   if (status == HL_OK && shadow.method != NULL) {
@@ -54,7 +54,7 @@ static hl_status add_light_bytes(const sweep *sweep, int index, light_image *ima
     bytes->buffers += hl_light_shadow_buffer_bytes(&shadow);
     bytes->memory[index] = of_method.kept.bytes;
     bytes->passing += of_method.passing.bytes + shadow.method->state_bytes +
-                      (image != NULL ? sizeof *image : 0) +
+                      (emission != NULL ? sizeof *emission : 0) +
                       hl_view_sheets_bytes(&sweep->content, view, shadow.plan.spare);
     *tasks += (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
   }
@@ -93,11 +93,11 @@ hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_by
     bytes->passing += planned.tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
   hl_status status = HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
-    light_image *image = NULL;
-    status = hl_light_image_create(sweep->content.context, &sweep->frame->lights[sweep->geometry->light[i]],
-                                   &image, error);
-    if (status == HL_OK) status = add_light_bytes(&planned, i, image, points, bytes, &tasks, error);
-    hl_release(sweep->content.context, image);
+    light_emission *emission = NULL;
+    status = hl_light_emission_create(sweep->content.context,
+                                      &sweep->frame->lights[sweep->geometry->light[i]], &emission, error);
+    if (status == HL_OK) status = add_light_bytes(&planned, i, emission, points, bytes, &tasks, error);
+    hl_release(sweep->content.context, emission);
   }
   lay_out(&planned, tasks, threads, &counted);
   bytes->passing += counted.bytes;
@@ -108,13 +108,13 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
                              shadow_buffer *buffer, shadow_memory *memory, vec3 *points, hl_error *error) {
   const frame *frame = sweep->frame;
   light->source = source;
-  hl_status status = hl_light_image_create(sweep->content.context, source, &light->image, error);
+  hl_status status = hl_light_emission_create(sweep->content.context, source, &light->emission, error);
   if (status == HL_OK)
-    status = hl_light_screen_create(sweep->content.context, source, frame->points, frame->point_count,
-                                    frame->middle, frame->middle_pixel, &light->screen, error);
+    status = hl_light_texture_create(sweep->content.context, source, frame->points, frame->point_count,
+                                     frame->middle, frame->middle_pixel, &light->texture, error);
   if (status != HL_OK) return status;
   light_shadow *shadow = &light->shadow;
-  shadow_setup setup = setup_of_light(sweep, source, light->image, points,
+  shadow_setup setup = setup_of_light(sweep, source, light->emission, points,
                                       hl_frame_visible_points(frame, points));
   status = hl_light_shadow_plan(shadow, &setup, error);
   if (status != HL_OK || shadow->method == NULL) return status;
@@ -190,8 +190,8 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
       .parallel = from->source->parallel,
       .shadowed = from->shadow.method != NULL,
       .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
-      .screen = from->screen,
-      .share = hl_light_share(from->source->sectors, from->source->sector),
+      .texture = from->texture,
+      .sector = hl_sector_fraction(from->source->sectors, from->source->sector),
       .cone = hl_light_cone(from->source, sweep->frame->middle, sweep->frame->middle_pixel),
       .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST,
       .cubic = from->shadow.plan.cubic};
@@ -199,15 +199,15 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   vec3_store(light->position, from->source->position);
   for (int c = 0; c < 3; c++)
     light->color[c] = (float)(scene->color[c] * scene->intensity *
-                              (from->image == NULL ? 1 : from->image->mean[c]));
+                              (from->emission == NULL ? 1 : from->emission->mean[c]));
   light->path = (float)spacing;
   if (from->source->parallel)
     light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
   if (from->shadow.method == NULL) return;
   light->channels = from->shadow.buffer->channels;
   light->lookup = &from->shadow.lookup;
-  light->parts = from->shadow.sublights;
-  light->part_count = from->shadow.sublight_count;
+  light->sublights = from->shadow.sublights;
+  light->sublight_count = from->shadow.sublight_count;
 }
 
 static void set_up_jobs(sweep *sweep) {
@@ -300,8 +300,8 @@ void hl_sweep_end(sweep *sweep) {
   for (int i = 0; i < FRAME_LIGHTS; i++) {
     sweep_light *light = &sweep->lights[i];
     hl_view_sheets_end(&light->sheets);
-    hl_light_screen_release(context, &light->screen);
-    hl_release(context, light->image);
+    hl_light_texture_release(context, &light->texture);
+    hl_release(context, light->emission);
     hl_light_shadow_end(&light->shadow);
   }
   hl_view_sheets_end(&sweep->image);

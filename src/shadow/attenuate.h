@@ -29,9 +29,9 @@ typedef struct attenuate_job {
   float *older[HL_CHANNELS];         /* as transmittance, multiplied alike; null: none */
   size_t stride;
   float *moment[HL_CHANNELS]; /* the tile's first pixel; rows moment_stride apart; null: none. Raised by what
-                                 the slab takes of the light, times place */
+                                 the slab takes of the light, times `position` */
   size_t moment_stride;
-  float place;
+  float position;
 } attenuate_job;
 
 /* Blocks of a tile, a bit each. */

@@ -49,10 +49,10 @@ static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], i
 }
 
 /* Density runs linearly through the slab: the ends of its covered part in the tables. */
-LANES_INLINE void cut_way(covered_span part, table_coordinate *a, table_coordinate *b) {
+LANES_INLINE void cut_way(covered_span span, table_coordinate *a, table_coordinate *b) {
   lanes from = a->x, way = b->x - a->x;
-  *a = split_coordinate(lanes_fma(way, part.begin, from));
-  *b = split_coordinate(lanes_fma(way, lanes_min(part.begin + part.length, lanes_set(1.0f)), from));
+  *a = split_coordinate(lanes_fma(way, span.begin, from));
+  *b = split_coordinate(lanes_fma(way, lanes_min(span.begin + span.length, lanes_set(1.0f)), from));
 }
 
 typedef struct attenuated_block {
@@ -71,10 +71,10 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     table_coordinate b = coordinate_of_density(volume->classifier,
                                                lanes_load(volume->density + block * BLOCK_PIXELS));
     if (lanes_bits(may_be_visible(volume->classifier, a, b)) == 0) continue;
-    covered_span part = covered_block(volume->enter, volume->leave, volume->uncut, block, job->height,
+    covered_span span = covered_block(volume->enter, volume->leave, volume->uncut, block, job->height,
                                       job->spacing);
-    if (volume->enter != NULL) cut_way(part, &a, &b);
-    lanes extinction = sums_of_way(volume->classifier, a, b).extinction * part.length;
+    if (volume->enter != NULL) cut_way(span, &a, &b);
+    lanes extinction = sums_of_way(volume->classifier, a, b).extinction * span.length;
     for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
   }
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
@@ -91,15 +91,15 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     greatest = lanes_max(greatest, after);
     if (job->older[c] != NULL) {
       float *older = job->older[c] + (size_t)y * job->stride + x;
-      lanes left = lanes_load_block(older, job->stride) * passing;
-      lanes_store_block(older, job->stride, left);
-      greatest = lanes_max(greatest, left);
+      lanes older_after = lanes_load_block(older, job->stride) * passing;
+      lanes_store_block(older, job->stride, older_after);
+      greatest = lanes_max(greatest, older_after);
     }
     if (job->moment[c] == NULL) continue;
     float *moment = job->moment[c] + (size_t)y * job->moment_stride + x;
     lanes_store_block(
         moment, job->moment_stride,
-        lanes_add_scaled(lanes_load_block(moment, job->moment_stride), before - after, job->place));
+        lanes_add_scaled(lanes_load_block(moment, job->moment_stride), before - after, job->position));
   }
   return (attenuated_block){1, lanes_bits(greatest >= DARK) != 0};
 }

@@ -28,22 +28,22 @@ enum { BLUR_GREATEST_REACH = 46 };
 /* As far as BLUR_GREATEST_REACH allows. */
 blur_box hl_blur_box_of_variance(double variance);
 
-/* Weighted sums of a field's pixels around each pixel: a penumbra by its taps (light_image.h). */
-typedef struct image_job {
+/* Weighted sums of a field's pixels around each pixel: a penumbra by its taps (light_emission.h). */
+typedef struct emission_job {
   const float *from; /* pixel (0,0); rows stride apart */
   float *to;
   size_t stride;
   int count;
   const ptrdiff_t *offset; /* [count]; from a pixel to the one that is weighed */
   const float *weight;     /* [count] */
-} image_job;
-typedef void image_tile_function(const image_job *job, int tile_x, int tile_y);
+} emission_job;
+typedef void emission_tile_function(const emission_job *job, int tile_x, int tile_y);
 
 /* What a soft method needs of the instruction set. */
 typedef struct blur_functions {
   blur_tile_function *rows, *columns;
   lit_blocks_function *lit_blocks;
-  image_tile_function *image; /* to = sum of from */
+  emission_tile_function *emission; /* to = sum of from */
 } blur_functions;
 
 /* The box of the given width in pixels (at least 1): even whole widths become centred by half weights. */

@@ -20,16 +20,16 @@ typedef struct shadow_lookup {
   float young;             /* how far they have faded, 0 to 1 */
 } shadow_lookup;
 
-/* Light that is left, in PART_ONEths: half as much memory to go through as floats. */
-typedef uint16_t part_pixel;
-enum { PART_ONE = 65535 };
+/* Transmittance in SUBLIGHT_ONEths: half as much memory to go through as floats. */
+typedef uint16_t sublight_pixel;
+enum { SUBLIGHT_ONE = 65535 };
 
-/* The buffer of one part of a light. */
-typedef struct part_lookup {
+/* The buffer of one sub-light. */
+typedef struct sublight_lookup {
   shadow_map map;
-  const part_pixel *left[HL_CHANNELS]; /* pixel (0,0) */
-  float weight[HL_CHANNELS];           /* in the mean over all parts; 1 but for lights with an image */
-} part_lookup;
+  const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) */
+  float weight[HL_CHANNELS]; /* in the mean over all sub-lights; 1 but for lights with an emission image */
+} sublight_lookup;
 
 /* Of a view; the stride is the caller's. */
 shadow_map hl_map_of_view(const view *view);

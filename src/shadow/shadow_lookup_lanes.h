@@ -15,7 +15,7 @@ typedef struct shadow_taps {
 } shadow_taps;
 
 /* At continuous pixel coordinates. */
-LANES_INLINE shadow_taps taps_of_place(const shadow_map *map, int nearest, lanes u, lanes v) {
+LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, lanes u, lanes v) {
   shadow_taps taps;
   taps.inside = (u > 0.0f) & (v > 0.0f) & (u < (float)map->width) & (v < (float)map->height);
   lanes x = lanes_clamp(u - 0.5f, 0, (float)(map->width - 1)),
@@ -78,12 +78,12 @@ static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *m
   return lanes_select(taps->inside, lanes_min(lanes_max(sum, least), greatest), lanes_set(1.0f));
 }
 
-LANES_INLINE lanes look_up_part(const shadow_map *map, const shadow_taps *taps, const part_pixel *buffer,
-                                uint32_t active) {
+LANES_INLINE lanes look_up_sublight(const shadow_map *map, const shadow_taps *taps,
+                                    const sublight_pixel *buffer, uint32_t active) {
   lanes_int square[4];
   lanes_gather_short_squares(buffer, map->stride, taps->first, active, square);
   return between_taps(taps, lanes_from_int(square[0]), lanes_from_int(square[1]), lanes_from_int(square[2]),
-                      lanes_from_int(square[3]), PART_ONE);
+                      lanes_from_int(square[3]), SUBLIGHT_ONE);
 }
 
 #endif

@@ -20,8 +20,8 @@
 
 #include "core/layout.h"
 #include "core/memory.h"
+#include "light/light_emission.h"
 #include "light/light_extent.h"
-#include "light/light_image.h"
 #include "shadow/blur.h"
 #include "shadow/shadow_lookup.h"
 
@@ -43,7 +43,8 @@ typedef struct shadow_setup {
   const shadow_functions *functions;
   const hl_render_settings *settings;
   const light_source *source;
-  light_image *image; /* on the light itself; null where the light is even. The method places its cells */
+  light_emission
+      *emission; /* on the light itself; null where the light is even. The method places its cells */
   const sheet_stack *sheets;
   const view *eye;
   int channels;          /* of attenuation: 1 or 3 */
@@ -82,9 +83,9 @@ typedef struct light_shadow {
   const shadow_method *method; /* null: the light casts no shadows, or lights nothing that is seen */
   shadow_setup setup;
   shadow_plan plan;
-  shadow_buffer *buffer;        /* the renderer's */
-  shadow_lookup lookup;         /* how the picture reads the buffer */
-  const part_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
+  shadow_buffer *buffer;            /* the renderer's */
+  shadow_lookup lookup;             /* how the picture reads the buffer */
+  const sublight_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
   int sublight_count;
   void *state;         /* owned; method->state_bytes */
   shadow_memory *kept; /* the renderer's */

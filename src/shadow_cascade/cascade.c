@@ -27,7 +27,7 @@ static cascade_blur blur_towards(const cascade_level *from, double receiver, dou
   cascade_blur blur = {.variance = variance / pixel};
   for (int axis = 0; axis < 2; axis++) {
     double resampled = resampled_by(from) - resampled_by(to) + from->owed[axis];
-    to->owed[axis] = fmax(resampled - variance * from->part[axis], 0);
+    to->owed[axis] = fmax(resampled - variance * from->fraction[axis], 0);
     blur.resampled[axis] = resampled / pixel;
   }
   return blur;
@@ -96,7 +96,7 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
   const cascade_field *end[2] = {&task->end->absorbed[channel], &task->end->thin[channel]};
   size_t tile = tile_y * (size_t)level->tiles_x + tile_x;
   bool touched = task->cascade->touched[tile];
-  absorbed_job job = {task->cascade->lacked[channel],
+  absorbed_job job = {task->cascade->absorbed_at_start[channel],
                       task->buffer->transmittance[channel],
                       task->cascade->moment[channel],
                       (float)task->length,
@@ -119,13 +119,13 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
 
 /* What the chunk's slabs took of the light that reached the chunk goes to the groups at its two ends. Tiles
  * stay marked until the buffer is refilled. */
-static void absorb_part(void *data, size_t index, int worker) {
+static void absorb_piece(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
   const cascade_level *level = &task->cascade->level[0];
-  const row_part part = hl_cascade_row_part(level, index);
-  for (int x = part.first; x < part.end; x++) {
-    for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, (size_t)x, (size_t)part.y, c);
+  const row_piece piece = hl_cascade_row_piece(level, index);
+  for (int x = piece.first; x < piece.end; x++) {
+    for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, (size_t)x, (size_t)piece.y, c);
   }
 }
 
@@ -137,7 +137,7 @@ static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, doubl
   start->filled = start->filled || end->filled;
   end->omega = omega;
   absorb_task task = {cascade, buffer, start, end, omega - start->omega, crew->functions->absorbed};
-  hl_pool_run(crew->pool, hl_cascade_row_parts(level), absorb_part, &task);
+  hl_pool_run(crew->pool, hl_cascade_row_pieces(level), absorb_piece, &task);
   level->renewed = true;
   cascade->chunks++;
   if (level->count == level->capacity) hand_over(cascade, crew);
@@ -163,7 +163,7 @@ static void bring(cascade_level *from, const cascade_field *sum, cascade_blur bl
     hl_cascade_blur_add(crew, from, sum, own, thin, to, blur, reach);
     return;
   }
-  if (blur.variance * from->greatest_part > fmin(blur.resampled[0], blur.resampled[1])) {
+  if (blur.variance * from->greatest_fraction > fmin(blur.resampled[0], blur.resampled[1])) {
     hl_cascade_blur_add(crew, from, sum, NULL, NULL, &from->scratch, blur,
                         reach_beyond(reach, hl_cascade_doubling_reach(from->scale, to_level->scale)));
     sum = &from->scratch;
@@ -215,7 +215,7 @@ static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const 
 /* How far what is on the way from one group, or the sum behind it, to the next is blurred and resampled,
  * pixels of the buffer. */
 static int reach_of(const cascade_level *level, double variance, const cascade_level *next) {
-  double own = variance * level->greatest_part / ((double)level->scale * level->scale);
+  double own = variance * level->greatest_fraction / ((double)level->scale * level->scale);
   return (hl_blur_box_of_variance(own).reach + 1) * level->scale +
          hl_cascade_doubling_reach(level->scale, next->scale);
 }
@@ -272,42 +272,42 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
 /* Of a tile: whether it was refilled at the last chunk's end, and at this one's. */
 enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
 
-typedef struct light_task {
+typedef struct refill_task {
   soft_cascade *cascade;
   shadow_buffer *buffer;
   const cascade_functions *functions;
   bool any; /* shade is not all zeros */
-} light_task;
+} refill_task;
 
-static void light_part(void *data, size_t index, int worker) {
+static void refill_piece(void *data, size_t index, int worker) {
   (void)worker;
-  const light_task *task = data;
+  const refill_task *task = data;
   const cascade_level *level = &task->cascade->level[0];
   shadow_buffer *buffer = task->buffer;
-  const row_part part = hl_cascade_row_part(level, index);
-  const read_row read = hl_cascade_read_row(&task->cascade->reads, 1, part.y, 0);
+  const row_piece piece = hl_cascade_row_piece(level, index);
+  const read_row read = hl_cascade_read_row(&task->cascade->reads, 1, piece.y, 0);
   if (!read.any) return;
-  for (int tile_x = part.first; tile_x < part.end; tile_x++) {
-    size_t tile = (size_t)part.y * (size_t)level->tiles_x + (size_t)tile_x;
+  for (int tile_x = piece.first; tile_x < piece.end; tile_x++) {
+    size_t tile = (size_t)piece.y * (size_t)level->tiles_x + (size_t)tile_x;
     if (!hl_cascade_is_read(&read, &read.all, tile_x)) continue;
     bool shaded = false;
     for (int c = 0; c < buffer->channels && task->any; c++)
-      shaded = shaded || !task->cascade->shade[c].zeros[tile];
+      shaded = shaded || !task->cascade->absorbed[c].zeros[tile];
     bool kept = task->cascade->touched[tile], again = task->cascade->refilled[tile] & REFILLED_BEFORE;
     for (int c = 0; c < buffer->channels && (shaded || buffer->tile_touched[tile]); c++) {
-      left_job job = {.lacking = task->cascade->shade[c].pixels,
-                      .stride = level->stride,
-                      .lacked = task->cascade->lacked[c],
-                      .to = buffer->transmittance[c],
-                      .older = buffer->second[c],
-                      .stride_to = buffer->stride,
-                      .kept = kept,
-                      .again = again};
-      task->functions->left(&job, tile_x, part.y);
+      refill_job job = {.absorbed = task->cascade->absorbed[c].pixels,
+                        .stride = level->stride,
+                        .absorbed_at_start = task->cascade->absorbed_at_start[c],
+                        .to = buffer->transmittance[c],
+                        .older = buffer->second[c],
+                        .stride_to = buffer->stride,
+                        .kept = kept,
+                        .again = again};
+      task->functions->refill(&job, tile_x, piece.y);
     }
     buffer->tile_touched[tile] = shaded || kept;
     task->cascade->refilled[tile] |= REFILLED_NOW;
-    hl_shadow_buffer_find_lit(buffer, tile_x, part.y, true, task->functions->lit_blocks);
+    hl_shadow_buffer_find_lit(buffer, tile_x, piece.y, true, task->functions->lit_blocks);
   }
 }
 
@@ -316,22 +316,22 @@ static const double LEAST_VARIANCE = 0.05;
 
 /* What receivers around omega = receiver lack, where it is read; false if nothing is in the way. */
 static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
-  if (cascade->image != NULL) return hl_soft_cascade_pass_image(cascade, receiver, crew);
+  if (cascade->emission != NULL) return hl_cascade_pass_emission(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);
   if (level == NULL) return false;
   cascade_level *finest = &cascade->level[0];
   cascade_blur blur = blur_towards(level, receiver, receiver, finest);
   bool sharp = level == finest && blur.variance < LEAST_VARIANCE;
-  memcpy(cascade->shade, finest->sum[sharp ? finest->newest : !finest->newest], sizeof cascade->shade);
+  memcpy(cascade->absorbed, finest->sum[sharp ? finest->newest : !finest->newest], sizeof cascade->absorbed);
   for (int c = 0; c < cascade->channels && !sharp; c++)
-    bring(level, &level->sum[level->newest][c], blur, finest, NULL, NULL, &cascade->shade[c], 0, crew);
+    bring(level, &level->sum[level->newest][c], blur, finest, NULL, NULL, &cascade->absorbed[c], 0, crew);
   return true;
 }
 
 /* The buffer that sheets look up. any: whether find_shade found any. */
 static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, bool any, const cascade_crew *crew) {
-  light_task task = {cascade, buffer, crew->functions, any};
-  hl_pool_run(crew->pool, hl_cascade_row_parts(&cascade->level[0]), light_part, &task);
+  refill_task task = {cascade, buffer, crew->functions, any};
+  hl_pool_run(crew->pool, hl_cascade_row_pieces(&cascade->level[0]), refill_piece, &task);
 }
 
 static void begin_chunk(soft_cascade *cascade) {
@@ -377,7 +377,7 @@ static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *
   const shadow_buffer *buffer = shadow->buffer;
   size_t x = tile % (size_t)buffer->tiles_x * TILE, y = tile / (size_t)buffer->tiles_x * TILE;
   job->moment_stride = cascade->level[0].stride;
-  job->place = (float)cascade->slab;
+  job->position = (float)cascade->slab;
   for (int c = 0; c < job->channels; c++) {
     job->older[c] = buffer->second[c] + y * buffer->stride + x;
     job->moment[c] = cascade->moment[c] + y * job->moment_stride + x;

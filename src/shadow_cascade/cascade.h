@@ -30,8 +30,8 @@
 #define HL_SHADOW_CASCADE_CASCADE_H
 
 #include "core/pool.h"
+#include "light/light_emission.h"
 #include "light/light_extent.h"
-#include "light/light_image.h"
 #include "shadow/shadow_method.h"
 #include "shadow_cascade/cascade_field.h"
 #include "shadow_cascade/cascade_reads.h"
@@ -57,7 +57,7 @@ typedef struct cascade_group {
 /* A column or row of tiles: the part of the greatest variance that it has, and the box of the blur now
  * done. */
 typedef struct cascade_box {
-  double part;
+  double fraction;
   blur_box box;
 } cascade_box;
 
@@ -68,11 +68,11 @@ typedef struct cascade_level {
       pixels; /* of a row, a field, before its pixel (0,0), of all fields and the margin after them */
   cascade_group group[CASCADE_GROUPS]; /* oldest first */
   int count, capacity;
-  double part[2], greatest_part;     /* of boxes: means along rows and columns, and the greatest */
-  cascade_field sum[2][HL_CHANNELS]; /* of all groups up to one of this level, for a recent receiver */
-  int newest;                        /* which of sum is the newest group's */
-  bool filled;                       /* some group of this level is in sum; else see the next farther level */
-  double sum_omega;                  /* of the newest group in sum */
+  double fraction[2], greatest_fraction; /* of boxes: means along rows and columns, and the greatest */
+  cascade_field sum[2][HL_CHANNELS];     /* of all groups up to one of this level, for a recent receiver */
+  int newest;                            /* which of sum is the newest group's */
+  bool filled;      /* some group of this level is in sum; else see the next farther level */
+  double sum_omega; /* of the newest group in sum */
   double owed[2]; /* what the sum is blurred too much along rows and columns, pixels of the buffer squared */
   bool renewed;   /* sum is to be found anew */
   cascade_field scratch;              /* of farther levels */
@@ -89,8 +89,8 @@ typedef struct soft_cascade {
   double rate; /* parallel: omega per height; else L in units of a pixel at distance 1 */
   double light_height;
   double widest;                        /* of the light's widths along the buffer's axes */
-  double least_part;                    /* the other of them, as a part of it */
-  const light_image *image;             /* null: boxes will do */
+  double least_fraction;                /* the other of them, as a part of it */
+  const light_emission *emission;       /* null: boxes will do */
   double slope_start[2], slope_step[2]; /* of the buffer's pixels, seen from the light: at its corner, and
                                            from one to the next */
   double chunk;                         /* omega of a chunk of slabs, pixels */
@@ -101,8 +101,9 @@ typedef struct soft_cascade {
   int channels;
   int level_count; /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
-  cascade_field shade[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0: one of its sums */
-  float *lacked[HL_CHANNELS];       /* pixel (0,0) on level 0: 1 - the light at the chunk's start */
+  cascade_field
+      absorbed[HL_CHANNELS]; /* what the buffer's last receivers lack, on level 0: one of its sums */
+  float *absorbed_at_start[HL_CHANNELS]; /* pixel (0,0) on level 0: 1 - the light at the chunk's start */
   float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: what the chunk's slabs took, times their places */
   unsigned char *refilled;    /* owned; [tiles]; at which of the last two chunks' ends */
   unsigned char *touched;     /* owned; [tiles]; 1 where the chunk's slabs took light */
@@ -129,8 +130,8 @@ static inline double hl_cascade_omega(const soft_cascade *cascade, double height
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
 }
 
-/* cascade_image.c: what receivers around omega = receiver lack, through the light's image, in shade
+/* cascade_emission.c: what receivers around omega = receiver lack, through the light's image, in shade
  * where it is read; false if nothing is in the way. */
-bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, const cascade_crew *crew);
+bool hl_cascade_pass_emission(soft_cascade *cascade, double receiver, const cascade_crew *crew);
 
 #endif

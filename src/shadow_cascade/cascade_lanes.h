@@ -33,13 +33,13 @@ LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
 LANES_INLINE int is_above_zero(lanes greatest) { return lanes_bits(greatest + 0.5f >= 1.0f) != 0; }
 
 /* What thin matter leaves. */
-LANES_INLINE lanes left_by(const field_pixel *thin) {
+LANES_INLINE lanes transmittance_of(const field_pixel *thin) {
   return lanes_line(lanes_load_short(thin), -1.0f / FIELD_ONE, 1.0f);
 }
 
 /* What is left of the light where so much is lacking: from twice UMBRA on all of it. */
-LANES_INLINE lanes light_left(const field_pixel *lacking) {
-  lanes left = left_by(lacking);
+LANES_INLINE lanes transmittance_outside_umbra(const field_pixel *absorbed) {
+  lanes left = transmittance_of(absorbed);
   return lanes_clamp(lanes_min(left, 2.0f * (left - UMBRA)), 0, 1.0f);
 }
 
@@ -55,9 +55,9 @@ LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) 
 
 /* a + (1 - thin) b at a row of a tile; fields may be null: 0. */
 LANES_INLINE lanes left_and_a(lanes b, const field_pixel *thin, const field_pixel *a, size_t at) {
-  if (a == NULL) return thin == NULL ? b : b * left_by(thin + at);
+  if (a == NULL) return thin == NULL ? b : b * transmittance_of(thin + at);
   lanes more = lanes_load_short(a + at);
-  return thin == NULL ? b + more : lanes_fma(b, left_by(thin + at), more);
+  return thin == NULL ? b + more : lanes_fma(b, transmittance_of(thin + at), more);
 }
 
 static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
@@ -153,37 +153,37 @@ static int double_tile(const field_job *job, int tile_x, int tile_y) {
   return is_above_zero(greatest);
 }
 
-enum { IMAGE_ROWS = 4 };
+enum { EMISSION_ROWS = 4 };
 
 /* Some neighbouring rows of sixteen pixels, which hide each other's latency. */
-LANES_INLINE void weigh_rows(const image_job *job, const float *from, lanes sum[IMAGE_ROWS]) {
-  for (int row = 0; row < IMAGE_ROWS; row++) sum[row] = lanes_set(0);
+LANES_INLINE void weigh_rows(const emission_job *job, const float *from, lanes sum[EMISSION_ROWS]) {
+  for (int row = 0; row < EMISSION_ROWS; row++) sum[row] = lanes_set(0);
   for (int tap = 0; tap < job->count; tap++) {
     const float *at = from + job->offset[tap];
-    for (int row = 0; row < IMAGE_ROWS; row++)
+    for (int row = 0; row < EMISSION_ROWS; row++)
       sum[row] = lanes_add_scaled(sum[row], lanes_load(at + (size_t)row * job->stride), job->weight[tap]);
   }
 }
 
-LANES_INLINE void weigh_field_rows(const field_image_job *job, const field_pixel *from,
-                                   lanes sum[IMAGE_ROWS]) {
-  for (int row = 0; row < IMAGE_ROWS; row++) sum[row] = lanes_set(0);
+LANES_INLINE void weigh_field_rows(const field_emission_job *job, const field_pixel *from,
+                                   lanes sum[EMISSION_ROWS]) {
+  for (int row = 0; row < EMISSION_ROWS; row++) sum[row] = lanes_set(0);
   for (int tap = 0; tap < job->count; tap++) {
     const field_pixel *at = from + job->offset[tap];
-    for (int row = 0; row < IMAGE_ROWS; row++)
+    for (int row = 0; row < EMISSION_ROWS; row++)
       sum[row] = lanes_add_scaled(sum[row], lanes_load_short(at + (size_t)row * job->stride),
                                   job->weight[tap]);
   }
 }
 
-static int field_image_tile(const field_image_job *job, int tile_x, int tile_y) {
+static int field_emission_tile(const field_emission_job *job, int tile_x, int tile_y) {
   lanes greatest = lanes_set(0);
-  for (int row = 0; row < TILE; row += IMAGE_ROWS) {
+  for (int row = 0; row < TILE; row += EMISSION_ROWS) {
     size_t at = (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
-    lanes sum[IMAGE_ROWS], thin[IMAGE_ROWS];
+    lanes sum[EMISSION_ROWS], thin[EMISSION_ROWS];
     weigh_field_rows(job, job->from + at, sum);
     weigh_field_rows(job, job->thin + at, thin);
-    for (int i = 0; i < IMAGE_ROWS; i++) {
+    for (int i = 0; i < EMISSION_ROWS; i++) {
       field_pixel *to = job->to + at + (size_t)i * job->stride;
       lanes left = lanes_max(lanes_line(thin[i], -1.0f / FIELD_ONE, 1.0f), lanes_set(0));
       store_pixels(to, lanes_fma(lanes_load_short(to), left, sum[i]), &greatest);
@@ -192,44 +192,44 @@ static int field_image_tile(const field_image_job *job, int tile_x, int tile_y) 
   return is_above_zero(greatest);
 }
 
-static void image_tile(const image_job *job, int tile_x, int tile_y) {
-  for (int row = 0; row < TILE; row += IMAGE_ROWS) {
+static void emission_tile(const emission_job *job, int tile_x, int tile_y) {
+  for (int row = 0; row < TILE; row += EMISSION_ROWS) {
     size_t at = (size_t)(tile_y * TILE + row) * job->stride + (size_t)tile_x * TILE;
-    lanes sum[IMAGE_ROWS];
+    lanes sum[EMISSION_ROWS];
     weigh_rows(job, job->from + at, sum);
-    for (int i = 0; i < IMAGE_ROWS; i++) lanes_store(job->to + at + (size_t)i * job->stride, sum[i]);
+    for (int i = 0; i < EMISSION_ROWS; i++) lanes_store(job->to + at + (size_t)i * job->stride, sum[i]);
   }
 }
 
 /* The part of a chunk's light that its slabs left. Where it began with next to none, they were not asked: all
  * of it. */
-LANES_INLINE lanes kept_light(lanes end, lanes start) {
+LANES_INLINE lanes chunk_transmittance(lanes end, lanes start) {
   lanes least = lanes_set(1.0f / 256);
   return lanes_select(start < least, lanes_set(1.0f),
                       lanes_min(end / lanes_max(start, least), lanes_set(1.0f)));
 }
 
-static void left_tile(const left_job *job, int tile_x, int tile_y) {
+static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE,
            at_to = (size_t)row * job->stride_to + (size_t)tile_x * TILE;
-    lanes before = lanes_load(job->to + at_to), left = light_left(job->lacking + at);
-    if (job->kept) left = left * kept_light(before, 1.0f - lanes_load(job->lacked + at));
+    lanes before = lanes_load(job->to + at_to), left = transmittance_outside_umbra(job->absorbed + at);
+    if (job->kept) left = left * chunk_transmittance(before, 1.0f - lanes_load(job->absorbed_at_start + at));
     lanes_store(job->older + at_to, job->again ? before : left);
     lanes_store(job->to + at_to, left);
-    lanes_store(job->lacked + at, 1.0f - left);
+    lanes_store(job->absorbed_at_start + at, 1.0f - left);
   }
 }
 
 /* Matter at one place as matter at two, the part `late` of it at the second (derived): of a ray thin matter
  * leaves 1 - F, which is the product of (1 - F)^(1 - late) and (1 - F)^late; and what the two take of the
  * same light one after the other, A2 + (1 - F2) A1, is the A of both. */
-typedef struct parted_matter {
+typedef struct matter_pair {
   lanes absorbed[2], thin[2];
-} parted_matter;
+} matter_pair;
 
-LANES_INLINE parted_matter part_matter(lanes absorbed, lanes thin, lanes late) {
-  parted_matter to = {.thin = {lanes_set(0), lanes_set(0)}};
+LANES_INLINE matter_pair split_matter(lanes absorbed, lanes thin, lanes late) {
+  matter_pair to = {.thin = {lanes_set(0), lanes_set(0)}};
   if (lanes_bits(thin > 0.0f) != 0) {
     lanes depth = lanes_log2(lanes_max(1.0f - thin, lanes_set(1e-6f)));
     to.thin[0] = 1.0f - lanes_exp2(depth * (1.0f - late));
@@ -242,20 +242,20 @@ LANES_INLINE parted_matter part_matter(lanes absorbed, lanes thin, lanes late) {
   return to;
 }
 
-LANES_INLINE lanes load_part(const field_pixel *p) { return lanes_load_short(p) * (1.0f / FIELD_ONE); }
-LANES_INLINE void store_part(field_pixel *p, lanes part, lanes *greatest) {
-  store_pixels(p, part * (float)FIELD_ONE, greatest);
+LANES_INLINE lanes load_fraction(const field_pixel *p) { return lanes_load_short(p) * (1.0f / FIELD_ONE); }
+LANES_INLINE void store_fraction(field_pixel *p, lanes fraction, lanes *greatest) {
+  store_pixels(p, fraction * (float)FIELD_ONE, greatest);
 }
 
-static uint32_t part_tile(const part_job *job, int tile_x, int tile_y) {
+static uint32_t split_tile(const split_job *job, int tile_x, int tile_y) {
   lanes absorbed[2] = {lanes_set(0), lanes_set(0)}, thin[2] = {lanes_set(0), lanes_set(0)};
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
-    parted_matter to = part_matter(load_part(job->absorbed + at), load_part(job->thin + at),
-                                   lanes_set(job->late));
+    matter_pair to = split_matter(load_fraction(job->absorbed + at), load_fraction(job->thin + at),
+                                  lanes_set(job->late));
     for (int i = 0; i < 2; i++) {
-      store_part(job->to_absorbed[i] + at, to.absorbed[i], &absorbed[i]);
-      store_part(job->to_thin[i] + at, to.thin[i], &thin[i]);
+      store_fraction(job->to_absorbed[i] + at, to.absorbed[i], &absorbed[i]);
+      store_fraction(job->to_thin[i] + at, to.thin[i], &thin[i]);
     }
   }
   uint32_t above_zero = 0;
@@ -277,7 +277,7 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   fetch_float_tile(job->moment, job->stride, tile_x, tile_y);
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
-    lanes before = 1.0f - lanes_load(job->lacked + at);
+    lanes before = 1.0f - lanes_load(job->absorbed_at_start + at);
     lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
     lanes taken = lanes_max(before - now, lanes_set(0));
     if (lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */
@@ -285,19 +285,20 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
       lanes_store_short(job->end_thin + at, lanes_set(0));
       continue;
     }
-    lanes part = taken / lanes_max(before, lanes_set(1e-3f));
-    lanes place = lanes_clamp(lanes_load(job->moment + at) / lanes_max(taken * job->length, lanes_set(1e-6f)),
-                              0, 1.0f);
-    lanes solid = lanes_clamp((part - THIN_MATTER) * (1.0f / (SOLID_MATTER - THIN_MATTER)), 0, 1.0f);
-    lanes thin = part * (1.0f - solid);
-    parted_matter to = part_matter(lanes_fma(taken, solid, thin), thin, place);
+    lanes fraction = taken / lanes_max(before, lanes_set(1e-3f));
+    lanes position = lanes_clamp(
+        lanes_load(job->moment + at) / lanes_max(taken * job->length, lanes_set(1e-6f)), 0, 1.0f);
+    lanes solid = lanes_clamp((fraction - THIN_MATTER) * (1.0f / (SOLID_MATTER - THIN_MATTER)), 0, 1.0f);
+    lanes thin = fraction * (1.0f - solid);
+    matter_pair to = split_matter(lanes_fma(taken, solid, thin), thin, position);
     lanes_store(job->moment + at, lanes_set(0));
-    store_part(job->end_absorbed + at, to.absorbed[1], &end[0]);
-    store_part(job->end_thin + at, to.thin[1], &end[1]);
+    store_fraction(job->end_absorbed + at, to.absorbed[1], &end[0]);
+    store_fraction(job->end_thin + at, to.thin[1], &end[1]);
     lanes left = 1.0f - to.thin[0];
-    store_part(job->start_absorbed + at, lanes_fma(load_part(job->start_absorbed + at), left, to.absorbed[0]),
-               &start[0]);
-    store_part(job->start_thin + at, lanes_fma(load_part(job->start_thin + at), left, to.thin[0]), &start[1]);
+    store_fraction(job->start_absorbed + at,
+                   lanes_fma(load_fraction(job->start_absorbed + at), left, to.absorbed[0]), &start[0]);
+    store_fraction(job->start_thin + at, lanes_fma(load_fraction(job->start_thin + at), left, to.thin[0]),
+                   &start[1]);
   }
   uint32_t to_start = (uint32_t)is_above_zero(start[0]) | (uint32_t)is_above_zero(start[1]) << 1;
   return to_start | (uint32_t)is_above_zero(end[0]) << 2 | (uint32_t)is_above_zero(end[1]) << 3;

@@ -14,8 +14,8 @@ static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow
 /* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give. What
  * resampling blurs is taken off the penumbra (resampled_by), but for an image, which keeps four. */
 static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = cascade->chunk * chunks_before(level) * cascade->least_part,
-         own = cascade->image == NULL ? 1.5 : 4;
+  double penumbra = cascade->chunk * chunks_before(level) * cascade->least_fraction,
+         own = cascade->emission == NULL ? 1.5 : 4;
   int scale = 1, greatest = level < 2
                                 ? 1 << level
                                 : 1 << (level - 1); /* coarser ones were less exact, and hardly cheaper */
@@ -38,7 +38,8 @@ static void set_parts(const soft_cascade *cascade, const sheet_light *light, int
                       cascade_box *boxes) {
   for (int tile = 0; tile < count; tile++) {
     double slope = cascade->slope_start[axis] + cascade->slope_step[axis] * (tile + 0.5) * TILE * scale;
-    boxes[tile].part = hl_sheet_light_squared_width(light, axis, slope) / (cascade->widest * cascade->widest);
+    boxes[tile].fraction = hl_sheet_light_squared_width(light, axis, slope) /
+                           (cascade->widest * cascade->widest);
   }
 }
 
@@ -59,19 +60,19 @@ static void plan_level(soft_cascade *cascade, int index, int tiles_x, int tiles_
   level->capacity = index < 2 ? CASCADE_FEW_GROUPS : CASCADE_GROUPS;
   level->planes = channels * (2 * (size_t)level->capacity + 2) +
                   (index == 0 ? 2 * channels * MOMENT_PLANES : 1);
-  if (cascade->image != NULL) level->planes += 2 * channels;
+  if (cascade->emission != NULL) level->planes += 2 * channels;
   level->pixels = level->planes * level->plane + (CASCADE_MARGIN + 1) * level->stride;
 }
 
 static void sum_up_parts(cascade_level *level) {
   const int count[2] = {level->tiles_x, level->tiles_y};
   const cascade_box *box = level->boxes;
-  level->greatest_part = 0;
+  level->greatest_fraction = 0;
   for (int axis = 0; axis < 2; axis++) {
-    level->part[axis] = 0;
+    level->fraction[axis] = 0;
     for (int i = 0; i < count[axis]; i++, box++) {
-      level->part[axis] += box->part / count[axis];
-      level->greatest_part = fmax(level->greatest_part, box->part);
+      level->fraction[axis] += box->fraction / count[axis];
+      level->greatest_fraction = fmax(level->greatest_fraction, box->fraction);
     }
   }
 }
@@ -88,13 +89,13 @@ static void place_fields(soft_cascade *cascade, int index) {
     for (int i = 0; i < 2; i++) level->sum[i][c] = next_field(level, &used);
   }
   if (index > 0) level->scratch = next_field(level, &used);
-  for (size_t c = 0; c < 2 * channels && cascade->image != NULL; c++)
+  for (size_t c = 0; c < 2 * channels && cascade->emission != NULL; c++)
     level->mean[c % 2][c / 2] = next_field(level, &used);
   for (size_t c = 0; c < channels && index == 0; c++) {
-    cascade->shade[c] = level->sum[0][c];
+    cascade->absorbed[c] = level->sum[0][c];
     cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
     used += MOMENT_PLANES;
-    cascade->lacked[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
+    cascade->absorbed_at_start[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
     used += MOMENT_PLANES;
   }
 }
@@ -126,9 +127,9 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
                             .lookup_variance = lookup_variance(shadow->plan.cubic),
                             .rate = widest / pixel,
                             .widest = widest,
-                            .least_part = fmin(light->width_u, light->width_v) / widest,
+                            .least_fraction = fmin(light->width_u, light->width_v) / widest,
                             .light_height = vec3_dot(light->middle, normal),
-                            .image = shadow->setup.image};
+                            .emission = shadow->setup.emission};
   const vec3 along[2] = {light->u, light->v};
   for (int axis = 0; axis < 2; axis++) {
     cascade->slope_start[axis] = vec3_dot(view->corner, along[axis]);
@@ -150,7 +151,7 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
 
 static bool is_read_cubic(const shadow_setup *setup) {
   hl_shadow_lookup lookup = setup->settings->shadow_lookup;
-  return lookup == HL_LOOKUP_AUTO ? setup->image == NULL : lookup == HL_LOOKUP_CUBIC;
+  return lookup == HL_LOOKUP_AUTO ? setup->emission == NULL : lookup == HL_LOOKUP_CUBIC;
 }
 
 /* The greatest tangent of a view's rays against the sheets' normal (a quadrangle's rays meet a sheet in one:
@@ -194,8 +195,8 @@ void hl_cascade_plan(light_shadow *shadow) {
   else middle.position = plan->seen.middle;
   hl_shadow_view(&middle, setup->sheets->normal, &plan->extent, &plan->view);
   plan->spare = look_up_spare(setup, plan);
-  if (setup->image != NULL)
-    hl_light_image_see(setup->source, &plan->seen, setup->sheets->normal, setup->image);
+  if (setup->emission != NULL)
+    hl_light_emission_see(setup->source, &plan->seen, setup->sheets->normal, setup->emission);
   plan_levels(shadow->state, shadow);
 }
 
@@ -252,7 +253,7 @@ static void clear_moments(const soft_cascade *cascade) {
         memset(cascade->moment[c] + at + row * level->stride, 0, TILE * sizeof(float));
   }
   for (int c = 0; c < cascade->channels; c++)
-    memset(cascade->lacked[c], 0, (size_t)level->tiles_y * TILE * level->stride * sizeof(float));
+    memset(cascade->absorbed_at_start[c], 0, (size_t)level->tiles_y * TILE * level->stride * sizeof(float));
 }
 
 /* Gives the memory back as zeros. */

@@ -71,34 +71,34 @@ static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   return true;
 }
 
-static bool row_is_zeros(const cascade_level *level, const cascade_field *field, row_part part) {
-  return hl_cascade_all_zeros(level, field, part.first, part.end - 1, part.y, part.y);
+static bool row_is_zeros(const cascade_level *level, const cascade_field *field, row_piece piece) {
+  return hl_cascade_all_zeros(level, field, piece.first, piece.end - 1, piece.y, piece.y);
 }
 
 /* Most rows of a pass hold nothing, and are zeros already. */
-static void add_tiles(const add_task *task, row_part part) {
-  if (row_is_zeros(task->level, task->to, part) && sum_is_zeros(task, part.first, part.end - 1, part.y))
+static void add_tiles(const add_task *task, row_piece piece) {
+  if (row_is_zeros(task->level, task->to, piece) && sum_is_zeros(task, piece.first, piece.end - 1, piece.y))
     return;
-  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, part.y, task->reach);
+  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, piece.y, task->reach);
   if (!read.any) return;
-  for (int x = part.first; x < part.end; x++) {
+  for (int x = piece.first; x < piece.end; x++) {
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
-    if (sum_is_zeros(task, x, x, part.y)) {
-      hl_cascade_clear_tile(task->level, task->to, x, part.y);
+    if (sum_is_zeros(task, x, x, piece.y)) {
+      hl_cascade_clear_tile(task->level, task->to, x, piece.y);
       continue;
     }
     field_job job = task->job;
     job.rows = hl_cascade_rows_read(&read, x);
-    if (task->doubled && task->a != NULL && task->a->zeros[part.y * task->level->tiles_x + x])
+    if (task->doubled && task->a != NULL && task->a->zeros[piece.y * task->level->tiles_x + x])
       job.a = job.thin = NULL;
-    note_zeros(task->level, task->to, x, part.y, job.rows, task->function(&job, x, part.y));
+    note_zeros(task->level, task->to, x, piece.y, job.rows, task->function(&job, x, piece.y));
   }
 }
 
-static void add_part(void *data, size_t index, int worker) {
+static void add_piece(void *data, size_t index, int worker) {
   (void)worker;
   const add_task *task = data;
-  add_tiles(task, hl_cascade_row_part(task->level, index));
+  add_tiles(task, hl_cascade_row_piece(task->level, index));
 }
 
 static add_task task_of_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
@@ -131,7 +131,7 @@ void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, cons
                     const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
                     const cascade_level *level, const cascade_field *to, int reach) {
   add_task task = task_of_add(crew, level_a, a, thin, level_b, b, level, to, reach);
-  hl_pool_run(crew->pool, hl_cascade_row_parts(level), add_part, &task);
+  hl_pool_run(crew->pool, hl_cascade_row_pieces(level), add_piece, &task);
 }
 
 typedef struct blur_task {
@@ -144,19 +144,19 @@ typedef struct blur_task {
   int reach_x, reach_y; /* of the blur; tiles */
 } blur_task;
 
-static void blur_part(void *data, size_t index, int worker) {
+static void blur_piece(void *data, size_t index, int worker) {
   (void)worker;
   const blur_task *task = data;
-  const row_part part = hl_cascade_row_part(task->level, index);
-  int y = part.y, around = task->reach_x;
-  if (row_is_zeros(task->level, task->to, part) &&
-      (task->a == NULL || row_is_zeros(task->level, task->a, part)) &&
-      hl_cascade_all_zeros(task->level, task->from, part.first - around, part.end - 1 + around,
+  const row_piece piece = hl_cascade_row_piece(task->level, index);
+  int y = piece.y, around = task->reach_x;
+  if (row_is_zeros(task->level, task->to, piece) &&
+      (task->a == NULL || row_is_zeros(task->level, task->a, piece)) &&
+      hl_cascade_all_zeros(task->level, task->from, piece.first - around, piece.end - 1 + around,
                            y - task->reach_y, y + task->reach_y))
     return;
   const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
   if (!read.any) return;
-  for (int x = part.first; x < part.end; x++) {
+  for (int x = piece.first; x < piece.end; x++) {
     size_t tile = (size_t)y * (size_t)task->level->tiles_x + (size_t)x;
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     bool skip = (task->a == NULL || task->a->zeros[tile]) &&
@@ -181,7 +181,7 @@ static void blur_part(void *data, size_t index, int worker) {
 static int fill_boxes(cascade_box *boxes, int count, double variance, double resampled) {
   int reach = 0;
   for (int i = 0; i < count; i++) {
-    boxes[i].box = hl_blur_box_of_variance(fmax(variance * boxes[i].part - resampled, 0));
+    boxes[i].box = hl_blur_box_of_variance(fmax(variance * boxes[i].fraction - resampled, 0));
     if (boxes[i].box.reach > reach) reach = boxes[i].box.reach;
   }
   return (reach + TILE) / TILE;
@@ -205,19 +205,19 @@ void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, c
                               .stride = level->stride};
   task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur.variance, blur.resampled[0]);
   task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur.variance, blur.resampled[1]);
-  hl_pool_run(crew->pool, hl_cascade_row_parts(level), blur_part, &task);
+  hl_pool_run(crew->pool, hl_cascade_row_pieces(level), blur_piece, &task);
 }
 
-typedef struct part_task {
+typedef struct split_task {
   const cascade_level *level;
   const cascade_field *fields[4]; /* absorbed and thin of the first, then of the second */
-  part_job job;
-  part_tile_function *function;
-} part_task;
+  split_job job;
+  split_tile_function *function;
+} split_task;
 
-static void part_row(void *data, size_t index, int worker) {
+static void split_row(void *data, size_t index, int worker) {
   (void)worker;
-  const part_task *task = data;
+  const split_task *task = data;
   for (int x = 0; x < task->level->tiles_x; x++) {
     size_t tile = index * (size_t)task->level->tiles_x + (size_t)x;
     if (task->fields[0]->zeros[tile] && task->fields[1]->zeros[tile]) {
@@ -234,7 +234,7 @@ enum { MERGE_SUMS = 6 };
 typedef struct merge_task {
   const cascade_level *level;
   int ratio; /* of the levels' scales */
-  part_task part;
+  split_task split;
   add_task sums[MERGE_SUMS];
 } merge_task;
 
@@ -243,24 +243,24 @@ static void merge_row(void *data, size_t index, int worker) {
   merge_task *task = data;
   size_t first = index * (size_t)task->ratio, end = first + (size_t)task->ratio;
   for (size_t row = first; row < end && row < (size_t)task->level->tiles_y; row++)
-    part_row(&task->part, row, worker);
+    split_row(&task->split, row, worker);
   for (int i = 0; i < MERGE_SUMS; i++)
-    add_tiles(&task->sums[i], (row_part){(int)index, 0, task->sums[i].level->tiles_x});
+    add_tiles(&task->sums[i], (row_piece){(int)index, 0, task->sums[i].level->tiles_x});
 }
 
 void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a,
                       const cascade_matter *b, double late, const cascade_matter *spare,
                       const cascade_level *next, const cascade_matter *first, const cascade_matter *second) {
   merge_task task = {.level = level, .ratio = next->scale / level->scale};
-  task.part = (part_task){level,
-                          {b->absorbed, b->thin, spare->absorbed, spare->thin},
-                          {b->absorbed->pixels,
-                           b->thin->pixels,
-                           {b->absorbed->pixels, spare->absorbed->pixels},
-                           {b->thin->pixels, spare->thin->pixels},
-                           level->stride,
-                           (float)late},
-                          crew->functions->part};
+  task.split = (split_task){level,
+                            {b->absorbed, b->thin, spare->absorbed, spare->thin},
+                            {b->absorbed->pixels,
+                             b->thin->pixels,
+                             {b->absorbed->pixels, spare->absorbed->pixels},
+                             {b->thin->pixels, spare->thin->pixels},
+                             level->stride,
+                             (float)late},
+                            crew->functions->split};
   const cascade_field *of_a[2] = {a->absorbed, a->thin}, *of_b[2] = {b->absorbed, b->thin},
                       *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};

@@ -6,18 +6,18 @@
 #include "shadow_cascade/cascade.h"
 
 /* Rows of tiles are worked on in parts, so that threads end at the same time. */
-enum { ROW_PARTS = 2 };
-typedef struct row_part {
+enum { ROW_PIECES = 2 };
+typedef struct row_piece {
   int y, first, end;
-} row_part; /* tiles */
+} row_piece; /* tiles */
 
-static inline size_t hl_cascade_row_parts(const cascade_level *level) {
-  return (size_t)level->tiles_y * ROW_PARTS;
+static inline size_t hl_cascade_row_pieces(const cascade_level *level) {
+  return (size_t)level->tiles_y * ROW_PIECES;
 }
-static inline row_part hl_cascade_row_part(const cascade_level *level, size_t index) {
-  int part = (int)(index % ROW_PARTS);
-  return (row_part){(int)(index / ROW_PARTS), level->tiles_x * part / ROW_PARTS,
-                    level->tiles_x * (part + 1) / ROW_PARTS};
+static inline row_piece hl_cascade_row_piece(const cascade_level *level, size_t index) {
+  int piece = (int)(index % ROW_PIECES);
+  return (row_piece){(int)(index / ROW_PIECES), level->tiles_x * piece / ROW_PIECES,
+                     level->tiles_x * (piece + 1) / ROW_PIECES};
 }
 
 /* How much a pass blurs. */

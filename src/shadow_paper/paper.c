@@ -11,7 +11,7 @@
 #include "shadow/shadow_method.h"
 
 typedef struct soft_paper {
-  const light_image *image; /* null: boxes */
+  const light_emission *emission; /* null: boxes */
   bool parallel;
   double size;         /* L of the virtual light; parallel: L / Z */
   double light_height; /* of the light along the sheets' normal (not parallel) */
@@ -31,8 +31,8 @@ static void see_light(soft_paper *soft, const shadow_setup *setup, const view *v
   double tilt = fmax(vec3_dot(source->direction, normal), 1e-3);
   soft->parallel = source->parallel;
   soft->size = hl_light_average_size(source, normal);
-  if (setup->image != NULL) hl_light_image_project(source, view, soft->size, setup->image);
-  soft->image = setup->image;
+  if (setup->emission != NULL) hl_light_emission_project(source, view, soft->size, setup->emission);
+  soft->emission = setup->emission;
   if (source->parallel) soft->size /= tilt;
   soft->light_height = vec3_dot(source->position, normal);
   soft->pixel = vec3_length(view->du);
@@ -56,7 +56,7 @@ static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
   double widest = width_between(soft, first, first + 2 * spacing);
   for (int k = 1; k < sheets->count; k++)
     widest = fmax(widest, width_between(soft, first + k * spacing, first + (k + 1) * spacing));
-  return (int)fmin(soft->image != NULL ? soft->image->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
+  return (int)fmin(soft->emission != NULL ? soft->emission->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
 }
 
 /* One convolution: from the buffer to the scratch and back, tile by tile, all channels of a tile in one
@@ -69,7 +69,7 @@ typedef struct convolution {
   /* the taps of an image in place of a box's rows and columns */
   int count;
   const ptrdiff_t *offset; /* [count] */
-  const image_taps *taps;
+  const emission_taps *taps;
 } convolution;
 
 static void blur_rows(void *data, size_t index, int worker) {
@@ -99,19 +99,19 @@ static void blur_columns(void *data, size_t index, int worker) {
   }
 }
 
-static void weigh_image(void *data, size_t index, int worker) {
+static void weigh_emission(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
   const shadow_buffer *buffer = task->buffer;
   for (int x = 0; x < buffer->tiles_x; x++)
     for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
-      const image_job job = {.from = buffer->transmittance[c],
-                             .to = buffer->second[c],
-                             .stride = buffer->stride,
-                             .count = task->count,
-                             .offset = task->offset,
-                             .weight = task->taps->weight[c]};
-      task->blur->image(&job, x, (int)index);
+      const emission_job job = {.from = buffer->transmittance[c],
+                                .to = buffer->second[c],
+                                .stride = buffer->stride,
+                                .count = task->count,
+                                .offset = task->offset,
+                                .weight = task->taps->weight[c]};
+      task->blur->emission(&job, x, (int)index);
     }
 }
 
@@ -130,17 +130,17 @@ static void copy_back(void *data, size_t index, int worker) {
   }
 }
 
-static void convolve_with_image(const soft_paper *soft, convolution *task, int width, hl_pool *pool) {
-  image_taps taps;
-  ptrdiff_t offset[IMAGE_TAPS];
+static void convolve_with_emission(const soft_paper *soft, convolution *task, int width, hl_pool *pool) {
+  emission_taps taps;
+  ptrdiff_t offset[EMISSION_TAPS];
   const int step[2] = {1, 1};
-  hl_light_image_taps(soft->image, width, step, (const double[2]){0, 0}, &taps);
+  hl_light_emission_taps(soft->emission, width, step, (const double[2]){0, 0}, &taps);
   for (int i = 0; i < taps.count; i++)
     offset[i] = (ptrdiff_t)taps.y[i] * (ptrdiff_t)task->buffer->stride + taps.x[i];
   task->count = taps.count;
   task->offset = offset;
   task->taps = &taps;
-  hl_pool_run(pool, (size_t)task->buffer->tiles_y, weigh_image, task);
+  hl_pool_run(pool, (size_t)task->buffer->tiles_y, weigh_emission, task);
   hl_pool_run(pool, (size_t)task->buffer->tiles_y, copy_back, task);
 }
 
@@ -164,11 +164,11 @@ static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, h
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
   blur_box box = hl_blur_box((float)width);
-  int reach = soft->image == NULL ? box.reach : (int)(soft->image->reach * width) + 2;
+  int reach = soft->emission == NULL ? box.reach : (int)(soft->emission->reach * width) + 2;
   spread_touched(buffer, (reach + TILE) / TILE, touched, spread);
   convolution task = {.buffer = buffer, .wanted = spread, .blur = blur, .box = box};
-  if (soft->image != NULL) {
-    convolve_with_image(soft, &task, width, pool);
+  if (soft->emission != NULL) {
+    convolve_with_emission(soft, &task, width, pool);
   } else {
     hl_pool_run(pool, (size_t)buffer->tiles_y, blur_rows, &task);
     hl_pool_run(pool, (size_t)buffer->tiles_y, blur_columns, &task);
@@ -183,14 +183,14 @@ static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int 
   soft_paper *soft = shadow->state;
   double next = hl_sheet_height(shadow->setup.sheets, sheet + 1);
   double width = soft->remainder + width_between(soft, soft->last, next);
-  double most = soft->image == NULL ? 2 * soft->reach
-                                    : IMAGE_SIDE; /* no box reads beyond the buffer's margin */
+  double most = soft->emission == NULL ? 2 * soft->reach
+                                       : EMISSION_SIDE; /* no box reads beyond the buffer's margin */
   if (width <= 2) return;
   do {
     double whole = fmin(floor(width), most);
     convolve(soft, shadow->buffer, (int)whole, shadow->setup.pool, &shadow->setup.functions->blur);
     width -= whole;
-  } while (width > 2 && soft->image != NULL);
+  } while (width > 2 && soft->emission != NULL);
   soft->remainder = width;
   soft->last = next;
 }

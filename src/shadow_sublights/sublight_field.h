@@ -1,40 +1,41 @@
 /* shadow_sublights/sublight_field.h - compositing a slab, seen from the light's centre, into the buffer of
- * one part of the light. */
+ * one sub-light. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_FIELD_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_FIELD_H
 
 #include "shadow/shadow_lookup.h"
 
-/* A slab and its images half a pixel further along u, along v, and along both: bit 0 and bit 1 of their
+/* A slab and its copies half a pixel further along u, along v, and along both: bit 0 and bit 1 of their
  * index. Pixel (0,0); rows slab_stride apart; ones around. */
-enum { SLAB_IMAGES = 4 };
+enum { SLAB_COPIES = 4 };
 
 typedef struct half_pixel_job {
   const float *slab;
-  float *moved[SLAB_IMAGES]; /* written but for the first, which is not used */
+  float *moved[SLAB_COPIES]; /* written but for the first, which is not used */
   size_t slab_stride;
 } half_pixel_job;
 
-/* Rows of a tile in which pixels of the slab or of its moved images are below 1: bit TILE * image + row. */
+/* Rows of a tile in which pixels of the slab or of its moved copies are below 1: bit TILE * copy + row. */
 typedef uint64_t slab_rows;
 
 /* A tile's pixels of all that are moved, in rows where some are below 1; in others they are ones already. */
 typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
 
 typedef struct sublight_job {
-  const float *slab[HL_CHANNELS][SLAB_IMAGES];
+  const float *slab[HL_CHANNELS][SLAB_COPIES];
   size_t slab_stride;
   const slab_rows *rows; /* [slab_tiles_y][slab_tiles_x] */
   int slab_tiles_x, slab_tiles_y;
   float slab_width, slab_height; /* with ones further out, up to 32 pixels */
-  float scale[2], shift[2]; /* continuous pixel coordinates u and v of the slab: scale * the part's + shift */
-  int half[2];              /* the nearest half of shift, in halves */
-  part_pixel *left[HL_CHANNELS]; /* pixel (0,0) of the part's buffer; rows stride apart */
-  size_t stride;                 /* a tile's margin on either side */
+  float scale[2],
+      shift[2]; /* continuous pixel coordinates u and v of the slab: scale * the sub-light's + shift */
+  int half[2];  /* the nearest half of shift, in halves */
+  sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows stride apart */
+  size_t stride;                              /* a tile's margin on either side */
   int tiles_x;
   float carry; /* above 0 and below 1: added before the fraction of a pixel's new value is cut off.
                   Where it takes all values in turn from slab to slab, haze of which each takes
-                  less than 1/PART_ONE is counted in the end */
+                  less than 1/SUBLIGHT_ONE is counted in the end */
   int channels;
 } sublight_job;
 

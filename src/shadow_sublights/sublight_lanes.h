@@ -1,10 +1,10 @@
-/* shadow_sublights/sublight_lanes.h - one tile of one part's buffer times the slab, scaled and shifted, a row
- * of sixteen pixels at a time.
+/* shadow_sublights/sublight_lanes.h - one tile of one sub-light's buffer times the slab, scaled and shifted,
+ * a row of sixteen pixels at a time.
  *
- * What a part's pixel gets is the slab's value at the nearest half pixel. Values between pixels are those of
- * cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image processing", 1981):
- * weights -1/8, 5/8, 5/8, -1/8. They are sharper than the samples, by what the bilinear look-up of a buffer
- * blurs (variances: -1/4 at half pixels and 0 at whole ones, against 1/6). */
+ * What a sub-light's pixel gets is the slab's value at the nearest half pixel. Values between pixels are
+ * those of cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image
+ * processing", 1981): weights -1/8, 5/8, 5/8, -1/8. They are sharper than the samples, by what the bilinear
+ * look-up of a buffer blurs (variances: -1/4 at half pixels and 0 at whole ones, against 1/6). */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 
@@ -57,17 +57,17 @@ static slab_rows half_pixel_tile(const half_pixel_job *job, int tile_x, int tile
   return rows;
 }
 
-static const float LANE_PLACES[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+static const float LANE_INDICES[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /* The nearest halves of sixteen coordinates scale * i + start, counted in halves; held between -2 and size
  * + 1. */
 LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
-  return lanes_floor(lanes_clamp(lanes_load(LANE_PLACES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
+  return lanes_floor(lanes_clamp(lanes_load(LANE_INDICES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
 }
 
 enum { SUBLIGHT_TAPS = 8 };
 
-/* How a row of sixteen pixels reads a row of the slab's images: pixel i is 2 i halves beyond its first
+/* How a row of sixteen pixels reads a row of the slab's copies: pixel i is 2 i halves beyond its first
  * pixel's, give or take as many as the two pixels' edges drift apart along the row. Steps are nearly 1, so
  * that those are a few; weight[i] is 1 where pixels lie first + i halves from there, else 0. */
 typedef struct row_taps {
@@ -80,7 +80,7 @@ LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
   row_taps taps;
   float scale = job->scale[0], start = scale * ((float)(tile_x * TILE) + 0.5f) + job->shift[0] - 0.5f;
   taps.half = nearest_halves(scale, start, job->slab_width);
-  lanes_int apart = lanes_floor((lanes_load(LANE_PLACES) * (scale - 1.0f) + start) * 2.0f + 0.5f);
+  lanes_int apart = lanes_floor((lanes_load(LANE_INDICES) * (scale - 1.0f) + start) * 2.0f + 0.5f);
   int ends[2] = {apart[0], apart[LANES - 1]};
   taps.first = ends[0] < ends[1] ? ends[0] : ends[1];
   taps.count = (ends[0] < ends[1] ? ends[1] : ends[0]) - taps.first + 1;
@@ -90,18 +90,18 @@ LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
   return taps;
 }
 
-/* Sixteen pixels along a row of the slab. images: the row of two, the second half a pixel further along. */
-LANES_INLINE lanes slab_row(const row_taps *taps, const float *const images[2]) {
+/* Sixteen pixels along a row of the slab. copies: the row of two, the second half a pixel further along. */
+LANES_INLINE lanes slab_row(const row_taps *taps, const float *const copies[2]) {
   if (taps->count == 0) {
     lanes_int column = taps->half >> 1;
-    return lanes_select((taps->half & 1) == 0, lanes_gather(images[0], column),
-                        lanes_gather(images[1], column));
+    return lanes_select((taps->half & 1) == 0, lanes_gather(copies[0], column),
+                        lanes_gather(copies[1], column));
   }
-  if (taps->count == 1) return lanes_load(images[taps->first & 1] + (taps->first >> 1));
+  if (taps->count == 1) return lanes_load(copies[taps->first & 1] + (taps->first >> 1));
   lanes sum = lanes_set(0);
   for (int i = 0; i < taps->count; i++) {
     int half = taps->first + i;
-    sum = lanes_fma(lanes_load(images[half & 1] + (half >> 1)), taps->weight[i], sum);
+    sum = lanes_fma(lanes_load(copies[half & 1] + (half >> 1)), taps->weight[i], sum);
   }
   return sum;
 }
@@ -114,7 +114,7 @@ LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, in
   if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
 }
 
-/* Where any of the images in the same rows is below 1. */
+/* Where any of the copies in the same rows is below 1. */
 LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
   rows >>= 2 * TILE * between;
   return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;
@@ -138,7 +138,7 @@ LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[T
   return present;
 }
 
-static const float DARK_PART = DARK * PART_ONE;
+static const float DARK_SUBLIGHT = DARK * SUBLIGHT_ONE;
 
 /* The blocks that have any of these columns. */
 LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
@@ -152,7 +152,8 @@ LANES_INLINE uint32_t lit_columns(const sublight_job *job, size_t at) {
   uint32_t columns = 0;
   for (int row = 0; row < BLOCK; row++)
     for (int c = 0; c < job->channels; c++)
-      columns |= lanes_bits(lanes_load_short(job->left[c] + at + (size_t)row * job->stride) >= DARK_PART);
+      columns |= lanes_bits(lanes_load_short(job->transmittance[c] + at + (size_t)row * job->stride) >=
+                            DARK_SUBLIGHT);
   return columns;
 }
 
@@ -165,9 +166,9 @@ static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, ui
   return lit & left;
 }
 
-/* Sixteen of a part's pixels times the slab's. */
-LANES_INLINE void composite_part(const sublight_job *job, part_pixel *at, lanes left_by_slab) {
-  lanes_store_short_int(at, lanes_truncate(lanes_load_short(at) * left_by_slab + job->carry));
+/* Sixteen of a sub-light's pixels times the slab's. */
+LANES_INLINE void composite_sublight(const sublight_job *job, sublight_pixel *at, lanes slab_transmittance) {
+  lanes_store_short_int(at, lanes_truncate(lanes_load_short(at) * slab_transmittance + job->carry));
 }
 
 static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
@@ -185,12 +186,13 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
     int row = __builtin_ctz(left);
     ptrdiff_t line = (halves[row] >> 1) * (ptrdiff_t)job->slab_stride;
     for (int c = 0; c < job->channels; c++) {
-      const float *const *images = &job->slab[c][2 * (halves[row] & 1)];
-      const float *const rows[2] = {images[0] + line, images[1] + line};
-      part_pixel *at = job->left[c] + corner + (size_t)row * job->stride;
-      lanes left_by_slab = slab_row(&taps, rows);
-      if (lanes_bits(left_by_slab < 1.0f) == 0) continue; /* the part's row need not come from memory */
-      composite_part(job, at, left_by_slab);
+      const float *const *copies = &job->slab[c][2 * (halves[row] & 1)];
+      const float *const rows[2] = {copies[0] + line, copies[1] + line};
+      sublight_pixel *at = job->transmittance[c] + corner + (size_t)row * job->stride;
+      lanes slab_transmittance = slab_row(&taps, rows);
+      if (lanes_bits(slab_transmittance < 1.0f) == 0)
+        continue; /* the sub-light's row need not come from memory */
+      composite_sublight(job, at, slab_transmittance);
       touched = 1;
     }
   }

@@ -1,8 +1,8 @@
-/* shadow_sublights/sublight_shift_lanes.h - a row of tiles of one part's buffer times a slab that is only
- * shifted: that of a parallel light, or of a part as high over the sheets as the middle.
+/* shadow_sublights/sublight_shift_lanes.h - a row of tiles of one sub-light's buffer times a slab that is
+ * only shifted: that of a parallel light, or of a sub-light as high over the sheets as the middle.
  *
  * Here the slab's rows of sixteen pixels are gone through, which are known to hold something or not, and each
- * lies over sixteen of the part's pixels wherever those begin. */
+ * lies over sixteen of the sub-light's pixels wherever those begin. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_SHIFT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_SHIFT_LANES_H
 
@@ -11,20 +11,20 @@
 /* Tiles of the slab whose pixels are fetched before the first is used. */
 enum { SHIFTED_TILES = 16 };
 
-/* The image of the slab that is read. */
-LANES_INLINE int image_of_shift(const sublight_job *job) {
+/* The copy of the slab that is read. */
+LANES_INLINE int copy_of_shift(const sublight_job *job) {
   return (job->half[0] & 1) + 2 * (job->half[1] & 1);
 }
 
-/* The slab's rows of a tile's columns that lie over a row of the part's tiles, one bit each; the first is row
- * `top`. */
-LANES_INLINE uint32_t rows_from(const sublight_job *job, int tile_x, int top, int image) {
+/* The slab's rows of a tile's columns that lie over a row of the sub-light's tiles, one bit each; the first
+ * is row `top`. */
+LANES_INLINE uint32_t rows_from(const sublight_job *job, int tile_x, int top, int copy) {
   const slab_rows *tile = job->rows + tile_x;
   int y = top >> 4, down = top & (TILE - 1);
   slab_rows above = y >= 0 && y < job->slab_tiles_y ? tile[(ptrdiff_t)y * job->slab_tiles_x] : 0;
   slab_rows below = y >= -1 && y < job->slab_tiles_y - 1 ? tile[(ptrdiff_t)(y + 1) * job->slab_tiles_x] : 0;
-  above = above >> TILE * image & EVERY_ROW;
-  below = below >> TILE * image & EVERY_ROW;
+  above = above >> TILE * copy & EVERY_ROW;
+  below = below >> TILE * copy & EVERY_ROW;
   return (uint32_t)(above >> down | below << (TILE - down)) & EVERY_ROW;
 }
 
@@ -32,18 +32,18 @@ LANES_INLINE int is_dark_tile(const sublight_job *job, const uint16_t *lit, int 
   return tile_x < 0 || tile_x >= job->tiles_x || lit[tile_x] == 0;
 }
 
-/* The part's pixels under a tile's first column. */
-LANES_INLINE part_pixel *pixels_under(const sublight_job *job, int channel, int tile_x, int tile_y) {
-  return job->left[channel] + (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE -
+/* The sub-light's pixels under a tile's first column. */
+LANES_INLINE sublight_pixel *pixels_under(const sublight_job *job, int channel, int tile_x, int tile_y) {
+  return job->transmittance[channel] + (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE -
          (job->half[0] >> 1);
 }
 
-/* The part's rows that take light from a tile of the slab, and their pixels on their way from memory: they
- * come many at a time, not one after another. The part's tiles under it are touched. */
+/* The sub-light's rows that take light from a tile of the slab, and their pixels on their way from memory:
+ * they come many at a time, not one after another. The sub-light's tiles under it are touched. */
 LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int tile_y, const uint16_t *lit,
                                     unsigned char *touched) {
   int top = tile_y * TILE + (job->half[1] >> 1), column = tile_x * TILE - (job->half[0] >> 1);
-  uint32_t rows = rows_from(job, tile_x, top, image_of_shift(job));
+  uint32_t rows = rows_from(job, tile_x, top, copy_of_shift(job));
   const int ends[2] = {column >> 4, (column + TILE - 1) >> 4};
   if (rows == 0) return 0;
   int reached = 0;
@@ -55,8 +55,8 @@ LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int til
   if (!reached) return 0;
   for (int c = 0; c < job->channels; c++)
     for (uint32_t left = rows; left != 0; left &= left - 1) {
-      const part_pixel *at = pixels_under(job, c, tile_x, tile_y) +
-                             __builtin_ctz(left) * (ptrdiff_t)job->stride;
+      const sublight_pixel *at = pixels_under(job, c, tile_x, tile_y) +
+                                 __builtin_ctz(left) * (ptrdiff_t)job->stride;
       __builtin_prefetch(at, 1);
       __builtin_prefetch(at + TILE - 1, 1);
     }
@@ -66,13 +66,13 @@ LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int til
 LANES_INLINE void composite_shifted(const sublight_job *job, int tile_x, int tile_y, uint32_t rows) {
   int top = tile_y * TILE + (job->half[1] >> 1);
   for (int c = 0; c < job->channels; c++) {
-    const float *from = job->slab[c][image_of_shift(job)] + (ptrdiff_t)top * (ptrdiff_t)job->slab_stride +
+    const float *from = job->slab[c][copy_of_shift(job)] + (ptrdiff_t)top * (ptrdiff_t)job->slab_stride +
                         tile_x * TILE;
-    part_pixel *to = pixels_under(job, c, tile_x, tile_y);
+    sublight_pixel *to = pixels_under(job, c, tile_x, tile_y);
     for (uint32_t left = rows; left != 0; left &= left - 1) {
       int row = __builtin_ctz(left);
-      composite_part(job, to + row * (ptrdiff_t)job->stride,
-                     lanes_load(from + row * (ptrdiff_t)job->slab_stride));
+      composite_sublight(job, to + row * (ptrdiff_t)job->stride,
+                         lanes_load(from + row * (ptrdiff_t)job->slab_stride));
     }
   }
 }

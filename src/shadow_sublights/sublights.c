@@ -1,4 +1,6 @@
-/* shadow_sublights/sublights.c - the parts of a light: their buffers, and the slabs composited into them. */
+/* shadow_sublights/sublights.c - the sub-lights of a light: their buffers, and the slabs composited into
+ * them.
+ */
 #include "shadow_sublights/sublights.h"
 
 #include <string.h>
@@ -10,21 +12,21 @@
 /* More than this is refused beforehand. */
 static const double GREATEST_BYTES = 4294967296.0;
 
-enum { MOVED_IMAGES = SLAB_IMAGES - 1 };
+enum { MOVED_COPIES = SLAB_COPIES - 1 };
 
 /* What sub-light i sees; raises the greatest numbers of tiles. */
-static void place_part(const light_shadow *shadow, int i, view *view, int *tiles_x, int *tiles_y) {
+static void view_of_sublight(const light_shadow *shadow, int i, view *view, int *tiles_x, int *tiles_y) {
   const shadow_setup *setup = &shadow->setup;
   const light_source *source = setup->source;
   int side = setup->settings->light_samples;
   double square[2];
-  light_source part = *source;
-  if (setup->image == NULL) hl_light_part(source, side, i / side, i % side, square);
-  else hl_light_grid_part(side, i / side, i % side, square);
+  light_source at_point = *source;
+  if (setup->emission == NULL) hl_sublight_point(source, side, i / side, i % side, square);
+  else hl_sublight_grid_point(side, i / side, i % side, square);
   vec3 offset = hl_light_point(source, square[0], square[1]);
-  if (source->parallel) part.direction = vec3_normalise(vec3_add(source->direction, offset));
-  else part.position = vec3_add(source->position, offset);
-  hl_shadow_view(&part, setup->sheets->normal, &shadow->plan.extent, view);
+  if (source->parallel) at_point.direction = vec3_normalise(vec3_add(source->direction, offset));
+  else at_point.position = vec3_add(source->position, offset);
+  hl_shadow_view(&at_point, setup->sheets->normal, &shadow->plan.extent, view);
   if (hl_tiles(view->width) > *tiles_x) *tiles_x = hl_tiles(view->width);
   if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
 }
@@ -45,9 +47,9 @@ static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
   const view *slab = &shadow->plan.view;
   size_t slab_tiles = (size_t)hl_tiles(slab->width) * (size_t)hl_tiles(slab->height);
   all->memory = hl_layout_take(layout, count * channels, all->plane * sizeof *all->memory);
-  all->moved_floats = MOVED_IMAGES * channels * hl_shadow_plane(slab, shadow->plan.reach);
+  all->moved_floats = MOVED_COPIES * channels * hl_shadow_plane(slab, shadow->plan.reach);
   all->moved = hl_layout_take(layout, all->moved_floats, sizeof *all->moved);
-  all->parts = hl_layout_take(layout, count, sizeof *all->parts);
+  all->sublight = hl_layout_take(layout, count, sizeof *all->sublight);
   all->lookups = hl_layout_take(layout, count, sizeof *all->lookups);
   all->flags = hl_layout_take(layout, count * tiles, sizeof *all->flags);
   all->marks = hl_layout_take(layout, count * tiles, sizeof *all->marks);
@@ -61,7 +63,7 @@ static void fill_sublights(const light_shadow *shadow, sublights *all) {
   size_t count = (size_t)all->count, pixels = count * (size_t)all->channels * all->plane;
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y;
   size_t slab_tiles = (size_t)shadow->buffer->tiles_x * (size_t)shadow->buffer->tiles_y;
-  hl_pool_set(pool, all->memory, pixels * sizeof(part_pixel), 0xff); /* PART_ONE */
+  hl_pool_set(pool, all->memory, pixels * sizeof(sublight_pixel), 0xff); /* SUBLIGHT_ONE */
   hl_pool_fill(pool, all->moved, all->moved_floats, 1);
   for (size_t i = 0; i < count * tiles; i++) all->flags[i] = ALL_BLOCKS;
   memset(all->marks, 0, count * tiles * sizeof *all->marks);
@@ -69,63 +71,65 @@ static void fill_sublights(const light_shadow *shadow, sublights *all) {
   memset(all->found, 0, slab_tiles * sizeof *all->found);
 }
 
-/* The parts of a light with an image send its colours. */
-static hl_status weigh_parts(hl_context *context, sublights *sublights, const light_source *source, int side,
-                             hl_error *error) {
+/* The sub-lights of a light with an emission image send its colours. */
+static hl_status weigh_sublights(hl_context *context, sublights *sublights, const light_source *source,
+                                 int side, hl_error *error) {
   size_t count = (size_t)sublights->count;
   double mean[HL_CHANNELS];
   float(*weights)[HL_CHANNELS] = hl_allocate(context, count, sizeof *weights);
-  if (weights == NULL) return hl_fail_memory(error, count * sizeof *weights, "the parts of a light");
-  hl_light_image_weights(source, side, weights, mean);
+  if (weights == NULL) return hl_fail_memory(error, count * sizeof *weights, "sub-lights");
+  hl_light_emission_weights(source, side, weights, mean);
   for (size_t i = 0; i < count; i++) memcpy(sublights->lookups[i].weight, weights[i], sizeof *weights);
   hl_release(context, weights);
   return HL_OK;
 }
 
-static void begin_part(const light_shadow *shadow, sublights *all, int i) {
-  sublight *part = &all->parts[i];
+static void begin_sublight(const light_shadow *shadow, sublights *all, int i) {
+  sublight *one = &all->sublight[i];
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y, first = (size_t)i * tiles;
   int unused_x = 0, unused_y = 0;
-  *part = (sublight){.pixels = all->memory + (size_t)i * (size_t)all->channels * all->plane + TILE,
-                     .lit = all->flags + first,
-                     .touched = all->marks + first};
-  place_part(shadow, i, &part->view, &unused_x, &unused_y);
-  all->lookups[i] = (part_lookup){.map = hl_map_of_view(&part->view), .weight = {1, 1, 1}};
+  *one = (sublight){.pixels = all->memory + (size_t)i * (size_t)all->channels * all->plane + TILE,
+                    .lit = all->flags + first,
+                    .touched = all->marks + first};
+  view_of_sublight(shadow, i, &one->view, &unused_x, &unused_y);
+  all->lookups[i] = (sublight_lookup){.map = hl_map_of_view(&one->view), .weight = {1, 1, 1}};
   all->lookups[i].map.stride = all->stride;
-  for (int c = 0; c < all->channels; c++) all->lookups[i].left[c] = part->pixels + (size_t)c * all->plane;
+  for (int c = 0; c < all->channels; c++)
+    all->lookups[i].transmittance[c] = one->pixels + (size_t)c * all->plane;
 }
 
 static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
   const shadow_setup *setup = &shadow->setup;
   sublights *all = shadow->state;
   fill_sublights(shadow, all);
-  for (int i = 0; i < all->count; i++) begin_part(shadow, all, i);
+  for (int i = 0; i < all->count; i++) begin_sublight(shadow, all, i);
   shadow->sublights = all->lookups;
   shadow->sublight_count = all->count;
-  if (setup->image == NULL) return HL_OK;
-  return weigh_parts(setup->context, all, setup->source, setup->settings->light_samples, error);
+  if (setup->emission == NULL) return HL_OK;
+  return weigh_sublights(setup->context, all, setup->source, setup->settings->light_samples, error);
 }
 
 /* ---- compositing ---- */
 
-/* Pixel (0,0) of one of the slab's images but the first. */
-static float *moved_image(const sublights *sublights, const shadow_buffer *slab, int channel, int image) {
-  return sublights->moved + ((size_t)channel * MOVED_IMAGES + (size_t)image - 1) * slab->plane + slab->origin;
+/* Pixel (0,0) of one of the slab's copies but the first. */
+static float *moved_copy(const sublights *sublights, const shadow_buffer *slab, int channel, int copy) {
+  return sublights->moved + ((size_t)channel * MOVED_COPIES + (size_t)copy - 1) * slab->plane + slab->origin;
 }
 
-/* Where the ray of a part's pixel coordinates meets the sheet, in the slab's; false behind either. */
-static bool slab_place(const sublight *part, const view *slab, vec3 normal, double height, double at,
-                       double uv[2]) {
+/* Where the ray of a sub-light's pixel coordinates meets the sheet, in the slab's; false behind either. */
+static bool slab_position(const sublight *sublight, const view *slab, vec3 normal, double height, double at,
+                          double uv[2]) {
   vec3 start, way;
-  hl_view_ray(&part->view, at, at, &start, &way);
+  hl_view_ray(&sublight->view, at, at, &start, &way);
   double climb = vec3_dot(way, normal), distance = (height - vec3_dot(start, normal)) / climb;
-  if (part->view.perspective && !(distance > 0)) return false;
+  if (sublight->view.perspective && !(distance > 0)) return false;
   return hl_view_project(slab, vec3_add(start, vec3_scale(way, distance)), uv);
 }
 
 /* Multiples of the golden ratio, less their whole part, are spread evenly however many there are. */
-static float carry_of_slab(const sublights *sublights, const sublight *part) {
-  double turn = sublights->slabs * 0.6180339887498949 + (double)(part - sublights->parts) / sublights->count;
+static float carry_of_slab(const sublights *sublights, const sublight *sublight) {
+  double turn = sublights->slabs * 0.6180339887498949 +
+                (double)(sublight - sublights->sublight) / sublights->count;
   return (float)(1.0 / 128 +
                  (turn - floor(turn)) * 63 / 64); /* so far from 0 and 1 that whole numbers stay */
 }
@@ -136,36 +140,36 @@ static const double FARTHEST_SHIFT = 1 << 20;
 
 /* Both views lie parallel to the sheets with the same axes: from one to the other pixels are scaled and
  * shifted. */
-static void map_part(const sublights *sublights, sublight *part, const shadow_buffer *slab, vec3 normal,
-                     double height) {
+static void map_sublight(const sublights *sublights, sublight *sublight, const shadow_buffer *slab,
+                         vec3 normal, double height) {
   const double far = 1024;
   double zero[2], other[2];
-  part->reaches = slab_place(part, &slab->view, normal, height, 0, zero) &&
-                  slab_place(part, &slab->view, normal, height, far, other);
-  part->job = (sublight_job){.slab_stride = slab->stride,
-                             .rows = sublights->rows,
-                             .slab_tiles_x = slab->tiles_x,
-                             .slab_tiles_y = slab->tiles_y,
-                             .slab_width = (float)slab->view.width,
-                             .slab_height = (float)slab->view.height,
-                             .stride = sublights->stride,
-                             .tiles_x = sublights->tiles_x,
-                             .carry = carry_of_slab(sublights, part),
-                             .channels = sublights->channels};
-  for (int axis = 0; axis < 2 && part->reaches; axis++) {
+  sublight->reaches = slab_position(sublight, &slab->view, normal, height, 0, zero) &&
+                      slab_position(sublight, &slab->view, normal, height, far, other);
+  sublight->job = (sublight_job){.slab_stride = slab->stride,
+                                 .rows = sublights->rows,
+                                 .slab_tiles_x = slab->tiles_x,
+                                 .slab_tiles_y = slab->tiles_y,
+                                 .slab_width = (float)slab->view.width,
+                                 .slab_height = (float)slab->view.height,
+                                 .stride = sublights->stride,
+                                 .tiles_x = sublights->tiles_x,
+                                 .carry = carry_of_slab(sublights, sublight),
+                                 .channels = sublights->channels};
+  for (int axis = 0; axis < 2 && sublight->reaches; axis++) {
     double scale = (other[axis] - zero[axis]) / far;
     if (fabs(scale - 1) < 1e-6) scale = 1;
-    part->job.scale[axis] = (float)scale;
-    part->job.shift[axis] = (float)zero[axis];
+    sublight->job.scale[axis] = (float)scale;
+    sublight->job.shift[axis] = (float)zero[axis];
   }
-  part->shifted = part->reaches && part->job.scale[0] == 1 && part->job.scale[1] == 1 &&
-                  fmax(fabs(zero[0]), fabs(zero[1])) < FARTHEST_SHIFT;
-  for (int axis = 0; axis < 2 && part->shifted; axis++)
-    part->job.half[axis] = (int)floor(2 * zero[axis] + 0.5);
+  sublight->shifted = sublight->reaches && sublight->job.scale[0] == 1 && sublight->job.scale[1] == 1 &&
+                      fmax(fabs(zero[0]), fabs(zero[1])) < FARTHEST_SHIFT;
+  for (int axis = 0; axis < 2 && sublight->shifted; axis++)
+    sublight->job.half[axis] = (int)floor(2 * zero[axis] + 0.5);
   for (int c = 0; c < sublights->channels; c++) {
-    part->job.slab[c][0] = slab->transmittance[c];
-    for (int i = 1; i < SLAB_IMAGES; i++) part->job.slab[c][i] = moved_image(sublights, slab, c, i);
-    part->job.left[c] = part->pixels + (size_t)c * sublights->plane;
+    sublight->job.slab[c][0] = slab->transmittance[c];
+    for (int i = 1; i < SLAB_COPIES; i++) sublight->job.slab[c][i] = moved_copy(sublights, slab, c, i);
+    sublight->job.transmittance[c] = sublight->pixels + (size_t)c * sublights->plane;
   }
 }
 
@@ -218,48 +222,51 @@ static void bound_present(sublight_task *task) {
   }
 }
 
-/* The tiles of a part under these of the slab, along an axis. */
-static void part_tiles(const sublight *part, int axis, int low, int high, int tiles, int *first, int *last) {
-  double scale = 1 / (double)part->job.scale[axis], shift = -(double)part->job.shift[axis] * scale;
+/* The tiles of a sub-light under these of the slab, along an axis. */
+static void sublight_tiles(const sublight *sublight, int axis, int low, int high, int tiles, int *first,
+                           int *last) {
+  double scale = 1 / (double)sublight->job.scale[axis], shift = -(double)sublight->job.shift[axis] * scale;
   int unused;
   tiles_under((double)low * TILE, scale, shift, tiles, first, &unused);
   tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
 }
 
-/* A row of tiles of one part times the slab. */
-static void composite_row(const sublight_task *task, sublight *part, int y) {
+/* A row of tiles of one sub-light times the slab. */
+static void composite_row(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
   const shadow_buffer *slab = task->slab;
   int y0, y1, first, last;
-  part_tiles(part, 1, task->y0, task->y1, all->tiles_y, &first, &last);
+  sublight_tiles(sublight, 1, task->y0, task->y1, all->tiles_y, &first, &last);
   if (y < first || y > last) return;
-  if (part->shifted) {
+  if (sublight->shifted) {
     size_t row = (size_t)y * (size_t)all->tiles_x;
-    task->functions->composite_row(&part->job, y, task->x0, task->x1, part->lit + row, part->touched + row);
+    task->functions->composite_row(&sublight->job, y, task->x0, task->x1, sublight->lit + row,
+                                   sublight->touched + row);
     return;
   }
-  part_tiles(part, 0, task->x0, task->x1, all->tiles_x, &first, &last);
-  tiles_under((double)y * TILE, (double)part->job.scale[1], (double)part->job.shift[1], slab->tiles_y, &y0,
-              &y1);
+  sublight_tiles(sublight, 0, task->x0, task->x1, all->tiles_x, &first, &last);
+  tiles_under((double)y * TILE, (double)sublight->job.scale[1], (double)sublight->job.shift[1], slab->tiles_y,
+              &y0, &y1);
   for (int x = first; x <= last; x++) {
     size_t tile = (size_t)y * (size_t)all->tiles_x + (size_t)x;
     int x0, x1;
-    if (part->lit[tile] == 0) continue;
-    tiles_under((double)x * TILE, (double)part->job.scale[0], (double)part->job.shift[0], slab->tiles_x, &x0,
-                &x1);
-    if (any_present(&part->job, x0, x1, y0, y1) && task->functions->composite(&part->job, x, y))
-      part->touched[tile] = 1;
+    if (sublight->lit[tile] == 0) continue;
+    tiles_under((double)x * TILE, (double)sublight->job.scale[0], (double)sublight->job.shift[0],
+                slab->tiles_x, &x0, &x1);
+    if (any_present(&sublight->job, x0, x1, y0, y1) && task->functions->composite(&sublight->job, x, y))
+      sublight->touched[tile] = 1;
   }
 }
 
 /* Where light is left in a row of tiles, of those where some was taken. */
-static void find_part_lit(const sublight_task *task, sublight *part, int y) {
+static void find_sublight_lit(const sublight_task *task, sublight *sublight, int y) {
   int tiles_x = task->sublights->tiles_x;
   size_t row = (size_t)y * (size_t)tiles_x;
   for (int x = 0; x < tiles_x; x++) {
-    if (!part->touched[row + (size_t)x]) continue;
-    part->touched[row + (size_t)x] = 0;
-    part->lit[row + (size_t)x] = (uint16_t)task->functions->lit(&part->job, x, y, part->lit[row + (size_t)x]);
+    if (!sublight->touched[row + (size_t)x]) continue;
+    sublight->touched[row + (size_t)x] = 0;
+    sublight->lit[row + (size_t)x] = (uint16_t)task->functions->lit(&sublight->job, x, y,
+                                                                    sublight->lit[row + (size_t)x]);
   }
 }
 
@@ -267,23 +274,23 @@ static void advance_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
   const sublights *all = task->sublights;
-  sublight *part =
-      &all->parts[index % (size_t)all->count]; /* parts in turn: what the slab holds under a row stays near */
+  sublight *sublight = &all->sublight[index % (size_t)all->count]; /* sub-lights in turn: what the slab holds
+                                                                      under a row stays near */
   int y = (int)(index / (size_t)all->count);
-  if (!part->reaches) return;
-  if (task->x1 >= 0) composite_row(task, part, y);
-  if (task->ends_run) find_part_lit(task, part, y);
+  if (!sublight->reaches) return;
+  if (task->x1 >= 0) composite_row(task, sublight, y);
+  if (task->ends_run) find_sublight_lit(task, sublight, y);
 }
 
 /* ---- the slab ---- */
 
 /* Rows of a tile, bits 0 to 15. */
-static void fill_ones(float *pixels, size_t stride, slab_rows of_images) {
-  for (uint32_t rows = of_images & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
+static void fill_ones(float *pixels, size_t stride, slab_rows of_copies) {
+  for (uint32_t rows = of_copies & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
 }
 
-/* The images of one row of tiles. Those of a tile hold pixels of the next ones too. */
+/* The copies of one row of tiles. Those of a tile hold pixels of the next ones too. */
 static void move_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -295,7 +302,7 @@ static void move_row(void *data, size_t index, int worker) {
     if (!any_touched(slab, x, x1, y, y1)) continue;
     for (int c = 0; c < all->channels; c++) {
       half_pixel_job job = {.slab = slab->transmittance[c], .slab_stride = slab->stride};
-      for (int i = 1; i < SLAB_IMAGES; i++) job.moved[i] = moved_image(all, slab, c, i);
+      for (int i = 1; i < SLAB_COPIES; i++) job.moved[i] = moved_copy(all, slab, c, i);
       all->rows[index * (size_t)slab->tiles_x + (size_t)x] |= task->functions->half_pixel(&job, x, y);
     }
   }
@@ -311,8 +318,8 @@ static void clear_row(void *data, size_t index, int worker) {
     size_t tile = index * (size_t)slab->tiles_x + (size_t)x,
            at = index * TILE * slab->stride + (size_t)x * TILE;
     for (int c = 0; c < slab->channels; c++)
-      for (int i = 0; i < SLAB_IMAGES; i++)
-        fill_ones((i == 0 ? slab->transmittance[c] : moved_image(all, slab, c, i)) + at, slab->stride,
+      for (int i = 0; i < SLAB_COPIES; i++)
+        fill_ones((i == 0 ? slab->transmittance[c] : moved_copy(all, slab, c, i)) + at, slab->stride,
                   all->rows[tile] >> TILE * i);
     all->rows[tile] = 0;
     slab->tile_touched[tile] = 0;
@@ -323,22 +330,22 @@ static void clear_row(void *data, size_t index, int worker) {
 enum { LIT_SLABS = 4 };
 static int run_of_slab(int slab) { return (slab + LIT_SLABS - 1) / LIT_SLABS + 1; }
 
-static part_place place_of_job(const sublight_job *job) {
-  return (part_place){{1 / (double)job->scale[0], 1 / (double)job->scale[1]},
-                      {(double)job->shift[0], (double)job->shift[1]}};
+static sublight_map map_of_job(const sublight_job *job) {
+  return (sublight_map){{1 / (double)job->scale[0], 1 / (double)job->scale[1]},
+                        {(double)job->shift[0], (double)job->shift[1]}};
 }
 
-/* Where the parts are over the first and the last of the next slabs, from a height on. */
-static void place_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height,
-                      double spacing) {
+/* Where the sub-lights are over the first and the last of the next slabs, from a height on. */
+static void map_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height,
+                    double spacing) {
   for (int i = 0; i < sublights->count; i++) {
-    sublight *part = &sublights->parts[i];
-    map_part(sublights, part, slab, normal, height + (LIT_SLABS - 0.5) * spacing);
-    part->far = place_of_job(&part->job);
-    bool reached = part->reaches;
-    map_part(sublights, part, slab, normal, height + 0.5 * spacing);
-    part->near = place_of_job(&part->job);
-    part->comes = reached && !part->reaches;
+    sublight *sublight = &sublights->sublight[i];
+    map_sublight(sublights, sublight, slab, normal, height + (LIT_SLABS - 0.5) * spacing);
+    sublight->far = map_of_job(&sublight->job);
+    bool reached = sublight->reaches;
+    map_sublight(sublights, sublight, slab, normal, height + 0.5 * spacing);
+    sublight->near = map_of_job(&sublight->job);
+    sublight->comes = reached && !sublight->reaches;
   }
 }
 
@@ -350,7 +357,7 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   shadow_buffer *slab = shadow->buffer;
   hl_pool *pool = shadow->setup.pool;
   for (int i = 0; i < sublights->count; i++)
-    map_part(sublights, &sublights->parts[i], slab, sheets->normal, (from + to) / 2);
+    map_sublight(sublights, &sublights->sublight[i], slab, sheets->normal, (from + to) / 2);
   sublight_task task = {
       .sublights = sublights, .slab = slab, .functions = shadow->setup.functions->sublights};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
@@ -360,35 +367,35 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   if (task.x1 >= 0 || task.ends_run)
     hl_pool_run(pool, (size_t)sublights->count * (size_t)sublights->tiles_y, advance_row, &task);
   hl_pool_run(pool, (size_t)slab->tiles_y, clear_row, &task);
-  if (task.ends_run) place_run(sublights, slab, sheets->normal, to, to - from);
+  if (task.ends_run) map_run(sublights, slab, sheets->normal, to, to - from);
 }
 
 /* ---- what light reaches ---- */
 
-/* Pixels of the slab around a block that lie over the same pixels of a part: half pixels are made of two on
- * either side. */
+/* Pixels of the slab around a block that lie over the same pixels of a sub-light: half pixels are made of two
+ * on either side. */
 enum { BLOCK_SPARE = 2 };
 
-/* Rows or columns of a part's blocks under each of the four of a tile of the slab. */
+/* Rows or columns of a sub-light's blocks under each of the four of a tile of the slab. */
 typedef struct blocks_under {
   int first[TILE / BLOCK], last[TILE / BLOCK];
 } blocks_under;
 
 /* Which of `count` lengths of pixels a place lies in; -1 or count beyond the ends. */
-static int place_among(double place, int length, int count) {
-  return place < 0 ? -1 : place >= (double)length * count ? count : (int)place / length;
+static int segment_of(double position, int length, int count) {
+  return position < 0 ? -1 : position >= (double)length * count ? count : (int)position / length;
 }
 
-static blocks_under find_under(const sublight *part, int axis, int tile, int tiles) {
-  const part_place *near = &part->near, *far = &part->far;
+static blocks_under find_under(const sublight *sublight, int axis, int tile, int tiles) {
+  const sublight_map *near = &sublight->near, *far = &sublight->far;
   int end = tiles * (TILE / BLOCK);
   blocks_under under;
   for (int i = 0; i < TILE / BLOCK; i++) {
     double from = tile * TILE + i * BLOCK - BLOCK_SPARE, to = from + BLOCK + 2 * BLOCK_SPARE;
-    int first = place_among(
+    int first = segment_of(
         fmin(near->scale[axis] * (from - near->shift[axis]), far->scale[axis] * (from - far->shift[axis])),
         BLOCK, end);
-    int last = place_among(
+    int last = segment_of(
         fmax(near->scale[axis] * (to - near->shift[axis]), far->scale[axis] * (to - far->shift[axis])), BLOCK,
         end);
     under.first[i] = first < 0 ? 0 : first;
@@ -397,9 +404,9 @@ static blocks_under find_under(const sublight *part, int axis, int tile, int til
   return under;
 }
 
-/* The part's lit blocks in a row of them, from block `first` on: a bit each, as far as a word goes. */
-static uint64_t lit_in_row(const sublights *all, const sublight *part, int row, int first, int last) {
-  const uint16_t *tiles = part->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
+/* The sub-light's lit blocks in a row of them, from block `first` on: a bit each, as far as a word goes. */
+static uint64_t lit_in_row(const sublights *all, const sublight *sublight, int row, int first, int last) {
+  const uint16_t *tiles = sublight->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
   uint64_t bits = 0;
   for (int x = first / 4; x <= last / 4; x++) {
     uint64_t four = tiles[x] >> 4 * (row % 4) & 15;
@@ -408,7 +415,7 @@ static uint64_t lit_in_row(const sublights *all, const sublight *part, int row, 
   return bits;
 }
 
-static uint32_t lit_by_blocks(const sublights *all, const sublight *part, const blocks_under *columns,
+static uint32_t lit_by_blocks(const sublights *all, const sublight *sublight, const blocks_under *columns,
                               const blocks_under *rows) {
   int first = columns->first[0], last = columns->last[TILE / BLOCK - 1];
   uint32_t lit = 0;
@@ -416,7 +423,7 @@ static uint32_t lit_by_blocks(const sublights *all, const sublight *part, const 
   for (int y = 0; y < TILE / BLOCK; y++) {
     uint64_t bits = 0;
     for (int row = rows->first[y]; row <= rows->last[y]; row++)
-      bits |= lit_in_row(all, part, row, first, last);
+      bits |= lit_in_row(all, sublight, row, first, last);
     for (int x = 0; x < TILE / BLOCK && bits != 0; x++) {
       int count = columns->last[x] - columns->first[x] + 1;
       if (count > 0 && (bits >> (columns->first[x] - first) & (((uint64_t)1 << count) - 1)) != 0)
@@ -427,19 +434,19 @@ static uint32_t lit_by_blocks(const sublights *all, const sublight *part, const 
 }
 
 /* Most tiles are lit everywhere or nowhere. */
-static uint32_t lit_by_part(const sublights *all, const sublight *part, int tile_x, int tile_y) {
-  blocks_under columns = find_under(part, 0, tile_x, all->tiles_x),
-               rows = find_under(part, 1, tile_y, all->tiles_y);
+static uint32_t lit_by_sublight(const sublights *all, const sublight *sublight, int tile_x, int tile_y) {
+  blocks_under columns = find_under(sublight, 0, tile_x, all->tiles_x),
+               rows = find_under(sublight, 1, tile_y, all->tiles_y);
   int x0 = columns.first[0] / 4, x1 = columns.last[TILE / BLOCK - 1], y0 = rows.first[0] / 4,
       y1 = rows.last[TILE / BLOCK - 1];
   uint32_t any = 0, every = ALL_BLOCKS;
   for (int y = y0; 4 * y <= y1; y++)
     for (int x = x0; 4 * x <= x1; x++) {
-      uint32_t lit = part->lit[(size_t)y * (size_t)all->tiles_x + (size_t)x];
+      uint32_t lit = sublight->lit[(size_t)y * (size_t)all->tiles_x + (size_t)x];
       any |= lit;
       every &= lit;
     }
-  return any == 0 || every == ALL_BLOCKS ? any : lit_by_blocks(all, part, &columns, &rows);
+  return any == 0 || every == ALL_BLOCKS ? any : lit_by_blocks(all, sublight, &columns, &rows);
 }
 
 void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile) {
@@ -448,9 +455,9 @@ void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size
   if (sublights->found[tile] == run) return;
   uint32_t lit = sublights->slabs == 0 ? ALL_BLOCKS : 0;
   for (int i = 0; i < sublights->count && lit != ALL_BLOCKS; i++) {
-    const sublight *part = &sublights->parts[i];
-    if (part->reaches) lit |= lit_by_part(sublights, part, x, y);
-    else if (part->comes) lit = ALL_BLOCKS;
+    const sublight *sublight = &sublights->sublight[i];
+    if (sublight->reaches) lit |= lit_by_sublight(sublights, sublight, x, y);
+    else if (sublight->comes) lit = ALL_BLOCKS;
   }
   slab->tile_lit[tile] = (uint16_t)lit;
   sublights->found[tile] = run;
@@ -473,16 +480,16 @@ static void plan_sublights(light_shadow *shadow) {
   view unused;
   all->count = side * side;
   all->channels = setup->channels;
-  for (int i = 0; i < all->count; i++) place_part(shadow, i, &unused, &all->tiles_x, &all->tiles_y);
+  for (int i = 0; i < all->count; i++) view_of_sublight(shadow, i, &unused, &all->tiles_x, &all->tiles_y);
   lay_out_planes(all);
 }
 
 static hl_status check_sublights(const light_shadow *shadow, hl_error *error) {
   const sublights *all = shadow->state;
-  double bytes = (double)all->count * all->channels * (double)all->plane * sizeof(part_pixel);
+  double bytes = (double)all->count * all->channels * (double)all->plane * sizeof(sublight_pixel);
   if (bytes <= GREATEST_BYTES) return HL_OK;
   return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                 "/render/light_samples: %d parts of a light need %.1f GB of shadow buffers, more than "
+                 "/render/light_samples: %d sub-lights need %.1f GB of shadow buffers, more than "
                  "4.3: use fewer, or a lower shadow_resolution",
                  all->count, bytes / 1e9);
 }

@@ -53,7 +53,7 @@ static void test_cubic_keeps_squares(void **state) {
   const float *buffer = fill(pixels, square);
   for (int round = 0; round < 1000; round++) {
     places at = some_places(&random, 0.5f, SIDE - 0.5f);
-    shadow_taps taps = taps_of_place(&map, 0, at.u, at.v);
+    shadow_taps taps = taps_at_position(&map, 0, at.u, at.v);
     lanes cubic = look_up_cubic(&map, &taps, buffer), bilinear = look_up(&map, &taps, buffer);
     for (int lane = 0; lane < LANES; lane++) {
       double expected = square((double)at.u[lane], (double)at.v[lane]);
@@ -64,7 +64,7 @@ static void test_cubic_keeps_squares(void **state) {
   assert_true(off_bilinear > 1e-4); /* which keeps planes alone */
   buffer = fill(pixels, plane);
   places at = some_places(&random, 0.5f, SIDE - 0.5f);
-  shadow_taps taps = taps_of_place(&map, 0, at.u, at.v);
+  shadow_taps taps = taps_at_position(&map, 0, at.u, at.v);
   lanes bilinear = look_up(&map, &taps, buffer);
   for (int lane = 0; lane < LANES; lane++)
     assert_true(fabs((double)bilinear[lane] - plane((double)at.u[lane], (double)at.v[lane])) < 2e-6);
@@ -80,7 +80,7 @@ static void test_light_stays_light(void **state) {
   int between = 0;
   for (int round = 0; round < 1000; round++) {
     places at = some_places(&random, -3, SIDE + 3);
-    shadow_taps taps = taps_of_place(&map, 0, at.u, at.v);
+    shadow_taps taps = taps_at_position(&map, 0, at.u, at.v);
     lanes cubic = look_up_cubic(&map, &taps, buffer);
     for (int lane = 0; lane < LANES; lane++) {
       double u = (double)at.u[lane], v = (double)at.v[lane];
@@ -105,7 +105,7 @@ static void test_cubic_stays_within(void **state) {
   int between = 0;
   for (int round = 0; round < 1000; round++) {
     places at = some_places(&random, 0.5f, SIDE - 0.5f);
-    shadow_taps taps = taps_of_place(&map, 0, at.u, at.v);
+    shadow_taps taps = taps_at_position(&map, 0, at.u, at.v);
     lanes cubic = look_up_cubic(&map, &taps, buffer);
     for (int lane = 0; lane < LANES; lane++) {
       const float *first = buffer + taps.first.row[lane] * STRIDE + taps.first.column[lane];

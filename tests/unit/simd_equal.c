@@ -444,7 +444,7 @@ static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
                            .channels = round % 3 ? 3 : 1,
                            .stride = TILE,
                            .moment_stride = TILE,
-                           .place = 0.7f};
+                           .position = 0.7f};
   for (int c = 0; c < HL_CHANNELS; c++) {
     s->job.transmittance[c] = &s->out.field[c][0][0];
     s->job.moment[c] = round % 4 ? &s->out.field[HL_CHANNELS + c][0][0] : NULL;
@@ -488,19 +488,19 @@ typedef struct field_state {
   blur_job blur;
   field_job field;
   absorbed_job absorbed;
-  part_job part;
+  split_job part;
   sublight_job sublight, dark; /* few of the other's pixels are light */
   half_pixel_job half_pixel;
   slab_rows rows[16];
   uint16_t lit[4];
   field_blur_job field_blur;
-  left_job left;
-  image_job image;
-  field_image_job field_image;
+  refill_job left;
+  emission_job image;
+  field_emission_job field_image;
   ptrdiff_t offset[40];
   float a[FIELD][FIELD], b[FIELD][FIELD];
   field_pixel lacking[FIELD][FIELD], thin[FIELD][FIELD]; /* whole numbers of a and b */
-  part_pixel shade[FIELD][FIELD];
+  sublight_pixel shade[FIELD][FIELD];
   struct {
     float pixels[FIELD][FIELD];
     field_pixel lacking[FIELD][FIELD];
@@ -517,7 +517,7 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 3) s->out.lit = hot->shadow.cascade->add_half(&s->field, 1, 1);
   if (s->which == 4) s->out.lit = hot->shadow.cascade->add_double(&s->field, 1, 1);
   if (s->which == 5) s->out.lit = hot->shadow.cascade->blur_add(&s->field_blur, 1, 1);
-  if (s->which == 6) hot->shadow.cascade->left(&s->left, 1, 1);
+  if (s->which == 6) hot->shadow.cascade->refill(&s->left, 1, 1);
   if (s->which == 7) s->out.lit = (int)hot->shadow.cascade->absorbed(&s->absorbed, 1, 1);
   if (s->which == 8) s->out.lit = hot->shadow.sublights->composite(&s->sublight, 1, 1);
   if (s->which == 13) {
@@ -527,18 +527,18 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 14) hot->shadow.sublights->composite_row(&s->sublight, 1, 0, 3, s->lit, s->out.touched);
   if (s->which == 15) s->out.lit = (int)hot->shadow.sublights->lit(&s->dark, 1, 1, s->lit[1]);
   if (s->which == 9) s->out.lit = hot->shadow.cascade->double_tile(&s->field, 1, 1);
-  if (s->which == 10) hot->shadow.blur.image(&s->image, 1, 1);
-  if (s->which == 12) s->out.lit = (int)hot->shadow.cascade->part(&s->part, 1, 1);
-  if (s->which == 11) s->out.lit = hot->shadow.cascade->image_add(&s->field_image, 1, 1);
+  if (s->which == 10) hot->shadow.blur.emission(&s->image, 1, 1);
+  if (s->which == 12) s->out.lit = (int)hot->shadow.cascade->split(&s->part, 1, 1);
+  if (s->which == 11) s->out.lit = hot->shadow.cascade->emission_add(&s->field_image, 1, 1);
 }
 
 static void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {
-      "blur_rows_tile",  "blur_columns_tile", "add_tile",     "add_half_tile",
-      "add_double_tile", "field_blur_tile",   "left_tile",    "absorbed_tile",
-      "sublight_tile",   "double_tile",       "image_tile",   "field_image_tile",
-      "part_tile",       "half_pixel_tile",   "sublight_row", "sublight_lit"};
+      "blur_rows_tile",  "blur_columns_tile", "add_tile",      "add_half_tile",
+      "add_double_tile", "field_blur_tile",   "refill_tile",   "absorbed_tile",
+      "sublight_tile",   "double_tile",       "emission_tile", "field_emission_tile",
+      "split_tile",      "half_pixel_tile",   "sublight_row",  "sublight_lit"};
   static field_state s;
   uint32_t seed = 23;
   enum { MARGIN = 100 };
@@ -555,14 +555,14 @@ static void test_fields(void **unused) {
                         hl_blur_box(random_between(&seed, 1, round % 5 ? 30 : 150))};
     s.field = (field_job){lacking, thin, out, FIELD, FIELD, round % 2 ? thin + 3 * FIELD : NULL, ALL_ROWS};
     /* what both read and write: the light in pixels, what was lacked and the older light in rows below */
-    s.left = (left_job){.lacking = lacking,
-                        .lacked = &s.out.pixels[MARGIN + 2 * TILE][MARGIN],
-                        .to = &s.out.pixels[MARGIN][MARGIN],
-                        .older = &s.out.pixels[MARGIN + 4 * TILE][MARGIN],
-                        .stride = FIELD,
-                        .stride_to = FIELD,
-                        .kept = round & 1,
-                        .again = round >> 1 & 1};
+    s.left = (refill_job){.absorbed = lacking,
+                          .absorbed_at_start = &s.out.pixels[MARGIN + 2 * TILE][MARGIN],
+                          .to = &s.out.pixels[MARGIN][MARGIN],
+                          .older = &s.out.pixels[MARGIN + 4 * TILE][MARGIN],
+                          .stride = FIELD,
+                          .stride_to = FIELD,
+                          .kept = round & 1,
+                          .again = round >> 1 & 1};
     s.absorbed = (absorbed_job){&s.a[MARGIN][MARGIN],
                                 &s.b[MARGIN][MARGIN],
                                 &s.out.pixels[MARGIN][MARGIN],
@@ -573,12 +573,12 @@ static void test_fields(void **unused) {
                                 out + 64 * FIELD,
                                 FIELD,
                                 FIELD};
-    s.part = (part_job){lacking,
-                        thin,
-                        {out, out + 16 * FIELD},
-                        {out + 32 * FIELD, out + 48 * FIELD},
-                        FIELD,
-                        random_between(&seed, 0, 1)};
+    s.part = (split_job){lacking,
+                         thin,
+                         {out, out + 16 * FIELD},
+                         {out + 32 * FIELD, out + 48 * FIELD},
+                         FIELD,
+                         random_between(&seed, 0, 1)};
     s.field_blur = (field_blur_job){lacking,
                                     round % 3 ? thin : NULL,
                                     round % 2 ? thin + 3 * FIELD : NULL,
@@ -605,32 +605,33 @@ static void test_fields(void **unused) {
       s.sublight.half[axis] = (int)(2 * s.sublight.shift[axis]);
     }
     for (int c = 0; c < HL_CHANNELS; c++) {
-      for (int i = 0; i < SLAB_IMAGES; i++) s.sublight.slab[c][i] = &s.a[MARGIN + c][MARGIN + 5 * i];
-      s.sublight.left[c] = out;
+      for (int i = 0; i < SLAB_COPIES; i++) s.sublight.slab[c][i] = &s.a[MARGIN + c][MARGIN + 5 * i];
+      s.sublight.transmittance[c] = out;
     }
     s.dark = s.sublight;
-    for (int c = 0; c < HL_CHANNELS; c++) s.dark.left[c] = &s.shade[0][0];
+    for (int c = 0; c < HL_CHANNELS; c++) s.dark.transmittance[c] = &s.shade[0][0];
     for (int i = 0; i < FIELD * FIELD; i++)
-      (&s.shade[0][0])[i] = random_between(&seed, 0, 1) < 0.95f ? 0
-                                                                : (part_pixel)random_between(&seed, 60, 68);
+      (&s.shade[0][0])[i] = random_between(&seed, 0, 1) < 0.95f
+                                ? 0
+                                : (sublight_pixel)random_between(&seed, 60, 68);
     for (int i = 0; i < 16; i++) s.rows[i] = (uint64_t)random_between(&seed, 0, 65535) * 0x1000100010001u;
     for (int i = 0; i < 4; i++)
       s.lit[i] = random_between(&seed, 0, 1) < 0.3f ? 0 : (uint16_t)random_between(&seed, 1, 65535);
     s.half_pixel = (half_pixel_job){.slab = &s.a[MARGIN][MARGIN], .slab_stride = FIELD};
-    for (int i = 1; i < SLAB_IMAGES; i++) s.half_pixel.moved[i] = &s.out.pixels[MARGIN + 16 * i][MARGIN];
-    s.image = (image_job){.from = &s.a[MARGIN][MARGIN],
-                          .to = &s.out.pixels[MARGIN][MARGIN],
-                          .stride = FIELD,
-                          .count = 1 + round % 40,
-                          .offset = s.offset,
-                          .weight = &s.b[MARGIN + 30][MARGIN]};
-    s.field_image = (field_image_job){.from = lacking,
-                                      .thin = thin,
-                                      .to = out,
-                                      .stride = FIELD,
-                                      .count = 1 + round % 40,
-                                      .offset = s.offset,
-                                      .weight = &s.b[MARGIN + 30][MARGIN]};
+    for (int i = 1; i < SLAB_COPIES; i++) s.half_pixel.moved[i] = &s.out.pixels[MARGIN + 16 * i][MARGIN];
+    s.image = (emission_job){.from = &s.a[MARGIN][MARGIN],
+                             .to = &s.out.pixels[MARGIN][MARGIN],
+                             .stride = FIELD,
+                             .count = 1 + round % 40,
+                             .offset = s.offset,
+                             .weight = &s.b[MARGIN + 30][MARGIN]};
+    s.field_image = (field_emission_job){.from = lacking,
+                                         .thin = thin,
+                                         .to = out,
+                                         .stride = FIELD,
+                                         .count = 1 + round % 40,
+                                         .offset = s.offset,
+                                         .weight = &s.b[MARGIN + 30][MARGIN]};
     for (int i = 0; i < 40; i++)
       s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD +
                     (ptrdiff_t)random_between(&seed, -20, 20);
@@ -650,12 +651,12 @@ typedef struct shade_state {
   int patch_count, covers;
   shade_light lights[3];
   shadow_lookup lookups[3];
-  part_lookup parts[3][3];
+  sublight_lookup sublights[3][3];
   uint32_t blocks;
   float density[4][TILE_PIXELS];
   float cut[2][TILE_PIXELS];
   float buffer[HL_CHANNELS][64][64];
-  part_pixel left[HL_CHANNELS][64][64]; /* whole numbers of buffer */
+  sublight_pixel left[HL_CHANNELS][64][64]; /* whole numbers of buffer */
   struct {
     float pixels[4 * TILE_PIXELS];
     uint64_t samples;
@@ -686,7 +687,7 @@ static shadow_map random_map(uint32_t *seed, double steepest) {
 static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
   fill_salted(&s->buffer[0][0][0], sizeof s->buffer / 4, seed, 0, 1);
   for (int i = 0; i < HL_CHANNELS * 64 * 64; i++)
-    (&s->left[0][0][0])[i] = (part_pixel)((&s->buffer[0][0][0])[i] * PART_ONE);
+    (&s->left[0][0][0])[i] = (sublight_pixel)((&s->buffer[0][0][0])[i] * SUBLIGHT_ONE);
   for (int i = 0; i < 3; i++) {
     shade_light *light = &s->lights[i];
     vec3 towards = bench_random_direction(seed);
@@ -698,8 +699,8 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
                            .shadowed = i < 2,
                            .path = 0.7f,
                            .lookup = &s->lookups[i],
-                           .parts = s->parts[i],
-                           .part_count = round % 4,
+                           .sublights = s->sublights[i],
+                           .sublight_count = round % 4,
                            .channels = s->job.channels,
                            .nearest = round % 5 == 4,
                            .cubic = round / 4 % 2};
@@ -710,24 +711,24 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
       s->lookups[i].older[c] = round % 2 ? &s->buffer[c][9][7] : NULL;
     }
     for (int part = 0; part < 3; part++) {
-      s->parts[i][part] = (part_lookup){.map = random_map(seed, part == 0 ? 9 : 2),
-                                        .weight = {1, 0.7f, salted(seed, 0, 1)}};
-      for (int c = 0; c < HL_CHANNELS; c++) s->parts[i][part].left[c] = &s->left[c][2][2];
+      s->sublights[i][part] = (sublight_lookup){.map = random_map(seed, part == 0 ? 9 : 2),
+                                                .weight = {1, 0.7f, salted(seed, 0, 1)}};
+      for (int c = 0; c < HL_CHANNELS; c++) s->sublights[i][part].transmittance[c] = &s->left[c][2][2];
     }
     if (round % 4 == 3) light->cone = (light_cone){{-light->towards[0], 0.6f, -light->towards[2]}, 0.3f, 4};
     if ((round + i) % 3 == 0) {
-      light->screen = (light_screen){
+      light->texture = (light_texture){
           .pixels = &s->buffer[0][0][0], .width = 1 + round % 30, .height = 20, .sharpness = {1, 2.5f}};
       for (int row = 0; row < 3; row++)
         for (int column = 0; column < 4; column++)
-          light->screen.map[row][column] = random_between(seed, -1, 9);
-      light->screen.level_count = round % 4;
-      light->screen.first = 0.05f;
-      light->screen.edge[0] = 0.3f;
-      light->screen.parallel = round % 2;
-      light->screen.beyond[i] = 1;
-      for (int l = 0; l < light->screen.level_count; l++)
-        light->screen.level[l] = (screen_level){
+          light->texture.map[row][column] = random_between(seed, -1, 9);
+      light->texture.level_count = round % 4;
+      light->texture.first = 0.05f;
+      light->texture.edge[0] = 0.3f;
+      light->texture.parallel = round % 2;
+      light->texture.beyond[i] = 1;
+      for (int l = 0; l < light->texture.level_count; l++)
+        light->texture.level[l] = (texture_level){
             &s->buffer[0][0][0] + 99 * l, 20 + l, 15, {0.7f, 1}, {2.5f, 3}};
     }
   }

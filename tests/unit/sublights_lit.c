@@ -1,4 +1,4 @@
-/* unit/sublights_lit.c - the blocks of a slab that parts of a light reach, against every one of the parts'
+/* unit/sublights_lit.c - the blocks of a slab that sub-lights reach, against every one of the sub-lights'
  * blocks looked at. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,17 +11,17 @@
 #include "shadow_sublights/sublights.h"
 
 enum {
-  PARTS = 3,
-  PART_TILES = 5,
+  SUBLIGHTS = 3,
+  SUBLIGHT_TILES = 5,
   SLAB_TILES = 4,
   SLAB_BLOCKS = SLAB_TILES * 4,
-  PART_BLOCKS = PART_TILES * 4
+  SUBLIGHT_BLOCKS = SUBLIGHT_TILES * 4
 };
 
 typedef struct lit_case {
   sublights sublights;
-  sublight parts[PARTS];
-  uint16_t flags[PARTS][PART_TILES * PART_TILES];
+  sublight sublight[SUBLIGHTS];
+  uint16_t flags[SUBLIGHTS][SUBLIGHT_TILES * SUBLIGHT_TILES];
   uint32_t found[SLAB_TILES * SLAB_TILES];
   uint16_t tile_lit[SLAB_TILES * SLAB_TILES];
   shadow_buffer slab;
@@ -33,40 +33,44 @@ static double random_between(uint32_t *seed, double low, double high) {
 }
 
 static void make_case(lit_case *c, uint32_t *seed) {
-  *c = (lit_case){
-      .sublights = {.count = PARTS, .channels = 1, .tiles_x = PART_TILES, .tiles_y = PART_TILES, .slabs = 1},
-      .slab = {.tiles_x = SLAB_TILES, .tiles_y = SLAB_TILES}};
-  c->sublights.parts = c->parts;
+  *c = (lit_case){.sublights = {.count = SUBLIGHTS,
+                                .channels = 1,
+                                .tiles_x = SUBLIGHT_TILES,
+                                .tiles_y = SUBLIGHT_TILES,
+                                .slabs = 1},
+                  .slab = {.tiles_x = SLAB_TILES, .tiles_y = SLAB_TILES}};
+  c->sublights.sublight = c->sublight;
   c->sublights.found = c->found;
   c->slab.tile_lit = c->tile_lit;
-  for (int i = 0; i < PARTS; i++) {
-    sublight *part = &c->parts[i];
-    part->reaches = i < 2;
-    part->lit = c->flags[i];
+  for (int i = 0; i < SUBLIGHTS; i++) {
+    sublight *sublight = &c->sublight[i];
+    sublight->reaches = i < 2;
+    sublight->lit = c->flags[i];
     for (int axis = 0; axis < 2; axis++) {
-      part->near.scale[axis] = random_between(seed, 0, 1) < 0.5 ? 1 : random_between(seed, 0.8, 1.3);
-      part->far.scale[axis] = part->near.scale[axis];
-      part->near.shift[axis] = random_between(seed, -30, 20);
-      part->far.shift[axis] = part->near.shift[axis] + random_between(seed, -3, 3);
+      sublight->near.scale[axis] = random_between(seed, 0, 1) < 0.5 ? 1 : random_between(seed, 0.8, 1.3);
+      sublight->far.scale[axis] = sublight->near.scale[axis];
+      sublight->near.shift[axis] = random_between(seed, -30, 20);
+      sublight->far.shift[axis] = sublight->near.shift[axis] + random_between(seed, -3, 3);
     }
-    for (int tile = 0; tile < PART_TILES * PART_TILES; tile++)
+    for (int tile = 0; tile < SUBLIGHT_TILES * SUBLIGHT_TILES; tile++)
       c->flags[i][tile] = random_between(seed, 0, 1) < 0.7
                               ? 0
                               : (uint16_t)(1u << (int)random_between(seed, 0, 15.99));
   }
 }
 
-/* Whether pixels of the slab, some more around its block, lie over a lit block of the part at one of its
- * places. */
-static bool is_under(const sublight *part, const part_place *place, int x, int y, double around) {
-  for (int row = 0; row < PART_BLOCKS; row++)
-    for (int column = 0; column < PART_BLOCKS; column++) {
-      const int part_block[2] = {column, row}, block[2] = {x, y};
-      bool apart = (part->lit[row / 4 * PART_TILES + column / 4] >> (row % 4 * 4 + column % 4) & 1) == 0;
+/* Whether pixels of the slab, some more around its block, lie over a lit block of the sub-light in one of its
+ * maps. */
+static bool is_under(const sublight *sublight, const sublight_map *map, int x, int y, double around) {
+  for (int row = 0; row < SUBLIGHT_BLOCKS; row++)
+    for (int column = 0; column < SUBLIGHT_BLOCKS; column++) {
+      const int sublight_block[2] = {column, row}, block[2] = {x, y};
+      bool apart = (sublight->lit[row / 4 * SUBLIGHT_TILES + column / 4] >> (row % 4 * 4 + column % 4) & 1) ==
+                   0;
       for (int axis = 0; axis < 2; axis++) {
-        double low = place->scale[axis] * (block[axis] * BLOCK - around - place->shift[axis]);
-        double high = place->scale[axis] * ((block[axis] + 1) * BLOCK + around - place->shift[axis]);
-        apart = apart || high < part_block[axis] * BLOCK || low > (part_block[axis] + 1) * BLOCK;
+        double low = map->scale[axis] * (block[axis] * BLOCK - around - map->shift[axis]);
+        double high = map->scale[axis] * ((block[axis] + 1) * BLOCK + around - map->shift[axis]);
+        apart = apart || high < sublight_block[axis] * BLOCK || low > (sublight_block[axis] + 1) * BLOCK;
       }
       if (!apart) return true;
     }
@@ -74,9 +78,9 @@ static bool is_under(const sublight *part, const part_place *place, int x, int y
 }
 
 static bool is_lit(const lit_case *c, int x, int y, double around) {
-  for (int i = 0; i < PARTS; i++)
-    if (c->parts[i].reaches && (is_under(&c->parts[i], &c->parts[i].near, x, y, around) ||
-                                is_under(&c->parts[i], &c->parts[i].far, x, y, around)))
+  for (int i = 0; i < SUBLIGHTS; i++)
+    if (c->sublight[i].reaches && (is_under(&c->sublight[i], &c->sublight[i].near, x, y, around) ||
+                                   is_under(&c->sublight[i], &c->sublight[i].far, x, y, around)))
       return true;
   return false;
 }
@@ -110,11 +114,11 @@ static void test_when_it_is_found(void **state) {
   c.sublights.slabs = 0; /* nothing was taken yet */
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], ALL_BLOCKS);
-  for (int i = 0; i < PARTS; i++) c.parts[i].reaches = false;
+  for (int i = 0; i < SUBLIGHTS; i++) c.sublight[i].reaches = false;
   c.sublights.slabs = 1;
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], 0);
-  c.parts[0].comes = true; /* found anew with the next run only */
+  c.sublight[0].comes = true; /* found anew with the next run only */
   hl_sublights_find_lit(&c.sublights, &c.slab, 0);
   assert_int_equal(c.tile_lit[0], 0);
   c.sublights.slabs = 5;

@@ -1,4 +1,4 @@
-/* light/light_parts.c - where the parts of a light stand. */
+/* light/sublight_points.c - where the parts of a light stand. */
 #include "light/light_extent.h"
 
 /* Points of which every half-plane holds as nearly as can be the share that it covers: found by
@@ -6,9 +6,9 @@
  * the root mean square error of penumbrae under straight edges is 0.0326 of the light, 0.028 to 0.036 by the
  * edge's direction, where the turned grid has 0.0362. */
 enum { SEARCHED_SIDES = 3, MOST_SEARCHED = 16 };
-typedef double part_points[MOST_SEARCHED][2];
+typedef double square_points[MOST_SEARCHED][2];
 
-static const part_points of_disk[SEARCHED_SIDES] = {
+static const square_points of_disk[SEARCHED_SIDES] = {
     {{0.1656, 0.3936}, {0.3808, 0.7391}, {0.6651, 0.1651}, {0.8361, 0.7296}},
     {{0.0899, 0.3785},
      {0.2579, 0.6495},
@@ -37,7 +37,7 @@ static const part_points of_disk[SEARCHED_SIDES] = {
      {0.9413, 0.7115}},
 };
 
-static const part_points of_square[SEARCHED_SIDES] = {
+static const square_points of_square[SEARCHED_SIDES] = {
     {{0.2017, 0.3906}, {0.3330, 0.8200}, {0.5909, 0.1396}, {0.8743, 0.6498}},
     {{0.1667, 0.1310},
      {0.1039, 0.5282},
@@ -66,18 +66,18 @@ static const part_points of_square[SEARCHED_SIDES] = {
      {0.9302, 0.7083}},
 };
 
-void hl_light_grid_part(int side, int i, int j, double square[2]) {
+void hl_sublight_grid_point(int side, int i, int j, double square[2]) {
   square[0] = (i + (j + 0.5) / side) / side;
   square[1] = (j + 1 - (i + 0.5) / side) / side;
 }
 
 /* Polygons have no one shape. */
-void hl_light_part(const light_source *source, int side, int i, int j, double square[2]) {
+void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]) {
   if (side < 2 || side >= 2 + SEARCHED_SIDES || source->light->type == HL_LIGHT_POLYGON) {
-    hl_light_grid_part(side, i, j, square);
+    hl_sublight_grid_point(side, i, j, square);
     return;
   }
-  const part_points *points = source->light->type == HL_LIGHT_RECT ? &of_square[side - 2]
-                                                                   : &of_disk[side - 2];
+  const square_points *points = source->light->type == HL_LIGHT_RECT ? &of_square[side - 2]
+                                                                     : &of_disk[side - 2];
   for (int axis = 0; axis < 2; axis++) square[axis] = (*points)[i * side + j][axis];
 }

@@ -1,6 +1,6 @@
-/* light/light_screen.c - where a light's image stands, averaged to the picture's pixels and blurred by the
+/* light/light_texture.c - where a light's image stands, averaged to the picture's pixels and blurred by the
  * light's shape. */
-#include "light/light_screen.h"
+#include "light/light_texture.h"
 
 #include "core/context.h"
 #include "core/memory.h"
@@ -48,12 +48,12 @@ typedef struct axis_weights {
 } axis_weights;
 
 /* The part of a kernel below x, its half width being 1. */
-typedef double kernel_part(double x);
+typedef double kernel_fraction(double x);
 
-static double part_of_box(double x) { return fmin(fmax((x + 1) / 2, 0), 1); }
+static double box_below(double x) { return fmin(fmax((x + 1) / 2, 0), 1); }
 
 /* A disk of radius 1 has the area x sqrt(1 - x^2) + asin x + pi / 2 below x. */
-static double part_of_disk(double x) {
+static double disk_below(double x) {
   if (x <= -1) return 0;
   if (x >= 1) return 1;
   return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
@@ -61,7 +61,7 @@ static double part_of_disk(double x) {
 
 /* Result pixel i is the kernel's mean around start + (i + 1/2) step, in pixels of the image, which has length
  * of them. */
-static hl_status weigh_axis(hl_context *context, kernel_part *part, double half_width, double start,
+static hl_status weigh_axis(hl_context *context, kernel_fraction *below, double half_width, double start,
                             double step, int count, int length, axis_weights *axis, hl_error *error) {
   axis->count = count;
   axis->taps = (int)fmin(ceil(2 * half_width) + 2, length);
@@ -75,8 +75,8 @@ static hl_status weigh_axis(hl_context *context, kernel_part *part, double half_
     int first = (int)fmin(fmax(floor(middle - half_width), 0), length - axis->taps);
     axis->first[i] = first;
     for (int tap = 0; tap < axis->taps; tap++)
-      axis->weights[(size_t)i * taps + (size_t)tap] = (float)(part((first + tap + 1 - middle) / half_width) -
-                                                              part((first + tap - middle) / half_width));
+      axis->weights[(size_t)i * taps + (size_t)tap] = (float)(below((first + tap + 1 - middle) / half_width) -
+                                                              below((first + tap - middle) / half_width));
   }
   return HL_OK;
 }
@@ -127,13 +127,13 @@ typedef struct level_plan {
   double start[2], step[2], half_width[2]; /* pixels of the image that is convolved */
 } level_plan;
 
-static hl_status make_level(hl_context *context, kernel_part *part, const float *from, int width, int height,
-                            const level_plan *plan, float *to, hl_error *error) {
+static hl_status make_level(hl_context *context, kernel_fraction *below, const float *from, int width,
+                            int height, const level_plan *plan, float *to, hl_error *error) {
   axis_weights u = {0}, v = {0};
-  hl_status status = weigh_axis(context, part, plan->half_width[0], plan->start[0], plan->step[0],
+  hl_status status = weigh_axis(context, below, plan->half_width[0], plan->start[0], plan->step[0],
                                 plan->width, width, &u, error);
   if (status == HL_OK)
-    status = weigh_axis(context, part, plan->half_width[1], plan->start[1], plan->step[1], plan->height,
+    status = weigh_axis(context, below, plan->half_width[1], plan->start[1], plan->step[1], plan->height,
                         height, &v, error);
   if (status == HL_OK) status = convolve(context, from, width, height, &u, &v, to, error);
   release_axis(context, &u);
@@ -176,14 +176,14 @@ static double blur_at(const light_source *source, const view *view, vec3 point) 
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
 enum { GREATEST_LEVEL_SIDE = 8192 };
 
-static level_plan plan_level(const light_screen *screen, const double deviation[2], double half_widths,
+static level_plan plan_level(const light_texture *texture, const double deviation[2], double half_widths,
                              double blur) {
   level_plan plan;
   int size[2];
-  const int image[2] = {screen->width, screen->height};
+  const int image[2] = {texture->width, texture->height};
   for (int axis = 0; axis < 2; axis++) {
-    double sigma = deviation[axis] * blur, least = LEAST_PIXEL / (double)screen->sharpness[axis];
-    plan.half_width[axis] = fmax(half_widths * sigma, 0.5 / (double)screen->sharpness[axis]);
+    double sigma = deviation[axis] * blur, least = LEAST_PIXEL / (double)texture->sharpness[axis];
+    plan.half_width[axis] = fmax(half_widths * sigma, 0.5 / (double)texture->sharpness[axis]);
     double extent = image[axis] + 2 * plan.half_width[axis];
     plan.step[axis] = fmax(fmax(sigma * LEVEL_PIXEL, least), extent / (GREATEST_LEVEL_SIDE - 4));
     size[axis] = (int)fmin(ceil(extent / plan.step[axis] + 4),
@@ -196,41 +196,41 @@ static level_plan plan_level(const light_screen *screen, const double deviation[
 }
 
 static hl_status make_levels(hl_context *context, const light_source *source, const view *view,
-                             const vec3 *points, int point_count, vec3 content, light_screen *screen,
+                             const vec3 *points, int point_count, vec3 content, light_texture *texture,
                              size_t averaged, hl_error *error) {
   double deviation[2], widest = 0, reach = 0;
-  level_plan plans[SCREEN_LEVELS];
-  kernel_part *part = source->light->type == HL_LIGHT_RECT ? part_of_box : part_of_disk;
+  level_plan plans[TEXTURE_LEVELS];
+  kernel_fraction *below = source->light->type == HL_LIGHT_RECT ? box_below : disk_below;
   double half_widths = source->light->type == HL_LIGHT_RECT ? sqrt(3) : 2; /* in standard deviations */
   spread_on_screen(source, view, content, deviation);
   for (int axis = 0; axis < 2; axis++)
-    widest = fmax(widest, deviation[axis] * (double)screen->sharpness[axis]);
+    widest = fmax(widest, deviation[axis] * (double)texture->sharpness[axis]);
   for (int i = 0; i < point_count; i++) reach = fmax(reach, blur_at(source, view, points[i]));
   if (!(widest * reach > 0.25)) return HL_OK; /* a quarter of the picture's pixel */
   double first = FIRST_BLUR / widest;
   size_t floats = 0;
-  while (screen->level_count < SCREEN_LEVELS) {
-    int l = screen->level_count++;
-    plans[l] = plan_level(screen, deviation, half_widths, first * pow(2, 0.5 * l));
+  while (texture->level_count < TEXTURE_LEVELS) {
+    int l = texture->level_count++;
+    plans[l] = plan_level(texture, deviation, half_widths, first * pow(2, 0.5 * l));
     floats += (size_t)plans[l].width * (size_t)plans[l].height * 3;
     if (first * pow(2, 0.5 * l) >= reach) break;
   }
-  screen->first = (float)(1 / (first * first));
-  for (int axis = 0; axis < 2; axis++) screen->edge[axis] = (float)(sqrt(12) * deviation[axis]);
-  float *memory = hl_reallocate(context, screen->memory, averaged + floats, sizeof *memory);
+  texture->first = (float)(1 / (first * first));
+  for (int axis = 0; axis < 2; axis++) texture->edge[axis] = (float)(sqrt(12) * deviation[axis]);
+  float *memory = hl_reallocate(context, texture->memory, averaged + floats, sizeof *memory);
   if (memory == NULL) return hl_fail_memory(error, floats * sizeof *memory, "a light's texture");
-  screen->memory = memory;
-  if (averaged > 0) screen->pixels = memory;
+  texture->memory = memory;
+  if (averaged > 0) texture->pixels = memory;
   float *to = memory + averaged;
-  for (int l = 0; l < screen->level_count; l++) {
-    screen_level *level = &screen->level[l];
-    *level = (screen_level){.pixels = to, .width = plans[l].width, .height = plans[l].height};
+  for (int l = 0; l < texture->level_count; l++) {
+    texture_level *level = &texture->level[l];
+    *level = (texture_level){.pixels = to, .width = plans[l].width, .height = plans[l].height};
     for (int axis = 0; axis < 2; axis++) {
       level->scale[axis] = (float)(1 / plans[l].step[axis]);
       level->shift[axis] = (float)(-plans[l].start[axis] / plans[l].step[axis]);
     }
-    hl_status status = make_level(context, part, screen->pixels, screen->width, screen->height, &plans[l], to,
-                                  error);
+    hl_status status = make_level(context, below, texture->pixels, texture->width, texture->height, &plans[l],
+                                  to, error);
     if (status != HL_OK) return status;
     to += (size_t)level->width * (size_t)level->height * 3;
   }
@@ -247,53 +247,53 @@ static int resolution(double length, int count, double pixel, float *sharpness) 
   return chosen;
 }
 
-static hl_status average_image(hl_context *context, const hl_light_texture *texture, light_screen *screen,
+static hl_status average_image(hl_context *context, const hl_light_texture *described, light_texture *texture,
                                hl_error *error) {
-  level_plan plan = {screen->width, screen->height, {0, 0}, {0, 0}, {0, 0}};
-  plan.step[0] = (double)texture->width / screen->width;
-  plan.step[1] = (double)texture->height / screen->height;
+  level_plan plan = {texture->width, texture->height, {0, 0}, {0, 0}, {0, 0}};
+  plan.step[0] = (double)described->width / texture->width;
+  plan.step[1] = (double)described->height / texture->height;
   for (int axis = 0; axis < 2; axis++) plan.half_width[axis] = plan.step[axis] / 2;
-  screen->memory = hl_allocate(context, (size_t)screen->width * (size_t)screen->height,
-                               3 * sizeof *screen->memory);
-  if (screen->memory == NULL)
-    return hl_fail_memory(error, (size_t)screen->width * (size_t)screen->height * 12, "a light's texture");
-  screen->pixels = screen->memory;
-  return make_level(context, part_of_box, texture->pixels, texture->width, texture->height, &plan,
-                    screen->memory, error);
+  texture->memory = hl_allocate(context, (size_t)texture->width * (size_t)texture->height,
+                                3 * sizeof *texture->memory);
+  if (texture->memory == NULL)
+    return hl_fail_memory(error, (size_t)texture->width * (size_t)texture->height * 12, "a light's texture");
+  texture->pixels = texture->memory;
+  return make_level(context, box_below, described->pixels, described->width, described->height, &plan,
+                    texture->memory, error);
 }
 
 static void store_row(float to[4], const double from[4]) {
   for (int column = 0; column < 4; column++) to[column] = (float)from[column];
 }
 
-hl_status hl_light_screen_create(hl_context *context, const light_source *source, const vec3 *points,
-                                 int point_count, vec3 content, double pixel, light_screen *screen,
-                                 hl_error *error) {
-  const hl_light_texture *texture = &source->light->texture;
-  *screen = (light_screen){.pixels = texture->pixels, .parallel = source->parallel};
-  if (texture->pixels == NULL) return HL_OK;
+hl_status hl_light_texture_create(hl_context *context, const light_source *source, const vec3 *points,
+                                  int point_count, vec3 content, double pixel, light_texture *texture,
+                                  hl_error *error) {
+  const hl_light_texture *described = &source->light->texture;
+  *texture = (light_texture){.pixels = described->pixels, .parallel = source->parallel};
+  if (described->pixels == NULL) return HL_OK;
   view whole = view_of_screen(source, 1, 1);
   double right = 2 * length_at_content(source, &whole, source->screen_right, content);
   double up = 2 * length_at_content(source, &whole, source->screen_up, content);
-  screen->width = resolution(right, texture->width, pixel, &screen->sharpness[0]);
-  screen->height = resolution(up, texture->height, pixel, &screen->sharpness[1]);
-  view view = view_of_screen(source, screen->width, screen->height);
+  texture->width = resolution(right, described->width, pixel, &texture->sharpness[0]);
+  texture->height = resolution(up, described->height, pixel, &texture->sharpness[1]);
+  view view = view_of_screen(source, texture->width, texture->height);
   double rows[3][4];
   hl_view_homogeneous(&view, affine3_identity(), rows);
-  for (int row = 0; row < 3; row++) store_row(screen->map[row], rows[row]);
+  for (int row = 0; row < 3; row++) store_row(texture->map[row], rows[row]);
   vec3 along = view.inverse.row[0];
-  store_row(screen->beyond, (double[4]){along.x, along.y, along.z, -vec3_dot(along, view.corner)});
+  store_row(texture->beyond, (double[4]){along.x, along.y, along.z, -vec3_dot(along, view.corner)});
   size_t averaged = 0;
   hl_status status = HL_OK;
-  if (screen->width != texture->width || screen->height != texture->height) {
-    status = average_image(context, texture, screen, error);
-    averaged = (size_t)screen->width * (size_t)screen->height * 3;
+  if (texture->width != described->width || texture->height != described->height) {
+    status = average_image(context, described, texture, error);
+    averaged = (size_t)texture->width * (size_t)texture->height * 3;
   }
   return status == HL_OK
-             ? make_levels(context, source, &view, points, point_count, content, screen, averaged, error)
+             ? make_levels(context, source, &view, points, point_count, content, texture, averaged, error)
              : status;
 }
 
-void hl_light_screen_release(hl_context *context, light_screen *screen) {
-  hl_release(context, screen->memory);
+void hl_light_texture_release(hl_context *context, light_texture *texture) {
+  hl_release(context, texture->memory);
 }

@@ -1,17 +1,18 @@
-/* shadow_cascade/cascade_image.c - a cascade's groups through a light with an image: each by its own kernel.
+/* shadow_cascade/cascade_emission.c - a cascade's groups through a light with an image: each by its own
+ * kernel.
  *
  * Boxes may be blurred step by step, since of them variances alone matter. An image must be whole in every
  * penumbra: what group o absorbed is weighed at once by the taps of the image, scaled to w(o -> r)
- * (light_image.h), far groups first: s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel (derived
- * as in cascade.h; without thin matter it is the sum over groups of K(G), which is the light's mean of
- * what its cells see). Nothing is kept from one receiver to the next; far groups are coarse. */
+ * (light_emission.h), far groups first: s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel
+ * (derived as in cascade.h; without thin matter it is the sum over groups of K(G), which is the light's mean
+ * of what its cells see). Nothing is kept from one receiver to the next; far groups are coarse. */
 #include "shadow_cascade/cascade_passes.h"
 
 #include <string.h>
 
-_Static_assert(IMAGE_GREATEST_STEP == 2 * BLUR_GREATEST_REACH - 4, "a box can blur by a step");
+_Static_assert(EMISSION_GREATEST_STEP == 2 * BLUR_GREATEST_REACH - 4, "a box can blur by a step");
 
-typedef struct image_pass {
+typedef struct emission_pass {
   const soft_cascade *cascade;
   cascade_level *level;
   const cascade_group *group;
@@ -20,11 +21,11 @@ typedef struct image_pass {
   bool averaged; /* pre holds the group's means over step pixels */
   int reach;     /* of the taps and the means, tiles */
   const cascade_functions *functions;
-} image_pass;
+} emission_pass;
 
 /* What a level adds its groups to. */
 static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_level *level, int channel) {
-  return level == &cascade->level[0] ? &cascade->shade[channel] : &level->sum[0][channel];
+  return level == &cascade->level[0] ? &cascade->absorbed[channel] : &level->sum[0][channel];
 }
 
 /* What is read of a row of tiles: by the next slabs, or for the next finer level, which weighs neighbouring
@@ -85,7 +86,7 @@ static void start_row(void *data, size_t index, int worker) {
 /* Means over step pixels, of what was absorbed and of what thin matter took of it. */
 static void average_row(void *data, size_t index, int worker) {
   (void)worker;
-  const image_pass *pass = data;
+  const emission_pass *pass = data;
   const cascade_level *level = pass->level;
   for (int c = 0; c < pass->cascade->channels; c++) {
     const cascade_field *from[2] = {&pass->group->absorbed[c], &pass->group->thin[c]};
@@ -110,7 +111,7 @@ static void average_row(void *data, size_t index, int worker) {
 }
 
 /* Taps that look beyond the level's zeros see nothing. Returns how many are left. */
-static int offsets_of(const cascade_level *level, const image_taps *taps, int x, int y, ptrdiff_t *offset,
+static int offsets_of(const cascade_level *level, const emission_taps *taps, int x, int y, ptrdiff_t *offset,
                       int *kept) {
   int count = 0;
   for (int i = 0; i < taps->count; i++) {
@@ -123,34 +124,34 @@ static int offsets_of(const cascade_level *level, const image_taps *taps, int x,
   return count;
 }
 
-static void add_tile(const image_pass *pass, const image_taps *taps, int x, int y) {
+static void add_tile(const emission_pass *pass, const emission_taps *taps, int x, int y) {
   const cascade_level *level = pass->level;
-  ptrdiff_t offset[IMAGE_TAPS];
-  int kept[IMAGE_TAPS], count = offsets_of(level, taps, x, y, offset, kept);
+  ptrdiff_t offset[EMISSION_TAPS];
+  int kept[EMISSION_TAPS], count = offsets_of(level, taps, x, y, offset, kept);
   for (int c = 0; c < pass->cascade->channels; c++) {
     const cascade_field *to = sum_of(pass->cascade, level, c);
     const cascade_field *from = pass->averaged ? &level->mean[0][c] : &pass->group->absorbed[c];
     const cascade_field *thin = pass->averaged ? &level->mean[1][c] : &pass->group->thin[c];
     if (!any_near(level, from, x, y, pass->reach)) continue;
-    float weight[IMAGE_TAPS];
+    float weight[EMISSION_TAPS];
     for (int i = 0; i < count; i++) weight[i] = taps->weight[c][kept[i]];
-    field_image_job job = {.from = from->pixels,
-                           .thin = thin->pixels,
-                           .to = to->pixels,
-                           .stride = level->stride,
-                           .count = count,
-                           .offset = offset,
-                           .weight = weight};
-    to->zeros[y * level->tiles_x + x] = !pass->functions->image_add(&job, x, y);
+    field_emission_job job = {.from = from->pixels,
+                              .thin = thin->pixels,
+                              .to = to->pixels,
+                              .stride = level->stride,
+                              .count = count,
+                              .offset = offset,
+                              .weight = weight};
+    to->zeros[y * level->tiles_x + x] = !pass->functions->emission_add(&job, x, y);
   }
 }
 
 static void add_row(void *data, size_t index, int worker) {
   (void)worker;
-  const image_pass *pass = data;
+  const emission_pass *pass = data;
   const soft_cascade *cascade = pass->cascade;
   const cascade_level *level = pass->level;
-  image_taps taps;
+  emission_taps taps;
   bool known = false;
   const read_row read = row_read(cascade, level, index);
   for (int x = 0; x < level->tiles_x; x++) {
@@ -158,8 +159,8 @@ static void add_row(void *data, size_t index, int worker) {
     const double slope[2] = {
         cascade->slope_start[0] + cascade->slope_step[0] * (x + 0.5) * TILE * level->scale,
         cascade->slope_start[1] + cascade->slope_step[1] * ((double)index + 0.5) * TILE * level->scale};
-    if (!known || cascade->image->tilted)
-      hl_light_image_taps(cascade->image, pass->width, pass->step, slope, &taps);
+    if (!known || cascade->emission->tilted)
+      hl_light_emission_taps(cascade->emission, pass->width, pass->step, slope, &taps);
     known = true;
     add_tile(pass, &taps, x, (int)index);
   }
@@ -167,20 +168,20 @@ static void add_row(void *data, size_t index, int worker) {
 
 static void add_group(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
                       double receiver, const cascade_crew *crew) {
-  image_pass pass = {.cascade = cascade,
-                     .level = level,
-                     .group = group,
-                     .functions = crew->functions,
-                     .width = fmax(receiver - group->omega, 0) / level->scale};
-  hl_light_image_steps(cascade->image, pass.width, pass.step);
+  emission_pass pass = {.cascade = cascade,
+                        .level = level,
+                        .group = group,
+                        .functions = crew->functions,
+                        .width = fmax(receiver - group->omega, 0) / level->scale};
+  hl_light_emission_steps(cascade->emission, pass.width, pass.step);
   pass.averaged = pass.step[0] > 1 || pass.step[1] > 1;
-  double reach = cascade->image->reach * pass.width + fmax(pass.step[0], pass.step[1]) + 2;
+  double reach = cascade->emission->reach * pass.width + fmax(pass.step[0], pass.step[1]) + 2;
   pass.reach = (int)fmin(ceil(reach / TILE), fmax(level->tiles_x, level->tiles_y));
   if (pass.averaged) hl_pool_run(crew->pool, (size_t)level->tiles_y, average_row, &pass);
   hl_pool_run(crew->pool, (size_t)level->tiles_y, add_row, &pass);
 }
 
-bool hl_soft_cascade_pass_image(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
+bool hl_cascade_pass_emission(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *farther = NULL;
   for (int i = cascade->level_count - 1; i >= 0; i--) {
     cascade_level *level = &cascade->level[i];

@@ -1,4 +1,4 @@
-/* light/light_screen.h - the image that a light projects (section 4, fig. 9), ready for lookups at samples.
+/* light/light_texture.h - the image that a light projects (section 4, fig. 9), ready for lookups at samples.
  *
  * Every sample is projected onto the screen along its light ray: the pattern is as sharp as its image,
  * whatever the shadow buffer's resolution. An image finer than the picture is averaged down to the picture's
@@ -9,22 +9,22 @@
  * light) or by 1 - Zs / Z, the screen being at Zs and the sample at Z from a near light (eq. (5), the screen
  * as occluder). Levels of doubling variance are made once a frame, and each sample takes its own mean of
  * two. */
-#ifndef HL_LIGHT_LIGHT_SCREEN_H
-#define HL_LIGHT_LIGHT_SCREEN_H
+#ifndef HL_LIGHT_LIGHT_TEXTURE_H
+#define HL_LIGHT_LIGHT_TEXTURE_H
 
 #include "core/error.h"
 #include "light/light_source.h"
 
 /* The image blurred by the light's own shape, dark beyond the screen: a border of zeros. */
-typedef struct screen_level {
-  const float *pixels; /* [height][width][3]; in the screen's memory */
+typedef struct texture_level {
+  const float *pixels; /* [height][width][3]; in the light texture's memory */
   int width, height;
   float scale[2], shift[2]; /* pixels of the image -> of the level */
-} screen_level;
+} texture_level;
 
-enum { SCREEN_LEVELS = 24 };
+enum { TEXTURE_LEVELS = 24 };
 
-typedef struct light_screen {
+typedef struct light_texture {
   const float *pixels; /* [height][width][3], linear RGB; null: the light has no texture */
   int width, height;
   float map[3][4]; /* frame space -> (w, w u, w v): u, v in pixels from the image's top left corner; w <= 0:
@@ -38,15 +38,15 @@ typedef struct light_screen {
   float
       edge[2]; /* along u and v: width in pixels of the image of the box that blurs as much, at distance 1 */
   int level_count; /* 0: the light has no extent that matters */
-  screen_level level[SCREEN_LEVELS];
+  texture_level level[TEXTURE_LEVELS];
   float *memory; /* owned; the image averaged and its levels; null where neither is needed */
-} light_screen;
+} light_texture;
 
 /* points: corners of what is lit, content: their middle; pixel: edge of a picture's pixel there; frame units.
- * Release with hl_light_screen_release(), after a failure too. */
-hl_status hl_light_screen_create(hl_context *context, const light_source *source, const vec3 *points,
-                                 int point_count, vec3 content, double pixel, light_screen *screen,
-                                 hl_error *error);
-void hl_light_screen_release(hl_context *context, light_screen *screen);
+ * Release with hl_light_texture_release(), after a failure too. */
+hl_status hl_light_texture_create(hl_context *context, const light_source *source, const vec3 *points,
+                                  int point_count, vec3 content, double pixel, light_texture *texture,
+                                  hl_error *error);
+void hl_light_texture_release(hl_context *context, light_texture *texture);
 
 #endif

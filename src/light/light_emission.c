@@ -1,5 +1,5 @@
-/* light/light_image.c - a light's own image cut into cells, and cells into the taps of a penumbra. */
-#include "light/light_image.h"
+/* light/light_emission.c - a light's own image cut into cells, and cells into the taps of a penumbra. */
+#include "light/light_emission.h"
 
 #include "core/memory.h"
 #include "scene/light_shape.h"
@@ -10,18 +10,18 @@ enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };
 /* Bilinear between the middles of pixels; s to the right and t upwards, each from -1 to 1. */
 static void add_color(const hl_light_emission *emission, double s, double t, double sum[HL_CHANNELS]) {
   const int size[2] = {emission->width, emission->height};
-  const double place[2] = {(1 + s) / 2 * size[0] - 0.5, (1 - t) / 2 * size[1] - 0.5};
+  const double position[2] = {(1 + s) / 2 * size[0] - 0.5, (1 - t) / 2 * size[1] - 0.5};
   size_t pixel[2][2];
-  double part[2];
+  double fraction[2];
   for (int axis = 0; axis < 2; axis++) {
-    double at = fmin(fmax(place[axis], 0), size[axis] - 1);
+    double at = fmin(fmax(position[axis], 0), size[axis] - 1);
     pixel[axis][0] = (size_t)at;
     pixel[axis][1] = pixel[axis][0] + 1 < (size_t)size[axis] ? pixel[axis][0] + 1 : pixel[axis][0];
-    part[axis] = at - (double)pixel[axis][0];
+    fraction[axis] = at - (double)pixel[axis][0];
   }
   for (int corner = 0; corner < 4; corner++) {
     int right = corner & 1, below = corner >> 1;
-    double weight = (right ? part[0] : 1 - part[0]) * (below ? part[1] : 1 - part[1]);
+    double weight = (right ? fraction[0] : 1 - fraction[0]) * (below ? fraction[1] : 1 - fraction[1]);
     const float *color = emission->pixels + 3 * (pixel[1][below] * (size_t)emission->width + pixel[0][right]);
     for (int c = 0; c < HL_CHANNELS; c++) sum[c] += weight * (double)color[c];
   }
@@ -45,8 +45,8 @@ static void mean_of_cell(const light_source *source, const emission_plane *plane
   for (int c = 0; c < HL_CHANNELS; c++) mean[c] /= n * n;
 }
 
-void hl_light_image_weights(const light_source *source, int side, float (*weights)[HL_CHANNELS],
-                            double mean[HL_CHANNELS]) {
+void hl_light_emission_weights(const light_source *source, int side, float (*weights)[HL_CHANNELS],
+                               double mean[HL_CHANNELS]) {
   size_t cells = (size_t)side * (size_t)side;
   for (int c = 0; c < HL_CHANNELS; c++) mean[c] = source->light->emission.pixels == NULL;
   for (size_t i = 0; i < cells; i++)
@@ -67,87 +67,89 @@ void hl_light_image_weights(const light_source *source, int side, float (*weight
 }
 
 /* Weights of all cells, dark ones too, in their order. */
-static void weigh_cells(const light_source *source, light_image *image) {
-  float weights[IMAGE_CELLS][HL_CHANNELS];
-  hl_light_image_weights(source, IMAGE_SIDE, weights, image->mean);
-  image->even = true;
-  image->count = IMAGE_CELLS;
-  for (int i = 0; i < IMAGE_CELLS; i++)
+static void weigh_cells(const light_source *source, light_emission *emission) {
+  float weights[EMISSION_CELLS][HL_CHANNELS];
+  hl_light_emission_weights(source, EMISSION_SIDE, weights, emission->mean);
+  emission->even = true;
+  emission->count = EMISSION_CELLS;
+  for (int i = 0; i < EMISSION_CELLS; i++)
     for (int c = 0; c < HL_CHANNELS; c++) {
-      image->even = image->even && fabsf(weights[i][c] - 1) < 1e-6f;
-      image->cells[i].weight[c] = weights[i][c] / IMAGE_CELLS;
+      emission->even = emission->even && fabsf(weights[i][c] - 1) < 1e-6f;
+      emission->cells[i].weight[c] = weights[i][c] / EMISSION_CELLS;
     }
 }
 
-hl_status hl_light_image_create(hl_context *context, const light_source *source, light_image **image,
-                                hl_error *error) {
-  *image = NULL;
+hl_status hl_light_emission_create(hl_context *context, const light_source *source, light_emission **emission,
+                                   hl_error *error) {
+  *emission = NULL;
   if (source->light->emission.pixels == NULL) return HL_OK;
-  *image = hl_allocate_zeroed(context, 1, sizeof **image);
-  if (*image == NULL) return hl_fail_memory(error, sizeof **image, "a light's image");
-  weigh_cells(source, *image);
+  *emission = hl_allocate_zeroed(context, 1, sizeof **emission);
+  if (*emission == NULL) return hl_fail_memory(error, sizeof **emission, "a light's emission image");
+  weigh_cells(source, *emission);
   return HL_OK;
 }
 
 /* The middle of cell i of the unit square. */
 static vec3 middle_of_cell(const light_source *source, int i) {
-  return hl_light_point(source, (i / IMAGE_SIDE + 0.5) / IMAGE_SIDE, (i % IMAGE_SIDE + 0.5) / IMAGE_SIDE);
+  return hl_light_point(source, (i / EMISSION_SIDE + 0.5) / EMISSION_SIDE,
+                        (i % EMISSION_SIDE + 0.5) / EMISSION_SIDE);
 }
 
 /* At which a tilted light is still seen cell by cell; it is drawn together for receivers further aside. */
 static const double GREATEST_SLOPE = 0.5;
 
 /* Leaves dark cells out and finds how far the others lie apart. */
-static void finish(light_image *image) {
+static void finish(light_emission *emission) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   int count = 0;
-  for (int i = 0; i < IMAGE_CELLS; i++) {
-    image_cell cell = image->cells[i];
+  for (int i = 0; i < EMISSION_CELLS; i++) {
+    emission_cell cell = emission->cells[i];
     if (!(cell.weight[0] > 0 || cell.weight[1] > 0 || cell.weight[2] > 0)) continue;
     const double at[3] = {cell.u, cell.v, cell.z};
     for (int axis = 0; axis < 3; axis++) {
       low[axis] = fmin(low[axis], at[axis]);
       high[axis] = fmax(high[axis], at[axis]);
     }
-    image->cells[count++] = cell;
+    emission->cells[count++] = cell;
   }
-  image->count = count;
+  emission->count = count;
   double tilt = GREATEST_SLOPE * (high[2] - low[2]);
-  image->tilted = tilt > 0;
-  image->reach = 0;
+  emission->tilted = tilt > 0;
+  emission->reach = 0;
   for (int axis = 0; axis < 2; axis++) {
-    image->range[axis] = high[axis] - low[axis] + tilt;
-    image->reach = fmax(image->reach, fmax(fabs(low[axis]), fabs(high[axis])) + tilt);
+    emission->range[axis] = high[axis] - low[axis] + tilt;
+    emission->reach = fmax(emission->reach, fmax(fabs(low[axis]), fabs(high[axis])) + tilt);
   }
 }
 
 /* Parallel light that comes from further along u casts its shadows back along u. */
-void hl_light_image_see(const light_source *source, const sheet_light *seen, vec3 normal,
-                        light_image *image) {
+void hl_light_emission_see(const light_source *source, const sheet_light *seen, vec3 normal,
+                           light_emission *emission) {
   double unit = fmax(seen->width_u, seen->width_v) * (source->parallel ? -1 : 1);
-  for (int i = 0; i < IMAGE_CELLS; i++) {
-    double place[3];
-    hl_sheet_light_place(seen, source, normal, middle_of_cell(source, i), place);
-    image->cells[i].u = place[0] / unit;
-    image->cells[i].v = place[1] / unit;
-    image->cells[i].z = place[2] / unit;
+  for (int i = 0; i < EMISSION_CELLS; i++) {
+    double position[3];
+    hl_sheet_light_position(seen, source, normal, middle_of_cell(source, i), position);
+    emission->cells[i].u = position[0] / unit;
+    emission->cells[i].v = position[1] / unit;
+    emission->cells[i].z = position[2] / unit;
   }
-  finish(image);
+  finish(emission);
 }
 
-void hl_light_image_project(const light_source *source, const view *view, double size, light_image *image) {
+void hl_light_emission_project(const light_source *source, const view *view, double size,
+                               light_emission *emission) {
   double unit = size * (source->parallel ? -1 : 1);
   vec3 u = vec3_normalise(view->du), v = vec3_normalise(view->dv);
-  for (int i = 0; i < IMAGE_CELLS; i++) {
+  for (int i = 0; i < EMISSION_CELLS; i++) {
     vec3 offset = middle_of_cell(source, i);
-    image->cells[i].u = vec3_dot(offset, u) / unit;
-    image->cells[i].v = vec3_dot(offset, v) / unit;
-    image->cells[i].z = 0;
+    emission->cells[i].u = vec3_dot(offset, u) / unit;
+    emission->cells[i].v = vec3_dot(offset, v) / unit;
+    emission->cells[i].z = 0;
   }
-  finish(image);
+  finish(emission);
 }
 
-bool hl_light_image_colored(const hl_light *light) {
+bool hl_light_emission_colored(const hl_light *light) {
   const float *pixel = light->emission.pixels;
   size_t count = pixel == NULL ? 0 : (size_t)light->emission.width * (size_t)light->emission.height;
   for (size_t i = 0; i < count; i++, pixel += 3)
@@ -155,37 +157,39 @@ bool hl_light_image_colored(const hl_light *light) {
   return false;
 }
 
-void hl_light_image_steps(const light_image *image, double width, int step[2]) {
+void hl_light_emission_steps(const light_emission *emission, double width, int step[2]) {
   for (int axis = 0; axis < 2; axis++)
-    step[axis] = (int)fmin(fmax(1, ceil(image->range[axis] * width / IMAGE_SIDE)), IMAGE_GREATEST_STEP);
+    step[axis] = (int)fmin(fmax(1, ceil(emission->range[axis] * width / EMISSION_SIDE)),
+                           EMISSION_GREATEST_STEP);
 }
 
 /* Each cell falls on the four taps around it, by its distances to them. */
-void hl_light_image_taps(const light_image *image, double width, const int step[2], const double slope[2],
-                         image_taps *taps) {
-  enum { GRID = IMAGE_SIDE + 3 };
+void hl_light_emission_taps(const light_emission *emission, double width, const int step[2],
+                            const double slope[2], emission_taps *taps) {
+  enum { GRID = EMISSION_SIDE + 3 };
   float grid[GRID][GRID][HL_CHANNELS] = {{{0}}};
-  int first[2] = {INT32_MAX, INT32_MAX}, tap[IMAGE_CELLS][2];
-  float part[IMAGE_CELLS][2];
-  for (int i = 0; i < image->count; i++) {
-    const image_cell *cell = &image->cells[i];
+  int first[2] = {INT32_MAX, INT32_MAX}, tap[EMISSION_CELLS][2];
+  float fraction[EMISSION_CELLS][2];
+  for (int i = 0; i < emission->count; i++) {
+    const emission_cell *cell = &emission->cells[i];
     const double at[2] = {(cell->u - slope[0] * cell->z) * width / step[0],
                           (cell->v - slope[1] * cell->z) * width / step[1]};
     for (int axis = 0; axis < 2; axis++) {
       tap[i][axis] = (int)floor(at[axis]);
-      part[i][axis] = (float)(at[axis] - tap[i][axis]);
+      fraction[i][axis] = (float)(at[axis] - tap[i][axis]);
       if (tap[i][axis] < first[axis]) first[axis] = tap[i][axis];
     }
   }
-  for (int i = 0; i < image->count; i++) {
+  for (int i = 0; i < emission->count; i++) {
     int x = tap[i][0] - first[0], y = tap[i][1] - first[1];
     x = x < GRID - 1 ? x : GRID - 2; /* beyond GREATEST_SLOPE */
     y = y < GRID - 1 ? y : GRID - 2;
     for (int corner = 0; corner < 4; corner++) {
       int right = corner & 1, below = corner >> 1;
-      float weight = (right ? part[i][0] : 1 - part[i][0]) * (below ? part[i][1] : 1 - part[i][1]);
+      float weight = (right ? fraction[i][0] : 1 - fraction[i][0]) *
+                     (below ? fraction[i][1] : 1 - fraction[i][1]);
       for (int c = 0; c < HL_CHANNELS; c++)
-        grid[y + below][x + right][c] += weight * image->cells[i].weight[c];
+        grid[y + below][x + right][c] += weight * emission->cells[i].weight[c];
     }
   }
   taps->count = 0;

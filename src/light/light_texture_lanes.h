@@ -1,8 +1,8 @@
-/* light/light_screen_lanes.h - what a light's image gives at sixteen samples. */
-#ifndef HL_LIGHT_LIGHT_SCREEN_LANES_H
-#define HL_LIGHT_LIGHT_SCREEN_LANES_H
+/* light/light_texture_lanes.h - what a light's image gives at sixteen samples. */
+#ifndef HL_LIGHT_LIGHT_TEXTURE_LANES_H
+#define HL_LIGHT_LIGHT_TEXTURE_LANES_H
 
-#include "light/light_screen.h"
+#include "light/light_texture.h"
 #include "view/rays_lanes.h"
 
 /* How far within the screen's two edges of one axis a place is: 0 to 1 over one pixel of the picture, or over
@@ -14,15 +14,15 @@ LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
 }
 
 /* One axis of a bilinear lookup: the two pixels, held at the image's borders, and the way between them. */
-typedef struct screen_taps {
+typedef struct texture_taps {
   lanes_int first, second;
-  lanes part;
-} screen_taps;
+  lanes fraction;
+} texture_taps;
 
-LANES_INLINE screen_taps taps_at(lanes u, int size) {
+LANES_INLINE texture_taps taps_at(lanes u, int size) {
   lanes at = lanes_clamp(u - 0.5f, 0, (float)(size - 1));
-  screen_taps taps = {.first = lanes_truncate(at)};
-  taps.part = at - lanes_from_int(taps.first);
+  texture_taps taps = {.first = lanes_truncate(at)};
+  taps.fraction = at - lanes_from_int(taps.first);
   lanes_int next = taps.first + 1, last = lanes_set_int(size - 1);
   taps.second = lanes_select_int(next > last, last, next);
   return taps;
@@ -30,50 +30,50 @@ LANES_INLINE screen_taps taps_at(lanes u, int size) {
 
 /* Bilinear in an image of width x height pixels, held at its borders. */
 LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u, lanes v, lanes color[3]) {
-  screen_taps x = taps_at(u, width), y = taps_at(v, height);
+  texture_taps x = taps_at(u, width), y = taps_at(v, height);
   lanes_int top = y.first * (int32_t)width, bottom = y.second * (int32_t)width;
   lanes_int at[4] = {(top + x.first) * 3, (top + x.second) * 3, (bottom + x.first) * 3,
                      (bottom + x.second) * 3};
   for (int c = 0; c < 3; c++) {
     lanes a = lanes_gather(pixels + c, at[0]), b = lanes_gather(pixels + c, at[1]);
     lanes d = lanes_gather(pixels + c, at[2]), e = lanes_gather(pixels + c, at[3]);
-    lanes upper = lanes_fma(b - a, x.part, a), lower = lanes_fma(e - d, x.part, d);
-    color[c] = lanes_fma(lower - upper, y.part, upper);
+    lanes upper = lanes_fma(b - a, x.fraction, a), lower = lanes_fma(e - d, x.fraction, d);
+    color[c] = lanes_fma(lower - upper, y.fraction, upper);
   }
 }
 
 /* The image itself, its screen's edges as wide as a box of the blur. */
-LANES_INLINE void sharp_pattern(const light_screen *screen, lanes blur, lanes u, lanes v, lanes weight,
+LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes weight,
                                 lanes pattern[3]) {
-  lanes sharp_u = lanes_set(screen->sharpness[0]), sharp_v = lanes_set(screen->sharpness[1]);
-  lanes edge_u = sharp_u / lanes_max(blur * screen->edge[0] * sharp_u, lanes_set(1.0f));
-  lanes edge_v = sharp_v / lanes_max(blur * screen->edge[1] * sharp_v, lanes_set(1.0f));
-  lanes inside = within_edges(u, (float)screen->width, edge_u) *
-                 within_edges(v, (float)screen->height, edge_v) * weight;
+  lanes sharp_u = lanes_set(texture->sharpness[0]), sharp_v = lanes_set(texture->sharpness[1]);
+  lanes edge_u = sharp_u / lanes_max(blur * texture->edge[0] * sharp_u, lanes_set(1.0f));
+  lanes edge_v = sharp_v / lanes_max(blur * texture->edge[1] * sharp_v, lanes_set(1.0f));
+  lanes inside = within_edges(u, (float)texture->width, edge_u) *
+                 within_edges(v, (float)texture->height, edge_v) * weight;
   if (lanes_bits(inside > 0.0f) == 0) return;
   lanes color[3];
-  read_image(screen->pixels, screen->width, screen->height, u, v, color);
+  read_image(texture->pixels, texture->width, texture->height, u, v, color);
   for (int c = 0; c < 3; c++) pattern[c] = lanes_fma(color[c], inside, pattern[c]);
 }
 
 /* The mean of the two levels whose variances are around the sample's, variance being linear in their weights.
  * Below the first level the image itself, whose edges are then the sharpest thing in it and made wide by
  * themselves, stays as long as it can: by the square. */
-LANES_INLINE void soft_pattern(const light_screen *screen, lanes blur, lanes u, lanes v, lanes ahead,
+LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes ahead,
                                lanes pattern[3]) {
-  lanes variance = lanes_min(blur * blur * screen->first, lanes_set(1e30f));
-  lanes_int above = variance >= 1.0f, last = lanes_set_int(screen->level_count - 1);
+  lanes variance = lanes_min(blur * blur * texture->first, lanes_set(1e30f));
+  lanes_int above = variance >= 1.0f, last = lanes_set_int(texture->level_count - 1);
   lanes_int bits = (lanes_int)lanes_max(variance, lanes_set(1.0f)), level = (bits >> 23) - 127;
-  lanes part = (lanes)((bits & 0x007fffff) | 0x3f800000) - 1.0f;
-  part = lanes_keep(level < last, part);
+  lanes fraction = (lanes)((bits & 0x007fffff) | 0x3f800000) - 1.0f;
+  fraction = lanes_keep(level < last, fraction);
   level = lanes_select_int(level < last, level, last);
   lanes first = variance * variance;
-  sharp_pattern(screen, blur, u, v, lanes_keep(~above, 1.0f - first) * ahead, pattern);
-  for (int l = 0; l < screen->level_count; l++) {
-    lanes weight = lanes_keep(level == l, 1.0f - part) + lanes_keep(level == l - 1, part);
+  sharp_pattern(texture, blur, u, v, lanes_keep(~above, 1.0f - first) * ahead, pattern);
+  for (int l = 0; l < texture->level_count; l++) {
+    lanes weight = lanes_keep(level == l, 1.0f - fraction) + lanes_keep(level == l - 1, fraction);
     weight = lanes_select(above, weight, l == 0 ? first : lanes_set(0)) * ahead;
     if (lanes_bits(weight > 0.0f) == 0) continue;
-    const screen_level *at = &screen->level[l];
+    const texture_level *at = &texture->level[l];
     lanes color[3];
     read_image(at->pixels, at->width, at->height, lanes_line(u, at->scale[0], at->shift[0]),
                lanes_line(v, at->scale[1], at->shift[1]), color);
@@ -82,21 +82,22 @@ LANES_INLINE void soft_pattern(const light_screen *screen, lanes blur, lanes u, 
 }
 
 /* light_color(x) of eq. (2) at samples of frame space. */
-LANES_INLINE void screen_pattern(const light_screen *screen, lanes3 position, lanes pattern[3]) {
-  lanes place[3];
-  for (int row = 0; row < 3; row++) place[row] = row_of_point(screen->map[row], position);
-  lanes_int in_front = place[0] > 0.0f;
-  lanes safe = lanes_select(in_front, place[0], lanes_set(1.0f)), u = place[1] / safe, v = place[2] / safe;
+LANES_INLINE void texture_pattern(const light_texture *texture, lanes3 position, lanes pattern[3]) {
+  lanes projected[3];
+  for (int row = 0; row < 3; row++) projected[row] = row_of_point(texture->map[row], position);
+  lanes_int in_front = projected[0] > 0.0f;
+  lanes safe = lanes_select(in_front, projected[0], lanes_set(1.0f)), u = projected[1] / safe,
+        v = projected[2] / safe;
   lanes ahead = lanes_keep(in_front, lanes_set(1.0f));
   pattern[0] = pattern[1] = pattern[2] = lanes_set(0);
-  if (screen->level_count == 0) {
-    sharp_pattern(screen, lanes_set(0), u, v, ahead, pattern);
+  if (texture->level_count == 0) {
+    sharp_pattern(texture, lanes_set(0), u, v, ahead, pattern);
     return;
   }
-  lanes beyond = row_of_point(screen->beyond, position);
-  lanes blur = screen->parallel ? lanes_abs(beyond)
-                                : lanes_abs(1.0f - 1.0f / lanes_max(safe, lanes_set(0.05f)));
-  soft_pattern(screen, blur, u, v, ahead, pattern);
+  lanes beyond = row_of_point(texture->beyond, position);
+  lanes blur = texture->parallel ? lanes_abs(beyond)
+                                 : lanes_abs(1.0f - 1.0f / lanes_max(safe, lanes_set(0.05f)));
+  soft_pattern(texture, blur, u, v, ahead, pattern);
 }
 
 #endif
