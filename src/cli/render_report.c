@@ -12,7 +12,9 @@ static const char *shadows_name(hl_shadows shadows) {
 }
 
 static const char *soft_method_name(hl_soft_method method) {
-  return method == HL_SOFT_PAPER ? "paper" : method == HL_SOFT_SUBLIGHTS ? "sublights" : "cascade";
+  const hl_setting_choice *choice = hl_setting_find(HL_SETTINGS_RENDER, "soft_method")->choices;
+  while (choice->name != NULL && choice->value != (int)method) choice++;
+  return choice->name == NULL ? "unknown" : choice->name;
 }
 
 /* The most memory this program ever had resident. Linux counts in KiB; ru_maxrss, the way elsewhere, starts

@@ -8,6 +8,7 @@
 
 #include "scene/check.h"
 #include "scene/settings.h"
+#include "scene/soft_methods.h"
 
 /* A row takes a few lines. */
 /* clang-format off */
@@ -29,8 +30,8 @@ static const hl_setting_choice shadows[] = {
     {"off", HL_SHADOWS_OFF}, {"hard", HL_SHADOWS_HARD}, {"soft", HL_SHADOWS_SOFT}, {NULL, 0}};
 static const hl_setting_choice shadings[] = {
     {"phong", HL_SHADING_PHONG}, {"none", HL_SHADING_NONE}, {"flat", HL_SHADING_FLAT}, {NULL, 0}};
-static const hl_setting_choice soft_methods[] = {
-    {"cascade", HL_SOFT_CASCADE}, {"paper", HL_SOFT_PAPER}, {"sublights", HL_SOFT_SUBLIGHTS}, {NULL, 0}};
+#define HL_SOFT_METHOD(value, name) {#name, value},
+static const hl_setting_choice soft_methods[] = {HL_SOFT_METHODS{NULL, 0}};
 static const hl_setting_choice kernels[] = {{"bspline", HL_KERNEL_BSPLINE},
                                             {"gaussian", HL_KERNEL_GAUSSIAN},
                                             {"linear", HL_KERNEL_LINEAR},

@@ -1,8 +1,8 @@
 /* shadow/shadow_method.h - what a sweep asks of a method of shadows.
  *
  * A method keeps the shadow buffer of one light in lock-step with the picture. It is a table of functions in
- * a folder of its own, src/shadow_NAME/; shadow_methods.c lists the tables and chooses one for a light. The
- * sweep calls, for each light that casts shadows:
+ * a folder of its own, src/shadow_NAME/; scene/soft_methods.h lists those of soft shadows. The sweep calls,
+ * for each light that casts shadows:
  *
  *     plan                once: where the buffer lies, how fine it is, how it is read
  *     lay_out             its memory: counted for the estimate, then handed out
@@ -22,6 +22,7 @@
 #include "core/memory.h"
 #include "light/light_emission.h"
 #include "light/light_extent.h"
+#include "scene/soft_methods.h"
 #include "shadow/blur.h"
 #include "shadow/shadow_lookup.h"
 
@@ -157,6 +158,9 @@ static inline double hl_last_height(const sheet_stack *sheets) {
 }
 
 /* The tables, one a folder. */
-extern const shadow_method hl_shadow_hard, hl_shadow_paper, hl_shadow_cascade, hl_shadow_sublights;
+extern const shadow_method hl_shadow_hard;
+#define HL_SOFT_METHOD(value, name) extern const shadow_method hl_shadow_##name;
+HL_SOFT_METHODS
+#undef HL_SOFT_METHOD
 
 #endif

@@ -14,9 +14,10 @@ problems = []
 
 def allowed_rooms(page):
     """{room: rooms whose headers it may include besides its own and the public ones} from the page's table of rooms."""
-    rows = re.findall(r"^\| (`src/\w+/`[^|]*)\|.*\|([^|]*)\|$", page, re.M)
-    return {room: {name.strip() for name in uses.split(",") if name.strip()}
-            for rooms, uses in rows for room in re.findall(r"`src/(\w+)/`", rooms)}
+    rows = re.findall(r"^\| (`src/[\w*]+/`[^|]*)\|.*\|([^|]*)\|$", page, re.M)
+    return {room.name: {name.strip() for name in uses.split(",") if name.strip()}
+            for rooms, uses in rows for pattern in re.findall(r"`src/([\w*]+)/`", rooms)
+            for room in (root / "src").glob(pattern)}
 
 
 def find_circles(allowed):
