@@ -7,14 +7,14 @@
 
 #include "render/sweep.h"
 
-/* What the volumes that are not prepared yet take, bytes. */
+/* The bytes that volumes take that are not prepared yet. */
 uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared,
                           const grid_functions *functions, int threads);
 
-/* What the picture and its layers take, for sweeps of the frame. */
+/* The bytes that the picture and its layers take. sweep_count: how many sweeps keep pixels of their own. */
 uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *layers);
 
-/* What the sweeps take together: buffers stay, the rest is given back or shared. sweeps: [count]. */
+/* The bytes that the sweeps take together: buffers stay, the rest is released or shared. sweeps: [count]. */
 uint64_t hl_sweeps_bytes(const sweep_bytes *sweeps, int count, bool with_layers);
 
 /* Whether so many bytes more fit below the context's limit; *estimate is raised to the bytes then held. */

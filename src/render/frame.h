@@ -14,20 +14,21 @@ enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
 /* One pass over the sheets, with the lights that one slicing direction serves. */
 typedef struct frame_sweep {
   sheet_stack sheets;
-  bool back_to_front;      /* for the eye; light always travels with rising sheets */
+  bool back_to_front;      /* the eye meets the last sheet first; light always travels with rising sheets */
   bool of_sectors;         /* the lights are sectors of lights, and the slicing direction is theirs */
   int light[FRAME_LIGHTS]; /* indices into frame lights */
   int light_count;
 } frame_sweep;
 
 typedef struct frame {
-  int width, height; /* pixels: the picture's, times oversampling */
-  int oversampling;  /* pixels a side of which the mean is one of the picture's */
+  int width, height; /* pixels: those of the picture times oversampling */
+  int oversampling;  /* a pixel of the picture is the mean of oversampling x oversampling pixels of the
+                      * frame */
   view eye;
   vec3 eye_direction;  /* e: unit, from the eye to the content */
   vec3 middle;         /* of the content */
   double pixel;        /* edge of an image pixel where the content is nearest, frame units */
-  double middle_pixel; /* the same at the content's middle */
+  double middle_pixel; /* edge of an image pixel at the content's middle, frame units */
   double voxel;        /* the smallest edge of a voxel, frame units */
   double spacing;      /* ds, frame units */
   vec3 *points;        /* corners of the content of all grids; owned by the caller; [8 * grids] */

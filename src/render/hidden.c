@@ -20,7 +20,7 @@ static frame_sweep turned_round(const frame_sweep *geometry) {
  * - k from the light. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
-/* What is found: the action's data. */
+/* The data of the tile action: what is found. */
 typedef struct hidden_search {
   int32_t *shown_from; /* [tiles][16]; 0: the block is not covered yet */
   bool trying;         /* blocks stay open when they are opaque */
@@ -32,7 +32,7 @@ static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {
   return blocks;
 }
 
-/* The action: opacity alone. */
+/* The tile action: composites opacity alone. */
 static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   const hidden_search *search = sweep->action;
   sweep_counts *counts = &sweep->counts[slab->worker];
@@ -49,13 +49,13 @@ static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   return search->trying ? slab->blocks : open;
 }
 
-/* One tile in 32, none near another. */
+/* Whether a tile is tried first: one tile in 32, none beside another. */
 static bool is_tried(const sweep *sweep, size_t tile) {
   return (hl_tile_x(sweep, tile) + hl_tile_y(sweep, tile) * 11) % 32 == 0;
 }
 
-/* To find what covers a pixel takes about half of what it takes to fill and to light one that is covered
- * (measured); and some more, as few tiles tell. */
+/* Finding what covers a pixel takes about half the time of filling and lighting a covered pixel (measured).
+ * The rest is a reserve: a few tiles tell little. */
 static const double COVERED_PER_SEEN = 0.75;
 
 static bool is_worth_while(const sweep *front) {
@@ -67,7 +67,8 @@ static bool is_worth_while(const sweep *front) {
   return (double)covered > COVERED_PER_SEEN * (double)seen;
 }
 
-/* The tiles that are tried, also behind what covers them, to see whether there is much; or the others. */
+/* Goes through the tiles that are tried, also behind what covers them, to count how much is covered; or
+ * through all other tiles. */
 static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
   search->trying = trying;
   for (size_t tile = 0; tile < front->tiles; tile++)
@@ -98,7 +99,7 @@ hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, h
   }
   if (status == HL_OK) hl_sweep_count(&front, statistics);
   hl_sweep_end(&front);
-  /* the opacities that it left */
+  /* removes the opacities that the search left */
   hl_pool_clear(sweep->content.pool, sweep->pixels, tiles * TILE_PIXELS * 4 * sizeof *sweep->pixels);
   return status;
 }

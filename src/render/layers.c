@@ -72,7 +72,7 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
 
 /* ---- passes ---- */
 
-/* Volumes of white without surfaces, whose samples send on what arrives. */
+/* White volumes without surfaces: their samples pass on all light that arrives. */
 static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
@@ -112,8 +112,8 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
-/* The sweep's shading of given lights, without ambient light and emission. Null where the layer is not
- * wanted. */
+/* Adds a pass that shades the given lights, without ambient light and emission. Returns null where the layer
+ * is not wanted. */
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
   layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
@@ -182,7 +182,7 @@ void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
   const shade_patch *white = white_patches(sweep, slab);
   for (int i = 0; i < sweep->layers.pass_count; i++) {
     const layer_pass *pass = &sweep->layers.passes[i];
-    uint64_t samples = 0; /* the picture's own are the ones that count */
+    uint64_t samples = 0; /* statistics count the picture's own samples alone */
     (void)pass->shade(&pass->job, pass->white ? white : slab->patches, slab->patch_count,
                       hl_tile_x(sweep, slab->tile), hl_tile_y(sweep, slab->tile), slab->blocks, slab->scratch,
                       pass->pixels + slab->tile * pass->tile_floats, &samples);
@@ -200,8 +200,8 @@ static const float *value_at(const layer_grid *grid, const float *pixels, int fl
   return pixels + ((tile * TILE_BLOCKS + block) * (size_t)floats + (size_t)value) * BLOCK_PIXELS + lane;
 }
 
-/* One of the picture's pixels: sum of a value over its pixels in the frame, those where it is infinite left
- * out; how many were added, if asked. */
+/* The sum of a value over the frame's pixels in one pixel of the picture; infinite values are left out.
+ * count: is raised by the number of values added; may be null. */
 static float sum_of(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value,
                     int *count) {
   int side = grid->oversampling;
@@ -216,8 +216,8 @@ static float sum_of(const layer_grid *grid, const float *pixels, int floats, int
   return sum;
 }
 
-/* Three channels, premultiplied as they are; or divided by alpha, 0 where that is 0. add: to what is
- * there. */
+/* Writes three channels of a row. divide: by alpha (0 where alpha is 0); otherwise they stay premultiplied.
+ * add: to the numbers in `to`. */
 static void write_colors(const layer_grid *grid, int row, const float *pixels, bool divide, bool add,
                          float *to) {
   float area = (float)(grid->oversampling * grid->oversampling);
@@ -226,7 +226,8 @@ static void write_colors(const layer_grid *grid, int row, const float *pixels, b
     float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3, NULL) : area;
     for (int c = 0; c < 3; c++, to++) {
       *to = (add ? *to : 0) + (alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0);
-      if (divide && *to > 1) *to = 1; /* sectors of a light, each divided by its own sweep's alpha */
+      /* each sector of a light is divided by its own sweep's alpha: their sum may exceed 1 */
+      if (divide && *to > 1) *to = 1;
     }
   }
 }

@@ -13,11 +13,11 @@
 #include "render/frame.h"
 #include "render/hot.h"
 
-/* Pixels of the frame's layers, in blocks as the picture's: [tiles][16][floats a pixel][16]. Null: not
- * wanted. */
+/* The pixels of a light's layers, in the picture's order: [tiles][16][floats per pixel][16]. Null where a
+ * layer is not wanted. */
 typedef struct light_pixels {
   float *picture, *shadow; /* R G B A */
-  size_t light_index;      /* in the scene: one light or its sectors */
+  size_t light_index;      /* the light's index in the scene; a light in sectors has several entries */
 } light_pixels;
 
 typedef struct layer_pixels {
@@ -31,7 +31,7 @@ typedef struct layer_pixels {
 /* One more shading of the sweep's tiles. */
 typedef struct layer_pass {
   shade_tile_function *shade;
-  shade_job job; /* the sweep's, but for lights, ambient light and emission */
+  shade_job job; /* the sweep's shading with its own lights, ambient light and emission */
   bool white;    /* of white volumes */
   float *pixels;
   size_t tile_floats;
@@ -43,11 +43,11 @@ typedef struct sweep_layers {
   shade_light *white_lights;   /* owned; [light_count of the sweep] */
   shade_volume *white_volumes; /* owned; [volume_count] */
   shade_patch *white_patches;  /* owned; [threads][volume_count] */
-  classifier *white;           /* owned; [volume_count]; borrowed tables but for the colours */
+  classifier *white;           /* owned; [volume_count]; the volumes' tables, borrowed, with white colours */
   float (*ones)[4];            /* owned; a colour table */
 } sweep_layers;
 
-/* Allocates what is wanted of a frame of so many tiles. */
+/* Allocates the wanted layers of a frame. tiles: how many the frame has. */
 hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted,
                                  const frame *frame, size_t tiles, layer_pixels *pixels, hl_error *error);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
@@ -55,7 +55,7 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 /* True where depth or normals are wanted: some sweep must then go front to back. */
 bool hl_layers_measure(const hl_layers *wanted);
 
-/* Which pixels of the frame are averaged for one of the picture's. */
+/* How pixels of the frame become pixels of the picture: oversampling x oversampling are averaged. */
 typedef struct layer_grid {
   int width, height; /* of the picture */
   int oversampling;

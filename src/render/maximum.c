@@ -138,7 +138,7 @@ typedef struct color_job {
   float *pixels;
 } color_job;
 
-/* Sixteen pixels of one volume. */
+/* Colours of sixteen pixels of one volume. */
 static void color_block(float (*table)[4], const float *greatest, float *pixels) {
   for (int lane = 0; lane < BLOCK_PIXELS; lane++) {
     if (!(greatest[lane] >= 0)) continue;

@@ -14,14 +14,13 @@
 struct hl_renderer {
   hl_context *context;
   hl_pool *pool;
-  int threads;               /* as asked for: 0 is one per processor */
+  int threads;               /* as the scene says: 0 means one per processor */
   prepared_volume *prepared; /* owned; [prepared_count] */
   size_t prepared_count;
-  shadow_buffer
-      *buffers; /* owned; [buffer_count]; one per light of a frame, of which a scene's light is some */
+  shadow_buffer *buffers; /* owned; [buffer_count]; LIGHT_SECTORS for each of the scene's lights */
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* owned; of a sweep's lights */
-  hl_reserve reserve;                        /* owned; what frames and sweeps give back */
+  hl_reserve reserve;                        /* owned; blocks that frames and sweeps have returned */
   uint64_t estimate;                         /* bytes; see render/estimate.h */
 };
 
@@ -92,7 +91,7 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
   return HL_OK;
 }
 
-/* Nothing is kept for later where this frame would not fit beside it. */
+/* Where the frame would not fit beside the blocks that are kept for later, these are released first. */
 static hl_status check_room(hl_renderer *renderer, uint64_t bytes, hl_error *error) {
   uint64_t limit = renderer->context->options.memory_limit;
   if (limit != 0 && hl_context_memory_held(renderer->context) + bytes > limit)
@@ -107,7 +106,7 @@ static double smallest_edge(const hl_renderer *renderer) {
   return edge;
 }
 
-/* What a frame needs beyond the renderer; released after it. */
+/* What one frame needs; released when it ends. */
 typedef struct frame_work {
   framed_scene framed;
   frame frame;
@@ -137,7 +136,7 @@ static void release_work(hl_renderer *renderer, frame_work *work) {
 }
 
 /* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to
- * its middle: what is closer is magnified beyond what its voxels hold. */
+ * the content's middle: closer voxels are magnified anyway. */
 static double pixel_at_content(const frame *frame, double middle_depth) {
   const view *eye = &frame->eye;
   double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
@@ -159,8 +158,8 @@ static double box_volume(const vec3 corners[8]) {
 
 /* The mean of the volumes' boxes' centres, each weighted by the box's volume (derived: sum V c over the parts
  * of a box is V c of the box). It stays where it is when a volume is cut into parts, as far as the visible
- * boxes of the parts fill that of the whole. Sheets of near lights follow it: it gives a light's direction.
- */
+ * boxes of the parts fill that of the whole. Sheets of near lights follow it: it gives a light's
+ * direction. */
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
   double volumes = 0;
@@ -265,15 +264,15 @@ static bool is_maximum(const hl_scene_description *scene) {
   return scene->render.compositing == HL_COMPOSITING_MAXIMUM;
 }
 
-/* Neither flat colours nor a maximum projection ask a light how much of it arrives. */
+/* Whether any volume's picture depends on arriving light: flat colours and maximum projections do not. */
 static bool is_lit(const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->volume_count && !is_maximum(scene); i++)
     if (scene->volumes[i].visible && scene->volumes[i].shading != HL_SHADING_FLAT) return true;
   return false;
 }
 
-/* Lights in frame space; those that no sheets serve in sectors. A narrow spot light and a screen leave one
- * direction. */
+/* Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Narrow spot lights and
+ * lights with a texture shine in one direction and are never cut. */
 static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
   frame->light_count = 0;
@@ -292,8 +291,8 @@ static void set_up_lights(const hl_scene_description *scene, frame *frame) {
   }
 }
 
-/* Where tiles are made: in the caller's pixels if one sweep's fill those, a row of tiles exactly as many
- * rows. */
+/* Chooses the memory that sweeps composite into: the caller's pixels where one sweep fills them exactly, in
+ * whole tiles; else a block of the reserve. */
 static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description *scene,
                               const hl_layers *layers, float *pixels, size_t row_stride, frame_work *work,
                               hl_error *error) {
@@ -307,8 +306,8 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
   uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, layers);
   bytes += hl_maximum_bytes(scene, work->tiles);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
-  renderer->reserve.keeps = work->sweep_count ==
-                            1; /* several would leave one another blocks that do not fit */
+  /* several sweeps would return blocks of sizes that fit none of them */
+  renderer->reserve.keeps = work->sweep_count == 1;
   if (!renderer->reserve.keeps) hl_reserve_release(&renderer->reserve);
   hl_status status = check_room(renderer, bytes, error);
   if (status != HL_OK) return status;
@@ -363,7 +362,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
                            error);
 }
 
-/* Three where matter takes colours apart, or light comes in several from several places. */
+/* Channels of light attenuation: three where matter absorbs colours differently, or an emission's colours
+ * come from different places. */
 static int attenuation_channels(const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->light_count; i++)
     if (hl_light_emission_colored(&scene->lights[i])) return 3;
@@ -408,7 +408,7 @@ static uint64_t kept_buffers(const hl_renderer *renderer) {
   return bytes;
 }
 
-/* Refuses what cannot fit before the first sheet; its picture is allocated already. */
+/* Refuses a frame whose sweeps cannot fit, before the first sheet. The picture is allocated already. */
 static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_description *scene,
                                    const frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
@@ -467,7 +467,7 @@ typedef struct write_job {
   int width;
 } write_job;
 
-/* Blocks back to a row, several pixels averaged where the frame is oversampled. */
+/* Writes one row of the picture from the tiles' blocks; averages pixels where the frame is oversampled. */
 static void write_row(void *data, size_t row, int worker) {
   (void)worker;
   const write_job *job = data;
@@ -480,7 +480,7 @@ static void write_row(void *data, size_t row, int worker) {
   }
 }
 
-/* A row of tiles in the caller's pixels becomes sixteen rows of those. */
+/* Reorders one row of tiles in the caller's pixels into sixteen rows of pixels. */
 static void write_in_place(void *data, size_t index, int worker) {
   const write_job *job = data;
   size_t floats = job->work->tiles_x * TILE_PIXELS * 4;

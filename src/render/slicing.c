@@ -5,7 +5,8 @@
  * lights. */
 static const double STEEPEST = 0.5;
 
-/* Flatter crossings are refused: of the picture's outermost rays (87 degrees), and of a light's direction. */
+/* The least |cos| at which a ray may cross the sheets (87 degrees): of the picture's outermost rays, and of a
+ * light's direction. Flatter crossings are refused. */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
 /* Least |cos| between the eye's rays through the picture's corners and h, all crossing in the same sense; 0
@@ -141,10 +142,10 @@ static bool try_light(const frame *frame, const hl_render_settings *settings, fr
   return false;
 }
 
-/* Heights on more sheets than these are not told apart well by floats; more are refused. */
+/* Floats cannot tell the heights of more sheets apart well; a sweep of more sheets is refused. */
 enum { GREATEST_SHEETS = 1 << 20 };
 
-/* Sheets over the whole content, one to spare on either side. */
+/* Lays sheets over the whole content, with one more sheet on either side. */
 static void place_sheets(const frame *frame, sheet_stack *sheets) {
   double low = INFINITY, high = -INFINITY;
   for (int i = 0; i < frame->point_count; i++) {
@@ -158,7 +159,7 @@ static void place_sheets(const frame *frame, sheet_stack *sheets) {
   sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
 }
 
-/* A sector goes with the same sectors of other lights. */
+/* Puts a sector into the sweep of the same sectors of other lights. */
 static void add_sector(const frame *frame, int light, frame_sweep *sweeps, int *count) {
   vec3 axis = frame->lights[light].direction;
   int s = 0;

@@ -16,7 +16,7 @@
 typedef struct sweep_light {
   const light_source *source;
   light_shadow shadow;
-  view_sheets sheets;       /* of the shadow buffer's view */
+  view_sheets sheets;       /* what the shadow buffer's view sees */
   light_texture texture;    /* the picture that the light projects */
   light_emission *emission; /* owned; the picture on the light itself; null: none */
 } sweep_light;
@@ -28,9 +28,9 @@ typedef struct tile_slab {
   size_t tile;
   const shade_patch *patches; /* [patch_count] */
   int patch_count;
-  uint32_t blocks; /* those with density; one bit each */
+  uint32_t blocks; /* blocks with density, one bit each */
   int worker;      /* the thread */
-  void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES]; the thread's */
+  void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES]; the thread owns it */
 } tile_slab;
 
 /* What a sweep does with each tile of a slab. Returns the blocks that stay open: in them, later sheets may
@@ -48,11 +48,13 @@ struct sweep {
   void *action;     /* of act; the caller's */
   bool first;       /* the sweep that carries ambient light and opacity */
   bool measures;    /* the sweep that carries depth and normals */
-  bool preparatory; /* finds something for another sweep: reports no progress, its sheets do not count */
+  bool preparatory; /* this sweep finds something for another one: it reports no progress, and statistics
+                       leave its sheets out */
   const layer_pixels *layer_pixels; /* where the layers go; null: none */
-  const maximum_values *maximum;    /* of a maximum projection; without values: matter is lit */
-  float *pixels;                    /* [tiles][16][4][16] */
-  int32_t *shown_from;              /* [tiles][16]; first visible slab per block; null: nothing is hidden */
+  const maximum_values
+      *maximum;        /* what a maximum projection keeps; where its values are null, matter is lit */
+  float *pixels;       /* [tiles][16][4][16] */
+  int32_t *shown_from; /* [tiles][16]; first visible slab per block; null: nothing is hidden */
   /* the picture */
   view_sheets image;
   size_t tiles;
@@ -76,27 +78,27 @@ struct sweep {
   double seconds_sort, seconds_image, seconds_light, seconds_soften;
 };
 
-/* hidden.c. Of a sweep from back to front, before its steps: makes shown_from, which the caller releases.
- * Pixels are zeros before and after. */
+/* hidden.c. Called before the steps of a sweep that goes from back to front. Allocates and fills shown_from,
+ * which the caller releases. The sweep's pixels must be zeros, and are zeros afterwards. */
 hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, hl_error *error);
 
-/* The action of a picture that is lit: steps 12 to 16, and the layers (sweep_stages.c). */
+/* The tile action of a lit picture: steps 12 to 16, and the layers (sweep_stages.c). */
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
 
-/* Steps 1 and 2, and memory. buffers: one per light of the sweep, kept by the caller between frames; so is
- * memory, [FRAME_LIGHTS], which sweeps share in turn. */
+/* Steps 1 to 4, and memory. The caller keeps both arrays from frame to frame: buffers holds one buffer per
+ * light of the frame, memory [FRAME_LIGHTS] blocks that the frame's sweeps use in turn. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
-/* All blocks of the picture are open. */
+/* Opens all blocks of the picture. */
 void hl_sweep_open(sweep *sweep);
-/* Raises statistics by what the steps took. */
+/* Adds the sweep's counts and seconds to the statistics. */
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics);
 void hl_sweep_end(sweep *sweep);
 
-/* What hl_sweep_begin would hold, bytes. */
+/* The bytes that hl_sweep_begin would hold. */
 typedef struct sweep_bytes {
-  uint64_t buffers;              /* of the lights; they stay */
-  uint64_t memory[FRAME_LIGHTS]; /* of methods of shadows; sweeps share it in turn */
-  uint64_t passing; /* what the sweep gives back; slides and the lists of splatted voxels apart */
+  uint64_t buffers;              /* the lights' shadow buffers, which the renderer keeps */
+  uint64_t memory[FRAME_LIGHTS]; /* what shadow methods keep; sweeps use it in turn */
+  uint64_t passing; /* what the sweep releases; without light textures and the lists of splatted voxels */
 } sweep_bytes;
 
 /* The sweep's context, scene, frame, geometry, grids and channels must be set. points: room for the corners
@@ -111,8 +113,8 @@ void hl_sweep_shade(sweep *sweep, int sheet);     /* steps 6, 8 to 16: the image
 void hl_sweep_attenuate(sweep *sweep, int sheet); /* steps 7 to 11 and 17: the lights */
 void hl_sweep_soften(sweep *sweep, int sheet);    /* section 5 */
 
-/* Layers (layers.c): the passes of the sweep's lights, after hl_sweep_begin; their sheet, as the sweep's own
- * shading has it; and one tile of all of them. */
+/* Layers (layers.c). Begin is called after hl_sweep_begin; sheet gives all layers the sheet of the sweep's
+ * own shading; tile shades one tile of every layer. */
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
 void hl_sweep_layers_end(sweep *sweep);
 void hl_sweep_layers_sheet(sweep *sweep);

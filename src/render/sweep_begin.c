@@ -243,8 +243,8 @@ static void set_up_jobs(sweep *sweep) {
 /* Light that climbs by less than this fraction of its way counts as running along the sheets. */
 static const double LEAST_CLIMB = 0.05;
 
-/* Directions within some angle of the normal form a cone: between the content's corners light climbs as at
- * one of them at least. */
+/* Directions within some angle of the normal form a cone, so light climbs nowhere in the content less than at
+ * the corner where it climbs least. */
 static double least_climb(const sweep *sweep, const light_source *source) {
   vec3 normal = sweep->geometry->sheets.normal;
   if (source->parallel) return vec3_dot(source->direction, normal);

@@ -12,9 +12,10 @@ typedef struct sweep_counts {
   _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image,
       skipped_light; /* pixels shaded; tiles */
   uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
-  uint64_t pixels_seen, pixels_covered;    /* by a sweep that finds what is hidden */
-  double seconds_fill, seconds_shade;      /* of the image stage */
-  double seconds_light, seconds_composite; /* of the light stage; the composite is part of it */
+  uint64_t pixels_seen, pixels_covered; /* counted only by the sweep of hidden.c */
+  double seconds_fill, seconds_shade;   /* of the image stage */
+  double seconds_light;                 /* the light stage */
+  double seconds_composite;             /* the compositing in it */
 } sweep_counts;
 
 #endif

@@ -14,8 +14,8 @@ static int list_tiles(const occupancy *occupancy, int sheet, uint32_t *list) {
   return count;
 }
 
-/* The clock is read at one tile in 32, others on each sheet: that is enough to tell the shares of a stage
- * apart. */
+/* The clock is read at one tile in 32, at other tiles on each sheet: enough to measure how a stage's time
+ * divides. */
 static bool is_timed(size_t tile, int sheet) {
   return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0;
 }
@@ -23,7 +23,7 @@ static double read_clock(bool timed) { return timed ? hl_clock_seconds() : 0; }
 
 /* ---- the image ---- */
 
-/* Opacities are asked for before densities are found: they come from farther than the nearest cache. */
+/* Prefetches the tile's opacities while its densities are found: they are not in the nearest cache. */
 static void fetch_opacities(const float *pixels, uint32_t blocks) {
   for (; blocks != 0; blocks &= blocks - 1)
     __builtin_prefetch(pixels + (__builtin_ctz(blocks) * 4 + 3) * BLOCK_PIXELS, 1);
@@ -210,7 +210,7 @@ static void attenuate_task(void *data, size_t index, int worker) {
   }
 }
 
-/* A point light within the content sees the slabs beyond it. */
+/* Whether a slab lies beyond a point light within the content, so that the light reaches it. */
 static bool is_beyond(const sweep *sweep, const light_source *source, int sheet) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);

@@ -1,5 +1,4 @@
-/* render/view_sheets.c - what one view, the eye's or a light's, sees of the last sheets: where, in what
- * order, and the densities of patches, filled when they are asked for and kept for the next slab. */
+/* render/view_sheets.c - see view_sheets.h. */
 #include "render/view_sheets.h"
 
 #include "core/memory.h"
@@ -15,7 +14,8 @@ static bool any_cut(const sheet_content *content) {
   return any;
 }
 
-/* Entries of a patch, which one task has at a time; they fill as much memory as patches need them. */
+/* A patch's entries: where its rays enter the box and leave it. One task has a patch at a time. Rows of
+ * entries are used one after the other, so that only patches that need one touch memory. */
 static const float *entries_of(view_sheets *sheets, slab_place place) {
   uint32_t *entry = &sheets->entry_of[place.patch];
   if (*entry != NO_ENTRY) return sheets->entries + *entry * (size_t)ENTRY_FLOATS;
@@ -41,8 +41,8 @@ static hl_status sort_voxels(view_sheets *sheets, hl_error *error) {
   return status;
 }
 
-/* Sheets are filled a few in one go, tile by tile, while their voxels are at hand: as many as a run has
- * slabs, fewer where they would take more memory than this. */
+/* Several sheets of a tile are filled in one go, while the tile's voxels are in the cache: as many sheets as
+ * a run has slabs, or two where the sheets would take more than BUNDLE_BYTES. */
 enum { BUNDLE_BYTES = 1 << 24, LARGE_BUNDLE = RUN_SLABS, SMALL_BUNDLE = 2 };
 _Static_assert(RUN_SLABS % SMALL_BUNDLE == 0, "a bundle lies within a run");
 
@@ -97,10 +97,11 @@ static hl_status keep_patches(view_sheets *sheets, hl_error *error) {
   return HL_OK;
 }
 
-/* The sheet before the run of slabs that has the slab before a sheet. */
+/* Runs are RUN_SLABS slabs long. The first sheet of the run to which the slab before `sheet` belongs. */
 static int first_of_run(int sheet) { return (sheet - 1) / RUN_SLABS * RUN_SLABS; }
 
-/* Box faces cut the eye's part of a slab and the way of light to it, which comes from beside. */
+/* A slab is cut where a box's face crosses it, or crosses the way of light to a sample in it: that way begins
+ * up to `beside` away. */
 static void reach_run(view_sheets *sheets, int first) {
   const sheet_content *content = sheets->content;
   for (int g = 0; g < content->volume_count; g++) {
@@ -132,7 +133,7 @@ static void reach_sheet(view_sheets *sheets, int sheet) {
   }
 }
 
-/* The sheet after the last one of its bundle. */
+/* One past the last sheet of the bundle to which a sheet belongs. */
 static int end_of_bundle(const view_sheets *sheets, int sheet) {
   int end = (sheet - 1) / sheets->bundle * sheets->bundle + 1 + sheets->bundle;
   return end < sheets->occupancy.sheets ? end : sheets->occupancy.sheets;
@@ -168,7 +169,7 @@ void hl_view_sheets_end(view_sheets *sheets) {
   hl_occupancy_release(content->context, &sheets->occupancy);
 }
 
-/* What is kept of a patch on a sheet. */
+/* What is kept of a patch on a sheet; empty where another sheet was kept. */
 static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
   kept_patch *kept = &sheets->kept[patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)];
   if (kept->sheet != sheet) *kept = (kept_patch){.sheet = sheet};
@@ -180,8 +181,8 @@ static const fill_source *source_on_sheet(const view_sheets *sheets, size_t patc
                           (int)sheets->occupancy.patch_grid[patch]];
 }
 
-/* Finds the relevant blocks of a patch, among those needed, in all slabs of a run at once. Soft light may ask
- * for more blocks later. */
+/* Finds which of the needed blocks of a patch are relevant, for all slabs of a run at once. Soft shadows may
+ * need more blocks in a later slab. */
 static void find_relevant(const view_sheets *sheets, slab_place place, uint32_t need, patch_run *run) {
   size_t patch = place.patch;
   const occupancy *o = &sheets->occupancy;
@@ -204,8 +205,8 @@ static float *density_on_sheet(const view_sheets *sheets, size_t patch, int shee
   return sheets->density + (patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)) * TILE_PIXELS;
 }
 
-/* A patch while it is filled on the sheets of a bundle. Sheets are numbered from the one before the bundle.
- */
+/* A patch while it is filled on the sheets of a bundle. Sheets are numbered from the one before the
+ * bundle. */
 typedef struct patch_bundle {
   const view_sheets *sheets;
   size_t tile, patch;
@@ -219,8 +220,8 @@ static uint32_t visible_on(const patch_bundle *b, int i) {
   return i < 0 || i > b->slabs ? 0 : patch_on_sheet(b->sheets, b->patch, b->first + i)->blocks;
 }
 
-/* The blocks that are relevant in a slab; those that are in a slab beside a sheet; and those among them where
- * the slab's other sheet shows something. */
+/* relevant_in_slab: the relevant blocks of a slab. relevant_beside: the relevant blocks of the two slabs
+ * beside a sheet. beside_visible: of these, the blocks in which the slab's other sheet shows something. */
 static uint32_t relevant_in_slab(const patch_bundle *b, int slab) {
   return slab < 0 || slab >= b->slabs ? 0 : b->relevant[slab];
 }
@@ -232,8 +233,8 @@ static uint32_t beside_visible(const patch_bundle *b, int i) {
          (relevant_in_slab(b, i) & visible_on(b, i + 1));
 }
 
-/* Fills the blocks of a sheet that are not filled yet: the wanted ones, and of the others those that may show
- * something. */
+/* Fills blocks of a sheet that are not filled yet: all wanted blocks, and the other blocks where the sheet's
+ * own cells may show something. */
 static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others) {
   const occupancy *o = &b->sheets->occupancy;
   kept_patch *kept = patch_on_sheet(b->sheets, b->patch, b->first + i);
@@ -250,16 +251,17 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
   b->pixels += hl_pixels_of_blocks(blocks.filled);
 }
 
-/* A slab shows something where one of its sheets does, and then both are wanted. Every second sheet is filled
- * where its cells may show something; those between them where that was true, and where their own cells may;
- * then the first ones where they turn out to be wanted. */
+/* A slab shows something where one of its two sheets does; then both sheets are wanted. First the odd sheets
+ * are filled where their cells may show something. Then the even sheets, where a neighbouring odd sheet shows
+ * something or their own cells may. Last the odd sheets again, where a neighbouring even sheet shows
+ * something. */
 static void fill_sheets(patch_bundle *b) {
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, 0, relevant_beside(b, i));
   for (int i = 0; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), relevant_beside(b, i));
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), 0);
 }
 
-/* Fills a bundle for some more blocks. Returns the pixels filled. */
+/* Fills a bundle of a patch in more blocks. Returns how many pixels were filled. */
 static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_t more, patch_run *run) {
   int slab = place.sheet - 1 - run->first;
   patch_bundle b = {.sheets = sheets,
