@@ -17,7 +17,7 @@
 #define FILL_ELEVATION  0
 /* Sheets across the grid's diagonal. Shaded surfaces need more of them: one normal lights a whole slab. */
 #define SHEETS_OF_MEDIA    540
-#define SHEETS_OF_SURFACES 900
+#define SHEETS_OF_SURFACES 720
 
 void hl_scene_key_light(hl_light *light) {
   hl_light_defaults(light);
@@ -65,7 +65,7 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
 
 /* About as many sheets across any grid: coarse grids would show rings on smooth skins where sheets are a
  * voxel apart, and cost little with more sheets. Rings on shaded surfaces fall with the square of the
- * spacing: the 99.9 percentile of the high-passed error is 0.6 to 1.5 % of full scale on bonsai, engine and
+ * spacing: the 99.9 percentile of the high-passed error is 0.9 to 2.0 % of full scale on bonsai, engine and
  * two MR heads (1.3 to 2.6 % with 540 sheets). */
 static double enough_sheets(const hl_volume *volume, hl_shading shading) {
   double sheets = shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA;
