@@ -13,9 +13,8 @@
 #include "core/cpu.h"
 #include "core/error.h"
 
-/* Large blocks are placed in large pages where the system has them. The rows of a tile lie in as many small
- * pages as there are rows, and translating the addresses of so many pages took longer than reading the rows.
- */
+/* Asks the system to place large blocks in large pages. With small pages, every row of a tile lies in a page
+ * of its own, and translating so many page addresses took longer than reading the rows. */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
 
 static void *default_allocate(void *user_data, size_t size, size_t alignment) {
@@ -23,7 +22,7 @@ static void *default_allocate(void *user_data, size_t size, size_t alignment) {
   size_t rounded = (size + alignment - 1) / alignment * alignment;
   if (rounded < size) return NULL;
   if (size < LARGE_BLOCK) return aligned_alloc(alignment, rounded);
-  void *block = NULL; /* aligned_alloc would take whole pages only */
+  void *block = NULL; /* aligned_alloc would accept multiples of the page size only */
   if (posix_memalign(&block, LARGE_PAGE, rounded) != 0) return NULL;
 #ifdef MADV_HUGEPAGE
   madvise(block, rounded, MADV_HUGEPAGE);

@@ -16,11 +16,11 @@ __attribute__((format(printf, 5, 6))) hl_status hl_fail_at(hl_error *error, hl_s
 __attribute__((format(printf, 4, 5))) hl_status hl_fail_offset(hl_error *error, hl_status code,
                                                                int64_t offset, const char *format, ...);
 
-/* "out of memory: NAME needs N bytes ..." */
+/* Fails with "out of memory: NAME needs N bytes ...". */
 hl_status hl_fail_memory(hl_error *error, size_t bytes, const char *what);
 
-/* Replaces control characters by '?'. Names in foreign files may hold them, but a message must be one line
- * and must not control the terminal. */
+/* Replaces control characters by '?'. Names in foreign files may hold control characters, but a message must
+ * be one line and must not control the terminal. */
 void hl_make_printable(char *line);
 
 #endif

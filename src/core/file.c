@@ -46,13 +46,13 @@ typedef struct file_reading {
   hl_context *context;
   const char *path;
   int descriptor;
-  hl_file_judge judge;  /* null: limit stands */
-  size_t limit;         /* bytes that the file may have */
+  hl_file_judge judge;  /* null: `limit` is final */
+  size_t limit;         /* greatest length accepted for the file, bytes */
   unsigned char *bytes; /* owned; [capacity] */
   size_t length, capacity;
 } file_reading;
 
-/* Makes room for more once the block is full but for one byte. */
+/* Enlarges the block once only one free byte is left: the terminating zero. */
 static hl_status make_room(file_reading *file, hl_error *error) {
   if (file->length + 1 < file->capacity) return HL_OK;
   if (file->judge != NULL) {
@@ -67,7 +67,7 @@ static hl_status make_room(file_reading *file, hl_error *error) {
 }
 
 static hl_status read_all(file_reading *file, hl_error *error) {
-  enum { FIRST_PIECE = 1 << 16, GREATEST_PIECE = 1 << 23 }; /* between two questions whether to stop */
+  enum { FIRST_PIECE = 1 << 16, GREATEST_PIECE = 1 << 23 }; /* bytes between two checks for cancellation */
   file->capacity = FIRST_PIECE;
   file->bytes = hl_allocate(file->context, file->capacity, 1);
   if (file->bytes == NULL) return hl_fail_memory(error, file->capacity, file->path);
@@ -119,8 +119,8 @@ hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_jud
 
 /* ---- outputs ---- */
 
-/* "folder/name.XXXXXX" for "folder/name", cut short, between two characters, where that would be longer than
- * names may be. */
+/* Makes "folder/name.XXXXXX" from "folder/name". Shortens the name, between two characters, where the result
+ * would be longer than the system allows names to be. */
 static char *temporary_path(hl_context *context, const char *path) {
   static const char suffix[] = ".XXXXXX";
   const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;

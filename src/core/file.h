@@ -10,8 +10,8 @@
 /* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
  * writer. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Reads up to capacity bytes; *count is 0 at the end of the file. While a pipe is empty, waits and keeps
- * asking the cancel callback. */
+/* Reads up to capacity bytes; *count is 0 at the end of the file. While a pipe is empty, waits and polls the
+ * cancel callback. */
 hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity,
                        size_t *count, hl_error *error);
 
@@ -20,18 +20,18 @@ hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, vo
 hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes,
                        size_t *length, hl_error *error);
 
-/* Given the first length bytes of a file, sets *limit to the most bytes that the whole file may have, or
- * refuses the file. Called after 64 KiB and each time the number of bytes read has doubled; never for shorter
- * files. */
+/* Given the first `length` bytes of a file, sets *limit to the greatest accepted length of the complete file,
+ * in bytes, or refuses the file. Called after 64 KiB and again each time the number of bytes read has
+ * doubled; never called for files shorter than 64 KiB. */
 typedef hl_status (*hl_file_judge)(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                                    hl_error *error);
 
-/* Reads a whole file, with a limit that `judge` derives from the file's header: an endless file is given up
- * early. */
+/* Reads a whole file. `judge` derives the length limit from the file's header, so that reading an endless
+ * file stops early. */
 hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_judge judge,
                               unsigned char **bytes, size_t *length, hl_error *error);
 
-/* An output under a temporary name beside its final one. */
+/* An output file, written under a temporary name in the folder of its final name. */
 typedef struct hl_output {
   hl_context *context;
   char *path;           /* owned; the final name */
@@ -41,20 +41,21 @@ typedef struct hl_output {
 
 /* Creates the temporary file and opens it for writing. */
 hl_status hl_output_begin(hl_context *context, const char *path, hl_output *output, hl_error *error);
-/* Flushes, closes and renames; on failure the temporary file is removed and the old file stands. */
+/* Flushes, closes and renames the file. On failure, removes the temporary file and leaves an older file of
+ * the final name as it was. */
 hl_status hl_output_commit(hl_output *output, hl_error *error);
 /* Closes and removes the temporary file; harmless after a commit. */
 void hl_output_abort(hl_output *output);
 
-/* An output that grows in memory, for encoders that write to a FILE. */
+/* An output in growing memory, for encoders that write to a FILE. */
 typedef struct hl_output_memory {
-  hl_output output;     /* its path is a name for messages, its file is this memory */
-  unsigned char *bytes; /* owned; [capacity], of which length are written */
+  hl_output output;     /* path: a name for messages; file: writes to this memory */
+  unsigned char *bytes; /* owned; [capacity]; the first `length` are written */
   size_t length, capacity, place;
-  bool full; /* the context had no more memory */
+  bool full; /* an allocation failed */
 } hl_output_memory;
 
-/* memory must not move until it is committed or aborted. */
+/* `memory` must stay at its address until commit or abort. */
 hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_output_memory *memory,
                                  hl_error *error);
 /* *bytes: owned by the caller (hl_release); untouched on failure. */

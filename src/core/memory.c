@@ -1,5 +1,5 @@
-/* core/memory.c - checked allocation, which counts what the context holds and keeps its limit; and blocks
- * that are kept from frame to frame. */
+/* core/memory.c - checked allocation, which counts the context's bytes and enforces its memory limit; and
+ * reserves of blocks that are kept from frame to frame. */
 #include "core/memory.h"
 
 #include <string.h>
@@ -76,7 +76,7 @@ char *hl_copy_text(hl_context *context, const char *text) {
 
 /* ---- blocks kept from frame to frame ---- */
 
-/* Smaller blocks come from pages that the process has. */
+/* Smaller blocks are not worth keeping: the allocator serves them from pages that the process has already. */
 enum { LEAST_KEPT = 1 << 16 };
 
 static bool fits(size_t bytes, size_t wanted) { return bytes >= wanted && bytes / 2 <= wanted; }

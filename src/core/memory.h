@@ -14,10 +14,11 @@ void *hl_allocate(hl_context *context, size_t count, size_t size);
 /* The same, all zero bytes. */
 void *hl_allocate_zeroed(hl_context *context, size_t count, size_t size);
 
-/* Moves a block to a new size, keeping what fits; null leaves the old block as it was. old may be null. */
+/* Moves a block's content to a block of another size, cut to the shorter of both sizes. On failure returns
+ * null and leaves the old block as it was. old may be null. */
 void *hl_reallocate(hl_context *context, void *old, size_t count, size_t size);
 
-void hl_release(hl_context *context, void *memory); /* does nothing if either is null */
+void hl_release(hl_context *context, void *memory); /* does nothing if either pointer is null */
 
 /* A copy of a null-terminated text; null for null, or when there is no memory. */
 char *hl_copy_text(hl_context *context, const char *text);
@@ -27,9 +28,9 @@ bool hl_multiply(size_t a, size_t b, size_t *product);
 
 /* ---- blocks kept from frame to frame ----
  *
- * A block that is given back to the system comes again as empty pages. Finding and clearing those took 4 to
- * 15 % of a frame. A reserve lends its blocks instead: every frame takes much the same blocks in the same
- * order, so that each request gets the block that it had in the frame before. */
+ * When a block returns to the system and is allocated again, the system has to find and clear new pages: 4 to
+ * 15 % of a frame's time. A reserve keeps the blocks and lends them instead. Every frame requests nearly the
+ * same blocks in the same order, so that each request gets the same block as in the frame before. */
 
 enum { RESERVE_BLOCKS = 32 };
 
@@ -40,9 +41,9 @@ typedef struct reserve_block {
 
 typedef struct hl_reserve {
   hl_context *context;
-  bool keeps;                          /* false: blocks are allocated and released each time */
-  int taken;                           /* blocks of this frame */
-  reserve_block block[RESERVE_BLOCKS]; /* zero: none yet */
+  bool keeps;                          /* false: every block is allocated and released anew */
+  int taken;                           /* blocks requested in this frame so far */
+  reserve_block block[RESERVE_BLOCKS]; /* count 0: not yet measured */
 } hl_reserve;
 
 /* count * size uninitialised bytes, from the reserve or else from hl_allocate(); null when hl_allocate()

@@ -1,14 +1,15 @@
-/* core/pool.c - the thread team. Jobs come in quick succession (two a sheet), so workers spin a while for the
- * next one before they sleep; with more threads than processors they sleep at once.
+/* core/pool.c - the thread team. Jobs follow each other quickly (two for each sheet), so workers spin for a
+ * while before they sleep; with more threads than processors they sleep at once.
  *
- * Each thread has a share of a job's indices, one after another: in job after job of the same kind it meets
- * the same part of the memory. A share is one 64-bit word on its own line of the cache: generation, end, next
- * index. Its owner claims an index from one end by compare-and-swap; who has none left takes those of others
- * from the other end. Every second thread begins with its last index: two threads meet in the middle of a
- * job, and what one takes of the other's share is what it had the job before. So nobody waits for a worker
- * that the system has not woken: on a busy machine the caller does the work alone. A job's description stays
- * in its slot (by the generation's parity) until all that claimed of it have said so, since a later job of
- * the same parity cannot start before that. */
+ * Each thread owns a share: a run of consecutive indices of the job, the same run in every job of the same
+ * length, so that the thread meets the same memory again. A share is one 64-bit word on its own cache line:
+ * generation, end, next index. The owner claims indices from one end by compare-and-swap; a thread whose own
+ * share is empty claims indices from the other end of another thread's share. Every second thread starts with
+ * its last index: two threads with neighbouring shares then meet near the border of their shares, and an
+ * index that one thread takes from the other is one that it also took in the job before. No thread waits for
+ * a worker that the system has not woken yet: on a busy machine the caller does all the work. Jobs alternate
+ * between two slots, by the generation's parity. A job's description stays in its slot until all workers have
+ * reported the indices that they claimed; only then can a later job of the same parity start. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
@@ -26,10 +27,11 @@
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 
-/* Between two questions whether to stop, while a job runs: far less than a person notices, far more than
- * asking takes. */
+/* Time between two calls of the cancel callback while a job runs: far less than a person notices, far more
+ * than a call takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
-/* The clock is read again only after calls that together may take this long, or after this many calls. */
+/* The clock is read again after this many calls, or sooner where so many calls may take longer than this
+ * time. */
 static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
 enum { MOST_UNREAD = 15 };
 
@@ -42,11 +44,11 @@ typedef struct worker {
 typedef struct job {
   void (*function)(void *, size_t, int);
   void *data;
-  size_t base;                     /* of the shares' indices */
-  _Alignas(64) atomic_size_t done; /* indices finished, as far as their workers have said so */
+  size_t base;                     /* index that the shares' index 0 stands for */
+  _Alignas(64) atomic_size_t done; /* finished indices that workers have reported */
 } job;
 
-enum { INDEX_BITS = 20 }; /* of a share's next index and end; longer jobs run in parts */
+enum { INDEX_BITS = 20 }; /* bits of a share's next index and of its end; longer jobs run in pieces */
 static const uint64_t INDEX_MASK = ((uint64_t)1 << INDEX_BITS) - 1, ONE_OF_END = (uint64_t)1 << INDEX_BITS;
 
 typedef struct share {
@@ -59,19 +61,20 @@ struct hl_pool {
   int spins;
   worker *workers; /* owned; [threads]; entry 0 (the caller) unused */
   int started;     /* threads running, the caller included */
-  pid_t process;   /* whose threads they are */
+  pid_t process;   /* the process that started the threads */
   share *shares;   /* owned; [share_count] */
-  int share_count; /* threads that were asked for: some may not have started */
+  int share_count; /* requested threads; some may not have started */
   job jobs[2];
-  atomic_uint_least64_t generation; /* of the last job, once its shares are there */
+  atomic_uint_least64_t generation; /* number of the last job whose shares are filled */
   atomic_bool stop;
-  atomic_bool cancelled; /* indices are passed over */
+  atomic_bool cancelled; /* remaining indices are skipped */
   atomic_int sleepers;
   pthread_mutex_t mutex;
   pthread_cond_t wake; /* generation or stop changed */
-  /* the calling thread's own */
-  _Alignas(64) int64_t asked, read; /* when it last asked, and when it read the clock, nanoseconds */
-  int readings, unread;             /* calls that pass without reading it: in a row, and still to come */
+  /* used by the calling thread only */
+  _Alignas(64) int64_t asked,
+      read;             /* last call of the cancel callback and last reading of the clock, nanoseconds */
+  int readings, unread; /* calls between two readings of the clock: in all, and still to come */
 };
 
 static inline void relax(void) {
@@ -124,7 +127,7 @@ typedef struct claim {
   uint64_t generation, index;
 } claim;
 
-/* The first or the last index of a share. */
+/* Claims the first or the last index of a share. */
 static bool claim_of_share(share *share, bool first, claim *claimed) {
   uint64_t range = atomic_load(&share->range);
   while (next_of(range) < end_of(range)) {
@@ -144,8 +147,8 @@ static bool claim_index(hl_pool *pool, int number, claim *claimed) {
   return false;
 }
 
-/* Works on whatever is to be done until nothing is. A job does not end before its workers have said what they
- * did, so that all that one claims before it does are of the same job. */
+/* Claims and runs indices until no share has any left. A job does not end before its workers have reported
+ * their finished indices, so that all indices claimed between two reports belong to one job. */
 static void work(hl_pool *pool, int number) {
   claim claimed;
   while (claim_index(pool, number, &claimed)) {
@@ -191,7 +194,8 @@ static void wake_sleepers(hl_pool *pool) {
   pthread_mutex_unlock(&pool->mutex);
 }
 
-/* Waits for indices that others have claimed: spinning, then letting them run. */
+/* Waits until other threads have finished the indices that they claimed: first spins, then yields the
+ * processor. */
 static void wait_until_done(hl_pool *pool, const job *job, size_t count) {
   for (int spin = 0; atomic_load(&job->done) < count; spin++) {
     if (spin < pool->spins) relax();
@@ -217,7 +221,7 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
-  pool->readings = pool->unread = 0; /* how long these take is not known */
+  pool->readings = pool->unread = 0; /* it is unknown how long the indices of the next job take */
   if (pool->threads == 1 || count <= 1) {
     for (size_t index = 0; index < count && !hl_pool_stops(pool, 0); index++) function(data, index, 0);
     return;

@@ -1,12 +1,11 @@
 /* core/pool.h - a team of threads with one verb: run a function for every index.
  *
- * The caller is worker 0 and works too. Indices are handed out one by one, so a function must not
- * depend on which worker gets which index; every output has one owner index.
+ * The caller is worker 0 and works too. Any worker may get any index, so the function's results must not
+ * depend on the worker, and no two indices may write to the same output.
  *
- * Between indices the caller asks the context's cancel callback, every few milliseconds at most. Once it says
- * stop, indices not yet begun are skipped, in this run and in all later runs. The results are then
- * incomplete: call hl_pool_cancelled before using them.
- */
+ * Between two indices the caller polls the context's cancel callback, at most once every few milliseconds.
+ * Once the callback says stop, the pool skips all indices that have not begun, in this run and in all later
+ * runs. The results are then incomplete: call hl_pool_cancelled before using them. */
 #ifndef HL_CORE_POOL_H
 #define HL_CORE_POOL_H
 
@@ -16,13 +15,14 @@
 
 typedef struct hl_pool hl_pool;
 
-/* threads: at least 1, the caller included; 0: one per processor. Where the system starts fewer, the team is
- * smaller, and a warning says so. The threads take no signals: those go to the program's own. */
+/* threads: at least 1, the caller included; 0: one per processor. If the system refuses to start so many
+ * threads, the team is smaller and a warning says so. The threads block all signals, so that signals reach
+ * the program's own threads. */
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error);
 void hl_pool_destroy(hl_pool *pool); /* null is allowed */
 
-/* False in a child process made by fork(): threads stay with the parent. All that can be done there with the
- * pool is to destroy it. */
+/* False in a child process made by fork(), which has no threads of the pool: there the pool can only be
+ * destroyed. */
 bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
 
@@ -37,13 +37,14 @@ void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
 void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
 void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 
-/* Whether to stop: asks anew, from the calling thread between runs. */
+/* Whether to stop. Polls the cancel callback; for the calling thread, between runs. */
 bool hl_pool_cancelled(hl_pool *pool);
 
-/* The same from within a function whose single index takes long: cheap, and only worker 0 asks anew. */
+/* Whether to stop, for a function whose single index takes long. Cheap; only worker 0 polls the cancel
+ * callback. */
 bool hl_pool_stops(hl_pool *pool, int worker);
 
-/* A pool that was stopped works again. */
+/* Clears the pool's stop state, so that it works again. */
 void hl_pool_resume(hl_pool *pool);
 
 #endif

@@ -61,11 +61,11 @@ static inline mat3 mat3_multiply(mat3 a, mat3 b) {
                            mat3_apply(a, mat3_column(b, 2)));
 }
 static inline mat3 mat3_transpose(mat3 m) { return mat3_from_columns(m.row[0], m.row[1], m.row[2]); }
-/* The greatest determinant that rows of these lengths can have. */
+/* The product of the rows' lengths: the greatest determinant that rows of these lengths can have. */
 static inline double mat3_row_sizes(mat3 m) {
   return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]);
 }
-/* False if m is singular to working precision, whatever the scales of its rows or of its columns. */
+/* Returns false if m is singular to working precision, independent of the scales of its rows and columns. */
 static inline bool mat3_invert(mat3 m, mat3 *inverse) {
   vec3 c0 = vec3_cross(m.row[1], m.row[2]), c1 = vec3_cross(m.row[2], m.row[0]),
        c2 = vec3_cross(m.row[0], m.row[1]);

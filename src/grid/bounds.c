@@ -11,7 +11,7 @@
 
 enum {
   BEFORE = 3,
-  AFTER = 5, /* brick b of an axis depends on voxels 4b-3 .. 4b+5 */
+  AFTER = 5, /* along an axis, brick b depends on voxels 4b-3 .. 4b+5 */
   WINDOW = BEFORE + AFTER + 1
 };
 
@@ -25,7 +25,7 @@ typedef struct brick_job {
   float *columns; /* [threads][2][dimension 0] */
 } brick_job;
 
-/* Bounds arrive as floats, which hold the values of every type. */
+/* The least and greatest values arrive as floats, which represent the values of every voxel type exactly. */
 static void store_bounds(const grid *grid, size_t brick, float low, float high) {
   if (grid->storage == HL_STORAGE_U8) {
     uint8_t *bounds = (uint8_t *)grid->brick_bounds + 2 * brick;
@@ -46,7 +46,8 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]) {
                                                   : ((const float *)grid->brick_bounds)[2 * brick + i];
 }
 
-/* Bounds of a row of bricks that begins with `brick`, from the bounds of the row's voxels at each x. */
+/* Finds the bounds of a row of bricks, the first one number `brick`, from the bounds of the row's voxels at
+ * each x. */
 static void reduce_row(const grid *grid, const float *least, const float *greatest, size_t brick) {
   for (int32_t b = 0; b < grid->brick_count[0]; b++) {
     int32_t first = clamp_index((int64_t)b * HL_BRICK_CELLS - BEFORE, grid->dimension[0]);
@@ -117,8 +118,8 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
-/* Found in slices from the bounds of rows, and kept until the transfer function changes, packed: most of a
- * volume is empty, or as even as a brick. */
+/* They are computed slice by slice and kept packed, for all later transfer functions. Packing helps because
+ * most bricks of a volume are empty or even. */
 enum { CELL_LAYERS = HL_BRICK_CELLS / HL_LOOKUP_CELLS, LAYERS_A_TASK = 4 };
 
 typedef struct cell_job {
@@ -130,7 +131,7 @@ typedef struct cell_job {
   unsigned char *bytes; /* [workers][scratch_bytes] */
   size_t scratch_floats, scratch_bytes;
   size_t plane; /* 2x2x2 cells in a slice */
-  bool failed;  /* for lack of memory; atomic */
+  bool failed;  /* an allocation failed; atomic */
 } cell_job;
 
 /* Bounds of one slice of voxels along x and y. slice: [2][cells y][cells x], low and high. */
@@ -157,8 +158,9 @@ static void bound_slice(const cell_job *job, int32_t z, float *rows, float *padd
   }
 }
 
-/* Rounds outwards to 255 steps of the volume's range, but for a ten-thousandth of a step: sums of floats err
- * by far less, and an entry of the transfer function's table is sixteen times finer than a step. */
+/* Rounds outwards to 255 steps of the volume's range, with a tolerance of a ten-thousandth of a step: the
+ * errors of float sums are far smaller, and an entry of the transfer function's table is sixteen times finer
+ * than a step. */
 static void round_bounds(const grid *grid, const float *low, const float *high, size_t count,
                          unsigned char *to_low, unsigned char *to_high) {
   float inverse = 1 / grid->cell_step;
@@ -178,7 +180,7 @@ static size_t greatest_layer_bytes(const grid *grid) {
   return even_bytes(grid) + UNEVEN_BYTES * (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1];
 }
 
-/* The rows of cells in a row of bricks: two in each of its two layers of cells. */
+/* A row of bricks has four rows of 2x2x2 cells: two in each of two layers. */
 typedef const unsigned char *cell_rows[2 * CELL_LAYERS];
 
 /* Copies the eight cells of a brick, two along x at a time. */
@@ -238,7 +240,7 @@ void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, floa
 
 /* ---- building ---- */
 
-/* One worker's slices of voxels, bounded along x and y. */
+/* One worker's slices of voxels, with bounds along x and y. */
 typedef struct bound_slices {
   float *slices;           /* [CELL_TAPS][2][plane]; slice z is number z % CELL_TAPS */
   float *out;              /* [2][plane] */
@@ -299,8 +301,8 @@ static hl_status allocate_lookups(hl_context *context, grid *grid, hl_error *err
   return HL_OK;
 }
 
-/* Sets the sizes of the finer look-up and of scratch, from the grid's dimension and brick_count; false where
- * there are more cells than 32 bits can number. */
+/* Sets the sizes of the look-up by cells and of scratch memory, from the grid's dimension and brick_count;
+ * false where 32 bits cannot number the cells. */
 static bool size_scratch(grid *grid, cell_job *job) {
   size_t cells = 1;
   for (int axis = 0; axis < 3; axis++) {
@@ -333,7 +335,8 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
   cell_job job = {.grid = grid, .functions = functions, .smooth = smooth, .context = context};
   set_cell_range(volume, grid);
   size_t threads = (size_t)hl_pool_threads(pool), layers = (size_t)grid->brick_count[2];
-  if (!size_scratch(grid, &job)) return HL_OK; /* bricks alone tell what is visible */
+  if (!size_scratch(grid, &job))
+    return HL_OK; /* the grid goes without bounds of cells: bricks alone tell where something is visible */
   job.scratch = hl_allocate(context, threads * job.scratch_floats, sizeof(float));
   job.bytes = hl_allocate(context, threads, job.scratch_bytes);
   grid->cell_bounds = hl_allocate_zeroed(context, layers, sizeof *grid->cell_bounds);

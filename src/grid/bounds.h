@@ -1,12 +1,12 @@
-/* grid/bounds.h - the least and greatest value that each brick and each 2x2x2 cells can reach, found once a
- * volume.
+/* grid/bounds.h - the least and greatest value that samples in each brick and in each 2x2x2 cells can have,
+ * found once for each volume.
  *
  * A brick is bounded by the voxels that its cells and the cells around it depend on. Cells are bounded more
  * tightly: between four neighbouring voxels a cubic B-spline lies within its Bezier points. Along an axis,
- * from voxels a b c d, those are (a + 4 b + c) / 6, (2 b + c) / 3, (b + 2 c) / 3 and (b + 4 c + d) / 6. All
- * are means with weights that are not negative, so bounds along one axis may be bounded along the next. Noise
- * around a threshold then marks half as many cells as the least and greatest of the voxels would, which bound
- * the other kernels. */
+ * from voxels a b c d, these points are (a + 4 b + c) / 6, (2 b + c) / 3, (b + 2 c) / 3 and (b + 4 c + d) /
+ * 6. All weights are non-negative, so bounds found along one axis can serve as input along the next. In noise
+ * around a threshold, these bounds mark half as many cells as the least and greatest voxel would. The other
+ * kernels use the least and greatest voxel. */
 #ifndef HL_GRID_BOUNDS_H
 #define HL_GRID_BOUNDS_H
 
@@ -14,8 +14,7 @@
 
 /* ---- bricks ---- */
 
-/* The bytes that each brick takes: its bounds, whether it is relevant, its entry in the list of relevant
- * bricks. */
+/* The bytes for each brick: its bounds, its relevance, its entry in the list of relevant bricks. */
 static inline size_t hl_brick_bytes(hl_storage storage) {
   return 2 * hl_storage_bytes(storage) + 1 + sizeof(uint32_t);
 }
@@ -32,16 +31,18 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
                          const hl_volume *volume, grid *grid, hl_error *error);
 void hl_cell_bounds_release(hl_context *context, grid *grid);
 
-/* The bytes that the cells' bounds of a grid of such dimensions take at most, scratch included. */
+/* An upper bound of the bytes for the cells' bounds of a grid of these dimensions, scratch memory
+ * included. */
 uint64_t hl_cell_bounds_bytes(const size_t dimension[3], int threads);
 
 /* The bounds of the 2x2x2 cells with the coordinates `cell`, stored units; slow: walks through a layer. */
 void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, float *high);
 
-/* The packed bounds of a layer of bricks: first a bit for each brick, each row of bricks in whole bytes, 1
- * where the brick is even: all eight of its 2x2x2 cells have the same bounds. Then follow, brick after brick,
- * the two bounds (lower, upper) of an even brick, or eight lower and eight upper bounds, those of cells
- * (i, j, k) as number i + 2 j + 4 k. Cells beyond the grid have the bounds of their neighbours. */
+/* The packed bounds of a layer of bricks begin with a bit for each brick; each row of bricks starts a new
+ * byte. The bit is 1 where the brick is even: all eight of its 2x2x2 cells have the same bounds. Then follow,
+ * brick after brick, the two bounds (lower, upper) of an even brick, or eight lower and eight upper bounds,
+ * those of cells (i, j, k) as number i + 2 j + 4 k. Cells beyond the grid have the bounds of their
+ * neighbours. */
 enum { BRICK_CELLS = 8, EVEN_BYTES = 2, UNEVEN_BYTES = 2 * BRICK_CELLS };
 
 static inline size_t hl_even_row_bytes(const grid *grid) { return ((size_t)grid->brick_count[0] + 7) / 8; }

@@ -35,7 +35,7 @@ LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const 
   return both;
 }
 
-/* The same across the grid's faces, where the border's values continue. */
+/* Eight voxels of each of two rows that cross the grid's faces, beyond which the border's values continue. */
 LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, int32_t z) {
   float both[LANES];
   for (int i = 0; i < LANES; i++) both[i] = hl_stored_value(grid, x + i % BITS_ROW, y + i / BITS_ROW, z);
@@ -74,7 +74,7 @@ LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[
 
 /* ---- a brick ---- */
 
-/* Bounds along z: [cell z][y][x]. Seven rows count; the eighth fills the lanes. */
+/* Finds bounds along z: [cell z][y][x]. Of the eight rows, the last only fills the lanes. */
 LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
                                float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
   const int32_t *count = grid->dimension;
@@ -99,7 +99,7 @@ LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32
   }
 }
 
-/* Then along y, two layers of cells at a time: [cell z][cell y][x]. */
+/* Continues with bounds along y, two layers of cells at a time: [cell z][cell y][x]. */
 LANES_INLINE void bits_along_y(float from[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW],
                                float bounds[HL_BRICK_CELLS][HL_BRICK_CELLS][BITS_ROW]) {
   for (int layer = 0; layer < HL_BRICK_CELLS; layer += 2) {

@@ -59,23 +59,22 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
   classifier->last_visible = (float)last + 1;
 }
 
-/* The least gradient of a surface: a thousandth of the transfer function's span per voxel edge. */
+/* The least gradient of a surface: a thousandth of the transfer function's span of values per voxel edge. */
 static float normal_edge(const hl_scene_volume *volume, double entries_per_value) {
   const hl_transfer_function *function = &volume->transfer_function;
   double span = function->opacity_count == 0
                     ? 0
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
-  mat3 placed =
-      volume->volume->index_to_world.linear; /* without the placement's rotation, which keeps lengths */
+  mat3 placed = volume->volume->index_to_world.linear; /* the rotation is left out: it keeps lengths */
   for (int axis = 0; axis < 3; axis++)
     placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
   double edge = mat3_shortest_column(placed) * volume->scale;
   return (float)fmin(fmax(1e-3 * span / edge * entries_per_value, 1e-30), 1e30);
 }
 
-/* A narrower range of values is widened to this times value_scale: floats could not hold its scale. Its
- * values then share one entry. */
+/* The narrowest range of values that tables cover, as a multiple of value_scale: a float could not hold the
+ * scale of a narrower range. Narrower ranges are widened, and their values share one entry. */
 static const double NARROWEST_RANGE = 1e-34;
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,

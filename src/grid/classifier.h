@@ -1,10 +1,10 @@
-/* grid/classifier.h - a transfer function as tables: densities are classified after interpolation.
+/* grid/classifier.h - a transfer function as tables: it classifies densities after interpolation.
  *
- * Density on a sheet (stored units, relative to the grid's empty value) -> extinction and colour, linear
- * between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. Along a ray from one sheet
- * to the next, density runs from a to b; its mean extinction is the integral of the table from a to b over (b
- * - a), so the table's integral is kept too, and no sharp feature of a transfer function falls between two
- * sheets. */
+ * The tables map density on a sheet (stored units, relative to the grid's empty value) to extinction and
+ * colour, linear between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. Along a ray
+ * from one sheet to the next, density changes from a to b. The mean extinction between them is the integral
+ * of the table from a to b, divided by (b - a). The classifier therefore keeps the table's integral too, and
+ * no narrow peak of a transfer function is lost between two sheets. */
 #ifndef HL_GRID_CLASSIFIER_H
 #define HL_GRID_CLASSIFIER_H
 
@@ -17,9 +17,9 @@ typedef struct classifier {
   float (*sums)[4];  /* owned; [CLASSIFIER_ENTRIES + 2]; extinction per world unit; its integral over entries,
                         from entry 0; the integral of extinction * entry; 0 */
   float (*color)[4]; /* owned with sums; [same]; linear RGB; 0 */
-  int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: the first entry from this one on with extinction
-                            > 0 */
-  float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
+  int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: the first entry with extinction > 0, from the
+                          * element's own index on */
+  float first_visible, last_visible; /* table coordinates: values outside [first, last] have no extinction */
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
@@ -27,9 +27,9 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
                                classifier *classifier, hl_error *error);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
-/* Data values below the result are transparent whatever the transfer function says: where it shows even
- * empty, and empty lies below all values, the values closer to empty than to the least value. Else -infinity.
- */
+/* Data values below the result are transparent, whatever the transfer function says. If the transfer function
+ * shows even the empty value, and the empty value lies below all values, the result is the middle between the
+ * empty and the least value; else -infinity. */
 double hl_transparent_below(const hl_scene_volume *volume, double empty);
 
 /* True if some stored value in [low, high] is visible. */

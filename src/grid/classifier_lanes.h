@@ -1,5 +1,4 @@
-/* grid/classifier_lanes.h - classification of rays on their way from one sheet to the next, sixteen at a
- * time. */
+/* grid/classifier_lanes.h - classifies the densities of sixteen rays between one sheet and the next. */
 #ifndef HL_GRID_CLASSIFIER_LANES_H
 #define HL_GRID_CLASSIFIER_LANES_H
 
@@ -30,15 +29,15 @@ LANES_INLINE void table_values(float (*table)[4], table_coordinate at, lanes val
   for (int i = 0; i < 3; i++) values[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
 }
 
-/* Where the ends of the way are closer than this many entries, the difference of integrals loses digits; the
- * mean of the ends is as good there. */
+/* Where a and b are closer than this many entries, the difference of integrals loses digits, and the mean of
+ * the two ends is as accurate. */
 static const float CLOSE_ENTRIES = 4;
 
-/* Integrals I over the way from coordinate a to coordinate b. */
+/* Integrals I from coordinate a to coordinate b of a table. */
 typedef struct way_sums {
   lanes extinction; /* the mean, (I(b) - I(a)) / (b - a) */
   lanes integral;   /* I(b) - I(a), 0 where the ends are close */
-  lanes moment;     /* the same for extinction * entry */
+  lanes moment;     /* the integral of extinction * entry, treated alike */
 } way_sums;
 
 LANES_INLINE way_sums sums_of_way(const classifier *classifier, table_coordinate a, table_coordinate b) {
@@ -58,8 +57,8 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_coordi
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
-/* The mean distance of the density from a and from b on the way between them, weighted by extinction, in
- * entries; 1 and 1 where the way is short or has no extinction. */
+/* The density's mean distance from a and from b, between the two, weighted by extinction, in entries; 1 and 1
+ * where a and b are close or nothing between them has extinction. */
 typedef struct way_means {
   lanes from_a, from_b;
 } way_means;

@@ -1,9 +1,9 @@
-/* grid/grid.h - a volume as the sheets read it: its voxels, their position in the frame, and bricks and cells
+/* grid/grid.h - a volume ready for sampling: its voxels, their position in the frame, and bricks and cells
  * that tell where the transfer function shows something.
  *
  * Densities on sheets are differences from the grid's empty value, in stored units (what the voxels hold):
- * where nothing is splatted the density is empty, and the sum of some of a point's voxels stays between empty
- * and values that are transparent anyway.
+ * where no voxel is splatted the density is 0, the empty value. Where only some of a point's voxels are
+ * splatted, the sum lies between the empty value and values that are transparent as well.
  *
  * The cell of a point p (index space, clamped to [-1, n)) has the coordinates floor(p) + 1, from 0 to n along
  * each axis. A brick is 4x4x4 cells. A point's density depends on the 4x4x4 voxels around its cell. */
@@ -17,14 +17,15 @@
 
 enum {
   HL_BRICK_CELLS = 4,
-  HL_LOOKUP_CELLS = 2, /* cells along an edge of the finer unit of bounds and look-ups */
+  HL_LOOKUP_CELLS = 2, /* cells along an edge of the finer unit (2x2x2 cells) of bounds and look-ups */
   GRID_COLUMN = 8,     /* voxels: the width of a column */
-  GRID_MARGIN = 4 /* voxels: how far outside its box a grid still has values, for slabs across its faces */
+  GRID_MARGIN =
+      4 /* voxels: how far outside its box a grid has values, for slabs that cross the box's faces */
 };
 
-/* Where something is visible, in units of 2x2x2 cells or of bricks. A box of at most three units along each
- * axis is looked up by its first unit: bit i + 2 j + 4 k of `visible` there tells whether any of the 2 + i,
- * 2 + j, 2 + k units from there on along x, y, z shows something. */
+/* Where something is visible, in units of 2x2x2 cells or of bricks. A box of two or three units along each
+ * axis is looked up at its first unit: bit i + 2 j + 4 k of `visible` tells whether the box of 2 + i by 2 + j
+ * by 2 + k units from there on shows something. */
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
@@ -32,13 +33,14 @@ typedef struct cell_lookup {
 } cell_lookup;
 
 typedef struct grid {
-  const void *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's */
-  /* u8 voxels once more, in columns eight voxels wide: eight rows of a column are 64 bytes in a line, so that
-   * a window of 8x8 voxels comes from two columns by two loads (of 512 bits), and neighbouring windows come
-   * from the same lines of the cache whichever way the sheets lie. Values are less 128, as signed numbers.
-   * Owned; [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where nothing reads them. */
+  const void *
+      voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values; owned by the volume or `finite` */
+  /* A copy of u8 voxels in columns eight voxels wide. Eight rows of a column are 64 consecutive bytes, so
+   * that two loads (of 512 bits) from two columns give a window of 8x8 voxels, and neighbouring windows share
+   * cache lines, however the sheets lie. Values are reduced by 128, as signed numbers. Owned;
+   * [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where no function reads columns. */
   unsigned char *columns;
-  size_t column_slice_bytes, column_bytes; /* from slice to slice, from column to column */
+  size_t column_slice_bytes, column_bytes; /* bytes from slice to slice, and from column to column */
   hl_storage storage;
   int32_t dimension[3];
   float empty;                      /* stored units */
@@ -56,13 +58,13 @@ typedef struct grid {
   float cell_base, cell_step;  /* stored units */
   uint64_t *cell_bits; /* owned; [bricks z][y][x]; bit x + 4 y + 16 z: whether the cell (x, y, z) of the brick
                           may show something; or null */
-  bool cell_bits_tell; /* enough cells show nothing for the bits to be worth asking */
+  bool cell_bits_tell; /* enough cells show nothing to make reading the bits worthwhile */
   uint32_t *relevant_list; /* owned; [relevant_count]; relevant bricks with a visible cell, in rising order */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
-  bool cut; /* some relevant brick reaches the box's faces: rays need to know where they cross them */
+  bool cut; /* some relevant brick reaches the box's faces: the crossings of rays and faces are needed */
   void *finite_voxels;  /* owned; a copy of the voxels with non-finite ones replaced by empty, or null */
-  uint64_t kept_voxels; /* 64 for each relevant brick, fewer at the borders */
+  uint64_t kept_voxels; /* voxels of relevant bricks: 64 each, fewer at the borders */
 } grid;
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */
@@ -78,7 +80,7 @@ enum { CELL_TAPS = 5 /* voxels along an axis that two neighbouring cells depend 
  * smooth: whether the kernel is the B-spline. */
 typedef void bound_along_function(hl_storage storage, const void *row, int32_t count, bool smooth,
                                   float *padded, float *low, float *high);
-/* The same across rows of bounds, elementwise. */
+/* Bounds of pairs of cells along y or z: as for a row, elementwise across rows of bounds. */
 typedef void bound_across_function(const float *const low_rows[CELL_TAPS],
                                    const float *const high_rows[CELL_TAPS], size_t count, bool smooth,
                                    float *low, float *high);
@@ -92,7 +94,7 @@ typedef struct grid_functions {
   bound_along_function *along;
   bound_across_function *across;
   brick_bits_function *brick_bits;
-  bool reads_columns; /* whether gathering reads the columns of u8 voxels */
+  bool reads_columns; /* whether the instruction set's gathering reads the columns of u8 voxels */
 } grid_functions;
 
 /* ---- bricks and voxels ---- */

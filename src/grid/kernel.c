@@ -1,4 +1,4 @@
-/* grid/kernel.c - the kernels, as polynomial pieces. */
+/* grid/kernel.c - the kernels' polynomials. */
 #include "grid/kernel.h"
 
 #include <math.h>
@@ -13,9 +13,10 @@ static const kernel bspline = {
     .degree = HL_BSPLINE_DEGREE,
 };
 
-/* The Gaussian exp(-2 d^2) cut at 2 and divided by the sum of its four neighbours at the same phase, so
- * that it sums to 1 (derived: that sum depends on d only through d's fraction). Least-squares fit of degree
- * 5, constrained to sum to 1, to be continuous and to end at 0; within 2.7e-4 of the function. */
+/* The Gaussian exp(-2 d^2) cut at 2 and divided by the sum of its four neighbours at the same phase, so that
+ * it sums to 1 (derived: the sum of the four depends only on the fractional part of d). The coefficients are
+ * a least-squares fit of degree 5, constrained to sum to 1, to be continuous and to end at 0; the error is at
+ * most 2.7e-4. */
 static const kernel gaussian = {
     .name = "gaussian",
     .support = 2,

@@ -12,7 +12,8 @@ LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
   return sum;
 }
 
-/* The cubic B-spline in fewer steps: at distances up to 1, and at the distance 2 - rest, rest up to 1. */
+/* The cubic B-spline in fewer operations: for distances up to 1, and for the distance 2 - rest with rest up
+ * to 1. */
 LANES_INLINE lanes bspline_inner(lanes distance) {
   return lanes_fma(distance * distance, lanes_line(distance, 0.5f, -1.0f), lanes_set(2.0f / 3));
 }

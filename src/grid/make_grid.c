@@ -24,7 +24,7 @@ static void replace_slice(void *data, size_t index, int worker) {
     job->to[i] = isfinite(job->from[i]) ? job->from[i] : job->empty;
 }
 
-/* Copies f32 voxels, with empty in place of every non-finite one. */
+/* Copies f32 voxels and replaces non-finite values by the empty value. */
 static hl_status replace_nonfinite(hl_context *context, hl_pool *pool, const hl_volume *volume, grid *grid,
                                    hl_error *error) {
   size_t count = hl_volume_voxel_count(volume);
@@ -53,14 +53,15 @@ static uint64_t columns_bytes(const int32_t dimension[3]) {
   return (uint64_t)((dimension[0] + GRID_COLUMN - 1) / GRID_COLUMN) * column_bytes(dimension);
 }
 
-/* Whether something reads a grid's columns, and its slices are large enough for windows of 8x8 voxels. */
+/* Whether some function reads the grid's columns, and the grid's slices are large enough for windows of 8x8
+ * voxels. */
 static bool wants_columns(const grid_functions *functions, const int32_t dimension[3], hl_storage storage) {
   return functions->reads_columns && storage == HL_STORAGE_U8 && dimension[0] >= GRID_COLUMN &&
          dimension[1] >= GRID_COLUMN;
 }
 
-/* Copies a slice into every column, values less 128. Past the end of rows whose length is no multiple of
- * eight nothing is read into a sum. */
+/* Copies a slice into all columns, values reduced by 128. The last column is not filled past the row's end:
+ * no sum includes these values. */
 static void copy_slice(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = data;

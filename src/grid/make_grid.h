@@ -1,4 +1,4 @@
-/* grid/make_grid.h - making a grid from a volume, once a volume and kernel. */
+/* grid/make_grid.h - making a grid from a volume, once for each volume and kernel. */
 #ifndef HL_GRID_MAKE_GRID_H
 #define HL_GRID_MAKE_GRID_H
 
@@ -6,14 +6,14 @@
 
 typedef struct grid_source {
   const hl_scene_volume *volume; /* kept alive by the caller */
-  const kernel *kernel;          /* cells are bounded for it */
+  const kernel *kernel;          /* the kernel that the cells' bounds are for */
   affine3 index_to_frame;        /* index space to frame space */
-  double empty;                  /* data value */
+  double empty;                  /* the empty value, as a data value */
 } grid_source;
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
                          const grid_source *source, grid *grid, hl_error *error);
-/* The bytes that the volume's grid takes at most. */
+/* An upper bound of the bytes of the volume's grid. */
 uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions, int threads);
 void hl_grid_release(hl_context *context, grid *grid);
 

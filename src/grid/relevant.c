@@ -73,7 +73,7 @@ static bool reaches_faces(const grid *grid, const int32_t b[3]) {
   return false;
 }
 
-/* Whether a brick has a cell that shows something; after mark_cells(), before fill_lookups(). */
+/* Whether a brick has a visible cell. Call after mark_cells() and before fill_lookups(). */
 static bool has_visible_cell(const grid *grid, size_t brick) {
   return grid->lookup[1].visible == NULL || grid->lookup[1].visible[brick];
 }
@@ -82,8 +82,8 @@ static bool has_visible_cell(const grid *grid, size_t brick) {
 
 typedef struct cell_job {
   grid *grid;
-  uint16_t
-      least_high[256]; /* by lower bound: the least upper bound with which something is visible; 256: none */
+  uint16_t least_high[256]; /* for each lower bound, the least upper bound with which some value is visible;
+                               256: none */
 } cell_job;
 
 static void find_least_high(const classifier *classifier, const grid *grid, uint16_t least_high[256]) {
@@ -97,7 +97,7 @@ static void find_least_high(const classifier *classifier, const grid *grid, uint
   }
 }
 
-/* The bytes that the bounds of a row of bricks take. */
+/* The bytes of the packed bounds of a row of bricks. */
 static size_t packed_row_bytes(const grid *grid, const unsigned char *even) {
   size_t count = (size_t)grid->brick_count[0], alike = 0;
   for (size_t i = 0; i < hl_even_row_bytes(grid); i++) alike += (size_t)__builtin_popcount(even[i]);
@@ -157,10 +157,10 @@ static void mark_cells(grid *grid, const classifier *classifier, hl_pool *pool) 
 
 /* ---- look-ups of boxes of cells ---- */
 
-/* The bits of `visible` (cell_lookup) that stand for boxes three units long along x, y, z. */
+/* The bits of `visible` (cell_lookup) for boxes three units long along x, y, z. */
 enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
 
-/* Turns a row's marks (1: visible) into its look-ups along x. */
+/* Converts a row's marks (1: visible) into look-ups along x. */
 static void look_up_row(unsigned char *cells, size_t width) {
   for (size_t x = 0; x + 2 < width; x++)
     cells[x] = (unsigned char)(-(cells[x] | cells[x + 1]) | (-cells[x + 2] & THREE_ALONG_X));
@@ -181,7 +181,7 @@ static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t w
   for (size_t x = 0; x < width; x++) cell[x] |= cell[x + step];
 }
 
-/* Look-ups of a slice along x and y. */
+/* Makes the look-ups of a slice along x and y. */
 static void look_up_slice(void *data, size_t index, int worker) {
   (void)worker;
   const cell_lookup *lookup = data;
@@ -191,7 +191,7 @@ static void look_up_slice(void *data, size_t index, int worker) {
   join_axis(visible, width, lookup->count[1], width, THREE_ALONG_Y);
 }
 
-/* Look-ups of a row along z, in all slices. */
+/* Makes the look-ups of a row along z, in all slices. */
 static void look_up_across(void *data, size_t index, int worker) {
   (void)worker;
   const cell_lookup *lookup = data;
@@ -210,9 +210,10 @@ static void fill_lookups(grid *grid, hl_pool *pool) {
 
 /* ---- a bit for each cell ---- */
 
-/* Larger volumes get no bits: an eighth of a byte a voxel would be much beside their other memory. */
+/* The most cells that get bits: for larger volumes, an eighth of a byte per voxel would be much compared with
+ * their other memory. */
 static const uint64_t GREATEST_BYTES = 8 << 20;
-/* Bits that leave out less than this fraction of the visible bricks' cells are not worth asking. */
+/* The least fraction of the visible bricks' cells that the bits must exclude to be worth reading. */
 static const double LEAST_LEFT_OUT = 1.0 / 8;
 
 uint64_t hl_cell_bits_bytes(uint64_t bricks) {
@@ -223,12 +224,12 @@ typedef struct bits_job {
   grid *grid;
   brick_bits_function *brick_bits;
   float sign, threshold;     /* visible: sign * stored value > threshold */
-  uint64_t bricks, set_bits; /* of visible bricks: their number, and their cells with a bit; atomic */
+  uint64_t bricks, set_bits; /* number of visible bricks, and number of their cells with a bit; atomic */
 } bits_job;
 
 /* Finds the sign and the threshold. The threshold is lowered by the errors that sums of floats and the
  * rounded weights of u8 voxels may have: 6e-6 of the greatest number, and 1e-3 of a table's entry. False
- * where floats are too coarse to tell. */
+ * where floats are too coarse for the comparison. */
 static bool find_threshold(const grid *grid, const classifier *classifier, bits_job *job) {
   double high = (double)grid->cell_base + 255.0 * (double)grid->cell_step;
   double greatest = fmax(fmax(fabs((double)grid->cell_base), fabs(high)), fabs((double)grid->empty));
@@ -284,7 +285,7 @@ static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_
   grid->cell_bits_tell = cells - (double)job.set_bits >= LEAST_LEFT_OUT * cells;
 }
 
-/* ---- everything above ---- */
+/* ---- all steps together ---- */
 
 /* Lists the relevant bricks, bounds their coordinates and counts their voxels. */
 static void list_relevant(grid *grid) {

@@ -5,23 +5,22 @@
  *
  * Exposure, compositing and alpha division are done in linear light; the curve is applied last (srgb.h).
  *
- * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws contours, 10 pixels wide
- * and more, that the eye finds. Measured on a penumbra-like gradient of 0.004 to 0.034 linear over 256 x 256
- * pixels, after averaging 8 x 8 pixels as the eye does at a distance: rounding errs by 0.070 codes (root mean
- * square; 0.34 at worst), with an 8 x 8 ordered dither 0.020 (0.08), and the contours are gone when the
- * contrast is raised; white noise (0.050) and two low-discrepancy patterns (0.019 and 0.029) were no better
- * to look at, and the ordered one keeps files smallest. So 8-bit codes are dithered by less than half a code,
- * by position alone, the same in all channels (greys stay grey). Values that are whole codes stay as they
- * are, so a PNG that is read and written again keeps its bytes, and pixels without any volume are rounded: a
- * flat background stays flat. 16 bits are rounded.
- */
+ * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws visible contours, 10
+ * pixels wide and more. Errors measured on a penumbra-like gradient of 0.004 to 0.034 linear over 256 x 256
+ * pixels, after averaging 8 x 8 pixels as the eye does at a distance: rounding 0.070 codes (root mean square;
+ * 0.34 at worst), an 8 x 8 ordered dither 0.020 (0.08), without contours even at raised contrast. White noise
+ * (0.050) and two low-discrepancy patterns (0.019 and 0.029) looked no better, and the ordered dither gives
+ * the smallest files. So 8-bit codes are dithered by less than half a code, by position alone, the same in
+ * all channels (greys stay grey). Values that are exact codes stay unchanged, so a PNG that is read and
+ * written again keeps its pixels. Pixels without any volume are rounded: a flat background stays flat. 16-bit
+ * codes are rounded. */
 #include "image/codes.h"
 
 #include <string.h>
 
 #include "image/format.h"
 
-/* The 8 x 8 ordered (Bayer) pattern: the bits of x ^ y and y, interlaced and mirrored, count each of 0..63
+/* The 8 x 8 ordered (Bayer) pattern: the bits of x ^ y and y, interlaced and mirrored, give each of 0..63
  * once. Offsets in codes, -63/128 .. 63/128. */
 static float dither_offset(int x, int y) {
   int order = 0;
@@ -30,7 +29,7 @@ static float dither_offset(int x, int y) {
   return (float)(2 * order - 63) / 128.0f;
 }
 
-/* Alpha is linear: nearest code of [0, 1], NaN gives 0. */
+/* The nearest code of alpha, which is linear from 0 to 1; NaN gives 0. */
 static int quantise(float value, int maximum, float offset) {
   if (!(value > 0)) return 0;
   if (value >= 1) return maximum;
@@ -47,10 +46,10 @@ static bool is_empty(const float pixel[4]) {
   return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0 && pixel[3] == 0;
 }
 
-/* The linear value that colour c of a pixel is stored as. */
+/* The linear value, before encoding, of a pixel's colour c. */
 static float hl_stored_value(const hl_codes *codes, const float pixel[4], int c) {
   if (!codes->transparent) return pixel[c] * codes->exposure + (1 - pixel[3]) * codes->background[c];
-  /* Unassociated colour cannot express light above alpha, which emission gives: it saturates. */
+  /* Unassociated colour cannot express light above alpha, as emission gives: the colour saturates. */
   return pixel[3] > 0 ? pixel[c] / pixel[3] * codes->exposure : 0;
 }
 

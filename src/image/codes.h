@@ -11,9 +11,9 @@ typedef struct hl_codes {
   hl_srgb_encoder encoder;
   int depth;           /* bits of a code: 8 or 16 */
   bool transparent;    /* four codes a pixel, the last one alpha; else three */
-  bool opaque_alpha;   /* or four, the last one always the greatest */
+  bool opaque_alpha;   /* four codes a pixel, alpha always the greatest code */
   float background[3]; /* linear */
-  float exposure;      /* what the picture's light is multiplied by */
+  float exposure;      /* factor on the picture's light */
 } hl_codes;
 
 hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth,

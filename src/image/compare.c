@@ -1,17 +1,17 @@
-/* compare.c - how far two pictures are apart.
+/* compare.c - the differences of two pictures.
  *
- * In: two pictures of one size. Out: hl_image_difference. Two passes: sums and the greatest; and the
- * percentile, found by counting the differences' float bits (which sort like the numbers) in two halves of
- * 16, so that no picture-sized buffer is needed and the cost does not depend on the data.
- */
+ * In: two pictures of one size. Out: hl_image_difference. The first pass finds the sums and the greatest
+ * difference. The second finds the percentile by counting the differences' float bits (which sort like the
+ * numbers), first the upper 16, then the lower 16: no buffer of the picture's size is needed, and the cost
+ * does not depend on the data. */
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "image/image.h"
 
-/* b - a; equal values (also infinite ones) differ by 0 and NaN anywhere counts as an infinite difference, so
- * that no threshold accepts it. */
+/* b - a. Equal values, also infinite ones, differ by 0. A NaN in either picture counts as an infinite
+ * difference, so that no threshold accepts it. */
 static double channel_difference(float a, float b) {
   if (a == b) return 0;
   double difference = (double)b - (double)a;
@@ -31,8 +31,9 @@ static uint32_t difference_bits(const float a[4], const float b[4]) {
   return bits;
 }
 
-/* Of the pixels whose bits >> 16 is high (or of all, if high is negative) the 16 bits below (or above) that
- * the rank-th smallest has; *rank becomes its rank among the pixels with those bits. */
+/* Finds 16 bits of the rank-th smallest difference: of all pixels its upper 16 bits where `high` is negative,
+ * else its lower 16 bits among the pixels whose upper 16 bits are `high`. *rank becomes the difference's rank
+ * among the pixels that share the found bits. */
 static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, uint64_t *rank,
                             uint64_t *counts) {
   size_t pixels = (size_t)a->width * (size_t)a->height;

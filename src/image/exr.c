@@ -5,10 +5,9 @@
  * float channels (exr.h), or a picture with its layers; ZIP, 32-bit float, values bit by bit. OpenEXRCore
  * writes through on_write, so that a full disk is noticed here and the file is the caller's temporary one.
  *
- * Against hostile files: OpenEXRCore reads through on_read, bounded by the file's bytes; kinds of file and of
- * compression that are not needed are refused; sizes are limited before allocation and held against the most
- * that the file's bytes can hold.
- */
+ * Against hostile files: OpenEXRCore reads through on_read, bounded by the file's bytes; unneeded kinds of
+ * file and compression are refused; sizes are limited before allocation and compared with the greatest size
+ * that the file's bytes can expand to. */
 #define _GNU_SOURCE
 #include "image/exr.h"
 
@@ -24,7 +23,8 @@
 
 /* ---- reading ---- */
 
-/* The most that any accepted compression expands one byte to; deflate's 1032 is the greatest. */
+/* Bytes that one compressed byte can expand to: deflate's 1032 is the greatest factor of the accepted
+ * compressions. */
 enum { EXPANSION_MAX = 1032 };
 static const uint64_t chunk_bytes_max = (uint64_t)1 << 28;
 
@@ -144,7 +144,7 @@ static hl_status make_image(exr_reading *reading) {
                                   &reading->image, reading->error);
 }
 
-/* Points the channels that the picture wants at row y of it. */
+/* Points the decoder's R, G, B, A and Y channels at row y of the picture. */
 static void place_channels(const exr_reading *reading, exr_decode_pipeline_t *pipeline, int y) {
   bool has_colours = (reading->present & COLOURS) != 0;
   float *row = reading->image->pixels + (size_t)y * (size_t)reading->image->width * 4;
@@ -213,7 +213,7 @@ static exr_result_t start_read(exr_reading *reading) {
   return exr_start_read(&reading->file, reading->name, &options);
 }
 
-/* Width, height and bytes without compression of one part; 0 bytes where its header does not tell. */
+/* The width, height and uncompressed bytes of one part; 0 bytes where its header does not state them. */
 static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
   const exr_attr_chlist_t *list = NULL;
   exr_attr_box2i_t window;
@@ -230,7 +230,7 @@ static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
   return claim;
 }
 
-/* The size of the first part, and the bytes of all. */
+/* The size of the first part, and the uncompressed bytes of all parts. */
 static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   exr_reading reading = {.name = "a picture", .bytes = bytes, .length = length};
   hl_image_claim claimed = {0};
@@ -270,7 +270,7 @@ typedef struct exr_writing {
   const hl_exr_channel *channels; /* borrowed; [channel_count] */
   size_t channel_count;
   hl_output *output;
-  uint64_t at;      /* where the file stands */
+  uint64_t at;      /* write position, bytes */
   int system_error; /* errno of the first failed write */
   bool write_failed;
   char message[200]; /* OpenEXRCore's first complaint */
@@ -312,7 +312,7 @@ static exr_result_t write_header(exr_writing *writing, exr_context_t file) {
   return result == EXR_ERR_SUCCESS ? exr_write_header(file) : result;
 }
 
-/* Points the pipeline's channels (which are sorted by name) at row y of ours. */
+/* Points the pipeline's channels (which are sorted by name) at row y of the given channels. */
 static void point_at_values(const exr_writing *writing, exr_encode_pipeline_t *pipeline, int y) {
   for (int i = 0; i < pipeline->channel_count; i++) {
     exr_coding_channel_info_t *to = &pipeline->channels[i];
@@ -390,7 +390,7 @@ typedef struct layer_channel_name {
   char text[HL_IMAGE_LAYER_NAME + 3];
 } layer_channel_name; /* "layer.C" */
 
-/* R, G, B, A, and the layers' channels. names: room for all of the latter. */
+/* Lists R, G, B, A and the layers' channels. names: room for the layers' channel names. */
 static void list_channels(const hl_image *image, layer_channel_name *names, hl_exr_channel *channels) {
   static const char *const own[4] = {"R", "G", "B", "A"};
   for (int c = 0; c < 4; c++) *channels++ = (hl_exr_channel){own[c], image->pixels + c, 4};
@@ -406,7 +406,7 @@ static void list_channels(const hl_image *image, layer_channel_name *names, hl_e
 
 static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error) {
-  (void)options; /* depth and background are PNG's */
+  (void)options; /* depth and background concern PNG only */
   size_t count = 4;
   for (size_t i = 0; i < image->layer_count; i++) count += strlen(image->layers[i].channels);
   layer_channel_name *names = hl_allocate(output->context, count, sizeof *names);

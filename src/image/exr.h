@@ -4,7 +4,8 @@
 
 #include "core/file.h"
 
-/* One channel: values[(y * width + x) * pixel_stride], linear. Layers are named "layer.R" and so on. */
+/* One channel; a pixel's value is values[(y * width + x) * pixel_stride], linear. Layers are named "layer.R"
+ * and so on. */
 typedef struct hl_exr_channel {
   const char *name;
   const float *values; /* borrowed */

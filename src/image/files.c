@@ -1,8 +1,7 @@
-/* files.c - which format a picture has, and the ways in and out for all of them.
+/* files.c - finds a picture's format, reads and writes pictures of every format.
  *
- * Writing goes by the name's extension. Reading goes by the file's first bytes, so that a wrongly
- * named picture is still read; the extension only serves to explain a failure.
- */
+ * The name's extension decides the format of a written file; the first bytes decide the format of a read
+ * file, so that a wrongly named picture is still read. */
 #include "image/format.h"
 
 #include <inttypes.h>
@@ -18,7 +17,8 @@ static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format,
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* The most bytes that a file may have beyond its pixels (texts, profiles, thumbnails), and in its header. */
+/* Greatest accepted sizes, bytes: of a file beyond its pixels (texts, profiles, thumbnails), and of its
+ * header. */
 static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const hl_image_format *format_by_name(const char *path) {
@@ -142,7 +142,8 @@ static hl_status fail_unknown(const char *path, hl_error *error) {
                         "%s: byte 0: unknown picture format: expected a PNG, OpenEXR or NPY file", path);
 }
 
-/* Limits the length of a file by its header. Compression never makes pixels longer by more than half. */
+/* Limits the length of a file by the size in its header. Compressed pixels are never longer than one and a
+ * half times the plain ones. */
 static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                        hl_error *error) {
   const hl_image_format *format = format_by_content(bytes, length);

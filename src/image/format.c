@@ -1,5 +1,4 @@
-/* format.c - what the encoders of all formats share: the options of writing, progress, the line of a failed
- * write. */
+/* format.c - shared by the encoders of all formats: options, progress, the error of a failed write. */
 #include "image/format.h"
 
 #include <math.h>

@@ -1,7 +1,8 @@
-/* format.h - what a picture format offers to hl_image_write and hl_image_read, and what encoders share.
+/* format.h - the interface between picture formats and hl_image_write and hl_image_read, and the functions
+ * that encoders share.
  *
  * The registry of formats is in files.c.
- */
+ * */
 #ifndef HL_IMAGE_FORMAT_H
 #define HL_IMAGE_FORMAT_H
 
@@ -12,14 +13,14 @@
 
 /* The size of a picture, as its file's first bytes state it. */
 typedef struct hl_image_claim {
-  bool known; /* false: it takes more bytes to tell */
+  bool known; /* false: more bytes are needed to find the size */
   uint64_t width, height;
-  uint64_t bytes; /* of pixels, without compression */
+  uint64_t bytes; /* bytes of the pixels, uncompressed */
 } hl_image_claim;
 
 typedef struct hl_image_format {
   const char *extension, *title;
-  unsigned char mark[8]; /* the first bytes of every such file */
+  unsigned char mark[8]; /* first bytes of every file of the format */
   size_t mark_length;
 
   /* Writes the whole picture to output->file; the caller commits or aborts. Failures of the file are
@@ -27,11 +28,11 @@ typedef struct hl_image_format {
   hl_status (*encode)(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                       hl_error *error);
 
-  /* Takes the bytes of a whole file, which may be anything; name is what errors call it. */
+  /* Decodes a file from its bytes, which may be anything; name: the file's name in errors. */
   hl_status (*decode)(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                       hl_image **image, hl_error *error);
 
-  /* Reads the header only. Of a broken header nothing is known; decode then reports what is wrong. */
+  /* Reads the header only. For a broken header no size is known; decode then reports the error. */
   hl_image_claim (*claim)(const unsigned char *bytes, size_t length);
 
   bool holds_layers; /* encode writes the layers too */
@@ -43,14 +44,13 @@ typedef struct hl_image_format {
 
 extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format;
 
-/* Refuses options that cannot be; caller: the public function that errors name. */
+/* Refuses impossible options; caller: the public function's name for errors. */
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);
 
-/* To be called by encoders before each row: reports progress; fails with HL_ERROR_CANCELLED once cancelled.
- */
+/* Encoders call this before each row: reports progress; fails with HL_ERROR_CANCELLED once cancelled. */
 hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error);
 
-/* The line for a failed write to output->file, from errno. */
+/* Reports a failed write to output->file, from errno. */
 hl_status hl_fail_write(hl_error *error, const hl_output *output, int system_error);
 
 #endif

@@ -6,8 +6,8 @@
 
 enum {
   HL_IMAGE_SIDE_MAX = 65535,
-  HL_IMAGE_EXPOSURE_MAX = 32, /* stops, either way */
-  /* The most pixels that a reader allocates for a size that a file states: 2^28, 4 GiB. */
+  HL_IMAGE_EXPOSURE_MAX = 32, /* greatest exposure in either direction, stops */
+  /* Greatest number of pixels that a reader accepts from a file's header: 2^28, 4 GiB. */
   HL_IMAGE_READ_PIXELS_MAX = 1 << 28
 };
 

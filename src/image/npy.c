@@ -1,12 +1,12 @@
 /* npy.c - pictures as NumPy arrays (NPY format), float32, C order.
  *
- * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer with its own
- * channels, or as height x width where it has one. Read: versions 1 to 3,
- * '<f4' or '<f8', height x width or height x width x 1, 3 or 4; grey fills R, G and B, a missing alpha is 1.
- * Values are stored bit by bit.
+ * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer as height x width x
+ * channels, or as height x width where it has one channel. Read: versions 1 to 3, '<f4' or '<f8', height x
+ * width or height x width x 1, 3 or 4; grey fills R, G and B, a missing alpha is 1. Values are stored bit by
+ * bit.
  *
  * The header is a Python literal: {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), }
- */
+ * */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@
 #include "core/memory.h"
 #include "image/format.h"
 
-/* HEADER_BYTES: as NumPy, whose data starts at a multiple of 64. */
+/* HEADER_BYTES: data starts at a multiple of 64, as in NumPy's own files. */
 enum { PREAMBLE_BYTES = 10, HEADER_BYTES = 128, HEADER_BYTES_MAX = 65536 };
 
 typedef struct npy_header {
@@ -27,7 +27,7 @@ typedef struct npy_header {
   bool has_type, has_order, has_shape;
 } npy_header;
 
-/* A place in the header's text; errors name the byte in the file. */
+/* A read position in the header's text; errors name the byte in the file. */
 typedef struct npy_cursor {
   const char *name;
   const unsigned char *bytes; /* borrowed; the file's first bytes */
@@ -43,7 +43,7 @@ static void put_float(unsigned char *to, float value) {
   for (int i = 0; i < 4; i++) to[i] = (unsigned char)(bits >> 8 * i);
 }
 
-/* What is written: [height][width][channels], or [height][width] where there is one channel. */
+/* The array to write: [height][width][channels], or [height][width] where there is one channel. */
 typedef struct npy_array {
   int height, width;
   size_t channels;
@@ -84,7 +84,7 @@ static hl_status encode_array(const npy_array *array, hl_output *output, hl_erro
 
 static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error) {
-  (void)options; /* depth and background are PNG's */
+  (void)options; /* depth and background concern PNG only */
   const npy_array array = {image->height, image->width, 4, image->pixels};
   return encode_array(&array, output, error);
 }
@@ -106,7 +106,7 @@ static void skip_spaces(npy_cursor *cursor) {
   while (cursor->at < cursor->end && memchr(" \t\r\n", cursor->bytes[cursor->at], 4) != NULL) cursor->at++;
 }
 
-/* Takes the literal text if it is next. */
+/* Reads the literal text if it comes next. */
 static bool take(npy_cursor *cursor, const char *text) {
   skip_spaces(cursor);
   size_t length = strlen(text);
@@ -116,7 +116,7 @@ static bool take(npy_cursor *cursor, const char *text) {
   return true;
 }
 
-/* A quoted string without escapes, cut to the size of text. */
+/* Reads a quoted string without escapes, cut to the size of `text`. */
 static bool take_string(npy_cursor *cursor, char *text, size_t size) {
   const char *quote = take(cursor, "'") ? "'" : take(cursor, "\"") ? "\"" : NULL;
   if (quote == NULL) return false;
@@ -188,7 +188,7 @@ static hl_status parse_header(npy_cursor *cursor, npy_header *header) {
   return HL_OK;
 }
 
-/* Finds the header's text and with it the first byte of data. */
+/* Finds the header's text and the first byte of data behind it. */
 static hl_status find_header(npy_cursor *cursor, size_t length) {
   const unsigned char *bytes = cursor->bytes;
   if (length < PREAMBLE_BYTES + 2) return fail_header(cursor, "more than an empty file");

@@ -1,5 +1,5 @@
-/* png.c - PNG files of any kind in, of 8 or 16 bits out, through libpng; and the scene that a picture
- * carries.
+/* png.c - reads PNG files of any kind and writes them with 8 or 16 bits, through libpng; finds the scene that
+ * a picture carries.
  *
  * In: the bytes of a file, which may be anything. Out: a picture. Grey, palette, 1 to 16 bits, transparency
  * and interlacing are all expanded to RGBA; samples are taken as sRGB whatever gAMA or iCCP say.
@@ -7,9 +7,8 @@
  * Out to a file: sRGB codes, RGB over the background or, with background_transparent, unassociated RGBA
  * (codes.c); the scene as a compressed text chunk.
  *
- * Against hostile files: sizes are limited before allocation and held against the most that the file's bytes
- * can inflate to; every chunk but IHDR, PLTE, tRNS, IDAT and IEND is skipped unread.
- */
+ * Against hostile files: sizes are limited before allocation and compared with the greatest size that the
+ * file's bytes can inflate to; every chunk but IHDR, PLTE, tRNS, IDAT and IEND is skipped unread. */
 #include <errno.h>
 #include <png.h>
 #include <setjmp.h>
@@ -24,7 +23,7 @@
 
 enum { MARK_BYTES = 8 };
 
-/* Of the text chunk that holds the scene. */
+/* The keyword of the text chunk that holds the scene. */
 static const char keyword[] = "halflight:scene";
 
 static uint32_t load_32(const unsigned char *bytes) {
@@ -33,7 +32,7 @@ static uint32_t load_32(const unsigned char *bytes) {
 
 /* ---- reading ---- */
 
-/* No deflate stream gives more than this many bytes for each of its own (258 bytes from 2 bits). */
+/* Greatest number of bytes that one byte of a deflate stream can expand to (258 bytes from 2 bits). */
 enum { INFLATE_RATIO_MAX = 1032 };
 
 typedef struct png_reading {
@@ -46,7 +45,8 @@ typedef struct png_reading {
   png_structp png;
   png_infop info;
   hl_image *image;
-  float *linear; /* owned; [maximum + 1]; the sRGB curve, computed where first asked for; below 0: not yet */
+  float *linear; /* owned; [maximum + 1]; linear value of each code, computed when first needed; below 0: not
+                    yet computed */
   unsigned char *rows; /* owned; one row of RGBA samples, or all rows where the file is interlaced */
 } png_reading;
 
@@ -81,7 +81,7 @@ static void on_read(png_structp png, png_bytep to, size_t length) {
   reading->at += length;
 }
 
-/* Fails by png_error, so that all failures leave by one way. */
+/* Fails by png_error, as libpng does, so that all failures are handled in one place. */
 static void stop(png_reading *reading, hl_status status) {
   reading->status = status;
   png_error(reading->png, "stopped");
@@ -322,7 +322,7 @@ static hl_status copy_text(hl_context *context, const char *name, const unsigned
   return HL_OK;
 }
 
-/* Inflates into a buffer that doubles until the text ends or the limit is met. */
+/* Inflates into a buffer that doubles until the text ends or the limit is reached. */
 static hl_status inflate_text(hl_context *context, const char *name, const unsigned char *bytes,
                               size_t length, char **text, hl_error *error) {
   z_stream zlib = {.zalloc = zlib_allocate, .zfree = zlib_release, .opaque = context};
@@ -356,7 +356,7 @@ static hl_status inflate_text(hl_context *context, const char *name, const unsig
   return hl_fail(error, HL_ERROR_INPUT, "%s: the scene in it is damaged: zlib data expected", name);
 }
 
-/* The text of a chunk whose keyword is found; body: what follows the keyword's zero byte. */
+/* Reads the text of a chunk with the right keyword; body: the bytes after the keyword's zero byte. */
 static hl_status take_text(hl_context *context, const char *name, const char *type, const unsigned char *body,
                            size_t length, char **text, hl_error *error) {
   if (memcmp(type, "tEXt", 4) == 0) return copy_text(context, name, body, length, text, error);

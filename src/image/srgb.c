@@ -1,9 +1,8 @@
 /* srgb.c - the sRGB transfer curve (IEC 61966-2-1).
  *
- * In: linear floats or whole codes. Out: the other. Used by the PNG writer and reader.
- * Only + - * / and comparisons are used: the C library's pow differs between machines in the last
- * bit, and pictures must not.
- */
+ * In: linear floats or whole codes. Out: the other. Used by the PNG writer and reader. Only + - * / and
+ * comparisons are used: the C library's pow differs between machines in the last bit, but pictures must be
+ * the same everywhere. */
 #include "image/srgb.h"
 
 #include <math.h>
@@ -22,8 +21,8 @@ static double fifth_root(double value, double guess) {
   return r;
 }
 
-/* Derived: with the fraction's binary digits b1 b2 ..., 2^0.b1b2... is the product of 2^(1/2) where b1 is 1,
- * 2^(1/4) where b2 is, and so on; square roots are exact to the last bit everywhere, powers are not. */
+/* Derived: with the fraction's binary digits b1 b2 ..., 2^0.b1b2... is the product of 2^(1/2) if b1 is 1,
+ * 2^(1/4) if b2 is 1, and so on. Square roots are correctly rounded on every machine, powers are not. */
 double hl_exposure_factor(double stops) {
   double whole = floor(stops), fraction = stops - whole, root = 2, factor = 1;
   for (int digit = 0; digit < 53 && fraction > 0; digit++) {
@@ -59,7 +58,7 @@ static float float_from_bits(uint32_t bits) {
 enum {
   KEY_SHIFT = 15,
   KEY_OF_ONE = 127 << 8
-}; /* key of x: its float bits >> KEY_SHIFT, counted down from 1 */
+}; /* key of x: its float bits >> KEY_SHIFT, counted downwards from the key of 1 */
 
 hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder,
                                  hl_error *error) {
@@ -108,7 +107,7 @@ int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear) {
 int hl_srgb_encode_offset(const hl_srgb_encoder *encoder, float linear, float offset) {
   int code = hl_srgb_encode(encoder, linear);
   if (!(linear > 0) || linear >= 1) return code;
-  /* Between two steps the curve is straight to a hundredth of a code. */
+  /* Between two steps the curve is straight to within a hundredth of a code. */
   float low = encoder->threshold[code], high = encoder->threshold[code + 1];
   float place = (linear - low) / (high - low) + offset;
   if (place < 0) return code > 0 ? code - 1 : 0;

@@ -12,8 +12,8 @@ double hl_exposure_factor(double stops);
 /* The linear value of an encoded one, for |encoded| up to a little above 1; odd (f(-c) = -f(c)). */
 double hl_srgb_decode(double encoded);
 
-/* Linear values to whole codes 0..maximum by search among the curve's steps: no rounding of an
- * approximation, so each float gets the code that its exact encoded value rounds to. */
+/* Converts linear values to codes 0..maximum by a search among the values at which the code changes. Nothing
+ * is approximated: each float gets the code that its exact encoded value rounds to. */
 typedef struct hl_srgb_encoder {
   hl_context *context;
   int maximum;      /* 255 or 65535 */
@@ -30,7 +30,7 @@ void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder);
 /* Nearest code; below 0 and NaN give 0, above 1 gives maximum. */
 int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear);
 
-/* The same with offset (in codes, -0.5 < offset < 0.5) added before rounding. */
+/* The nearest code after adding offset (in codes, -0.5 < offset < 0.5). */
 int hl_srgb_encode_offset(const hl_srgb_encoder *encoder, float linear, float offset);
 
 #endif

@@ -1,16 +1,15 @@
-/* reference/field.c - reconstruction of one volume at one point of its index space, and where it has nothing
- * to see.
+/* reference/field.c - reconstruction of one volume at one point of its index space, and the bricks in which
+ * it is transparent.
  *
- * f(p) is the sum over the 4 x 4 x 4 voxels around p of a tensor-product kernel, the voxels at the
- * grid's borders repeated outwards. Used by march.c's walkers at every sample. The three kernels are
- * written out here on purpose: this is the oracle's own copy.
- */
+ * f(p) is the sum over the 4 x 4 x 4 voxels around p of a tensor-product kernel, the voxels at the grid's
+ * borders repeated outwards. Used by march.c's walkers at every sample. The three kernels are written out
+ * here on purpose: the oracle shares no code with the renderer. */
 #include <string.h>
 
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* Where the four taps of each axis lie, and what they weigh. */
+/* The positions and weights of the four taps along each axis. */
 typedef struct taps {
   size_t voxel[3][4];
   double weight[3][4];
@@ -105,7 +104,7 @@ static inline void find_taps(const reference_volume *volume, vec3 point, bool sl
   }
 }
 
-/* The sum over 64 voxels with one weight per tap and axis; storage is a constant at every call. */
+/* The sum over 64 voxels, weighted by one weight per tap and axis; storage is a constant at every call. */
 static inline double weigh_stored(const reference_volume *volume, hl_storage storage,
                                   const size_t voxel[3][4], const double *x, const double *y,
                                   const double *z) {
@@ -157,7 +156,7 @@ double hl_reference_extinction(const reference_volume *volume, double value) {
   return opacity > 0 ? -log1p(-fmin(opacity, 0.9999)) / function->unit_distance : 0;
 }
 
-/* ---- where the volume has nothing to see ----
+/* ---- where the volume is transparent ----
  *
  * Index space is cut into bricks of 4 cells a side; cell c of an axis holds the points p with
  * floor(p) = c - 1, so that bricks start at p = -1 and cover the half cell before the first voxel.
@@ -168,8 +167,8 @@ enum { BRICK_CELLS = 4, FARTHEST = 255 };
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
-/* Voxels that samples in brick `brick` of an axis with n voxels touch: cells 4b-1 .. 4b+2 (as floor(p)),
- * with taps from one before to two after. */
+/* The voxels along an axis of n voxels that samples in brick `brick` (b) depend on: floor(p) from 4b-1 to
+ * 4b+2, with taps from one voxel before to two after. */
 static void brick_voxels(size_t brick, size_t n, size_t *first, size_t *last) {
   size_t corner = BRICK_CELLS * brick;
   *first = least(corner < 2 ? 0 : corner - 2, n - 1);
@@ -194,7 +193,7 @@ static bool brick_visible(const reference_volume *volume, size_t i, size_t j, si
   return hl_transfer_function_visible(&volume->described->transfer_function, fmin(a, b), fmax(a, b));
 }
 
-/* One slab of bricks per call. */
+/* Fills one layer of bricks per call. */
 static void mark_visible(void *data, size_t k, int worker) {
   (void)worker;
   const reference_volume *volume = data;
@@ -275,8 +274,8 @@ static double smallest_edge(const hl_scene_volume *volume) {
   return least;
 }
 
-/* The gradient at which a sample counts as a surface: one thousandth of the transfer function's span of
- * values per voxel edge. */
+/* The least gradient of a surface: one thousandth of the transfer function's span of values per voxel
+ * edge. */
 static double surface_gradient(const hl_transfer_function *function, double edge) {
   double span = 0;
   if (function->opacity_count > 0)
@@ -300,7 +299,8 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
   made->empty_value = hl_scene_volume_empty_value(described);
   made->empty_stored = grid->value_scale != 0 ? (made->empty_value - grid->value_offset) / grid->value_scale
                                               : 0;
-  /* Where no value is transparent, the empty value lies below all values and means that nothing is there. */
+  /* Where no value is transparent, the empty value lies below all values and means that there is no
+   * matter. */
   bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
   made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;
   return create_bricks(all->context, made, pool, error);

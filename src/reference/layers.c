@@ -1,6 +1,6 @@
-/* reference/layers.c - what samples and rays are made of: the light of each source, depth and normals.
+/* reference/layers.c - the contributions to samples and rays: the light of each source, depth and normals.
  *
- * The picture is the sum of its parts; layers are the parts themselves, or their means by opacity. */
+ * The picture is the sum of all contributions. Layers are the contributions, or means weighted by opacity. */
 #include "reference/reference.h"
 
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count) {

@@ -1,22 +1,22 @@
 /* reference/lights.c - points on the lights, and how much of their light reaches a sample.
  *
- * A light is shaded as if all its light came from its centre; its extent matters to shadows and to what it
- * projects alone: transmittance and texture are means over a fixed set of points on the light, the same for
- * every sample, so that the picture has no noise. A sphere is the disk of its radius that faces the
- * sample. */
+ * A light is shaded as if all its light came from its centre. Its extent matters only to shadows and to light
+ * textures: transmittance and texture are means over a fixed set of points on the light, the same for every
+ * sample, so that the picture has no noise. A sphere is the disk of its radius that faces the sample. */
 #include <string.h>
 
 #include "core/memory.h"
 #include "reference/reference.h"
 #include "scene/light_shape.h"
 
-/* ---- the image that a light projects, eq. (2), and the one on its own surface ----
+/* ---- the light texture, eq. (2), and the emission image ----
  *
- * The ray from a point of the light meets the screen's parallelogram or passes beside it; images are
- * bilinear between the middles of their pixels, and held from there to their borders. */
+ * The ray from a point of the light meets the light texture's parallelogram (its screen) or passes beside it.
+ * Images are bilinear between the middles of their pixels, and constant from the outermost middles to the
+ * borders. */
 
-/* Where the ray meets the screen: s along right and t along up, each from -1 to 1 on it. False where it does
- * not run through the screen's plane. */
+/* Finds where the ray meets the screen: s along right and t along up, both from -1 to 1 on the screen. False
+ * where the ray does not cross the screen's plane. */
 static bool meet_screen(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double *s,
                         double *t) {
   vec3 right = vec3_of(texture->screen_right), up = vec3_of(texture->screen_up),
@@ -31,7 +31,8 @@ static bool meet_screen(const hl_light_texture *texture, bool far, vec3 light, v
   return fabs(*s) <= 1 && fabs(*t) <= 1;
 }
 
-/* The two pixels around a place along one axis, and the way from the first to the second. */
+/* The two pixels around a position along one axis, and the fraction of the way from the first to the
+ * second. */
 static double neighbours(double place, int count, size_t pixel[2]) {
   double at = fmin(fmax(place - 0.5, 0), count - 1);
   pixel[0] = (size_t)at;
@@ -39,7 +40,7 @@ static double neighbours(double place, int count, size_t pixel[2]) {
   return at - (double)pixel[0];
 }
 
-/* s to the right and t upwards, each from -1 to 1. */
+/* The image's colour at s to the right and t upwards, each from -1 to 1. */
 static void look_up(const float *pixels, int width, int height, double s, double t, double color[3]) {
   size_t column[2], row[2];
   double x = neighbours((1 + s) / 2 * width, width, column),
@@ -70,11 +71,11 @@ static void emission_color(const hl_light_emission *emission, const emission_pla
 
 /* ---- points on the lights ---- */
 
-/* Optical depth in every channel beyond which nothing is seen of a light: exp(-18) is 2e-8. */
+/* Optical depth, in every channel, beyond which a light counts as dark: exp(-18) is 2e-8. */
 static const double DARK_DEPTH = 18;
 
-/* The fractional part of 1/2 + i step. With the golden section as step, any number of results is spread
- * evenly over 0 to 1. */
+/* The fractional part of 1/2 + i step. With the golden section as step, the results are spread evenly over 0
+ * to 1, however many there are. */
 static double spread(size_t i, double step) {
   double x = 0.5 + (double)i * step;
   return x - floor(x);
@@ -104,7 +105,8 @@ static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points
   }
 }
 
-/* Whether a point of the polygon's plane is inside: a ray from it along u crosses an odd number of edges. */
+/* Whether a point of the polygon's plane is inside: a ray from the point along u then crosses an odd number
+ * of edges. */
 static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 v_axis) {
   bool inside = false;
   for (size_t i = 0; i < light->vertex_count; i++) {
@@ -118,8 +120,9 @@ static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 
   return inside;
 }
 
-/* A sequence spread evenly over the rectangle around the polygon (Roberts's, by the powers of the plastic
- * number), of which those inside are kept. The rectangle has a side along the polygon's longest edge. */
+/* Roberts's sequence (by the powers of the plastic number), spread evenly over the rectangle around the
+ * polygon; the points inside the polygon are kept. The rectangle has a side along the polygon's longest
+ * edge. */
 static void fill_polygon(const hl_light *light, size_t n, vec3 *points) {
   const double plastic = 1.32471795724474602596;
   polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
@@ -181,7 +184,7 @@ static bool has_extent(const hl_light *light) {
   return light->radius > 0;
 }
 
-/* How a light's offset from its centre is found from one of its points. */
+/* The offset of a light's point from its centre; for a directional light, at distance 1. */
 static vec3 offset_of(const reference_light *light, vec3 light_point) {
   if (!light->directional) return vec3_subtract(light_point, light->centre);
   vec3 at_distance_1 = vec3_scale(light_point, 1 / vec3_dot(light_point, light->towards));
@@ -236,8 +239,8 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
   return HL_OK;
 }
 
-/* A spot light's brightness goes from 0 to 1 by a smooth step of the cosine to its axis, between half the
- * opening angle and the falloff angle less. */
+/* A spot light's brightness rises from 0 to 1 by a smooth step of the cosine of the angle to its axis, from
+ * half the opening angle to half the opening angle less the falloff angle. */
 static double spot_brightness(const hl_light *light, vec3 towards) {
   double cosine = -vec3_dot(towards, vec3_normalise(vec3_of(light->direction)));
   double outer = cos(light->opening_angle_deg * HL_PI / 360);
@@ -282,9 +285,9 @@ static void find_transmittance(const reference *all, const reference_ray *ray, c
   for (int c = 0; c < 3; c++) passing[c] = exp(-depth[c]);
 }
 
-/* The colour of the images that a point of the light shows to `point`; false: black. light_point is a
- * direction where the light is directional. plane: of the light's own image, where it counts point by point;
- * else null. */
+/* The colour of the light texture or emission image for the ray from a point of the light to `point`; false:
+ * black. light_point: a direction for directional lights. plane: of the emission image, where it differs from
+ * point to point of the light; else null. */
 static bool find_pattern(const reference_light *light, const emission_plane *plane, vec3 light_point,
                          vec3 point, double pattern[3]) {
   pattern[0] = pattern[1] = pattern[2] = 1;
@@ -294,7 +297,7 @@ static bool find_pattern(const reference_light *light, const emission_plane *pla
   return pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0;
 }
 
-/* The transmittance from `point` to a point of the light, as find_pattern() takes it. */
+/* The transmittance from `point` to a point of the light; arguments as for find_pattern(). */
 static void find_passing(const reference *all, const reference_light *light, vec3 light_point, vec3 point,
                          crossing *scratch, double passing[3]) {
   vec3 offset = vec3_subtract(light_point, point);
@@ -320,7 +323,7 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
     plane = hl_emission_plane(light->described, light->directional ? vec3_scale(light->towards, -1) : facing);
   for (size_t i = 0; i < count && !hl_pool_stops(all->pool, worker->number); i++) {
     vec3 light_point = casts ? light->points[i] : centre;
-    if (light->sphere) /* seen from the point: its disk */
+    if (light->sphere) /* a sphere: its disk as seen from the point */
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
     double pattern[3], passing[3] = {1, 1, 1};
     if (!find_pattern(light, extended ? &plane : NULL, light_point, point, pattern)) continue;

@@ -1,9 +1,9 @@
 /* reference/march.c - a ray through the boxes of several volumes.
  *
- * The distances at which the ray enters and leaves the boxes cut it into stretches; within a stretch the
- * same volumes are there, and it is walked in equal steps, no longer than asked, each sampled at its
- * middle. A homogeneous box is therefore integrated exactly, wherever its faces lie.
- */
+ * The distances at which the ray enters and leaves boxes cut it into stretches, each of which crosses the
+ * same volumes from end to end. A stretch is walked in equal steps, no longer than the requested step, and
+ * each step is sampled at its middle. A homogeneous box is therefore integrated exactly, wherever its faces
+ * lie. */
 #include "reference/reference.h"
 
 /* Entry and exit of the index-space box, by slabs. */
@@ -39,7 +39,7 @@ void hl_reference_march_begin(const reference *all, reference_role role, const r
   }
 }
 
-/* Moves to the next part of the ray in which the same boxes, at least one, are crossed. */
+/* Moves to the next stretch of the ray that crosses at least one box. */
 static bool next_stretch(march *walk) {
   for (;;) {
     walk->start = walk->end;
@@ -82,7 +82,8 @@ bool hl_reference_march_next(march *walk) {
     double clear = hl_reference_march_place(walk, walk->start + (walk->next + 0.5) * walk->length);
     walk->next++;
     if (clear <= 0) return true;
-    /* the samples strictly inside the empty part; the margin keeps rounding from skipping one too many */
+    /* skips the samples strictly inside the empty stretch; the margin keeps rounding from skipping one too
+     * many */
     walk->next += floor(fmax(clear / walk->length - 1e-6, 0));
   }
 }

@@ -1,9 +1,8 @@
 /* reference/maximum.c - the greatest value along a ray (maximum projection).
  *
  * Each volume's field is sampled at the march's steps and at the faces of its box. Where the transfer
- * function begins or ceases to show it between two samples, that place is searched for; so is the peak around
- * the greatest sample.
- */
+ * function shows the value at only one of two neighbouring samples, the border between shown and hidden is
+ * searched for; so is the peak around the greatest sample. */
 #include "reference/reference.h"
 
 enum { HALVINGS = 40 };
@@ -18,7 +17,8 @@ static double value_at(const crossing *part, double at) {
   return hl_reference_value(part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)));
 }
 
-/* Voxels and their weighed sums are rounded: at the foot of a ramp that is no opacity. */
+/* The least opacity that counts: voxels and their weighted sums are rounded, which at the foot of a ramp
+ * gives a tiny opacity. */
 static const double LEAST_OPACITY = 1e-7;
 
 static bool is_shown(const crossing *part, double value) {
@@ -37,7 +37,7 @@ static bool ask(search *found, double at) {
   return true;
 }
 
-/* Between a shown place and another: as near to the end of what is shown as doubles tell. */
+/* The last shown distance between a shown and a hidden one, as close to the border as doubles can tell. */
 static void ask_at_end(search *found, double shown, double other) {
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (shown + other) / 2;
@@ -46,8 +46,8 @@ static void ask_at_end(search *found, double shown, double other) {
   }
 }
 
-/* Golden-section search (Kiefer 1953) of the peak within a step either way; what is not shown counts as it
- * is, and is left out. */
+/* Golden-section search (Kiefer 1953) for the peak within one step before and after. Hidden values guide the
+ * search, but are never the result. */
 static void ask_at_peak(search *found, double low, double high) {
   static const double golden = 0.6180339887498949;
   for (int i = 0; i < HALVINGS; i++) {
@@ -68,7 +68,7 @@ static double greatest_along(const crossing *part, double step) {
     double at = part->enter + next * length;
     double clear = hl_reference_clearance(
         part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)), part->direction);
-    next += floor(fmax(clear / length - 1e-6, 0)); /* samples within what is empty */
+    next += floor(fmax(clear / length - 1e-6, 0)); /* skips the samples in empty bricks */
     bool shown = clear <= 0 && ask(&found, at);
     if (shown && !before) ask_at_end(&found, at, at - length);
     if (before && !shown) ask_at_end(&found, at - length, at);

@@ -1,15 +1,14 @@
 /* reference/rays.c - how many rays a pixel has in a small picture of a large volume.
  *
- * In: the scene and where its volumes show something. Out: rays along each side of a pixel. A pixel of the
- * sheets is the mean over it where voxels are smaller than pixels (docs/architecture.md); one ray through its
- * centre would be another picture.
- */
+ * In: the scene and the boxes of its volumes' visible bricks. Out: rays along each side of a pixel. Where
+ * voxels are smaller than pixels, a pixel of the sheet renderer is the mean over the pixel's area
+ * (docs/architecture.md); one ray through its centre would give another picture. */
 #include "reference/reference.h"
 
 enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096 };
 
-/* Index space: the bricks, within the volume's box, that show something, and half a voxel around the grid;
- * false: none do. */
+/* The box around the visible bricks, within the volume's box, in index space; the bricks at the borders reach
+ * half a voxel beyond the grid. False: none is visible. */
 static bool shown_box(const reference_volume *volume, double low[3], double high[3]) {
   const unsigned char *clear = volume->clearance;
   size_t brick[3];
@@ -36,7 +35,8 @@ static bool shown_box(const reference_volume *volume, double low[3], double high
   return any;
 }
 
-/* The corners of what is shown, in the world: their sum and number, and the least depth. */
+/* The corners, in the world, of the boxes around visible bricks: their sum and number, and the least
+ * depth. */
 typedef struct content {
   vec3 sum;
   double nearest;
@@ -56,8 +56,8 @@ static void add_volume(const reference_volume *volume, vec3 position, vec3 forwa
   }
 }
 
-/* The picture's edge at unit depth, or of an orthographic picture, over its pixels: height = 2 tan(fovy / 2)
- * (derived). */
+/* The edge of a pixel at unit depth (of an orthographic picture, anywhere): the picture's height over its
+ * pixels, height = 2 tan(fovy / 2) (derived). */
 static double pixel_edge(const hl_scene_description *scene) {
   bool orthographic = scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
   return (orthographic ? scene->camera.height : 2 * tan(scene->camera.fovy_deg * HL_PI / 360)) /

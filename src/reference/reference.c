@@ -1,8 +1,7 @@
 /* reference/reference.c - the oracle's entry: camera rays, and emission-absorption along them.
  *
- * In: a scene. Out: linear premultiplied RGBA, the volumes alone, top row first. Pixels are independent
- * of each other and are shared out in runs over the threads.
- */
+ * In: a scene. Out: linear premultiplied RGBA, the volumes alone, top row first. Pixels are independent of
+ * each other; threads take them in runs. */
 #include <stdatomic.h>
 
 #include <halflight/render.h>
@@ -12,14 +11,15 @@
 #include "reference/reference.h"
 #include "scene/check.h"
 
-/* A ray ends where the eye sees no more through it. */
+/* Alpha at which a ray ends. */
 static const double OPAQUE = 1 - 1e-5;
 
-/* Alpha from which on a ray has met something (halflight/layers.h). */
+/* Alpha at which a ray has its first depth (halflight/layers.h). */
 static const double FIRST_OPACITY = 0.01;
 
-/* What one sample may add to a pixel: light that grazes a dense volume fades within a small part of a step.
- * Its error is linear and that of the step quadratic: coarser steps than the usual allow as much more. */
+/* Greatest opacity that one sample may add to a pixel: light that grazes a dense volume fades within a small
+ * fraction of a step. The error grows linearly with this bound and quadratically with the step: steps coarser
+ * than the default allow as much more opacity. */
 static const double MOST_OPACITY = 0.02, USUAL_STEP = 0.25, COARSEST_OPACITY = 0.1;
 
 enum { RUN_PIXELS = 16 };
@@ -36,8 +36,8 @@ typedef struct picture {
   eye_rays eye;
   reference_worker *workers; /* [threads] */
   float *pixels;             /* the caller's */
-  const hl_layers *layers;   /* the caller's; null: none */
-  size_t row_stride;         /* floats */
+  const hl_layers *layers;   /* the caller's layers; null: none */
+  size_t row_stride;         /* floats from row to row */
   size_t runs_per_row;
   atomic_size_t runs_done;
 } picture;
@@ -74,7 +74,7 @@ static double total_extinction(const march *walk) {
   return total;
 }
 
-/* What all volumes send from one sample, weighted by extinction. */
+/* The light that all volumes send to the eye from one sample, weighted by extinction. */
 static void sample(const reference *all, const march *walk, vec3 point, vec3 to_eye,
                    reference_worker *worker) {
   reference_parts *made = &worker->sample;
@@ -94,9 +94,9 @@ static void sample(const reference *all, const march *walk, vec3 point, vec3 to_
   made->depth = made->weight * walk->at;
 }
 
-/* Adds the sample at which the march stands, for a step of this length, and gives its extinction. Front to
- * back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), the exact integral of a step in which
- * nothing varies. */
+/* Adds the march's current sample, for a step of this length, and returns its extinction. Front to back: C
+ * += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), the exact integral of a step in which nothing
+ * varies. */
 static double composite(const reference *all, const march *walk, double length, vec3 origin, vec3 direction,
                         reference_worker *worker) {
   vec3 point = vec3_add(origin, vec3_scale(direction, walk->at));
@@ -108,15 +108,15 @@ static double composite(const reference *all, const march *walk, double length, 
   return extinction;
 }
 
-/* Where alpha went from `before` past FIRST_OPACITY, in a step from `start` on: (1 - A) exp(-sigma t) = 1 -
- * FIRST_OPACITY. */
+/* The distance at which alpha passes FIRST_OPACITY in a step that begins at `start` with alpha `before`: (1 -
+ * A) exp(-sigma t) = 1 - FIRST_OPACITY. */
 static double first_within(double before, double extinction, double start) {
   return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
-/* A perspective eye sees what is before it; an orthographic one has no place along its rays, and sees all.
- * Every step of the march is cut so finely that no part adds more than most_opacity, judged by the extinction
- * of the part before. The ray's parts are left in the worker; returns the first depth. */
+/* Marches along one camera ray. A perspective ray begins at the eye; an orthographic one has no beginning.
+ * Every step is cut into pieces that add no more than most_opacity each, judged by the extinction of the
+ * piece before. Leaves the ray's contributions in the worker; returns the first depth. */
 static double trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker) {
   march walk;
   reference_parts *ray = &worker->ray;
@@ -142,7 +142,7 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
   return first;
 }
 
-/* The picture is the sum of its parts. */
+/* The pixel is the sum of the ray's contributions. */
 static void write_pixel(const reference_parts *ray, size_t light_count, float rgba[4]) {
   for (int c = 0; c < 3; c++) {
     double sum = ray->ambient[c] + ray->emission[c];
@@ -237,7 +237,7 @@ static void release(reference *all) {
   hl_release(all->context, all->lights);
 }
 
-/* One block each: the workers, their crossings, their arrivals, their parts. */
+/* Allocates one block each for the workers, their crossings, their arrivals and their contributions. */
 static reference_worker *workers_create(const reference *all, size_t threads) {
   size_t volumes = all->scene->volume_count, lights = all->scene->light_count;
   reference_worker *workers = hl_allocate_zeroed(all->context, threads, sizeof *workers);

@@ -1,7 +1,7 @@
 /* reference/reference.h - the inside of the oracle: a ray marcher in double precision.
  *
- * It answers what the picture of a scene should be, slowly, so that the sheet renderer can be judged
- * against it; the two therefore share the scene and its transfer functions, and no rendering code.
+ * It computes a scene's picture slowly and accurately, to judge the sheet renderer. The two share the scene
+ * and its transfer functions, but no rendering code.
  *
  *     reference.c   camera, rows of pixels, the entry point
  *     march.c       a ray through the boxes of the volumes, step by step, jumping over empty bricks
@@ -10,7 +10,7 @@
  * their images, and the transmittance towards them shade.c       the light that one sample sends to the eye
  *     layers.c      that light by its sources, depth and normals
  *     maximum.c     the greatest value along a ray, in place of light
- */
+ * */
 #ifndef HL_REFERENCE_REFERENCE_H
 #define HL_REFERENCE_REFERENCE_H
 
@@ -33,27 +33,27 @@ typedef struct reference_volume {
   mat3 gradient_to_world;   /* inverse transpose of index-to-world */
   double low[3], high[3];   /* the box, in index space */
   double empty_value;       /* data value of voxels that are not finite */
-  double empty_stored;      /* the same as a stored value */
-  double transparent_below; /* data values below this are no matter at all; -infinity where all may be */
-  double surface_gradient;  /* data value per world unit from which a sample is a surface, not a medium */
-  double smallest_edge;     /* of a voxel, world units */
+  double empty_stored;      /* data value of voxels that are not finite, as a stored value */
+  double transparent_below; /* data values below this are empty space; -infinity: none are */
+  double surface_gradient;  /* least gradient of a surface, data value per world unit */
+  double smallest_edge;     /* shortest edge of a voxel, world units */
   size_t bricks[3];         /* i, j, k */
-  unsigned char *clearance; /* owned; [k][j][i] of bricks: 0 where something may be seen, else
-                               the number of bricks (chessboard metric) to the nearest such, at most 255 */
+  unsigned char *clearance; /* owned; [k][j][i] of bricks: 0 where the brick may be visible, else the distance
+                             * in bricks (chessboard metric) to the nearest such brick, at most 255 */
 } reference_volume;
 
 /* One light. points is [point_count]: positions in the world, or unit directions to a directional light. */
 typedef struct reference_light {
   const hl_light *described;
   bool directional;
-  bool sphere;                       /* points are found anew for every sample */
+  bool sphere;                       /* a sphere: points are computed for every sample */
   vec3 centre;                       /* world; not for directional lights */
   vec3 towards;                      /* directional lights: unit vector to the light */
   double color[3];                   /* color * intensity */
   double least_distance;             /* world; closer it gets no brighter */
   const hl_light_texture *texture;   /* null: none */
-  const hl_light_emission *emission; /* the image on the light itself; null: none */
-  double mean[3];                    /* of that over the light's surface */
+  const hl_light_emission *emission; /* emission image; null: none */
+  double mean[3];                    /* mean of the emission image over the light's surface */
   vec3 *points;                      /* owned; null where the light casts no shadows; not set for spheres */
   size_t point_count;
 } reference_light;
@@ -65,9 +65,9 @@ typedef struct reference {
   reference_volume *volumes; /* owned; [scene->volume_count] */
   reference_light *lights;   /* owned; [scene->light_count] */
   double step;               /* world units */
-  int rays;                  /* along each side of a pixel, whose mean it is */
-  double most_opacity;       /* that one sample may add to a pixel */
-  bool all_shadows;          /* the transmittance of every light is wanted at every sample */
+  int rays;                  /* rays along each side of a pixel */
+  double most_opacity;       /* greatest opacity that one sample may add to a pixel */
+  bool all_shadows;          /* layers need the transmittance of every light at every sample */
 } reference;
 
 typedef struct reference_ray {
@@ -75,17 +75,17 @@ typedef struct reference_ray {
   double nearest, farthest; /* distances along it, which may be infinite */
 } reference_ray;
 
-/* A ray inside one volume's box. */
+/* A ray's passage through one volume's box. */
 typedef struct crossing {
   const reference_volume *volume;
-  vec3 origin, direction; /* index space; the parameter is the world's distance along the ray */
-  double enter, leave;    /* distances; none where enter >= leave */
+  vec3 origin, direction; /* index space; distances along the ray in world units */
+  double enter, leave;    /* distances; the ray misses the box where enter >= leave */
   bool active;            /* the ray is inside the box now */
-  bool occupied;          /* active, and something may be seen here */
-  vec3 here;              /* index space; the point of the present sample, where active */
+  bool occupied;          /* active, and the brick may be visible */
+  vec3 here;              /* index space; the current sample, where active */
 } crossing;
 
-/* A march along a ray: a stretch is a part of the ray between two box faces, cut into equal steps. */
+/* A march along a ray: a stretch is the ray between two box faces, cut into equal steps. */
 typedef struct march {
   crossing *crossings; /* borrowed; [count] */
   size_t count;
@@ -93,26 +93,27 @@ typedef struct march {
   double start, end;  /* the present stretch */
   double length;      /* of a step */
   double next, steps; /* whole numbers */
-  double at;          /* distance of the present sample */
+  double at;          /* distance of the current sample */
 } march;
 
 /* The light of one source that arrives at a sample. */
 typedef struct arrival {
   vec3 towards;       /* unit vector to the light's centre */
-  double incoming[3]; /* without texture and without attenuation by volumes; eq. (1) */
-  double pattern[3];  /* the colour of the light's image, mean over its points; 1 without one; eq. (2) */
-  double shadowed[3]; /* mean over the light's points of image times transmittance */
+  double incoming[3]; /* brightness without light texture and attenuation; eq. (1) */
+  double pattern[3];  /* mean colour of the light texture or emission image over the light's points; 1 without
+                         either; eq. (2) */
+  double shadowed[3]; /* mean of that image times transmittance over the light's points */
   bool pattern_known, shadowed_known;
 } arrival;
 
-/* What one light gives: the light sent to the eye, and the transmittance towards it. */
+/* One light's contribution: the light sent to the eye, and the transmittance towards the light. */
 typedef struct light_part {
   double picture[3], shadow[3];
 } light_part;
 
-/* What a sample or a whole ray is made of; sums, weighted by extinction (a sample) or by opacity (a ray). */
+/* The contributions to a sample or to a ray: sums weighted by extinction (sample) or by opacity (ray). */
 typedef struct reference_parts {
-  double weight; /* of a ray: alpha */
+  double weight; /* sum of the weights; of a ray: alpha */
   double ambient[3], emission[3];
   vec3 normal;
   double depth;
@@ -122,14 +123,14 @@ typedef struct reference_parts {
 /* A point of one volume that is shaded. */
 typedef struct reference_sample {
   const reference_volume *volume;
-  vec3 point, index_point; /* the same point in the world and in index space */
+  vec3 point, index_point; /* the point in the world and in index space */
   double value, weight;
   vec3 to_eye; /* unit vector */
 } reference_sample;
 
-/* What one thread needs; all arrays are owned by hl_reference_render. */
+/* One thread's state; all arrays are owned by hl_reference_render. */
 typedef struct reference_worker {
-  int number;             /* of the pool */
+  int number;             /* number in the pool */
   crossing *eye, *shadow; /* [volume_count] */
   arrival *arrivals;      /* [light_count] */
   reference_parts sample, ray, pixel;
@@ -141,8 +142,8 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
  * `edge` world units long, are smaller than pixels. */
 enum { HL_REFERENCE_RAYS = 8 };
 int hl_reference_rays(const reference *all, double edge);
-/* How far a ray may go from `point` (index space) before it can meet something: 0 where it may be here.
- * In units of `direction`. */
+/* How far a ray from `point` (index space) stays in transparent bricks, in units of `direction`; 0 where the
+ * point's own brick may be visible. */
 double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
@@ -152,13 +153,13 @@ vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
 /* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u */
 double hl_reference_extinction(const reference_volume *volume, double value);
 
-/* Which volumes a march is about. */
+/* Sets the volumes of a march. */
 typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference_role;
 
 void hl_reference_march_begin(const reference *all, reference_role role, const reference_ray *ray,
                               crossing *crossings, march *walk);
-/* Moves all crossings to a distance within the present stretch. Returns how far from there every volume is
- * empty; 0 where one is not. */
+/* Moves all crossings to a distance within the current stretch. Returns how far every volume is transparent
+ * from there; 0 where one may be visible. */
 double hl_reference_march_place(march *walk, double at);
 /* Moves to the middle of the next step at which some crossing is occupied; false at the end of the ray. */
 bool hl_reference_march_next(march *walk);
@@ -167,19 +168,20 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
                                     reference_light *made, hl_error *error);
 /* The light at a world point, before any volume. */
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived);
-/* Mean over the light's points of its image (texture or emission; else 1) times transmittance; attenuated:
- * false takes the transmittance as 1. */
+/* The mean over the light's points of the light texture or emission image (1 without either) times
+ * transmittance. attenuated false: the transmittance counts as 1. */
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
                               reference_worker *worker, double reach[3]);
 
-/* Adds what the sample sends along to_eye, times its weight, to the worker's sample. */
+/* Adds the light that the point sends along to_eye, times its weight, to the worker's sample. */
 void hl_reference_shade(const reference *all, const reference_sample *at, reference_worker *worker);
 
 /* The pixel of a maximum projection: premultiplied RGBA, alpha 1 where a volume shows something. */
 void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
                           float rgba[4]);
 
-/* layers.c: parts at nothing; another's added, each times `scale`; and the caller's layers of one pixel. */
+/* Contributions (layers.c): sets them to zero; adds others, times `scale`; writes the caller's layers of one
+ * pixel. */
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count);
 void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale,
                             size_t light_count);

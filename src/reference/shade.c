@@ -24,8 +24,8 @@ static const double *light_reach(const reference *all, const reference_volume *v
   return reach;
 }
 
-/* Outward normal, and how much of the sample is a surface. Outward is from the values that are there
- * towards the empty value, so that lobes of either sign are lit from outside. */
+/* Finds the outward normal and the fraction of the sample that is surface. Outward means towards the empty
+ * value, so that lobes of either sign are lit from outside. */
 static vec3 find_normal(const reference_volume *volume, vec3 index_point, double value, double *surface) {
   *surface = 0;
   if (volume->described->shading != HL_SHADING_PHONG) return (vec3){0, 0, 0};
@@ -36,8 +36,8 @@ static vec3 find_normal(const reference_volume *volume, vec3 index_point, double
   return vec3_scale(gradient, (value > volume->empty_value ? -1 : 1) / size);
 }
 
-/* The part of the light that the volumes let through, whatever image it projects; of a light with an image of
- * its own the part of each colour. */
+/* The fraction of the light that the volumes let through, whatever texture it projects; for a light with an
+ * emission image, the fraction in each channel. */
 static void find_shadow(const reference *all, const reference_volume *volume, size_t light, vec3 point,
                         reference_worker *worker, double shadow[3]) {
   reference_light plain = all->lights[light];
@@ -64,7 +64,7 @@ typedef struct surface {
   double amount; /* 0: medium, 1: surface */
 } surface;
 
-/* The light of one source that the sample sends on. */
+/* The light of one source that the sample sends to the eye. */
 static void shade_light(const reference *all, const reference_sample *at, const surface *here, size_t light,
                         reference_worker *worker, light_part *part) {
   const hl_material *material = &at->volume->described->material;
@@ -84,7 +84,7 @@ static void shade_light(const reference *all, const reference_sample *at, const 
     part->picture[c] = (here->own[c] * matt + here->amount * gloss) * arrived->incoming[c] * reach[c];
 }
 
-/* Flat colours receive no shadow: their layers show full light. */
+/* Flat colours receive no shadow: their shadow layers show full light. */
 static void add_no_light(const reference *all, double weight, reference_parts *sample) {
   for (size_t l = 0; l < all->scene->light_count && all->all_shadows; l++)
     for (int c = 0; c < 3; c++) sample->lights[l].shadow[c] += weight;

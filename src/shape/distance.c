@@ -1,9 +1,8 @@
 /* shape/distance.c - signed distances of shapes, of their groups, and bounds of them over a ball.
  *
- * The distances of single shapes are exact (after I. Quilez, "Distance functions"), so a ball of radius r
- * sees values within r of its centre's, and joints are monotone in both of their distances: intervals pass
- * through them end by end.
- */
+ * The distances of single shapes are exact (after I. Quilez, "Distance functions"), so within a ball of
+ * radius r the distance differs by at most r from the distance at its centre. Joints are monotone in both
+ * distances: the bounds of a joint are the joint of the lower bounds and the joint of the upper bounds. */
 #include <math.h>
 
 #include "shape/shape.h"
@@ -19,7 +18,8 @@ static double box_distance(vec3 p, const double half[3], double rounding) {
   return length3(above(x), above(y), above(z)) + fmin(fmax(x, fmax(y, z)), 0) - rounding;
 }
 
-/* A point in the plane of an axis: how far along it from its middle, and how far from it. */
+/* A point relative to an axis: its coordinate along the axis from the middle, and its distance from the
+ * axis. */
 typedef struct axial {
   double along, away, half;
 } axial;
@@ -42,7 +42,7 @@ static double capsule_distance(const hl_shape *shape, axial q) {
   return length2(above(fabs(q.along) - q.half), q.away) - shape->radius;
 }
 
-/* The nearer of the flat ends and the slanted side. */
+/* The distance to the nearer of the flat ends and the slanted side. */
 static double cone_distance(const hl_shape *shape, axial q) {
   double r1 = shape->radius, r2 = shape->end_radius;
   double end_x = q.away - fmin(q.away, q.along < 0 ? r1 : r2), end_y = fabs(q.along) - q.half;
@@ -71,7 +71,8 @@ static double solid_distance(const hl_shape *shape, vec3 p) {
   return INFINITY;
 }
 
-/* The smaller one, rounded where they differ by less than k (Quilez, "Smooth minimum", quadratic). */
+/* The smaller of two distances, rounded where they differ by less than k (Quilez, "Smooth minimum",
+ * quadratic). */
 static double smooth_minimum(double a, double b, double k) {
   double h = k > 0 ? above(k - fabs(a - b)) / k : 0;
   return fmin(a, b) - h * h * k / 4;
@@ -105,7 +106,7 @@ static double bare_distance(const hl_shape_list *list, size_t index, const unsig
                                        : solid_distance(shape, p);
 }
 
-/* The nearest point of the surface: a step of the distance down the gradient of the distance. */
+/* The nearest point of the surface: one step as long as the distance, down the distance's gradient. */
 static vec3 foot_point(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 p,
                        double distance) {
   double h = list->shapes[index].edge / 64;
@@ -165,7 +166,7 @@ static hl_interval list_bounds(const hl_shape_list *list, size_t first, size_t e
     }
     live[index] = 1;
     if (shape->operation == HL_SHAPE_ADD && all.low >= own.high + shape->blend)
-      mark(first, index, live, 0); /* all earlier shapes are behind this one */
+      mark(first, index, live, 0); /* all earlier shapes are farther away than this one */
     bool turned = shape->operation == HL_SHAPE_SUBTRACT;
     all = (hl_interval){join(shape, all.low, turned ? own.high : own.low),
                         join(shape, all.high, turned ? own.low : own.high)};

@@ -2,11 +2,11 @@
  *
  * Derived from Perlin and Hoffert's (1989) D(x (1 + hl_turbulence(x))): the distance of the surface grows by
  * amplitude times the pattern's value, and the density then falls from 1 to 0 over the length `soft` about
- * the new surface. The density goes on as the distance that the edge of a solid of the same density would
- * have.
+ * the new surface. The density is expressed as a distance: the one at which the edge of a solid has the same
+ * density.
  *
  * Noise, turbulence, bias and gain are arithmetic that is the same on every machine (elementary.h).
- */
+ * */
 #include "shape/elementary.h"
 #include "shape/shape.h"
 
@@ -35,7 +35,7 @@ void hl_noise_begin(hl_noise *noise, uint64_t seed) {
 static double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 static double mix(double t, double a, double b) { return a + t * (b - a); }
 
-/* The product of an offset with the hash's gradient; four of the sixteen codes repeat an edge. */
+/* The dot product of an offset and the hash's gradient; four of the sixteen codes repeat an edge. */
 static double slope(int hash, double x, double y, double z) {
   static const double gradient[16][3] = {
       {1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
@@ -50,7 +50,7 @@ static int64_t cell(double x) {
 }
 
 double hl_noise_at(const hl_noise *noise, vec3 p) {
-  if (!(fabs(p.x) + fabs(p.y) + fabs(p.z) < 0x1p50)) return 0; /* so far out, doubles are on the lattice */
+  if (!(fabs(p.x) + fabs(p.y) + fabs(p.z) < 0x1p50)) return 0; /* so far out, all doubles are integers */
   int64_t cx = cell(p.x), cy = cell(p.y), cz = cell(p.z);
   double x = p.x - (double)cx, y = p.y - (double)cy, z = p.z - (double)cz;
   double u = fade(x), v = fade(y), w = fade(z);
@@ -88,7 +88,7 @@ double hl_gain(double gain, double t) {
   return t < 0.5 ? hl_bias(1 - gain, 2 * t) / 2 : 1 - hl_bias(1 - gain, 2 - 2 * t) / 2;
 }
 
-/* ---- what it does to a surface ---- */
+/* ---- how noise changes a surface ---- */
 
 static double softness(const hl_shape *shape) {
   return shape->texture.soft > 0 ? shape->texture.soft : shape->edge;

@@ -1,4 +1,4 @@
-/* shape/noise.h - Perlin's gradient noise and what hypertexture makes of it. */
+/* shape/noise.h - Perlin's gradient noise and hypertexture's functions of it. */
 #ifndef HL_SHAPE_NOISE_H
 #define HL_SHAPE_NOISE_H
 

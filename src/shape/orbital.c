@@ -2,8 +2,7 @@
  *
  * psi_nlm = e^(-rho / 2) rho^l L_(n-l-1)^(2l+1)(rho) Y_lm, rho = 2 r / (n a): hydrogen's bound states with
  * the real spherical harmonics, cosines for m >= 0 and sines for m < 0. The Bohr radius is a = radius / (n (2
- * n + 4)), which puts all but about a hundredth of the greatest magnitude inside the radius.
- */
+ * n + 4)), so that outside the radius the magnitude is at most about a hundredth of its maximum. */
 #include "shape/elementary.h"
 #include "shape/shape.h"
 

@@ -15,7 +15,7 @@ void hl_shape_defaults(hl_shape *shape) {
                       .texture = {.frequency = 1, .octaves = 1, .bias = 0.5, .gain = 0.5, .amplitude = 1}};
 }
 
-/* As mat3_rotation(), with a sine and a cosine that are the same everywhere. */
+/* As mat3_rotation(), with sine and cosine that are the same on every machine. */
 static mat3 rotation(const hl_shape *shape) {
   vec3 a = vec3_normalise(vec3_of(shape->rotate_axis));
   double s, c;
@@ -28,7 +28,7 @@ static mat3 rotation(const hl_shape *shape) {
 
 static mat3 transpose(mat3 m) { return mat3_from_columns(m.row[0], m.row[1], m.row[2]); }
 
-/* The frames of [first, end), whose parent's unit is parent_scale units of the volume. */
+/* Finds the frames of [first, end); the parent frame's unit is parent_scale units of the volume. */
 static void place(hl_shape_list *list, size_t first, size_t end, double parent_scale, double voxel_size) {
   for (size_t index = first; index < end; index = list->shapes[index].end) {
     hl_shape *shape = &list->shapes[index];
@@ -82,7 +82,7 @@ static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u)
     vec3 local = vec3_scale(mat3_apply(shape->to_local.linear, u), shape->scale * shape->scale);
     double own = shape->type == HL_SHAPE_GROUP ? reach(list, index + 1, shape->end, local)
                                                : solid_reach(shape, local);
-    double growth = shape->blend / (4 * shape->scale); /* of a joint, and of a texture */
+    double growth = shape->blend / (4 * shape->scale); /* a rounded joint and a texture may reach further */
     if (shape->texture.pattern != HL_PATTERN_NONE)
       growth += shape->texture.soft / 2 + fmax(-shape->texture.amplitude, 0);
     own += growth * vec3_length(local) + vec3_dot(u, vec3_of(shape->position));

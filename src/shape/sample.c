@@ -1,7 +1,7 @@
 /* shape/sample.c - from a list of shapes to voxels.
  *
- * Blocks of 8x8x8 voxels are sampled in parallel. Most blocks are far from every surface: the bounds of the
- * distance over a block show this before any voxel is sampled. Densities are kept as 16 bit, orbitals as
+ * Blocks of 8x8x8 voxels are sampled in parallel. Most blocks are far from every surface: bounds of the
+ * distance over the block tell so before any voxel is sampled. Densities are kept as 16 bit, orbitals as
  * float. */
 #include <math.h>
 
@@ -16,10 +16,10 @@ typedef struct sampling {
   const hl_shape_list *list;
   const hl_shape_grid *grid;
   unsigned char *live; /* owned; [threads][list->count] */
-  uint16_t *density;   /* of solids; null for orbitals */
-  float *wave;         /* of orbitals; null for solids */
+  uint16_t *density;   /* solids' voxels; null for orbitals */
+  float *wave;         /* orbitals' voxels; null for solids */
   size_t blocks[3];
-  size_t layer; /* of blocks, along k */
+  size_t layer; /* current layer of blocks, along k */
 } sampling;
 
 /* One block's voxels: [low, high) along each axis. */
@@ -72,7 +72,7 @@ static void sample_solids(void *data, size_t index, int worker) {
   }
   unsigned char *live = s->live + (size_t)worker * s->list->count;
   double radius = grid->voxel_size * sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
-  /* a hair wider than the block, against rounding */
+  /* slightly wider than the block, against rounding */
   hl_interval bounds = hl_shapes_bounds(s->list, voxel_centre(grid, middle[0], middle[1], middle[2]),
                                         radius + 1e-3 * grid->voxel_size, live);
   if (bounds.low >= edge / 2 || bounds.high <= -edge / 2) {
@@ -145,7 +145,7 @@ static void describe(const hl_shape_grid *grid, bool orbitals, hl_volume_descrip
 
 hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid,
                            int threads, const char *subject, hl_volume **volume, hl_error *error) {
-  bool orbitals = list->shapes[0].type == HL_SHAPE_ORBITAL; /* then all of them are */
+  bool orbitals = list->shapes[0].type == HL_SHAPE_ORBITAL; /* if one shape is an orbital, all are */
   const size_t *dimension = grid->dimension;
   size_t count = dimension[0] * dimension[1] * dimension[2],
          bytes = orbitals ? sizeof(float) : sizeof(uint16_t);

@@ -14,9 +14,10 @@
 #include "volume/volume.h"
 
 #define HL_SHAPE_EDGE   4.0               /* voxels from density 1 to density 0 */
-#define HL_SHAPE_MARGIN 2                 /* empty voxels beyond that on each side of the grid */
+#define HL_SHAPE_MARGIN 2                 /* empty voxels around the shapes on each side of the grid */
 #define HL_SHAPE_VOXELS ((size_t)1 << 30) /* most voxels of a grid */
-#define HL_SHAPE_COUNT  4096 /* most shapes of a list, members of groups counted where they are placed */
+#define HL_SHAPE_COUNT \
+  4096 /* most shapes of a list; members of a group count once for each use of the group */
 
 typedef enum hl_shape_type {
   HL_SHAPE_BOX = 0,
@@ -43,16 +44,17 @@ typedef enum hl_shape_pattern {
   HL_PATTERN_TURBULENCE = 2
 } hl_shape_pattern;
 
-/* Perlin and Hoffert (1989): what noise does to the density near a shape's surface. Lengths are of the
+/* Perlin and Hoffert (1989): noise that changes the density near a shape's surface. Lengths are in the
  * shape's own frame. */
 typedef struct hl_hypertexture {
   hl_shape_pattern pattern;
   double frequency; /* lattice cells per length */
   int octaves;
-  double bias, gain; /* of the pattern's value, 0 to 1 */
-  double amplitude;  /* how deep the surface is eaten where the value is 1; negative: how far it grows */
-  double soft;       /* length over which the density falls from 1 to 0; 0: HL_SHAPE_EDGE voxels */
-  int strands;       /* the value of the surface's nearest point holds along its normal: fur */
+  double bias, gain; /* bias and gain of the pattern's value, 0 to 1 */
+  double
+      amplitude; /* depth by which the surface recedes where the pattern's value is 1; negative: it grows */
+  double soft;   /* length over which the density falls from 1 to 0; 0: HL_SHAPE_EDGE voxels */
+  int strands;   /* fur: the pattern's value at the nearest point of the surface holds along the normal */
   hl_noise noise;
 } hl_hypertexture;
 
@@ -66,15 +68,16 @@ typedef struct hl_shape {
   double scale;
   double size[3];        /* box: full edges; plane: x, y and thickness */
   double from[3], to[3]; /* cylinder, capsule, cone: ends of the axis */
-  double radius;         /* sphere, torus (to the tube's middle), orbital (where it is cut), cone (at from) */
-  double end_radius;     /* cone: at to */
-  double tube_radius;    /* torus */
-  double rounding;       /* box, plane, cylinder: radius of the edges, inside the given size */
-  int quantum[3];        /* orbital: n, l, m */
+  double radius;      /* of a sphere, a torus (to the tube's middle), an orbital (where it is cut), a cone (at
+                         `from`) */
+  double end_radius;  /* cone: radius at `to` */
+  double tube_radius; /* torus */
+  double rounding;    /* box, plane, cylinder: radius of the edges, inside the given size */
+  int quantum[3];     /* orbital: quantum numbers n, l, m */
   hl_hypertexture texture;
   size_t end;       /* index of the shape after this one and its members */
-  affine3 to_local; /* from the parent's frame; these two by hl_shapes_place() */
-  double edge;      /* HL_SHAPE_EDGE voxels in the own frame */
+  affine3 to_local; /* from the parent's frame; set, as `edge`, by hl_shapes_place() */
+  double edge;      /* length of HL_SHAPE_EDGE voxels in the shape's own frame */
 } hl_shape;
 
 typedef struct hl_shape_list {
@@ -94,10 +97,11 @@ typedef struct hl_shape_grid {
 /* Fills to_local and edge for this voxel size. */
 void hl_shapes_place(hl_shape_list *list, double voxel_size);
 
-/* The longest edge of the box around all shapes, without margin; 0 if there is nothing in it. */
+/* The longest edge of the box around all shapes, without margin; 0 if the box is empty. */
 double hl_shapes_extent(const hl_shape_list *list);
 
-/* False if more than HL_SHAPE_VOXELS voxels would be needed, or a trillion steps from the frame's origin. */
+/* Finds the grid; false if it needed more than HL_SHAPE_VOXELS voxels, or lay more than a trillion voxels
+ * from the origin. */
 bool hl_shapes_grid(const hl_shape_list *list, double voxel_size, hl_shape_grid *grid);
 
 /* Bounds of a distance. */
@@ -112,7 +116,7 @@ double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, 
 /* Bounds of that distance within radius of p. live: set for the shapes that can affect the distance there. */
 hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, unsigned char *live);
 
-/* The distance of a surface at the given distance once its texture has eaten it. p: own frame. */
+/* The distance from a surface after its texture has changed it, from the distance before. p: own frame. */
 double hl_hypertexture_distance(const hl_shape *shape, double distance, vec3 p, vec3 foot);
 hl_interval hl_hypertexture_bounds(const hl_shape *shape, hl_interval distance);
 /* False where the distance is too large or too small for the texture to change the density. */

@@ -38,8 +38,8 @@ LANES_INLINE lanes_range range_of_row(const lanes_boxes *boxes, const float row[
   return (lanes_range){centre - reach, centre + reach};
 }
 
-/* Stores the integers between first and last, within the view's limits; where there is none, the first is
- * greater than the last. */
+/* Stores the first and last integer between `first` and `last`, within the view's limits; where there is no
+ * integer, the first is greater than the last. */
 LANES_INLINE void store_range(const brick_view *view, lanes first, lanes last, int axis,
                               brick_ranges *ranges) {
   float least = (float)view->first[axis], greatest = (float)view->last[axis];

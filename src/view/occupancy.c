@@ -21,7 +21,8 @@ static int last_tile(double high, int tiles) {
   return high < 0 ? -1 : high >= (double)tiles * TILE ? tiles - 1 : (int)(high / TILE);
 }
 
-/* The tiles within some bounds and the margin around them; empty where the view does not see them. */
+/* The rectangle of tiles that the bounds, enlarged by a margin, touch; empty where the view does not see
+ * them. */
 static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *o) {
   tile_rectangle r = {.x = first_tile(bounds->low[0] - o->spare), .y = first_tile(bounds->low[1] - o->spare)};
   int x1 = last_tile(bounds->high[0] + o->spare, o->tiles_x),
@@ -31,8 +32,8 @@ static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *
   return r;
 }
 
-/* The tiles of a grid's relevant bricks: the bounds of the box around all bricks contain the bounds of each.
- */
+/* The rectangle of tiles that a grid's relevant bricks touch. The bounds of the box around all relevant
+ * bricks contain the bounds of each brick. */
 static tile_rectangle find_rectangle(const grid *grid, const footprint_map *map, const occupancy *o) {
   double low[3], high[3], centre[3], half[3];
   footprint_bounds bounds;
@@ -65,8 +66,8 @@ static void number_patches(occupancy *o, int grid_count) {
   o->first_patch[(size_t)o->tiles_x * (size_t)o->tiles_y] = patch;
 }
 
-/* Rounds an affine function to floats; returns a bound of its rounding error: some times 2^-24 of the
- * greatest sum of its terms' magnitudes over the grid. */
+/* Rounds an affine function to floats; returns a bound of its rounding error: a small multiple of 2^-24 of
+ * the greatest sum of its terms' magnitudes over the grid. */
 static float set_row(const double row[4], const double middle[3], const double half[3], double scale,
                      float rounded[4]) {
   double offset = row[3], greatest = 0;
@@ -100,7 +101,7 @@ static void set_view(const footprint_map *map, const grid *grid, const sheet_sta
   memcpy(view->last, last, sizeof last);
 }
 
-/* Sets bits first to last. Other bricks have often set them already: then they are only read. */
+/* Sets bits first to last. Bits that other bricks have set already are only read. */
 static void mark_bits(uint64_t *words, int first, int last) {
   for (int word = first / 64; word <= last / 64; word++) {
     int low = word == first / 64 ? first % 64 : 0, high = word == last / 64 ? last % 64 : 63;
@@ -122,7 +123,7 @@ static void mark_brick(const occupancy_job *job, const brick_ranges *ranges, int
   }
 }
 
-/* Coordinates of sixteen bricks. Indices rise: most often the next brick is in the same row of bricks. */
+/* Finds the coordinates of sixteen bricks. Indices rise, and the next brick is most often in the same row. */
 static void coordinates_of_bricks(const grid *grid, const uint32_t *bricks, int count,
                                   int32_t coordinates[3][BRICKS_AT_ONCE]) {
   uint32_t row_start = 0, row_end = 0;
@@ -154,7 +155,7 @@ static void mark_bricks(void *data, size_t index, int worker) {
   }
 }
 
-/* Transposes 64 tiles x 64 sheets at a time. index: which word of each sheet in by_sheet. */
+/* Transposes 64 tiles x 64 sheets at a time. index: number of the word in each sheet's row of by_sheet. */
 static void transpose_tiles(void *data, size_t index, int worker) {
   (void)worker;
   occupancy *o = data;

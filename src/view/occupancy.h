@@ -8,17 +8,18 @@
 #include "grid/grid.h"
 #include "view/view.h"
 
-/* The tiles of a view that one grid can touch: elsewhere the grid takes neither memory nor time. */
+/* The rectangle of a view's tiles that one grid can touch; other tiles take neither memory nor time for the
+ * grid. */
 typedef struct tile_rectangle {
   int x, y, width, height; /* tiles */
-  size_t first;            /* where its tiles begin in patch_of; row after row */
+  size_t first;            /* index of its first tile in patch_of; tiles follow row after row */
 } tile_rectangle;
 
 /* A patch is one grid in one tile. A tile's patches follow each other, in the order of the grids. */
 typedef struct occupancy {
   int tiles_x, tiles_y, sheets;
-  int words;                 /* 64-bit words of one patch: sheets rounded up */
-  int tile_words;            /* 64-bit words of one sheet: tiles rounded up */
+  int words;                 /* 64-bit words of one patch: a bit for each sheet, rounded up */
+  int tile_words;            /* 64-bit words of one sheet: a bit for each tile, rounded up */
   double spare;              /* pixels: margin around each brick's projection that counts as touched */
   tile_rectangle *rectangle; /* owned; [grids] */
   size_t patch_count;
@@ -29,7 +30,7 @@ typedef struct occupancy {
   uint64_t *by_sheet;    /* owned; [words * 64][tile_words]; bit = tile, all grids together */
 } occupancy;
 
-/* ---- what sixteen bricks touch: compiled for each instruction set ---- */
+/* ---- tiles and sheets of sixteen bricks: compiled for each instruction set ---- */
 
 enum { BRICKS_AT_ONCE = 16, RANGE_AXES = 3 };
 enum range_axis { RANGE_X, RANGE_Y, RANGE_SHEETS };
@@ -45,7 +46,7 @@ typedef struct brick_view {
       last[RANGE_AXES]; /* limits: the grid's tiles across and down, the view's sheets */
 } brick_view;
 
-/* What each brick touches: the first and last tile across and down, and sheet. A brick with an empty range
+/* The first and last tile across, tile down and sheet that each brick touches. A brick with an empty range
  * (first > last) touches nothing. */
 typedef struct brick_ranges {
   int32_t first[RANGE_AXES][BRICKS_AT_ONCE], last[RANGE_AXES][BRICKS_AT_ONCE];
@@ -65,7 +66,7 @@ typedef struct view_functions {
 
 enum { PIXEL_TO_SPARE = 1 };
 
-/* Which grids in which view. */
+/* The input of hl_occupancy_make(): the grids and the view. */
 typedef struct occupancy_source {
   const grid *grids; /* [grid_count] */
   int grid_count;
@@ -79,7 +80,7 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_fu
                              const occupancy_source *source, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
-/* The bytes that such an occupancy would hold, and its number of patches. */
+/* The bytes of the occupancy that would be built, and its number of patches. */
 uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count);
 
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {

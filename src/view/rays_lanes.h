@@ -38,7 +38,7 @@ static const float block_row[LANES]
 LANES_INLINE lanes block_u(int x) { return lanes_load(block_column) + (float)x; }
 LANES_INLINE lanes block_v(int y) { return lanes_load(block_row) + (float)y; }
 
-/* A value that is linear in pixel coordinates. */
+/* Evaluates a function that is linear in pixel coordinates. */
 LANES_INLINE lanes linear_in_view(float at, float by_u, float by_v, lanes u, lanes v) {
   return lanes_add_scaled(lanes_line(v, by_v, at), u, by_u);
 }
@@ -92,8 +92,8 @@ static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *e
   }
 }
 
-/* The part of the slab [height - spacing, height] that lies in the box: where it begins and its length, in
- * slabs. */
+/* The section of the slab [height - spacing, height] that lies in the box: its beginning and its length, as
+ * fractions of the slab. */
 typedef struct covered_span {
   lanes begin, length;
 } covered_span;

@@ -47,8 +47,8 @@ static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
                   vec3_scale(direction, (height - vec3_dot(normal, start)) / vec3_dot(normal, direction)));
 }
 
-/* A middle ray that climbs less than this, as a fraction of its length, meets the sheet too far away: base is
- * the eye instead. */
+/* The least climb of a middle ray, as a fraction of its length: a flatter ray meets the sheet too far away,
+ * and `base` is the eye instead. */
 static const double FLATTEST_MIDDLE = 0.01;
 
 static void perspective_rays(const view *view, vec3 normal, double height, affine3 from_frame,
@@ -155,7 +155,7 @@ bool hl_footprint_bounds(const footprint_map *map, const double centre[3], const
   for (int axis = 0; axis < 2; axis++) {
     double middle = at(map->view[1 + axis], centre), extent = spread(map->view[1 + axis], half);
     double low = middle - extent, high = middle + extent;
-    if (nearest <= 1e-9 * farthest) { /* the box reaches behind the eye: it may be anywhere */
+    if (nearest <= 1e-9 * farthest) { /* the box reaches behind the eye: its projection has no bounds */
       bounds->low[axis] = -INFINITY;
       bounds->high[axis] = INFINITY;
     } else {

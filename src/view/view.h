@@ -1,10 +1,10 @@
 /* view/view.h - how the pixels of the eye or of a light see the sheets.
  *
  * A view is a bundle of rays, one a pixel: from one point (perspective camera, point light) or parallel
- * (orthographic camera, directional light). The picture plane may have any tilt: a shadow buffer lies
- * perpendicular to its light for hard shadows and parallel to the sheets for soft ones (fig. 17).
- * Pixel (i, j) has its centre at (i + 1/2, j + 1/2). Positions are in frame space: world moved so that
- * the scene's centre is the origin, which keeps float arithmetic exact enough far from the world's. */
+ * (orthographic camera, directional light). The picture plane may have any tilt: a shadow buffer is
+ * perpendicular to the light for hard shadows and parallel to the sheets for soft ones (fig. 17). Pixel (i,
+ * j) has its centre at (i + 1/2, j + 1/2). Positions are in frame space: world moved so that the scene's
+ * centre is the origin, which keeps float arithmetic exact enough far from the world's. */
 #ifndef HL_VIEW_VIEW_H
 #define HL_VIEW_VIEW_H
 
@@ -16,11 +16,11 @@
 /* Pictures are made of tiles of 16x16 pixels, kept as sixteen blocks of 4x4 pixels: sixteen lanes each. */
 enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
 
-/* The number of tiles that cover so many pixels. */
+/* The number of tiles that cover `pixels` pixels. */
 static inline int hl_tiles(int pixels) { return (pixels + TILE - 1) / TILE; }
 
-/* The number of pixels of a set of blocks. Counts bits by sums of pairs, of fours and so on: processors
- * without vectors have no instruction for it. */
+/* The number of pixels of a set of blocks. Counts bits by sums of pairs, of fours and so on: baseline
+ * processors have no instruction that counts bits. */
 static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
   blocks -= blocks >> 1 & 0x5555;
   blocks = (blocks & 0x3333) + (blocks >> 2 & 0x3333);
@@ -31,7 +31,7 @@ static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
 typedef struct view {
   bool perspective;
   int width, height;   /* pixels */
-  vec3 origin;         /* perspective: where the rays meet; frame space */
+  vec3 origin;         /* perspective: the eye, where the rays meet; frame space */
   vec3 corner, du, dv; /* perspective: ray of continuous pixel (u, v) is corner + u du + v dv;
                           parallel: the ray's start point */
   vec3 direction;      /* parallel: unit direction of every ray */
@@ -42,7 +42,7 @@ typedef struct view {
 /* Fills inverse from the other members; false where the view is degenerate. */
 bool hl_view_finish(view *view);
 
-/* Continuous pixel coordinates of a point; false where a perspective view has it behind. */
+/* Continuous pixel coordinates of a point; false where the point lies behind a perspective view's eye. */
 bool hl_view_project(const view *view, vec3 point, double uv[2]);
 
 /* The ray through continuous pixel (u, v): start and (unnormalised) direction. */
@@ -70,7 +70,7 @@ typedef struct sheet_rays {
  * result. */
 void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays);
 
-/* The sheets of a sweep: mid-plane of sheet k at height first + k * spacing along the unit normal. */
+/* The sheets of a sweep: sheet k lies at height first + k * spacing along the unit normal. */
 typedef struct sheet_stack {
   vec3 normal; /* h; frame space */
   double first, spacing;
@@ -83,9 +83,9 @@ static inline double hl_sheet_height(const sheet_stack *sheets, int sheet) {
 
 /* ---- where rays enter and leave a box ----
  *
- * A homogeneous box must be as thick as it is: counting sheets would round its depth to whole sheets.
- * So each ray keeps the heights at which it enters and leaves the box, and the slab between two sheets counts
- * only as far as it lies between these heights (derived; exact for a homogeneous medium). */
+ * Counting sheets would round a homogeneous box's depth to whole sheets. So each ray keeps the heights at
+ * which it enters and leaves the box, and the slab between two sheets counts only as far as it lies between
+ * these heights (derived; exact for a homogeneous medium). */
 
 /* Rays of a view in one grid's index space: start + s * direction, s > least, both linear in the pixel, and
  * heights above the first sheet: start_height + s * climb. */
@@ -121,7 +121,7 @@ typedef struct footprint_map {
 } footprint_map;
 
 void hl_footprint_map(const view *view, vec3 normal, affine3 index_to_frame, footprint_map *map);
-/* The box is given by its centre and half edges. False where all of it lies behind the view. */
+/* The box is given by its centre and half edges. False where the complete box lies behind the view. */
 bool hl_footprint_bounds(const footprint_map *map, const double centre[3], const double half[3],
                          footprint_bounds *bounds);
 

@@ -10,7 +10,7 @@
 
 #include "volume/volume.h"
 
-size_t hl_voxel_type_bytes(hl_voxel_type type); /* 0 if there is no such type */
+size_t hl_voxel_type_bytes(hl_voxel_type type); /* 0 for an unknown type */
 hl_storage hl_voxel_type_storage(hl_voxel_type type);
 
 /* stored - value: 128 for i8, 32768 for i16, else 0. */

@@ -1,8 +1,8 @@
-/* volume/dat.c - .dat descriptors of bare voxels in another file.
+/* volume/dat.c - .dat files, which describe bare voxels in another file.
  *
  * Lines "ObjectFileName: f.raw", "Resolution: 64 64 64", "SliceThickness: 1 1 1", "Format: UCHAR", in any
  * order.
- */
+ * */
 #include <string.h>
 
 #include "volume/decoders.h"

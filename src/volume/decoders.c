@@ -1,8 +1,7 @@
-/* volume/decoders.c - streams that decode what the stream below them holds.
+/* volume/decoders.c - streams that decode the bytes of the stream below them.
  *
- * In: coded bytes from the stream below. Out: plain bytes, never more than are asked for. All states are
- * bounded: zlib's window, one small header, one group of digits.
- */
+ * In: coded bytes from the stream below. Out: plain bytes, never more than the reader requests. Memory is
+ * bounded: zlib's window, one small header, one group of digits. */
 #include "volume/decoders.h"
 
 #include <limits.h>
@@ -14,8 +13,8 @@
 /* ---- compressed: gzip, zlib, VTK's blocks ---- */
 
 enum {
-  DEFLATE_GREATEST_RATIO = 1032, /* RFC 1951: 258 bytes from one bit of length and one of distance */
-  PENDING_BYTES = 65536,         /* more than zlib can hold back in its window and bit buffer */
+  DEFLATE_GREATEST_RATIO = 1032, /* RFC 1951: 258 bytes from two bits, one of length and one of distance */
+  PENDING_BYTES = 65536,         /* bytes, more than zlib can hold back in its window and bit buffer */
   AUTOMATIC_WINDOW = 15 + 32     /* zlib.h: largest window, gzip and zlib told apart by their first bytes */
 };
 
@@ -48,7 +47,7 @@ static hl_status start_zlib(z_stream *zlib, hl_stream *stream, bool *started, hl
   return *started ? HL_OK : hl_fail_memory(error, PENDING_BYTES, stream->path);
 }
 
-/* What one call of zlib's inflate() did. At the end of the input consumed and made may both be 0. */
+/* The result of one call of zlib's inflate(). At the end of the input, consumed and made may both be 0. */
 typedef struct inflate_result {
   size_t consumed, made; /* bytes */
   int code;              /* as inflate() returned it */
@@ -79,7 +78,7 @@ static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_
   return HL_OK;
 }
 
-/* After one gzip member another may follow; anything else is not ours. */
+/* After one gzip member another may follow; any other bytes end the stream. */
 static hl_status next_member(inflate_stream *stream, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -125,7 +124,7 @@ hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error) {
   made->base.pull = inflate_pull;
   made->base.at_most = inflate_at_most;
   made->base.close = inflate_close;
-  *stream = &made->base; /* from here on the caller closes it, also on failure */
+  *stream = &made->base; /* from here on the caller closes the stream, also on failure */
   return start_zlib(&made->zlib, &made->base, &made->started, error);
 }
 
@@ -145,7 +144,7 @@ static hl_status fail_block(const blocks_stream *stream, hl_error *error) {
                                                                     : stream->block_bytes));
 }
 
-/* The current block is full: let zlib see its check sum, and pass over what is left of its input. */
+/* The current block is full: lets zlib check its check sum, and skips the rest of its input. */
 static hl_status end_block(blocks_stream *stream, hl_error *error) {
   inflate_result step = {.code = Z_OK};
   while (step.code != Z_STREAM_END) {
@@ -206,7 +205,8 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
   return HL_OK;
 }
 
-/* The block sizes must add up to what the file promised elsewhere, which bounds their number too. */
+/* The block sizes must add up to the size that the file states elsewhere; this also bounds the number of
+ * blocks. */
 static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
                                    uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;
@@ -272,8 +272,8 @@ typedef struct coded_stream {
   unsigned char digit[256]; /* value of each character */
   unsigned group_digits;    /* digits in a full group: 4 or 2 */
   unsigned digit_bits;      /* bits in a digit: 6 or 4 */
-  uint32_t bits;            /* of the digits of the group so far */
-  unsigned held, padding;   /* digits and padding characters of the group so far */
+  uint32_t bits;            /* value of the group's digits so far */
+  unsigned held, padding;   /* number of the group's digits and padding characters so far */
   unsigned char left[3];    /* decoded bytes that did not fit the last pull */
   unsigned left_count;
   bool finished;

@@ -1,4 +1,5 @@
-/* volume/format.c - what readers of formats share: the choice of an array and a component, names of types. */
+/* volume/format.c - shared by the readers of all formats: the choice of an array and a component, names of
+ * types. */
 #include "volume/format.h"
 
 #include <stdio.h>
@@ -80,7 +81,7 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   return HL_OK;
 }
 
-/* Chooses the default component, and notes the warning that says so. */
+/* Chooses the default component, and writes a warning that names it. */
 static int default_component(hl_load_request *request, const char *path, bool is_series, size_t components) {
   bool magnitude = !is_series && components <= 3;
   snprintf(request->component_told, sizeof request->component_told,

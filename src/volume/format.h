@@ -1,16 +1,15 @@
-/* volume/format.h - what a file format is to hl_volume_load, and what the readers of formats share.
+/* volume/format.h - the interface between hl_volume_load and the readers of file formats, and the functions
+ * that readers share.
  *
- * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. formats.h is
- * the registry of these NAMEs. A reader lists the file's arrays in its request, asks for a choice, and reads
- * the chosen array. Where the caller did not name the array or component that is read, a warning says which
- * it is.
- */
+ * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. formats.h is the
+ * registry of these NAMEs. A reader lists the file's arrays in its request, asks for a choice, and reads the
+ * chosen array. Where the caller did not name an array or component, a warning says which one is read. */
 #ifndef HL_VOLUME_FORMAT_H
 #define HL_VOLUME_FORMAT_H
 
 #include "volume/payload.h"
 
-enum { HL_ARRAYS_MOST = 256 }; /* that are listed of one file */
+enum { HL_ARRAYS_MOST = 256 }; /* most arrays that are listed for one file */
 
 /* The caller's wishes, and what the reader found in the file. */
 typedef struct hl_load_request {
@@ -22,20 +21,24 @@ typedef struct hl_load_request {
   size_t array_count;
   size_t chosen; /* the array that is read */
   int chosen_component;
-  bool more;                                  /* the file has arrays beyond HL_ARRAYS_MOST */
-  char array_told[1000], component_told[400]; /* warnings about what was taken by default; "": none */
+  bool more; /* the file has arrays beyond HL_ARRAYS_MOST */
+  char array_told[1000],
+      component_told[400]; /* warnings that name the array and component chosen by default; "": none */
 } hl_load_request;
 
-/* Adds an array to the list. name: "" if the format has none; type: 0 if its values are not read. */
+/* Adds an array to the list. name: "" if the format has no names; type: 0 if arrays of this type cannot be
+ * read. */
 hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
                         bool of_cells, hl_error *error);
 
-/* Sets request->chosen: the array of the wanted name; else `active` (an index, or -1); else the first of one
- * component of the points, of the cells; else the first of all. There must be one. */
+/* Sets request->chosen to the array of the wanted name; without a wanted name to `active` (an index, or -1:
+ * none); else to the first array of one component at points, then at cells; else to the first array. The list
+ * must not be empty. */
 hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
-/* Says which component the payload, whose components and block are known, is read for: the wanted one; else
- * the only one; else the magnitude of vectors of two or three (is_series: of steps of a series the first). */
+/* Chooses the component to read, and sets it in the payload, whose `components` and `block` are known: the
+ * wanted component; else the only one; else the magnitude of vectors of two or three components; else the
+ * first component. is_series: components are steps of a series, of which the first is read by default. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 
@@ -47,27 +50,28 @@ enum { HL_FORMAT_SNIFFED_BYTES = 1024, HL_FORMAT_ENDINGS = 3 };
 
 /* A reader. Every member but load may be null. */
 typedef struct hl_format {
-  const char *name;                       /* in the list of formats of error lines */
-  const char *endings[HL_FORMAT_ENDINGS]; /* of names that promise `beginning`; null after the last */
-  const char *beginning;                  /* for error lines: how such files must begin */
+  const char *name; /* the format's name in error lines */
+  const char
+      *endings[HL_FORMAT_ENDINGS]; /* file name extensions that promise `beginning`; null after the last */
+  const char *beginning;           /* for error lines: how such files must begin */
 
   /* Whether a file that starts with these bytes is of the format. length: HL_FORMAT_SNIFFED_BYTES, less where
    * the file is shorter. */
   bool (*has_content)(const unsigned char *bytes, size_t length);
 
-  /* Whether the file is of the format whatever its bytes are. Every format is asked before any has_content.
-   */
+  /* Whether the file's name alone proves the format, whatever its bytes are. Asked of every format before
+   * has_content of any. */
   bool (*fits)(const hl_stream *stream);
 
-  /* Whether the name alone makes the file one of the format: asked where has_content of every format said no.
-   * May replace *stream by the file that holds the header. */
+  /* Whether the file's name suggests the format. Asked only after has_content of every format said no. May
+   * replace *stream by the file that holds the header. */
   hl_status (*claim_name)(hl_stream **stream, bool *claimed, hl_error *error);
 
   /* Reads *stream from its current position, may replace it or push decoders on it; the caller closes it. */
   hl_status (*load)(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 } hl_format;
 
-/* What a format calls a voxel type; name may list alternatives, as for hl_text_is_one_of. */
+/* A format's name of a voxel type; name may list alternatives, as for hl_text_is_one_of. */
 typedef struct hl_named_type {
   const char *name;
   hl_voxel_type type;

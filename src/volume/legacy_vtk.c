@@ -1,10 +1,9 @@
 /* volume/legacy_vtk.c - legacy .vtk files with STRUCTURED_POINTS, ASCII or BINARY (big-endian).
  *
  * After three lines (mark, title, ASCII or BINARY) come keywords. A first pass lists the arrays under
- * POINT_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the parts of a
- * FIELD) as far as they are understood; a second stops at the values of the chosen one. What cannot be read
- * twice, a pipe, is read once, up to the first array of one component or of the wanted name.
- */
+ * POINT_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the arrays of a
+ * FIELD), up to the first unknown keyword; a second pass stops at the values of the chosen array. A pipe
+ * cannot be read twice: it is read once, up to the first array of one component or of the wanted name. */
 #include <string.h>
 
 #include "volume/convert.h"
@@ -19,11 +18,12 @@ typedef struct vtk_header {
   hl_payload payload;
   int line;
   bool has_dimensions, in_point_data;
-  size_t tuples; /* of the POINT_DATA or CELL_DATA section; of the volume's array once it is found */
+  size_t tuples; /* values per array of the POINT_DATA or CELL_DATA section; of the volume's array once it is
+                    found */
   hl_load_request *request;
   bool lists;    /* first pass: arrays are listed */
   bool once;     /* there is no second pass: stop at the first suitable array */
-  size_t arrays; /* under POINT_DATA so far */
+  size_t arrays; /* number of arrays under POINT_DATA so far */
   bool found;    /* the stream is at the voxels */
 } vtk_header;
 
@@ -91,7 +91,7 @@ static hl_status skip_values(vtk_header *header, size_t count, size_t value_byte
   return HL_OK;
 }
 
-/* Whether the array of this number and name, under POINT_DATA, is where this pass stops. */
+/* Whether this pass stops at the array of this number and name, under POINT_DATA. */
 static bool is_wanted(const vtk_header *header, const char *name, size_t components, size_t index) {
   const hl_load_request *request = header->request;
   if (!header->lists) return index == request->chosen;

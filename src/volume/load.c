@@ -36,7 +36,7 @@ static const hl_format *by_fit(const hl_stream *stream) {
   return NULL;
 }
 
-/* *format: null if none claims the file. */
+/* *format: null if no format claims the file. */
 static hl_status by_name(hl_stream **stream, const hl_format **format, hl_error *error) {
   bool claimed = false;
   hl_status status = HL_OK;
@@ -57,7 +57,7 @@ static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **b
   return hl_stream_peek(stream, HL_FORMAT_SNIFFED_BYTES, bytes, length, error);
 }
 
-/* For files of well-known formats that are not read: what to do with such a file; null for all others. */
+/* Advice for a file of a well-known format that Halflight does not read; null for all other files. */
 static const char *known_but_unsupported(const unsigned char *bytes, size_t length) {
   static const struct {
     size_t place;

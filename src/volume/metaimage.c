@@ -1,8 +1,8 @@
-/* volume/metaimage.c - MetaImage: .mha (voxels in the file) and .mhd (in another).
+/* volume/metaimage.c - MetaImage: .mha (voxels in the same file) and .mhd (voxels in another file).
  *
  * The header is lines "Key = value"; ElementDataFile is the last. World: physical = Offset +
  * sum over axes of index * spacing * row of TransformMatrix, which is how ITK reads the matrix.
- */
+ * */
 #include <math.h>
 #include <string.h>
 
@@ -179,8 +179,8 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
   grid->value_offset = header->intercept;
 }
 
-/* Several channels of a voxel lie side by side; samples along a fourth axis and more are volumes after each
- * other. */
+/* The channels of a voxel lie side by side; samples along a fourth or later axis are whole volumes, one after
+ * the other. */
 static hl_status find_components(const meta_header *header, bool *is_series, hl_payload *payload,
                                  hl_error *error) {
   size_t series = 1;

@@ -105,7 +105,8 @@ static hl_status read_header(hl_stream *stream, nifti_header *header, hl_error *
   return HL_OK;
 }
 
-/* Sizes of the first three axes; *series: of the fourth; *others: of all later axes together. */
+/* Reads the sizes of the first three axes; *series: the fourth axis's size; *others: the product of all later
+ * axes' sizes. */
 static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3], size_t *series,
                                  size_t *others, hl_error *error) {
   int64_t count = load_dimension(header, 0);
@@ -182,7 +183,7 @@ static void place_by_sform(const nifti_header *header, hl_volume_description *gr
   }
 }
 
-/* Below it a * a is what rounding the three numbers of a half turn to floats leaves, and counts as 0: as in
+/* A smaller a * a is only the rounding error of a half turn's three floats and counts as 0, as in
  * nifti_quatern_to_mat44() of the format's reference implementation, nifti1_io.c. */
 static const double HALF_TURN = 1e-7;
 
@@ -210,7 +211,7 @@ static void place_by_sizes(const double spacing[3], hl_volume_description *grid)
   for (int axis = 0; axis < 3; axis++) grid->axis[axis][axis] = spacing[axis];
 }
 
-/* The first placement that the file has and that is possible. */
+/* Uses the first placement that the file has and that is possible. */
 static void place(const nifti_header *header, hl_volume_description *grid) {
   double spacing[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -304,7 +305,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Goes from the voxels of a pair, NAME.img, to their header, NAME.hdr; *switched: there is one. */
+/* Replaces *stream by the header NAME.hdr where it is the voxels' file NAME.img of a pair; *switched: whether
+ * there was a header. */
 static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
   char header[NAME_BYTES];

@@ -2,9 +2,8 @@
  *
  * Header: a mark, two bytes of version, the length of the text, the text: a dictionary of descr,
  * fortran_order and shape. Two axes are [y][x]. Of four, a last one of at most four values holds the
- * components of voxels, else the first one is a series. Voxels have no place in the file: the spacing is 1
- * and the origin 0. Source: NumPy's format specification, numpy/lib/format.py (NEP 1).
- */
+ * components of voxels, else the first one is a series. The file has no positions: the spacing is 1 and the
+ * origin 0. Source: NumPy's format specification, numpy/lib/format.py (NEP 1). */
 #include <string.h>
 
 #include "core/memory.h"
@@ -196,12 +195,12 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   hl_status status = hl_volume_check_grid(&payload->grid, header->path, error);
   if (status != HL_OK) return status;
   size_t voxels = payload->grid.dimensions[0] * payload->grid.dimensions[1] * payload->grid.dimensions[2];
-  /* Fastest are the components at the end in C order and those at the beginning in Fortran order. */
+  /* Components vary fastest where they are the last axis in C order or the first axis in Fortran order. */
   payload->block = header->numbers > 1 || last_is_component != header->fortran ? 1 : voxels;
   return HL_OK;
 }
 
-/* Voxels that lie with z fastest are laid with x fastest; *volume is replaced. */
+/* Rearranges voxels from z fastest to x fastest; *volume is replaced. */
 static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
   const hl_volume *read = *volume;
   hl_volume_description description;
@@ -209,7 +208,7 @@ static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
   size_t bytes = hl_storage_bytes(read->storage);
   const ptrdiff_t stride[3] = {(ptrdiff_t)bytes, (ptrdiff_t)(bytes * read->dimension[0]),
                                (ptrdiff_t)(bytes * read->dimension[0] * read->dimension[1])};
-  for (int axis = 0; axis < 3; axis++) { /* of the file: 0 is z (or y of a plane) */
+  for (int axis = 0; axis < 3; axis++) { /* axis of the file: 0 is z (or y of a plane) */
     int turned = axis < grid_axes ? grid_axes - 1 - axis : axis;
     description.dimensions[turned] = read->dimension[axis];
     description.stride_bytes[turned] = stride[axis];

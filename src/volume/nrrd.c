@@ -1,9 +1,8 @@
 /* volume/nrrd.c - NRRD, versions 1 to 5, attached and detached.
  *
- * The header is lines "field: value" (any case) up to an empty line; "key:=value" pairs and fields about
- * things that Halflight has no use for are passed over. Source of the meanings: the format's definition
- * by Teem, "Definition of NRRD File Format".
- */
+ * The header is lines "field: value" (any case) up to an empty line; "key:=value" pairs and fields that
+ * Halflight does not need are skipped. Source: the format's definition by Teem, "Definition of NRRD File
+ * Format". */
 #include <math.h>
 #include <string.h>
 
@@ -322,7 +321,7 @@ static hl_status read_header(hl_stream *stream, nrrd_header *header, hl_error *e
   return HL_OK;
 }
 
-/* ---- which axes are those of the grid, which hold components, and where the grid lies ---- */
+/* ---- which axes belong to the grid, which hold components, and where the grid lies ---- */
 
 /* Whether the samples along an axis are several values of one voxel. */
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
@@ -334,8 +333,8 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
   return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
 }
 
-/* Of four axes and more that nothing is said of, a first one of at most four samples holds the components of
- * voxels. */
+/* Where the file states no kinds of axes and has four axes or more, a first axis of at most four samples
+ * holds components. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->has_directions;
   int thick = 0;
@@ -346,8 +345,8 @@ static bool is_first_of_components(const nrrd_header *header) {
   return unsaid && thick > 3;
 }
 
-/* Of the axes that are not components, at most three: while there are more, the last of one sample goes, and
- * then the last of all, a series. */
+/* Keeps at most three of the axes that are not components: while there are more, drops the last axis of one
+ * sample, and if there is none the last axis, a series. */
 static int drop_thin_axes(int axes[NRRD_MOST_AXES], const nrrd_header *header, int count) {
   for (int n = count - 1; n >= 0 && count > 3; n--)
     if (header->axis[axes[n]].size == 1) {
@@ -366,11 +365,12 @@ static int choose_axes(const nrrd_header *header, int chosen[NRRD_MOST_AXES]) {
   return drop_thin_axes(chosen, header, count);
 }
 
-/* The other axes hold components, which must follow each other: the grid's axes come before and after
+/* The other axes hold components. They must be neighbours; axes of the grid may come before and after
  * them. */
 static hl_status find_components(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count,
                                  bool *is_series, hl_payload *payload, hl_error *error) {
-  size_t before = 1, since = 1; /* voxels of the axes before the components, and since the last of them */
+  size_t before = 1, since = 1; /* product of the grid axes' sizes: before the components, and since the last
+                                   component axis */
   int grid_axis = 0;
   *is_series = false;
   for (int n = 0; n < header->dimension; n++) {
@@ -395,8 +395,8 @@ static hl_status find_components(const nrrd_header *header, const int chosen[NRR
   return HL_OK;
 }
 
-/* The step of an axis without direction, and the place of its first sample; Teem's rules for spacing, axis
- * mins and maxs, and centering. */
+/* Finds the step along an axis without direction, and the position of its first sample, by Teem's rules for
+ * spacing, axis mins and maxs, and centering. */
 static void place_axis(const nrrd_axis *axis, double *spacing, double *first) {
   double width = axis->maximum - axis->minimum;
   double intervals = axis->is_node ? (double)axis->size - 1 : (double)axis->size;

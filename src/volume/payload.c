@@ -1,8 +1,8 @@
 /* volume/payload.c - reads the voxels that a header promises.
  *
- * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes go to their final
- * place and are converted there, piece by piece; only 8-byte voxels, which shrink, go through a small
- * stage. */
+ * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes are read into the
+ * volume's own memory and converted there, piece by piece; only 8-byte voxels, which become shorter, pass
+ * through a small buffer. */
 #include "volume/payload.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ static size_t voxel_count(const hl_payload *payload) {
   return dimension[0] * dimension[1] * dimension[2];
 }
 
-/* The number of values of all components; UINT64_MAX if it is greater. */
+/* The number of values of all components; UINT64_MAX on overflow. */
 static uint64_t value_count(const hl_payload *payload) {
   uint64_t values;
   return __builtin_mul_overflow((uint64_t)voxel_count(payload), payload->components, &values) ? UINT64_MAX
@@ -81,7 +81,8 @@ static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, 
                         stream->cut_short ? ": the file is cut short" : ": correct its sizes or type");
 }
 
-/* Reads count values after the first `done`, into raw, and converts them to place; both may be the same. */
+/* Reads `count` values, after `done` earlier ones, into `raw`, and converts them into `place`; both may be
+ * the same memory. */
 static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                             void *raw, void *place, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
@@ -162,7 +163,7 @@ static void store_number(const hl_volume_description *grid, double value, size_t
   }
 }
 
-/* The next number of a text, which is that of value number done. */
+/* Reads the next number of a text, the number of value `done`. */
 static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index,
                                  void *voxels, hl_error *error) {
   double value;
@@ -209,7 +210,7 @@ static hl_status read_stage(hl_stream *stream, const hl_payload *payload, uint64
  * the components of a voxel lie side by side, and all voxels where components follow each other as a whole.
  * The magnitude is summed up in the voxels themselves, so that any order needs no more memory. */
 
-/* Where in the file's order the next value is. */
+/* The next value's position in the file's order. */
 typedef struct component_place {
   size_t first; /* voxel of the block's first value */
   size_t component;
@@ -301,7 +302,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, v
 
 /* ---- the whole ---- */
 
-/* Asking for one byte more also lets a decompressor check its sum. */
+/* Requesting one byte more also lets a decompressor verify its check sum. */
 static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_error *error) {
   bool to_the_end = payload->components == 1 || payload->component == HL_COMPONENT_MAGNITUDE ||
                     payload->block < voxel_count(payload);

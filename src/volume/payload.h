@@ -1,4 +1,4 @@
-/* volume/payload.h - from a header and a stream of voxels to a volume: the core of every format. */
+/* volume/payload.h - from a header and a stream of voxels to a volume; used by every format. */
 #ifndef HL_VOLUME_PAYLOAD_H
 #define HL_VOLUME_PAYLOAD_H
 
@@ -15,22 +15,25 @@ typedef enum hl_trailing {
 typedef struct hl_payload {
   hl_volume_description grid; /* dimensions, type, origin, axis, value_scale, value_offset; nothing else */
   size_t components;          /* values of each voxel */
-  size_t block;  /* of several: voxels whose values of one component follow each other; divides the voxels */
-  int component; /* of several: the one that is read, or HL_COMPONENT_MAGNITUDE */
+  size_t block;  /* with several components: consecutive values of one component in the file; divides the
+                    number of voxels */
+  int component; /* with several components: the index to read, or HL_COMPONENT_MAGNITUDE */
   bool big_endian;
   bool text;             /* decimal numbers separated by white space or commas, not binary */
   bool text_is_fraction; /* the numbers 0 to 1 of the text stand for the values 0 to 255 of u8 */
   hl_trailing trailing;
-  const char *promiser; /* who states size and type, for error lines: "the header" */
+  const char *promiser; /* where size and type are stated, for error lines: "the header" */
 } hl_payload;
 
 void hl_payload_defaults(hl_payload *payload);
 
-/* Bytes of all voxels and components as the file has them (at most UINT64_MAX); the grid must be checked. */
+/* The size in bytes of all voxels and components in the file (at most UINT64_MAX); the grid must have been
+ * checked. */
 uint64_t hl_payload_bytes(const hl_payload *payload);
 
-/* Checks the grid, and before any allocation whether the stream can hold so much; reads, converts and adopts
- * the voxels. Reports progress and can be cancelled. spacing: in place of the grid's, unless 0. */
+/* Checks the grid and, before any allocation, whether the stream can hold so many bytes; then reads and
+ * converts the voxels and makes the volume. Reports progress and can be cancelled. spacing: replaces the
+ * grid's spacing unless 0. */
 hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const double spacing[3],
                           hl_volume **volume, hl_error *error);
 

@@ -1,8 +1,7 @@
 /* volume/raw.c - bare voxels, whose size and type the file's name states.
  *
  * Names: anything_256x256x128_uint8.raw, with _be (or _le) after the type for big-endian voxels and .gz for
- * gzip. Of bare voxels with a descriptor beside them, see dat.c.
- */
+ * gzip. Bare voxels with a descriptor in another file: dat.c. */
 #include "volume/raw.h"
 
 #include <string.h>
@@ -72,14 +71,14 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Raw voxels may begin with any bytes, also with those of another format. */
+/* Raw voxels may begin with any bytes, also with another format's mark. */
 static bool fits(const hl_stream *stream) {
   hl_payload payload;
   return hl_raw_name(stream->path, &payload) && !hl_text_ends(stream->path, ".gz") &&
          hl_stream_at_most(stream) == hl_payload_bytes(&payload);
 }
 
-/* Files named .raw without a size are claimed too, so that load() says what the name lacks. */
+/* Claims files named .raw without a size too, so that load() says which parts the name lacks. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   (void)error;
   hl_payload payload;

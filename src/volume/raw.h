@@ -4,7 +4,7 @@
 
 #include "volume/payload.h"
 
-/* Fills *payload by the size and type, unchecked, that the name states; false if it states none. */
+/* Fills *payload with the size and type that the name states, unchecked; false if the name states none. */
 bool hl_raw_name(const char *path, hl_payload *payload);
 
 #endif

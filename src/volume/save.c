@@ -1,8 +1,8 @@
-/* volume/save.c - a volume to a file: NRRD with gzip, or bare voxels whose name says what they are.
+/* volume/save.c - writes a volume to a file: NRRD with gzip, or bare voxels whose file name states size and
+ * type.
  *
- * Data values are what is kept. Integers of 8 and 16 bits without a scale are written as they are, everything
- * else as float; the file appears whole or not at all, and the same volume gives the same bytes.
- */
+ * Data values are kept: integers of 8 and 16 bits without a scale are written unchanged, everything else as
+ * float. The file appears complete or not at all, and the same volume gives the same bytes. */
 #define _GNU_SOURCE
 #include <string.h>
 #include <strings.h>
@@ -28,7 +28,7 @@ typedef struct saving {
   z_stream stream;
 } saving;
 
-/* The file's type: the stored one where no scale or offset stands between it and the data values. */
+/* The file's voxel type: the stored type where stored values equal data values, else float. */
 static hl_voxel_type file_type(const hl_volume *volume) {
   double bias = hl_voxel_type_bias(volume->type);
   bool whole = volume->value_scale == 1 && volume->value_offset == -bias;
@@ -128,7 +128,7 @@ static hl_status write_voxels(saving *s, hl_error *error) {
   return HL_OK;
 }
 
-/* Bare voxels are found again by their name alone. */
+/* Only the file's name states the size and type of bare voxels. */
 static hl_status check_raw_name(const saving *s, const char *path, hl_error *error) {
   hl_payload payload;
   const size_t *n = s->grid.dimensions;

@@ -1,8 +1,7 @@
 /* volume/statistics.c - range, mean, histogram and non-finite count of a volume.
  *
- * u8 and u16 voxels are counted per stored value, everything else follows from the counts exactly. f32
- * voxels take one pass for range, sum and finiteness, and one for the histogram.
- */
+ * u8 and u16 voxels are counted per stored value; all statistics follow from the counts exactly. f32 voxels
+ * take one pass for range, sum and finiteness, and one for the histogram. */
 #include "volume/statistics.h"
 
 #include <float.h>
@@ -15,9 +14,9 @@
 enum { LANES = 8 };
 enum {
   PIECE = 1 << 22
-}; /* voxels between two questions whether to stop: a few milliseconds; a multiple of LANES */
+}; /* voxels between two checks for cancellation: a few milliseconds; a multiple of LANES */
 
-/* Stored values; low > high if no voxel is finite. */
+/* The range of stored values; low > high if no voxel is finite. */
 typedef struct tally {
   double low, high, sum;
   uint64_t finite;
@@ -40,14 +39,14 @@ static int bin_of(binning bins, double stored) {
   return bin < HL_HISTOGRAM_BINS - 1 ? bin : HL_HISTOGRAM_BINS - 1;
 }
 
-/* A walk over the voxels, piece by piece; begins with piece 0. */
+/* An iteration over the voxels, piece by piece; begins with piece 0. */
 typedef struct walk {
   hl_context *context;
-  size_t count, first, piece; /* voxels; the present piece is [first, first + piece) */
+  size_t count, first, piece; /* voxels; the current piece is [first, first + piece) */
   bool cancelled;
 } walk;
 
-/* False at the end, and where the caller's callback said stop. */
+/* Moves to the next piece; false at the end and after cancellation. */
 static bool next_piece(walk *w) {
   w->first += w->piece;
   w->piece = w->count - w->first < PIECE ? w->count - w->first : PIECE;
@@ -56,7 +55,7 @@ static bool next_piece(walk *w) {
 }
 
 static void count_u8(const uint8_t *voxels, size_t count, uint64_t *counts) {
-  uint64_t lanes[4][256] = {{0}}; /* apart, so that runs of equal values do not wait for each other */
+  uint64_t lanes[4][256] = {{0}}; /* four tables, so that runs of equal values do not wait for each other */
   size_t n = 0;
   for (; n + 4 <= count; n += 4)
     for (int lane = 0; lane < 4; lane++) lanes[lane][voxels[n + (size_t)lane]]++;
@@ -69,7 +68,7 @@ static void count_u16(const uint16_t *voxels, size_t count, uint64_t *counts) {
   for (size_t n = 0; n < count; n++) counts[voxels[n]]++;
 }
 
-/* How often each stored value occurs; counts are zeros before. False: cancelled. */
+/* Counts how often each stored value occurs; counts must be zeros before. False: cancelled. */
 static bool count_values(const hl_volume *volume, size_t count, uint64_t *counts) {
   walk w = {.context = volume->context, .count = count};
   while (next_piece(&w)) {
@@ -97,7 +96,7 @@ static void bin_counts(const uint64_t *counts, int values, binning bins, uint64_
     if (counts[value] != 0) histogram[bin_of(bins, value)] += counts[value];
 }
 
-/* Partial results, one for each remainder of the voxel's number modulo LANES: sums do not wait for one
+/* Partial results, one for each remainder of the voxel's index modulo LANES: sums do not wait for one
  * another, and compilers turn them into vectors. */
 typedef struct lanes_f32 {
   float low[LANES], high[LANES];

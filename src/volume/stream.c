@@ -1,4 +1,4 @@
-/* volume/stream.c - what all streams share (buffer, lines, skipping), and files. */
+/* volume/stream.c - shared by all streams: buffer, lines, skipping; and streams of files. */
 #define _GNU_SOURCE
 #include "volume/stream.h"
 
@@ -14,7 +14,7 @@ typedef struct file_stream {
   hl_stream base;
   int descriptor; /* -1 until open */
   bool regular;
-  uint64_t size, position;     /* of a regular file, bytes */
+  uint64_t size, position;     /* length of a regular file, bytes */
   const unsigned char *memory; /* borrowed; [size]: the content, instead of a file's; else null */
 } file_stream;
 
@@ -201,7 +201,7 @@ hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *
   while (status == HL_OK && *count < wanted) {
     size_t left = wanted - *count, got;
     if (stream->begin == stream->end &&
-        left >= HL_STREAM_BUFFER_BYTES) { /* past the buffer: no second copy */
+        left >= HL_STREAM_BUFFER_BYTES) { /* reads directly, without a copy through the buffer */
       status = pull(stream, destination + *count, left, &got, error);
       stream->offset += got;
     } else {
@@ -244,7 +244,7 @@ hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error) {
   return HL_OK;
 }
 
-/* Learns the kind of line end from the first one: a lone CR counts only if no LF follows it there. */
+/* Determines the kind of line end from the first line: a CR ends lines only if no LF follows it there. */
 static void learn_line_end(hl_stream *stream, const unsigned char *bytes, size_t length, size_t available) {
   if (stream->line_end_known) return;
   const unsigned char *carriage_return = memchr(bytes, '\r', length);

@@ -1,8 +1,7 @@
 /* volume/text.c - words and numbers of text headers.
  *
- * The C library's own conversions follow the program's locale, in which 1.5 may not be a number; these
- * do not.
- */
+ * The C library's conversions follow the program's locale, in which "1.5" may not be a number; these
+ * functions do not. */
 #define _GNU_SOURCE
 #include "volume/text.h"
 

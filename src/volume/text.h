@@ -10,18 +10,18 @@ enum { HL_NUMBER_CHARACTERS = 128, HL_PRINTABLE_BYTES = 64 };
 /* Space, tab, CR, LF, FF, VT. */
 static inline bool hl_is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/* The whole of [text, text + length) as a number, correctly rounded; nan, inf and infinity in any case too.
- * False if it is anything else or HL_NUMBER_CHARACTERS or longer. */
+/* Converts all of [text, text + length) to a number, correctly rounded; also nan, inf and infinity in upper
+ * or lower case. False if the text is no number or has HL_NUMBER_CHARACTERS or more characters. */
 bool hl_text_number(const char *text, size_t length, double *value);
 
-/* Numbers separated by white space; their count, or -1 if something else is there or there are more than
- * capacity. */
+/* Reads numbers separated by white space; returns their count, or -1 if the text holds anything else or more
+ * than `capacity` numbers. */
 int hl_text_numbers(const char *text, double *values, int capacity);
 
-/* The same for whole numbers from 0 to SIZE_MAX. */
+/* Reads integers from 0 to SIZE_MAX in the same way. */
 int hl_text_sizes(const char *text, size_t *values, int capacity);
 
-/* Letters of ASCII compare without case. */
+/* Compares without regard to the case of ASCII letters. */
 bool hl_text_equal(const char *a, const char *b);
 bool hl_text_starts(const char *text, const char *prefix);
 bool hl_text_ends(const char *text, const char *suffix);
@@ -36,7 +36,7 @@ char *hl_text_trim(char *text);
  * long. */
 bool hl_text_word(const char **cursor, char *word, size_t capacity);
 
-/* A short form of foreign text fit for an error line: unprintable bytes become '?'. Returns buffer. */
+/* Shortens foreign text for an error line: unprintable bytes become '?'. Returns buffer. */
 const char *hl_text_printable(char buffer[HL_PRINTABLE_BYTES], const char *text);
 
 #endif

@@ -33,7 +33,7 @@ static affine3 index_to_world(const hl_volume_description *description) {
 
 static hl_status check_size(const hl_volume_description *description, const char *subject, hl_error *error) {
   const size_t *dimension = description->dimensions;
-  size_t bytes = 8; /* the largest voxel, so that no later product overflows */
+  size_t bytes = 8; /* bytes of the largest voxel type, so that no later product overflows */
   bool fits = true;
   for (int axis = 0; axis < 3; axis++) {
     if (dimension[axis] < 1)
@@ -48,10 +48,10 @@ static hl_status check_size(const hl_volume_description *description, const char
   return HL_OK;
 }
 
-/* The greatest coordinate, which no square overflows. */
+/* The greatest accepted coordinate: its square does not overflow. */
 static double greatest_part(const double v[3]) { return fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2])); }
 
-/* Beyond these, squares and cubes of lengths leave the range of doubles. */
+/* Limits of lengths: beyond them, squares and cubes leave the range of doubles. */
 static const double SHORTEST_STEP = 1e-100, LONGEST_STEP = 1e100;
 
 static hl_status check_step(const double axis[3], int number, const char *subject, hl_error *error) {
@@ -106,7 +106,7 @@ hl_status hl_volume_check_grid(const hl_volume_description *description, const c
   return check_place(description, subject, error);
 }
 
-/* Everything but the voxels. */
+/* Makes a volume without its voxels. */
 static hl_volume *make_volume(hl_context *context, const hl_volume_description *description) {
   hl_volume *volume = hl_allocate_zeroed(context, 1, sizeof *volume);
   if (volume == NULL) return NULL;
@@ -212,7 +212,9 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   if (description->voxels == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "%s: voxels is null", subject);
   hl_status status = hl_volume_check_grid(description, subject, error);
   if (status != HL_OK) {
-    if (error != NULL) error->code = HL_ERROR_ARGUMENT; /* here the grid is an argument, not a file */
+    if (error != NULL)
+      error->code = HL_ERROR_ARGUMENT; /* the grid comes from the caller, not from a file: the status is that
+                                          of an argument */
     return HL_ERROR_ARGUMENT;
   }
   ptrdiff_t stride[3];

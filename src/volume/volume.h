@@ -19,7 +19,7 @@ typedef enum hl_storage { HL_STORAGE_U8 = 0, HL_STORAGE_U16 = 1, HL_STORAGE_F32 
 typedef struct hl_array_entry {
   char *name; /* owned */
   size_t components;
-  hl_voxel_type type; /* 0: values that are not read */
+  hl_voxel_type type; /* 0: a type that cannot be read */
   bool of_cells;
 } hl_array_entry;
 
@@ -29,7 +29,7 @@ struct hl_volume {
   size_t dimension[3]; /* i, j, k */
   hl_storage storage;
   const void *voxels; /* [k][j][i]; stored values; owned unless borrowed */
-  void *owned_voxels; /* what hl_release gets; null if borrowed */
+  void *owned_voxels; /* the block to hl_release; null if borrowed */
   double value_scale; /* data value = value_scale * stored + value_offset */
   double value_offset;
   affine3 index_to_world; /* voxel centres at integer indices */
@@ -41,7 +41,7 @@ struct hl_volume {
   uint64_t histogram[HL_HISTOGRAM_BINS];
   hl_array_entry *arrays; /* owned; [array_count]; null unless loaded */
   size_t array_count, chosen_array;
-  int component; /* that was read, or HL_COMPONENT_MAGNITUDE */
+  int component; /* index of the component that was read, or HL_COMPONENT_MAGNITUDE */
 };
 
 static inline size_t hl_storage_bytes(hl_storage storage) {
@@ -52,15 +52,15 @@ static inline size_t hl_volume_voxel_count(const hl_volume *volume) {
 }
 
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
- * hl_allocate that the volume takes over, also on failure. description gives the grid, the type in the
- * file, and value_scale and value_offset of that type's own values; subject starts the error lines. */
+ * hl_allocate that the volume takes over, also on failure. description: the grid, the type in the file, and
+ * value_scale and value_offset for values of the file's type. subject: starts the error lines. */
 hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
                           void *voxels, hl_volume **volume, hl_error *error);
 
 /* Releases a list of arrays. */
 void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count);
 
-/* Fails unless the grid is possible: type, dimensions, their product in bytes, axes, scale and offset. */
+/* Checks type, dimensions, their product in bytes, axes, scale and offset; fails if one is impossible. */
 hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,
                                hl_error *error);
 

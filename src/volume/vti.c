@@ -1,9 +1,8 @@
 /* volume/vti.c - VTK XML image data (.vti): ascii, base64 and appended arrays, plain or in zlib blocks.
  *
- * A first pass over the tags lists the arrays. Of those that nobody named, the active scalars are the volume,
- * else the first of one component, of the points, else of the cells. A second pass goes to the values. World:
- * Origin + Direction * (Spacing * index), where indices count from the extent's start.
- */
+ * A first pass over the tags lists the arrays. The volume is the array that the caller named; without a name
+ * the active scalars, else the first array of one component at points, else at cells. A second pass goes to
+ * the values. World: Origin + Direction * (Spacing * index), where indices count from the extent's start. */
 #include <math.h>
 #include <string.h>
 
@@ -21,17 +20,18 @@ typedef enum array_format { FORMAT_ASCII, FORMAT_BINARY, FORMAT_APPENDED } array
 typedef struct vti_array {
   char type[NAME_BYTES];
   array_format format;
-  uint64_t place; /* of inline values: offset in the file; of appended ones: in the appended data */
+  uint64_t
+      place; /* offset of the values: in the file for inline values, in the appended data for appended ones */
 } vti_array;
 
 typedef struct vti_header {
   hl_stream *stream;
   bool big_endian, compressed;
-  size_t header_bytes; /* of the integers before binary values */
+  size_t header_bytes; /* bytes of each integer before binary values */
   double extent[6];    /* first and last point index along x, y, z */
   double origin[3], spacing[3], direction[9];
   bool has_extent, has_piece;
-  bool is_whole; /* its last tag was seen, or the appended data */
+  bool is_whole; /* the section's last tag or the appended data has been seen */
   section section;
   char active[NAME_BYTES];         /* name of the section's active scalars */
   vti_array *arrays;               /* owned; [HL_ARRAYS_MOST]; null before the first */
@@ -127,7 +127,7 @@ static bool find_type(const char *name, hl_voxel_type *type) {
   return hl_find_type(types, sizeof types / sizeof *types, name, type);
 }
 
-/* Where an array's values are and how they are written. */
+/* Reads where an array's values are and how they are encoded. */
 static hl_status read_array_place(const vti_header *header, const hl_xml_tag *tag, vti_array *array,
                                   hl_error *error) {
   const char *type = hl_xml_attribute(tag, "type"), *format = hl_xml_attribute(tag, "format");
@@ -250,7 +250,7 @@ static void make_grid(const vti_header *header, bool cells, hl_volume_descriptio
   }
 }
 
-/* Again from the file's start, to the first byte of the array's coded values. */
+/* Opens the file again and skips to the first byte of the array's encoded values. */
 static hl_status go_to_array(hl_stream **stream, const vti_header *header, const vti_array *array,
                              hl_error *error) {
   uint64_t place = array->place;
@@ -268,7 +268,7 @@ static hl_status go_to_array(hl_stream **stream, const vti_header *header, const
   return status == HL_OK ? hl_stream_skip(*stream, place, error) : status;
 }
 
-/* The number of bytes that stands before values which are not compressed. */
+/* Reads the byte count in front of uncompressed values. */
 static hl_status read_length(hl_stream *stream, const vti_header *header, uint64_t promised,
                              hl_error *error) {
   unsigned char bytes[8];
@@ -297,7 +297,8 @@ static hl_status decode_array(hl_stream **stream, const vti_header *header, cons
              : read_length(*stream, header, promised, error);
 }
 
-/* The active scalars of the points; where the points have no array of one component, those of the cells. */
+/* The index of the active scalars at points; where points have no array of one component, of those at
+ * cells. */
 static int active_array(const vti_header *header) {
   if (header->active_points >= 0) return header->active_points;
   for (size_t n = 0; n < header->request->array_count; n++)

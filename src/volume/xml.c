@@ -10,7 +10,7 @@ static hl_status fail(const hl_stream *stream, const char *message, hl_error *er
                         (unsigned long long)stream->offset, message);
 }
 
-/* Moves to the next c, or to the end. */
+/* Advances to the next character c, or to the end. */
 static hl_status skip_to(hl_stream *stream, char c, bool *found, hl_error *error) {
   *found = false;
   while (!*found) {
@@ -58,7 +58,7 @@ static size_t tag_length(const unsigned char *bytes, size_t length) {
   return 0;
 }
 
-/* Resolves &lt; &gt; &amp; &quot; &apos; in place; others stay as they are. */
+/* Replaces &lt; &gt; &amp; &quot; &apos; in place by their characters; other entities stay as they are. */
 static void resolve_entities(char *value) {
   static const struct {
     const char *name;
@@ -101,7 +101,7 @@ static bool cut_attribute(char **cursor, hl_xml_tag *tag) {
   return true;
 }
 
-/* tag->text holds what stands between '<' and '>'. */
+/* Parses tag->text: the characters between '<' and '>'. */
 static bool cut_tag(hl_xml_tag *tag) {
   char *cursor = tag->text;
   tag->attribute_count = 0;

@@ -1,8 +1,7 @@
 /* volume/xml.h - the tags of an XML file, one by one; enough for VTK's files and safe with any others.
  *
- * Text between tags, comments and processing instructions are passed over. Document type declarations
- * (and with them entity definitions and external references) and CDATA are refused.
- */
+ * Text between tags, comments and processing instructions are skipped. Document type declarations (and with
+ * them entity definitions and external references) and CDATA are refused. */
 #ifndef HL_VOLUME_XML_H
 #define HL_VOLUME_XML_H
 
@@ -11,7 +10,7 @@
 enum { HL_XML_TAG_BYTES = 8192, HL_XML_ATTRIBUTES = 32 };
 
 typedef struct hl_xml_tag {
-  char text[HL_XML_TAG_BYTES]; /* what the names and values point into */
+  char text[HL_XML_TAG_BYTES]; /* memory that the names and values point into */
   const char *name;
   bool is_start, is_end; /* both for <name/> */
   int attribute_count;
@@ -20,7 +19,7 @@ typedef struct hl_xml_tag {
   } attribute[HL_XML_ATTRIBUTES];
 } hl_xml_tag;
 
-/* The next tag, after which the stream stands; *ended: there is none. */
+/* Reads the next tag; the stream continues after it. *ended: there are no more tags. */
 hl_status hl_xml_next_tag(hl_stream *stream, hl_xml_tag *tag, bool *ended, hl_error *error);
 
 /* The value of an attribute; null if the tag does not have it. */
