@@ -5,6 +5,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "core/layout.h"
 #include "core/memory.h"
 #include "scene/scene.h"
 
@@ -25,11 +26,22 @@ static size_t floats_of_tile(const maximum_values *maximum) {
   return maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS;
 }
 
+enum { SHOWN_ENTRIES = CLASSIFIER_ENTRIES + 2 };
+
+static maximum_values plan(const hl_scene_description *scene, size_t tiles) {
+  return (maximum_values){.volume_count = visible_count(scene), .tiles = tiles};
+}
+
+static void lay_out(maximum_values *maximum, hl_layout *layout) {
+  maximum->values = hl_layout_take(layout, maximum->tiles, floats_of_tile(maximum) * sizeof *maximum->values);
+  maximum->shown = hl_layout_take(layout, maximum->volume_count, SHOWN_ENTRIES * sizeof *maximum->shown);
+}
+
 uint64_t hl_maximum_bytes(const hl_scene_description *scene, uint64_t tiles) {
-  if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return 0;
-  uint64_t a_volume = tiles * MAXIMUM_ROWS * TILE_PIXELS * sizeof(float) +
-                      (CLASSIFIER_ENTRIES + 2) * 4 * sizeof(float);
-  return visible_count(scene) * a_volume;
+  maximum_values maximum = plan(scene, tiles);
+  hl_layout counted = {0};
+  if (scene->render.compositing == HL_COMPOSITING_MAXIMUM) lay_out(&maximum, &counted);
+  return counted.bytes;
 }
 
 /* A transfer function over the coordinates of its table. */
@@ -86,7 +98,7 @@ static double end_of(const prepared_volume *prepared, double step) {
   return fmax(LEAST_END, ROUNDINGS * FLT_EPSILON * greatest / step);
 }
 
-/* [CLASSIFIER_ENTRIES + 2]: see SHOWN_FROM. */
+/* rows: [SHOWN_ENTRIES]; their columns: SHOWN_FROM and the others. */
 static void fill_shown(const prepared_volume *prepared, float (*rows)[4]) {
   const classifier *classifier = &prepared->classifier;
   const grid *grid = &prepared->grid;
@@ -95,7 +107,7 @@ static void fill_shown(const prepared_volume *prepared, float (*rows)[4]) {
                                step, hl_transparent_below(prepared->scene, empty),
                                end_of(prepared, fabs(step))};
   double below = -1;
-  for (int entry = 0; entry < CLASSIFIER_ENTRIES + 2; entry++) {
+  for (int entry = 0; entry < SHOWN_ENTRIES; entry++) {
     fill_step(&values, entry < CLASSIFIER_ENTRIES ? entry : CLASSIFIER_ENTRIES, below, rows[entry]);
     if (rows[entry][SHOWN_FROM] <= entry + 1) below = (double)rows[entry][SHOWN_TO];
   }
@@ -111,22 +123,22 @@ static void clear_tile(void *data, size_t tile, int worker) {
 hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                             const prepared_volume *prepared, size_t tiles, maximum_values *maximum,
                             hl_error *error) {
-  *maximum = (maximum_values){.volume_count = visible_count(scene), .tiles = tiles};
+  *maximum = plan(scene, tiles);
   if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return HL_OK;
-  size_t floats = floats_of_tile(maximum), rows = CLASSIFIER_ENTRIES + 2, rank = 0;
-  maximum->values = hl_allocate(context, tiles * floats, sizeof *maximum->values);
-  maximum->shown = hl_allocate(context, maximum->volume_count * rows, sizeof *maximum->shown);
-  if (maximum->values == NULL || maximum->shown == NULL)
-    return hl_fail_memory(error, tiles * floats * sizeof *maximum->values, "a maximum projection");
+  hl_layout counted = {0};
+  lay_out(maximum, &counted);
+  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
+  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "a maximum projection");
+  lay_out(maximum, &handed);
   hl_pool_run(pool, tiles, clear_tile, maximum);
+  size_t rank = 0;
   for (size_t i = 0; i < scene->volume_count; i++)
-    if (scene->volumes[i].visible) fill_shown(&prepared[i], maximum->shown + rows * rank++);
+    if (scene->volumes[i].visible) fill_shown(&prepared[i], maximum->shown + SHOWN_ENTRIES * rank++);
   return HL_OK;
 }
 
 void hl_maximum_release(hl_context *context, maximum_values *maximum) {
   hl_release(context, maximum->values);
-  hl_release(context, maximum->shown);
 }
 
 /* ---- colours ---- */

@@ -402,8 +402,7 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
 /* Bytes of shadow buffers that the renderer holds from the frame before. */
 static uint64_t kept_buffers(const hl_renderer *renderer) {
   uint64_t bytes = 0;
-  for (size_t i = 0; i < renderer->buffer_count; i++)
-    bytes += renderer->buffers[i].capacity * sizeof(float) + renderer->buffers[i].tile_capacity * 4;
+  for (size_t i = 0; i < renderer->buffer_count; i++) bytes += renderer->buffers[i].capacity;
   for (int i = 0; i < FRAME_LIGHTS; i++) bytes += renderer->shadow_memory[i].capacity;
   return bytes;
 }

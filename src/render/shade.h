@@ -98,8 +98,9 @@ enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
 enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
 
 typedef struct maximum_values {
-  float *values;       /* owned; [tiles][volumes][MAXIMUM_ROWS][256]; null: no maximum projection */
-  float (*shown)[4];   /* owned; [volumes][CLASSIFIER_ENTRIES + 2] */
+  float *values; /* [tiles][volumes][MAXIMUM_ROWS][256]; owns its block, in which shown lies, too; null: no
+                    maximum projection */
+  float (*shown)[4];   /* [volumes][CLASSIFIER_ENTRIES + 2] */
   size_t volume_count; /* visible ones */
   size_t tiles;
 } maximum_values;

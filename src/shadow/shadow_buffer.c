@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "core/layout.h"
 #include "core/memory.h"
 #include "light/lit_region.h"
 #include "shadow/shadow_lookup.h"
@@ -122,63 +123,70 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
   hl_view_finish(view);
 }
 
-static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t floats, size_t tiles,
-                         hl_error *error) {
-  if (buffer->capacity < floats) {
-    hl_release(context, buffer->memory);
-    buffer->memory = hl_allocate(context, floats, sizeof(float));
-    buffer->capacity = buffer->memory == NULL ? 0 : floats;
-  }
-  if (buffer->tile_capacity < tiles) {
-    hl_release(context, buffer->tile_lit);
-    hl_release(context, buffer->tile_touched);
-    buffer->tile_lit = hl_allocate(context, tiles, sizeof(uint16_t));
-    buffer->tile_touched = hl_allocate(context, tiles, 2);
-    buffer->tile_capacity = buffer->tile_lit == NULL || buffer->tile_touched == NULL ? 0 : tiles;
-  }
-  if (buffer->capacity == 0 || buffer->tile_capacity == 0)
-    return hl_fail_memory(error, floats * sizeof(float) + tiles * 4, "a shadow buffer");
-  return HL_OK;
-}
-
-static size_t lay_out(const view *view, int reach, shadow_buffer *buffer) {
+/* Sets the buffer's sizes for a view. */
+static void set_size(const view *view, int reach, shadow_buffer *buffer) {
   size_t margin = ((size_t)reach + 1 + TILE) / TILE * TILE;
   buffer->view = *view;
   buffer->tiles_x = hl_tiles(view->width);
   buffer->tiles_y = hl_tiles(view->height);
   buffer->stride = (size_t)buffer->tiles_x * TILE + 2 * margin;
   buffer->plane = ((size_t)buffer->tiles_y * TILE + 2 * margin) * buffer->stride;
-  return margin;
+  buffer->origin = margin * buffer->stride + margin;
+}
+
+static size_t tiles_of(const shadow_buffer *buffer) {
+  return (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
+}
+
+/* The memory of a buffer whose size is set. plane_count: of all channels, the second ones included. */
+static void lay_out(shadow_buffer *buffer, size_t plane_count, hl_layout *layout) {
+  buffer->planes = hl_layout_take(layout, plane_count, buffer->plane * sizeof *buffer->planes);
+  buffer->tile_lit = hl_layout_take(layout, tiles_of(buffer), sizeof *buffer->tile_lit);
+  buffer->tile_touched = hl_layout_take(layout, tiles_of(buffer), 2);
+}
+
+static size_t count_planes(int channels, bool second) { return (size_t)channels * (second ? 2 : 1); }
+
+static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t plane_count, hl_error *error) {
+  hl_layout counted = {0};
+  lay_out(buffer, plane_count, &counted);
+  if (buffer->capacity < counted.bytes) {
+    hl_release(context, buffer->memory);
+    buffer->memory = hl_allocate(context, counted.bytes, 1);
+    buffer->capacity = buffer->memory == NULL ? 0 : counted.bytes;
+  }
+  if (buffer->memory == NULL) return hl_fail_memory(error, counted.bytes, "a shadow buffer");
+  lay_out(buffer, plane_count, &(hl_layout){.base = buffer->memory});
+  return HL_OK;
 }
 
 size_t hl_shadow_plane(const view *view, int reach) {
   shadow_buffer buffer = {0};
-  (void)lay_out(view, reach, &buffer);
+  set_size(view, reach, &buffer);
   return buffer.plane;
 }
 
 uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach) {
   shadow_buffer buffer = {0};
-  (void)lay_out(view, reach, &buffer);
-  uint64_t tiles = (uint64_t)buffer.tiles_x * (uint64_t)buffer.tiles_y;
-  return buffer.plane * (uint64_t)channels * (second ? 2 : 1) * sizeof(float) + tiles * 4;
+  hl_layout counted = {0};
+  set_size(view, reach, &buffer);
+  lay_out(&buffer, count_planes(channels, second), &counted);
+  return counted.bytes;
 }
 
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view,
                                  int channels, bool second, int reach, hl_error *error) {
-  size_t margin = lay_out(view, reach, buffer);
+  size_t plane_count = count_planes(channels, second);
+  set_size(view, reach, buffer);
   buffer->channels = channels;
-  buffer->origin = margin * buffer->stride + margin;
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y,
-         planes = (size_t)channels * (second ? 2 : 1);
-  hl_status status = reserve(context, buffer, planes * buffer->plane, tiles, error);
+  hl_status status = reserve(context, buffer, plane_count, error);
   if (status != HL_OK) return status;
-  hl_pool_fill(pool, buffer->memory, planes * buffer->plane, 1);
-  for (size_t tile = 0; tile < tiles; tile++) buffer->tile_lit[tile] = ALL_BLOCKS;
-  memset(buffer->tile_touched, 0, 2 * tiles);
+  hl_pool_fill(pool, buffer->planes, plane_count * buffer->plane, 1);
+  for (size_t tile = 0; tile < tiles_of(buffer); tile++) buffer->tile_lit[tile] = ALL_BLOCKS;
+  memset(buffer->tile_touched, 0, 2 * tiles_of(buffer));
   for (int c = 0; c < HL_CHANNELS; c++) {
     bool used = c < channels;
-    buffer->transmittance[c] = used ? buffer->memory + (size_t)c * buffer->plane + buffer->origin : NULL;
+    buffer->transmittance[c] = used ? buffer->planes + (size_t)c * buffer->plane + buffer->origin : NULL;
     buffer->second[c] = used && second ? buffer->transmittance[c] + (size_t)channels * buffer->plane : NULL;
   }
   return HL_OK;
@@ -210,7 +218,5 @@ shadow_map hl_map_of_view(const view *view) {
 
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer) {
   hl_release(context, buffer->memory);
-  hl_release(context, buffer->tile_lit);
-  hl_release(context, buffer->tile_touched);
   *buffer = (shadow_buffer){0};
 }

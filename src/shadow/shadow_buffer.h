@@ -21,11 +21,11 @@ typedef struct shadow_buffer {
   float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory */
   float *second[HL_CHANNELS];  /* pixel (0,0); in memory; null: none. The paper's soft shadows: between two
                                   blurs. The cascade's: what light receivers fade from, see cascade.h */
-  float *memory;               /* owned; all planes */
-  size_t capacity;             /* floats in memory */
-  uint16_t *tile_lit;          /* owned; [tiles]; blocks that light still reaches */
-  unsigned char *tile_touched; /* owned; [2][tiles]; 1 where some transmittance is below 1 */
-  size_t tile_capacity;
+  float *planes;               /* in memory; [1 or 2][channels][plane] */
+  uint16_t *tile_lit;          /* in memory; [tiles]; blocks that light still reaches */
+  unsigned char *tile_touched; /* in memory; [2][tiles]; 1 where some transmittance is below 1 */
+  void *memory;                /* owned; kept from frame to frame while it is large enough */
+  size_t capacity;             /* bytes of memory */
 } shadow_buffer;
 
 /* What decides a buffer's place and size. */
@@ -50,7 +50,7 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
                                  int channels, bool second, int reach, hl_error *error);
 /* Floats of one channel of a buffer for a view, its margins included. */
 size_t hl_shadow_plane(const view *view, int reach);
-/* The bytes that it then holds. */
+/* The bytes that hl_shadow_buffer_reset() needs. */
 uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach);
 /* Finds a tile's tile_lit anew after a blur. both: what the second planes hold is light, too. */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "core/layout.h"
 #include "core/memory.h"
 #include "grid/relevant.h"
 
@@ -172,19 +173,6 @@ static void transpose_tiles(void *data, size_t index, int worker) {
     }
 }
 
-static hl_status allocate(hl_context *context, occupancy *o, size_t tiles, hl_error *error) {
-  o->patch_of = hl_allocate(context, o->patch_count + 1, sizeof(uint32_t));
-  o->patch_grid = hl_allocate(context, o->patch_count + 1, sizeof(uint32_t));
-  o->first_patch = hl_allocate(context, tiles + 1, sizeof(uint32_t));
-  o->by_patch = hl_allocate_zeroed(context, o->patch_count * (size_t)o->words + 1, sizeof(uint64_t));
-  o->by_sheet = hl_allocate_zeroed(context, (size_t)o->words * 64 * (size_t)o->tile_words, sizeof(uint64_t));
-  if (o->patch_of == NULL || o->patch_grid == NULL || o->first_patch == NULL || o->by_patch == NULL ||
-      o->by_sheet == NULL)
-    return hl_fail_memory(error, o->patch_count * (size_t)o->words * sizeof(uint64_t),
-                          "the occupancy of tiles");
-  return HL_OK;
-}
-
 static void set_size(const occupancy_source *source, occupancy *o) {
   o->spare = source->spare;
   o->tiles_x = hl_tiles(source->view->width);
@@ -200,35 +188,54 @@ static footprint_map map_of_grid(const occupancy_source *source, int g) {
   return map;
 }
 
-uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count) {
-  occupancy o = {0};
-  set_size(source, &o);
+/* Counts the patches, and sets the rectangles if there is memory for them. */
+static void place_rectangles(const occupancy_source *source, occupancy *o) {
+  o->patch_count = 0;
   for (int g = 0; g < source->grid_count; g++) {
     footprint_map map = map_of_grid(source, g);
-    tile_rectangle r = find_rectangle(&source->grids[g], &map, &o);
-    o.patch_count += (size_t)r.width * (size_t)r.height;
+    tile_rectangle r = find_rectangle(&source->grids[g], &map, o);
+    r.first = o->patch_count;
+    o->patch_count += (size_t)r.width * (size_t)r.height;
+    if (o->rectangle != NULL) o->rectangle[g] = r;
   }
+}
+
+/* The memory of an occupancy whose sizes are set. */
+static void lay_out(occupancy *o, int grid_count, hl_layout *layout) {
+  size_t tiles = (size_t)o->tiles_x * (size_t)o->tiles_y, words = (size_t)o->words;
+  o->rectangle = hl_layout_take(layout, (size_t)grid_count, sizeof *o->rectangle); /* owns the block */
+  o->patch_of = hl_layout_take(layout, o->patch_count, sizeof *o->patch_of);
+  o->patch_grid = hl_layout_take(layout, o->patch_count, sizeof *o->patch_grid);
+  o->first_patch = hl_layout_take(layout, tiles + 1, sizeof *o->first_patch);
+  o->by_patch = hl_layout_take(layout, o->patch_count, words * sizeof *o->by_patch);
+  o->by_sheet = hl_layout_take(layout, words * 64, (size_t)o->tile_words * sizeof *o->by_sheet);
+}
+
+/* Sets the sizes, and counts the memory. */
+static hl_layout plan(const occupancy_source *source, occupancy *o) {
+  hl_layout counted = {0};
+  set_size(source, o);
+  place_rectangles(source, o);
+  lay_out(o, source->grid_count, &counted);
+  return counted;
+}
+
+uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count) {
+  occupancy o = {0};
+  hl_layout counted = plan(source, &o);
   *patch_count = o.patch_count;
-  uint64_t tiles = (uint64_t)o.tiles_x * (uint64_t)o.tiles_y, words = (uint64_t)o.words;
-  return o.patch_count * (8 + 8 * words) + 4 * tiles + words * 64 * (uint64_t)o.tile_words * 8;
+  return counted.bytes;
 }
 
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_function *ranges,
                              const occupancy_source *source, occupancy *occupancy, hl_error *error) {
-  set_size(source, occupancy);
-  size_t tiles = (size_t)occupancy->tiles_x * (size_t)occupancy->tiles_y;
-  occupancy->rectangle = hl_allocate(context, (size_t)source->grid_count, sizeof(tile_rectangle));
-  if (occupancy->rectangle == NULL)
-    return hl_fail_memory(error, sizeof(tile_rectangle), "the occupancy of tiles");
-  for (int g = 0; g < source->grid_count; g++) {
-    footprint_map map = map_of_grid(source, g);
-    tile_rectangle *r = &occupancy->rectangle[g];
-    *r = find_rectangle(&source->grids[g], &map, occupancy);
-    r->first = occupancy->patch_count;
-    occupancy->patch_count += (size_t)r->width * (size_t)r->height;
-  }
-  hl_status status = allocate(context, occupancy, tiles, error);
-  if (status != HL_OK) return status;
+  hl_layout counted = plan(source, occupancy), handed = {.base = hl_allocate(context, counted.bytes, 1)};
+  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the occupancy of tiles");
+  lay_out(occupancy, source->grid_count, &handed);
+  size_t words = (size_t)occupancy->words;
+  memset(occupancy->by_patch, 0, occupancy->patch_count * words * sizeof *occupancy->by_patch);
+  memset(occupancy->by_sheet, 0, words * 64 * (size_t)occupancy->tile_words * sizeof *occupancy->by_sheet);
+  place_rectangles(source, occupancy);
   number_patches(occupancy, source->grid_count);
   for (int g = 0; g < source->grid_count; g++) {
     const grid *grid = &source->grids[g];
@@ -244,10 +251,5 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_fu
 
 void hl_occupancy_release(hl_context *context, occupancy *occupancy) {
   hl_release(context, occupancy->rectangle);
-  hl_release(context, occupancy->patch_of);
-  hl_release(context, occupancy->first_patch);
-  hl_release(context, occupancy->patch_grid);
-  hl_release(context, occupancy->by_patch);
-  hl_release(context, occupancy->by_sheet);
   *occupancy = (struct occupancy){0};
 }

@@ -21,13 +21,13 @@ typedef struct occupancy {
   int words;                 /* 64-bit words of one patch: a bit for each sheet, rounded up */
   int tile_words;            /* 64-bit words of one sheet: a bit for each tile, rounded up */
   double spare;              /* pixels: margin around each brick's projection that counts as touched */
-  tile_rectangle *rectangle; /* owned; [grids] */
+  tile_rectangle *rectangle; /* [grids]; owns the block of this and the arrays below */
   size_t patch_count;
-  uint32_t *patch_of;    /* owned; [patches]; the patch of each tile of each grid's rectangle */
-  uint32_t *first_patch; /* owned; [tiles + 1]; where a tile's patches begin */
-  uint32_t *patch_grid;  /* owned; [patches]; the patch's grid */
-  uint64_t *by_patch;    /* owned; [patches][words]; bit = sheet */
-  uint64_t *by_sheet;    /* owned; [words * 64][tile_words]; bit = tile, all grids together */
+  uint32_t *patch_of;    /* [patches]; the patch of each tile of each grid's rectangle */
+  uint32_t *first_patch; /* [tiles + 1]; where a tile's patches begin */
+  uint32_t *patch_grid;  /* [patches]; the patch's grid */
+  uint64_t *by_patch;    /* [patches][words]; bit = sheet */
+  uint64_t *by_sheet;    /* [words * 64][tile_words]; bit = tile, all grids together */
 } occupancy;
 
 /* ---- tiles and sheets of sixteen bricks: compiled for each instruction set ---- */
@@ -80,7 +80,7 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_fu
                              const occupancy_source *source, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
-/* The bytes of the occupancy that would be built, and its number of patches. */
+/* The bytes that hl_occupancy_build() would allocate; sets the number of patches. */
 uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count);
 
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
