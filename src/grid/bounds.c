@@ -15,6 +15,9 @@ enum {
   WINDOW = BEFORE + AFTER + 1
 };
 
+/* Bytes after the last of an array whose bytes are read four at a time. */
+enum { READ_BEYOND = 4 };
+
 static int32_t clamp_index(int64_t i, int32_t count) {
   return (int32_t)(i < 0 ? 0 : i >= count ? count - 1 : i);
 }
@@ -87,23 +90,30 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
     bound_brick_row(job, by, (int32_t)index, least, least + width);
 }
 
+void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
+  size_t bricks = hl_grid_bricks(grid);
+  grid->brick_bounds = hl_layout_take(layout, bricks, 2 * hl_storage_bytes(grid->storage));
+  grid->relevant = hl_layout_take(layout, bricks + READ_BEYOND, 1);
+  grid->relevant_list = hl_layout_take(layout, bricks, sizeof *grid->relevant_list);
+}
+
+/* Scratch of all threads. */
+static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
+  size_t width = (size_t)job->grid->dimension[0];
+  job->columns = hl_layout_take(layout, (size_t)threads * 2 * width, sizeof *job->columns);
+}
+
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
                           hl_error *error) {
-  size_t bricks = hl_grid_bricks(grid), width = (size_t)grid->dimension[0];
-  size_t column_count = (size_t)hl_pool_threads(pool) * 2 * width;
-  grid->brick_bounds = hl_allocate(context, bricks, 2 * hl_storage_bytes(grid->storage));
-  grid->relevant = hl_allocate_zeroed(context, bricks + 4, 1); /* read four bytes at a time */
-  grid->relevant_list = hl_allocate(context, bricks, sizeof(uint32_t));
-  float *columns = hl_allocate(context, column_count, sizeof(float));
-  if (grid->brick_bounds == NULL || grid->relevant == NULL || grid->relevant_list == NULL ||
-      columns == NULL) {
-    hl_release(context, columns);
-    return hl_fail_memory(error, bricks * hl_brick_bytes(grid->storage) + column_count * sizeof(float),
-                          "the bricks of a volume");
-  }
-  brick_job job = {grid, functions->rows[grid->storage], columns};
+  brick_job job = {.grid = grid, .bound_rows = functions->rows[grid->storage]};
+  hl_layout counted = {0};
+  lay_out_columns(&job, hl_pool_threads(pool), &counted);
+  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
+  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the bricks of a volume");
+  lay_out_columns(&job, hl_pool_threads(pool), &handed);
+  memset(grid->relevant, 0, hl_grid_bricks(grid) + READ_BEYOND);
   hl_pool_run(pool, (size_t)grid->brick_count[2], bound_layer_of_bricks, &job);
-  hl_release(context, columns);
+  hl_release(context, job.columns);
   return HL_OK;
 }
 
@@ -123,15 +133,13 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
 enum { CELL_LAYERS = HL_BRICK_CELLS / HL_LOOKUP_CELLS, LAYERS_A_TASK = 4 };
 
 typedef struct cell_job {
-  grid *grid;
+  const grid *grid;
   const grid_functions *functions;
   bool smooth; /* the kernel is the B-spline */
   hl_context *context;
-  float *scratch;       /* [workers][scratch_floats] */
-  unsigned char *bytes; /* [workers][scratch_bytes] */
-  size_t scratch_floats, scratch_bytes;
-  size_t plane; /* 2x2x2 cells in a slice */
-  bool failed;  /* an allocation failed; atomic */
+  size_t plane;                /* 2x2x2 cells in a slice */
+  struct bound_slices *slices; /* [workers] */
+  bool failed;                 /* for lack of memory; atomic */
 } cell_job;
 
 /* Bounds of one slice of voxels along x and y. slice: [2][cells y][cells x], low and high. */
@@ -240,11 +248,13 @@ void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, floa
 
 /* ---- building ---- */
 
-/* One worker's slices of voxels, with bounds along x and y. */
+/* One worker's scratch: slices of voxels, bounded along x and y, and what is made of them. */
 typedef struct bound_slices {
   float *slices;           /* [CELL_TAPS][2][plane]; slice z is number z % CELL_TAPS */
   float *out;              /* [2][plane] */
   float *rows, *padded;    /* scratch of bound_slice() */
+  unsigned char *bounds;   /* [CELL_LAYERS][2][plane]; of a layer of bricks */
+  unsigned char *packed;   /* the same, packed */
   int32_t held[CELL_TAPS]; /* which slice of voxels each of `slices` holds; -1: none */
 } bound_slices;
 
@@ -269,91 +279,86 @@ static void bound_layers(void *data, size_t index, int worker) {
   cell_job *job = data;
   const grid *grid = job->grid;
   size_t plane = job->plane;
-  bound_slices s = {.slices = job->scratch + (size_t)worker * job->scratch_floats,
-                    .held = {-1, -1, -1, -1, -1}};
-  s.out = s.slices + CELL_TAPS * 2 * plane;
-  s.rows = s.out + 2 * plane;
-  s.padded = s.rows + 2 * (size_t)grid->dimension[1] * (size_t)grid->lookup[0].count[0];
-  unsigned char *bounds = job->bytes + (size_t)worker * job->scratch_bytes,
-                *packed = bounds + CELL_LAYERS * 2 * plane;
+  bound_slices *s = &job->slices[worker];
+  for (int tap = 0; tap < CELL_TAPS; tap++) s->held[tap] = -1;
   int32_t end = ((int32_t)index + 1) * LAYERS_A_TASK;
   for (int32_t layer = (int32_t)index * LAYERS_A_TASK; layer < end && layer < grid->brick_count[2]; layer++) {
     for (int32_t k = 0; k < CELL_LAYERS; k++) {
       int32_t f = CELL_LAYERS * layer + k;
-      if (f < grid->lookup[0].count[2]) bound_cells(job, &s, f, bounds + (size_t)k * 2 * plane);
-      else memcpy(bounds + (size_t)k * 2 * plane, bounds, 2 * plane);
+      if (f < grid->lookup[0].count[2]) bound_cells(job, s, f, s->bounds + (size_t)k * 2 * plane);
+      else memcpy(s->bounds + (size_t)k * 2 * plane, s->bounds, 2 * plane);
     }
-    size_t bytes = pack_layer(grid, bounds, plane, packed);
+    size_t bytes = pack_layer(grid, s->bounds, plane, s->packed);
     grid->cell_bounds[layer] = hl_allocate(job->context, bytes, 1);
-    if (grid->cell_bounds[layer] != NULL) memcpy(grid->cell_bounds[layer], packed, bytes);
+    if (grid->cell_bounds[layer] != NULL) memcpy(grid->cell_bounds[layer], s->packed, bytes);
     else __atomic_store_n(&job->failed, true, __ATOMIC_RELAXED);
   }
 }
 
-static hl_status allocate_lookups(hl_context *context, grid *grid, hl_error *error) {
-  memcpy(grid->lookup[1].count, grid->brick_count, sizeof grid->brick_count);
-  for (int i = 0; i < LOOKUP_SIZES; i++) {
-    cell_lookup *lookup = &grid->lookup[i];
-    size_t cells = (size_t)lookup->count[0] * (size_t)lookup->count[1] * (size_t)lookup->count[2];
-    lookup->visible = hl_allocate(context, cells + 4, 1); /* read four bytes at a time */
-    if (lookup->visible == NULL) return hl_fail_memory(error, cells, "the look-up of a volume's cells");
-  }
-  return HL_OK;
+/* ---- memory ---- */
+
+static size_t cells_of(const cell_lookup *lookup) {
+  return (size_t)lookup->count[0] * (size_t)lookup->count[1] * (size_t)lookup->count[2];
 }
 
-/* Sets the sizes of the look-up by cells and of scratch memory, from the grid's dimension and brick_count;
- * false where 32 bits cannot number the cells. */
-static bool size_scratch(grid *grid, cell_job *job) {
-  size_t cells = 1;
-  for (int axis = 0; axis < 3; axis++) {
+/* Whether 32 bits can number the cells; the look-ups' counts are set. */
+static bool cells_are_numbered(const grid *grid) { return cells_of(&grid->lookup[0]) < INT32_MAX; }
+
+void hl_cells_lay_out(grid *grid, hl_layout *layout) {
+  for (int axis = 0; axis < 3; axis++)
     grid->lookup[0].count[axis] = grid->dimension[axis] / HL_LOOKUP_CELLS + 1;
-    cells *= (size_t)grid->lookup[0].count[axis];
-  }
-  job->plane = (size_t)grid->lookup[0].count[0] * (size_t)grid->lookup[0].count[1];
-  job->scratch_floats = (2 * CELL_TAPS + 2) * job->plane +
-                        2 * (size_t)grid->dimension[1] * (size_t)grid->lookup[0].count[0] +
-                        (size_t)grid->dimension[0] + 6;
-  job->scratch_bytes = CELL_LAYERS * 2 * job->plane + greatest_layer_bytes(grid);
-  return cells < INT32_MAX;
+  memcpy(grid->lookup[1].count, grid->brick_count, sizeof grid->brick_count);
+  if (!cells_are_numbered(grid)) return;
+  for (int i = 0; i < LOOKUP_SIZES; i++)
+    grid->lookup[i].visible = hl_layout_take(layout, cells_of(&grid->lookup[i]) + READ_BEYOND, 1);
+  grid->cell_bounds = hl_layout_take(layout, (size_t)grid->brick_count[2], sizeof *grid->cell_bounds);
 }
 
-uint64_t hl_cell_bounds_bytes(const size_t dimension[3], int threads) {
-  grid sized = {0};
-  cell_job job = {0};
-  for (int axis = 0; axis < 3; axis++) {
-    sized.dimension[axis] = (int32_t)dimension[axis];
-    sized.brick_count[axis] = sized.dimension[axis] / HL_BRICK_CELLS + 1;
+/* Scratch of all threads; counting sets the plane alone. */
+static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
+  const grid *grid = job->grid;
+  size_t width = (size_t)grid->lookup[0].count[0], plane = width * (size_t)grid->lookup[0].count[1];
+  job->plane = plane;
+  job->slices = hl_layout_take(layout, (size_t)threads, sizeof *job->slices);
+  for (int i = 0; i < threads; i++) {
+    bound_slices made = {0};
+    made.slices = hl_layout_take(layout, CELL_TAPS * 2 * plane, sizeof *made.slices);
+    made.out = hl_layout_take(layout, 2 * plane, sizeof *made.out);
+    made.rows = hl_layout_take(layout, 2 * (size_t)grid->dimension[1] * width, sizeof *made.rows);
+    made.padded = hl_layout_take(layout, (size_t)grid->dimension[0] + 6, sizeof *made.padded);
+    made.bounds = hl_layout_take(layout, CELL_LAYERS * 2, plane);
+    made.packed = hl_layout_take(layout, greatest_layer_bytes(grid), 1);
+    if (job->slices != NULL) job->slices[i] = made;
   }
-  if (!size_scratch(&sized, &job)) return 0;
-  uint64_t lookups = (uint64_t)job.plane * (uint64_t)sized.lookup[0].count[2] + hl_grid_bricks(&sized) + 8;
-  uint64_t kept = (uint64_t)sized.brick_count[2] * (sizeof *sized.cell_bounds + greatest_layer_bytes(&sized));
-  return lookups + kept + (uint64_t)threads * (job.scratch_floats * sizeof(float) + job.scratch_bytes);
+}
+
+uint64_t hl_bounds_bytes(const grid *grid, int threads) {
+  hl_layout columns = {0}, slices = {0};
+  lay_out_columns(&(brick_job){.grid = grid}, threads, &columns);
+  if (!cells_are_numbered(grid)) return columns.bytes;
+  lay_out_slices(&(cell_job){.grid = grid}, threads, &slices);
+  uint64_t cells = slices.bytes + (uint64_t)grid->brick_count[2] * greatest_layer_bytes(grid);
+  return columns.bytes > cells ? columns.bytes : cells;
 }
 
 hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, bool smooth,
                          const hl_volume *volume, grid *grid, hl_error *error) {
   cell_job job = {.grid = grid, .functions = functions, .smooth = smooth, .context = context};
+  size_t layers = (size_t)grid->brick_count[2];
   set_cell_range(volume, grid);
-  size_t threads = (size_t)hl_pool_threads(pool), layers = (size_t)grid->brick_count[2];
-  if (!size_scratch(grid, &job))
-    return HL_OK; /* the grid goes without bounds of cells: bricks alone tell where something is visible */
-  job.scratch = hl_allocate(context, threads * job.scratch_floats, sizeof(float));
-  job.bytes = hl_allocate(context, threads, job.scratch_bytes);
-  grid->cell_bounds = hl_allocate_zeroed(context, layers, sizeof *grid->cell_bounds);
-  hl_status status = allocate_lookups(context, grid, error);
-  job.failed = job.scratch == NULL || job.bytes == NULL || grid->cell_bounds == NULL;
-  if (status == HL_OK && !job.failed)
-    hl_pool_run(pool, (layers + LAYERS_A_TASK - 1) / LAYERS_A_TASK, bound_layers, &job);
-  if (status == HL_OK && job.failed)
-    status = hl_fail_memory(error, layers * greatest_layer_bytes(grid), "the bounds of a volume's cells");
-  hl_release(context, job.scratch);
-  hl_release(context, job.bytes);
-  return status;
+  if (!cells_are_numbered(grid)) return HL_OK; /* bricks alone tell what is visible */
+  hl_layout counted = {0};
+  lay_out_slices(&job, hl_pool_threads(pool), &counted);
+  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
+  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the bounds of a volume's cells");
+  lay_out_slices(&job, hl_pool_threads(pool), &handed);
+  hl_pool_run(pool, (layers + LAYERS_A_TASK - 1) / LAYERS_A_TASK, bound_layers, &job);
+  hl_release(context, job.slices);
+  if (!job.failed) return HL_OK;
+  return hl_fail_memory(error, layers * greatest_layer_bytes(grid), "the bounds of a volume's cells");
 }
 
 void hl_cell_bounds_release(hl_context *context, grid *grid) {
   for (int32_t layer = 0; grid->cell_bounds != NULL && layer < grid->brick_count[2]; layer++)
     hl_release(context, grid->cell_bounds[layer]);
-  hl_release(context, grid->cell_bounds);
-  for (int i = 0; i < LOOKUP_SIZES; i++) hl_release(context, grid->lookup[i].visible);
 }

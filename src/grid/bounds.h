@@ -10,15 +10,14 @@
 #ifndef HL_GRID_BOUNDS_H
 #define HL_GRID_BOUNDS_H
 
+#include "core/layout.h"
 #include "grid/grid.h"
 
 /* ---- bricks ---- */
 
-/* The bytes for each brick: its bounds, its relevance, its entry in the list of relevant bricks. */
-static inline size_t hl_brick_bytes(hl_storage storage) {
-  return 2 * hl_storage_bytes(storage) + 1 + sizeof(uint32_t);
-}
-/* Fills the grid's brick_bounds, and allocates `relevant` and the list of relevant bricks. */
+/* Takes the grid's brick_bounds, `relevant` and relevant_list; storage and brick_count are set. */
+void hl_bricks_lay_out(grid *grid, hl_layout *layout);
+/* Fills the grid's brick_bounds, and clears `relevant`. */
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
                           hl_error *error);
 /* The least and greatest stored value of a brick. */
@@ -26,14 +25,18 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]);
 
 /* ---- cells ---- */
 
-/* Fills the grid's cell_bounds, and allocates its look-ups. smooth: the kernel is the B-spline. */
+/* Takes the grid's look-ups and cell_bounds, and sets the look-ups' counts; dimension and brick_count are
+ * set. Takes nothing where 32 bits cannot number the cells. */
+void hl_cells_lay_out(grid *grid, hl_layout *layout);
+/* Fills the grid's cell_bounds, all null before: allocates each layer when packing has found its size.
+ * smooth: the kernel is the B-spline. */
 hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, bool smooth,
                          const hl_volume *volume, grid *grid, hl_error *error);
 void hl_cell_bounds_release(hl_context *context, grid *grid);
 
-/* An upper bound of the bytes for the cells' bounds of a grid of these dimensions, scratch memory
- * included. */
-uint64_t hl_cell_bounds_bytes(const size_t dimension[3], int threads);
+/* The bytes that hl_bricks_bound() and then hl_cells_bound() hold at most, for a grid that is laid out: one
+ * after the other their scratch, and packed layers of the greatest size. */
+uint64_t hl_bounds_bytes(const grid *grid, int threads);
 
 /* The bounds of the 2x2x2 cells with the coordinates `cell`, stored units; slow: walks through a layer. */
 void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, float *high);

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "core/layout.h"
 #include "core/memory.h"
 
 /* sigma = -ln(1 - alpha) / u, alpha clamped to 0.9999 (algorithm, optical model). */
@@ -77,17 +78,29 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
  * scale of a narrower range. Narrower ranges are widened, and their values share one entry. */
 static const double NARROWEST_RANGE = 1e-34;
 
+static void lay_out(classifier *classifier, hl_layout *layout) {
+  enum { COUNT = CLASSIFIER_ENTRIES + 2 };
+  classifier->sums = hl_layout_take(layout, COUNT, sizeof *classifier->sums);
+  classifier->color = hl_layout_take(layout, COUNT, sizeof *classifier->color);
+  classifier->next_visible = hl_layout_take(layout, COUNT, sizeof *classifier->next_visible);
+}
+
+static hl_layout count_tables(void) {
+  classifier classifier;
+  hl_layout counted = {0};
+  lay_out(&classifier, &counted);
+  return counted;
+}
+
+uint64_t hl_classifier_bytes(void) { return count_tables().bytes; }
+
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
                                classifier *classifier, hl_error *error) {
-  enum { COUNT = CLASSIFIER_ENTRIES + 2 };
   *classifier = (struct classifier){0};
-  classifier->sums = hl_allocate_zeroed(context, 2 * (size_t)COUNT, sizeof *classifier->sums);
-  classifier->next_visible = hl_allocate(context, COUNT, sizeof(int32_t));
-  if (classifier->sums == NULL || classifier->next_visible == NULL) {
-    hl_classifier_release(context, classifier);
-    return hl_fail_memory(error, 9 * COUNT * sizeof(float), "a transfer-function table");
-  }
-  classifier->color = classifier->sums + COUNT;
+  hl_layout counted = count_tables(), handed = {.base = hl_allocate(context, counted.bytes, 1)};
+  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "a transfer-function table");
+  memset(handed.base, 0, counted.bytes);
+  lay_out(classifier, &handed);
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
   if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low)); /* adding 1 to 1e30 changes nothing */
@@ -101,7 +114,6 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
 
 void hl_classifier_release(hl_context *context, classifier *classifier) {
   hl_release(context, classifier->sums);
-  hl_release(context, classifier->next_visible);
   *classifier = (struct classifier){0};
 }
 

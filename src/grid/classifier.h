@@ -14,17 +14,19 @@ enum { CLASSIFIER_ENTRIES = 4096 };
 
 typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
-  float (*sums)[4];  /* owned; [CLASSIFIER_ENTRIES + 2]; extinction per world unit; its integral over entries,
-                        from entry 0; the integral of extinction * entry; 0 */
-  float (*color)[4]; /* owned with sums; [same]; linear RGB; 0 */
-  int32_t *next_visible; /* owned; [CLASSIFIER_ENTRIES + 2]: the first entry with extinction > 0, from the
-                          * element's own index on */
-  float first_visible, last_visible; /* table coordinates: values outside [first, last] have no extinction */
+  /* tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns */
+  float (*sums)[4];  /* extinction per world unit; its integral over entries, from entry 0; the integral of
+                        extinction * entry; 0 */
+  float (*color)[4]; /* linear RGB; 0 */
+  int32_t *next_visible;             /* the first entry from this one on with extinction > 0 */
+  float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
                                classifier *classifier, hl_error *error);
+/* The bytes that hl_classifier_create() allocates. */
+uint64_t hl_classifier_bytes(void);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
 /* Data values below the result are transparent, whatever the transfer function says. If the transfer function

@@ -29,16 +29,18 @@ enum {
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
-  unsigned char *visible; /* owned; [count z][y][x]; null where 32 bits cannot number the cells */
+  unsigned char
+      *visible; /* in the grid's memory; [count z][y][x]; null where 32 bits cannot number the cells */
 } cell_lookup;
 
 typedef struct grid {
-  const void *
-      voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values; owned by the volume or `finite` */
-  /* A copy of u8 voxels in columns eight voxels wide. Eight rows of a column are 64 consecutive bytes, so
-   * that two loads (of 512 bits) from two columns give a window of 8x8 voxels, and neighbouring windows share
-   * cache lines, however the sheets lie. Values are reduced by 128, as signed numbers. Owned;
-   * [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where no function reads columns. */
+  void *memory;       /* owned; all arrays but the volume's voxels and the layers of cell_bounds */
+  const void *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's, or
+                         finite_voxels */
+  /* u8 voxels once more, in columns eight voxels wide: eight rows of a column are 64 bytes in a line, so that
+   * a window of 8x8 voxels comes from two columns by two loads (of 512 bits), and neighbouring windows come
+   * from the same lines of the cache whichever way the sheets lie. Values are less 128, as signed numbers.
+   * [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where nothing reads them. */
   unsigned char *columns;
   size_t column_slice_bytes, column_bytes; /* bytes from slice to slice, and from column to column */
   hl_storage storage;
@@ -48,23 +50,23 @@ typedef struct grid {
   affine3 index_to_frame, frame_to_index;
   double box_low[3], box_high[3]; /* index space: where the volume exists */
   int32_t brick_count[3];
-  void *brick_bounds; /* owned; [bricks z][y][x][2]; least and greatest stored value, of the voxels' type,
-                         of the voxels that the brick's cells and the cells around it depend on */
-  unsigned char *relevant; /* owned; [bricks z][y][x]; 1 where the transfer function may show something */
+  void *brick_bounds;      /* [bricks z][y][x][2]; least and greatest stored value, of the voxels' type,
+                              of the voxels that the brick's cells and the cells around it depend on */
+  unsigned char *relevant; /* [bricks z][y][x]; 1 where the transfer function may show something */
   cell_lookup lookup[LOOKUP_SIZES]; /* of 2x2x2 cells, and of bricks */
-  unsigned char **cell_bounds; /* owned; [bricks z], each owned: packed bounds of every 2x2x2 cells of a layer
-                                  of bricks (bounds.h), stored value = cell_base + cell_step * bound; null
-                                  where 32 bits cannot number the cells */
+  unsigned char **cell_bounds; /* [bricks z], each owned, of the size that packing finds: packed bounds of
+                                  every 2x2x2 cells of a layer of bricks (bounds.h), stored value = cell_base
+                                  + cell_step * bound; null where 32 bits cannot number the cells */
   float cell_base, cell_step;  /* stored units */
-  uint64_t *cell_bits; /* owned; [bricks z][y][x]; bit x + 4 y + 16 z: whether the cell (x, y, z) of the brick
-                          may show something; or null */
-  bool cell_bits_tell; /* enough cells show nothing to make reading the bits worthwhile */
-  uint32_t *relevant_list; /* owned; [relevant_count]; relevant bricks with a visible cell, in rising order */
+  uint64_t *cell_bits;     /* [bricks z][y][x]; bit x + 4 y + 16 z: whether the cell (x, y, z) of the brick
+                              may show something; or null */
+  bool cell_bits_tell;     /* enough cells show nothing for the bits to be worth asking */
+  uint32_t *relevant_list; /* [relevant_count]; relevant bricks with a visible cell, in rising order */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
-  bool cut; /* some relevant brick reaches the box's faces: the crossings of rays and faces are needed */
-  void *finite_voxels;  /* owned; a copy of the voxels with non-finite ones replaced by empty, or null */
-  uint64_t kept_voxels; /* voxels of relevant bricks: 64 each, fewer at the borders */
+  bool cut; /* some relevant brick reaches the box's faces: rays need to know where they cross them */
+  float *finite_voxels; /* a copy of the voxels with non-finite ones replaced by empty, or null */
+  uint64_t kept_voxels; /* 64 for each relevant brick, fewer at the borders */
 } grid;
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */

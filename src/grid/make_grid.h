@@ -13,8 +13,9 @@ typedef struct grid_source {
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
                          const grid_source *source, grid *grid, hl_error *error);
-/* An upper bound of the bytes of the volume's grid. */
-uint64_t hl_grid_bytes(const hl_volume *volume, const grid_functions *functions, int threads);
+/* The bytes that hl_grid_create() holds at most, while it makes the volume's grid for the kernel. */
+uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid_functions *functions,
+                       int threads);
 void hl_grid_release(hl_context *context, grid *grid);
 
 #endif

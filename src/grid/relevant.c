@@ -216,8 +216,10 @@ static const uint64_t GREATEST_BYTES = 8 << 20;
 /* The least fraction of the visible bricks' cells that the bits must exclude to be worth reading. */
 static const double LEAST_LEFT_OUT = 1.0 / 8;
 
-uint64_t hl_cell_bits_bytes(uint64_t bricks) {
-  return bricks * sizeof(uint64_t) <= GREATEST_BYTES ? bricks * sizeof(uint64_t) : 0;
+void hl_cell_bits_lay_out(grid *grid, hl_layout *layout) {
+  size_t bricks = hl_grid_bricks(grid);
+  if (bricks * sizeof *grid->cell_bits <= GREATEST_BYTES)
+    grid->cell_bits = hl_layout_take(layout, bricks, sizeof *grid->cell_bits);
 }
 
 typedef struct bits_job {

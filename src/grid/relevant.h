@@ -9,6 +9,7 @@
 #ifndef HL_GRID_RELEVANT_H
 #define HL_GRID_RELEVANT_H
 
+#include "core/layout.h"
 #include "grid/classifier.h"
 
 /* Finds which bricks are relevant, the look-ups of visible cells, and the cells' bits. */
@@ -29,7 +30,7 @@ enum {
   CELL_BIT_TAPS = HL_BRICK_CELLS + 3 /* voxels along an axis that a brick's cells depend on: 4b-2 .. 4b+4 */
 };
 
-/* The bytes of the bits of so many bricks; 0 for large volumes, which get no bits. */
-uint64_t hl_cell_bits_bytes(uint64_t bricks);
+/* Takes the grid's cell_bits; nothing for large volumes, which have none. */
+void hl_cell_bits_lay_out(grid *grid, hl_layout *layout);
 
 #endif

@@ -1,24 +1,19 @@
-/* render/estimate.c - see estimate.h. Sums of what hl_prepare_volumes, the frame and hl_sweep_begin allocate;
- * slides and the lists of splatted voxels, whose size shows only when they are made, are left to the limit
- * itself. */
+/* render/estimate.c - see estimate.h. Sums what hl_prepare_volumes(), the frame and hl_sweep_begin()
+ * allocate. The sizes of light textures and of the lists of splatted voxels are known only when they are
+ * made: the sums leave them out, and the memory limit refuses them then. */
 #include "render/estimate.h"
 
 #include "core/context.h"
-#include "grid/make_grid.h"
+#include "render/prepare.h"
 
 enum { SMALL_PARTS = 64 << 10 /* descriptions, sweeps, corners, counts */ };
 
 uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared,
                           const grid_functions *functions, int threads) {
   uint64_t bytes = SMALL_PARTS;
-  uint64_t table = (CLASSIFIER_ENTRIES + 2) * (2 * sizeof(*prepared->classifier.sums) + sizeof(int32_t));
-  for (size_t i = 0; i < scene->volume_count; i++) {
-    const hl_transfer_function *function = &scene->volumes[i].transfer_function;
-    if (prepared[i].volume == scene->volumes[i].volume) continue;
-    bytes += hl_grid_bytes(scene->volumes[i].volume, functions, threads) + table +
-             function->opacity_count * sizeof *function->opacity +
-             function->color_count * sizeof *function->color;
-  }
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (prepared[i].volume != scene->volumes[i].volume)
+      bytes += hl_prepared_bytes(&scene->volumes[i], scene->render.kernel, functions, threads);
   return bytes;
 }
 

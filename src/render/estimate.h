@@ -7,7 +7,7 @@
 
 #include "render/sweep.h"
 
-/* The bytes that volumes take that are not prepared yet. */
+/* The bytes that the volumes that are not prepared yet take at most. */
 uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared,
                           const grid_functions *functions, int threads);
 

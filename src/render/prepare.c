@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "core/layout.h"
 #include "core/memory.h"
 #include "grid/make_grid.h"
 #include "grid/relevant.h"
@@ -22,30 +23,52 @@ static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *sc
                              memcmp(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max) == 0);
 }
 
-static void *copy(hl_context *context, const void *from, size_t count, size_t size) {
-  void *to = hl_allocate(context, count, size);
-  if (to != NULL && count > 0) memcpy(to, from, count * size);
-  return to;
+/* Room for a copy of a transfer function's points. */
+typedef struct function_points {
+  hl_opacity_point *opacity; /* owns the block */
+  hl_color_point *color;
+} function_points;
+
+static void lay_out_points(const hl_transfer_function *function, function_points *points, hl_layout *layout) {
+  points->opacity = hl_layout_take(layout, function->opacity_count, sizeof *points->opacity);
+  points->color = hl_layout_take(layout, function->color_count, sizeof *points->color);
+}
+
+static hl_layout count_points(const hl_transfer_function *function) {
+  function_points points;
+  hl_layout counted = {0};
+  lay_out_points(function, &points, &counted);
+  return counted;
+}
+
+uint64_t hl_prepared_bytes(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
+                           int threads) {
+  return hl_grid_bytes(scene->volume, hl_kernel_get(kernel), functions, threads) + hl_classifier_bytes() +
+         count_points(&scene->transfer_function).bytes;
 }
 
 static hl_status keep_key(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene,
                           hl_error *error) {
   const hl_transfer_function *function = &scene->transfer_function;
+  function_points points;
+  hl_layout counted = count_points(function), handed = {.base = hl_allocate(context, counted.bytes, 1)};
+  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "a transfer function");
+  lay_out_points(function, &points, &handed);
+  if (function->opacity_count > 0)
+    memcpy(points.opacity, function->opacity, function->opacity_count * sizeof *points.opacity);
+  if (function->color_count > 0)
+    memcpy(points.color, function->color, function->color_count * sizeof *points.color);
   prepared->function = *function;
-  prepared->function.opacity = copy(context, function->opacity, function->opacity_count,
-                                    sizeof *function->opacity);
-  prepared->function.color = copy(context, function->color, function->color_count, sizeof *function->color);
+  prepared->function.opacity = points.opacity;
+  prepared->function.color = points.color;
   prepared->clipped = scene->clipped;
   memcpy(prepared->clip, scene->clip_min, sizeof scene->clip_min);
   memcpy(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max);
-  if (prepared->function.opacity == NULL || prepared->function.color == NULL)
-    return hl_fail_memory(error, function->opacity_count * sizeof *function->opacity, "a transfer function");
   return HL_OK;
 }
 
 static void release_function(hl_context *context, prepared_volume *prepared) {
   hl_release(context, (void *)prepared->function.opacity);
-  hl_release(context, (void *)prepared->function.color);
   memset(&prepared->function, 0, sizeof prepared->function);
   hl_classifier_release(context, &prepared->classifier);
 }

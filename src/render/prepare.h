@@ -24,6 +24,9 @@ typedef struct prepared_volume {
  * frame space (framed_scene.h). */
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, prepared_volume *prepared, hl_error *error);
+/* The most bytes that preparing one volume takes; kernel: the scene's. */
+uint64_t hl_prepared_bytes(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
+                           int threads);
 void hl_prepared_release(hl_context *context, prepared_volume *prepared);
 
 #endif
