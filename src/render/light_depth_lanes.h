@@ -9,8 +9,7 @@
 #ifndef HL_RENDER_LIGHT_DEPTH_LANES_H
 #define HL_RENDER_LIGHT_DEPTH_LANES_H
 
-#include "render/pack_lanes.h"
-#include "shadow/shadow_lookup_lanes.h"
+#include "render/before_slab_lanes.h"
 
 typedef struct color_lanes {
   lanes c[3];
@@ -113,62 +112,6 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
   return (ways_in_box){lanes_min(sum.first, all.first), lanes_min(sum.last, all.last)};
 }
 
-/* The pixels of a buffer whose light stands for a place's: the four around it, and steps to them in pixels.
- * Of the mean over many parts of a light, four that are as far from the place as the parts' pixels are on
- * average. */
-enum { NEAR_PIXELS = 4 };
-typedef struct near_pixels {
-  lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the place */
-  lanes3 along_u, along_v;              /* a pixel along u and v, on the sheet; frame space */
-} near_pixels;
-
-/* Root of 1/6: bilinear look-ups at places of every phase weigh by a tent, whose variance that is
- * (derived). */
-static const float PART_SPREAD = 0.408248f;
-
-LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
-  return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/* Derived: u = (row 1 . x) / (row 0 . x) has the gradient (row 1 - u row 0) / (row 0 . x), v likewise; the
- * step on the sheet along which u rises by one and v stays is (grad v x h) / (grad u . (grad v x h)), and
- * likewise with u and v exchanged. */
-LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal, lanes3 position,
-                             near_pixels *near) {
-  lanes3 gradient_u = set3(map->rows[1]), gradient_v = set3(map->rows[2]);
-  if (!parallel) {
-    lanes ahead = row_of_point(map->rows[0], position),
-          inverse = 1.0f / lanes_select(ahead > 0.0f, ahead, lanes_set(1.0f));
-    lanes u = row_of_point(map->rows[1], position) * inverse,
-          v = row_of_point(map->rows[2], position) * inverse;
-    gradient_u = scale3(add_scaled3(gradient_u, set3(map->rows[0]), -u), inverse);
-    gradient_v = scale3(add_scaled3(gradient_v, set3(map->rows[0]), -v), inverse);
-  }
-  lanes3 along_u = cross3(gradient_v, normal), along_v = cross3(normal, gradient_u);
-  lanes rise = dot3(gradient_u, along_u);
-  lanes inverse = 1.0f / lanes_select(rise == 0.0f, lanes_set(1.0f), rise);
-  near->along_u = scale3(along_u, inverse);
-  near->along_v = scale3(along_v, inverse);
-}
-
-LANES_INLINE near_pixels pixels_around(const shadow_taps *taps) {
-  near_pixels near;
-  for (int i = 0; i < NEAR_PIXELS; i++) {
-    near.u[i] = lanes_set((float)(i % 2)) - taps->fx;
-    near.v[i] = lanes_set((float)(i / 2)) - taps->fy;
-  }
-  return near;
-}
-
-LANES_INLINE near_pixels pixels_of_sublights(void) {
-  near_pixels near;
-  for (int i = 0; i < NEAR_PIXELS; i++) {
-    near.u[i] = lanes_set(i % 2 ? PART_SPREAD : -PART_SPREAD);
-    near.v[i] = lanes_set(i / 2 ? PART_SPREAD : -PART_SPREAD);
-  }
-  return near;
-}
-
 /* Optical depths of the slab for one light, from its first sheet on. */
 typedef struct light_depths {
   lanes enter[HL_CHANNELS],
@@ -176,6 +119,9 @@ typedef struct light_depths {
   lanes near[HL_CHANNELS]
             [NEAR_PIXELS]; /* on the first sheet at the near pixels, less that below the place lit */
   lanes_int plane;         /* where a plane tells them; elsewhere near is 0 */
+  lanes_int face;          /* near a face of a box; near then holds all of the depth from the face on */
+  lanes beside;            /* there: how much the face counts, 0 to 1 */
+  lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS]; /* there: as enter and more, before the slab */
 } light_depths;
 
 /* A place in the table of integrals. */
@@ -290,17 +236,77 @@ LANES_INLINE light_ways find_light_ways(const block_slab *slab, block_density *d
   return ways;
 }
 
+/* Deeper than this no light is left; floats hold exp(-depth) of as much. */
+static const float DEEPEST = 80;
+
+/* Where the optical depths of the near pixels' light, from the faces to the slab, differ by less than this,
+ * the buffer is read as if there were no face; where they differ by twice as much, the face counts fully. */
+static const float EVEN_LIGHT = 0.1f;
+
+/* Adds the depths of a volume's matter between the face of its box and the slab, near the face; to before
+ * those at the near pixels. share: the fraction of the volume's matter that counts. */
+LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const block_density *d,
+                           lanes3 towards, lanes path, const near_pixels *near, lanes share,
+                           lanes before[HL_CHANNELS][NEAR_PIXELS], light_depths *depths) {
+  const shade_volume *volume = d->patch->volume;
+  faces_of_axis faces[3];
+  lanes likely = find_faces(volume, &slab->geometry, towards, near, faces) * share;
+  lanes_int there = (likely > 0.0f) & slab->seen & (d->sums.extinction > 0.0f);
+  if (lanes_bits(there) == 0) return;
+  ways_before ways = find_ways_before(faces, slab, path, near);
+  depths->face |= there;
+  depths->beside = lanes_max(depths->beside, lanes_keep(there, likely));
+  /* of several boxes that meet in the slab, each has matter in its part */
+  lanes filled = lanes_min(d->way.part.length / lanes_max(slab->part.length, lanes_set(1e-6f)),
+                           lanes_set(1.0f));
+  lanes extinction = lanes_keep(there, d->sums.extinction * likely * filled);
+  lanes enter = job->back_to_front ? ways.last : ways.first,
+        leave = job->back_to_front ? ways.first : ways.last;
+  for (int c = 0; c < job->channels; c++) {
+    lanes cast = extinction * volume->cast[c], deepest = lanes_set(DEEPEST);
+    lanes at_enter = lanes_min(cast * enter, deepest), at_leave = lanes_min(cast * leave, deepest);
+    depths->before_enter[c] = depths->before_enter[c] + at_enter;
+    depths->before_more[c] = depths->before_more[c] + at_leave - at_enter;
+    for (int i = 0; i < NEAR_PIXELS; i++)
+      before[c][i] = before[c][i] + lanes_min(cast * ways.near[i], deepest);
+  }
+}
+
+/* Weakens the depths before the slab where they differ little from pixel to pixel, and adds them. before: of
+ * all volumes together, at the near pixels. */
+LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS], light_depths *depths) {
+  lanes spread = lanes_set(0);
+  for (int c = 0; c < channels; c++) {
+    lanes least = before[c][0], most = least;
+    for (int i = 1; i < NEAR_PIXELS; i++) {
+      least = lanes_min(least, before[c][i]);
+      most = lanes_max(most, before[c][i]);
+    }
+    spread = lanes_max(spread, most - least);
+  }
+  lanes counts = lanes_clamp((spread - EVEN_LIGHT) * (1.0f / EVEN_LIGHT), 0, 1);
+  depths->face = depths->face & (counts > 0.0f);
+  depths->beside = depths->beside * counts;
+  for (int c = 0; c < channels; c++) {
+    depths->before_enter[c] = depths->before_enter[c] * counts;
+    depths->before_more[c] = depths->before_more[c] * counts;
+    for (int i = 0; i < NEAR_PIXELS; i++)
+      depths->near[c][i] = lanes_fma(before[c][i], counts, depths->near[c][i]);
+  }
+}
+
 /* near: null where a buffer is read at its nearest pixel. */
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab,
                                           block_density *densities, int count, lanes3 towards, lanes path,
                                           const near_pixels *near) {
-  light_depths depths = {.plane = lanes_set_int(0)};
+  light_depths depths = {.plane = lanes_set_int(0), .face = lanes_set_int(0), .beside = lanes_set(0)};
   light_ways ways = find_light_ways(slab, densities, count, towards, path);
   lanes length = lanes_max(ways.all.last, ways.all.first) - ways.all.first;
-  lanes first[HL_CHANNELS], last[HL_CHANNELS];
+  lanes first[HL_CHANNELS], last[HL_CHANNELS], before[HL_CHANNELS][NEAR_PIXELS];
   for (int c = 0; c < HL_CHANNELS; c++) {
     first[c] = last[c] = depths.enter[c] = depths.more[c] = lanes_set(0);
-    for (int i = 0; i < NEAR_PIXELS; i++) depths.near[c][i] = lanes_set(0);
+    depths.before_enter[c] = depths.before_more[c] = lanes_set(0);
+    for (int i = 0; i < NEAR_PIXELS; i++) depths.near[c][i] = before[c][i] = lanes_set(0);
   }
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
@@ -318,12 +324,15 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab
       depths.plane |= likely;
       extinction = extinction * (1.0f - plane.likely);
     }
+    if (near != NULL && d->patch->enter != NULL)
+      add_face(job, slab, d, towards, path, near, 1.0f - plane.likely, before, &depths);
     for (int c = 0; c < job->channels; c++) {
       lanes cast = extinction * d->patch->volume->cast[c];
       first[c] = lanes_fma(cast, d->light_first, first[c]);
       last[c] = lanes_fma(cast, d->light_last, last[c]);
     }
   }
+  if (lanes_bits(depths.face) != 0) add_before(job->channels, before, &depths);
   for (int c = 0; c < job->channels; c++) {
     last[c] = lanes_max(last[c], first[c]);
     depths.enter[c] = depths.enter[c] + (job->back_to_front ? last[c] : first[c]);

@@ -55,11 +55,22 @@ LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *tap
   lanes_gather_pairs(buffer + lookup->map.stride, at, &light[2], &light[3]);
 }
 
+/* Near a face, what is left of the light on its way from there is told by the ways' lengths. found: what the
+ * buffer has; own: what it would have were the box's matter even and nothing else in the way. Where it has
+ * more the matter is thinner between the face and here, by as much as the two depths' ratio. */
+LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lanes own) {
+  lanes_int some = own < 0.999f;
+  lanes ratio = lanes_log2(lanes_clamp(found, 1e-6f, 1)) / lanes_log2(lanes_clamp(own, 1e-36f, 0.999f));
+  ratio = lanes_keep(depths->face, lanes_select(some, lanes_min(ratio, lanes_set(1.0f)), lanes_set(1.0f)));
+  depths->enter[channel] = lanes_fma(ratio, depths->before_enter[channel], depths->enter[channel]);
+  depths->more[channel] = lanes_fma(ratio, depths->before_more[channel], depths->more[channel]);
+}
+
 /* What reaches a plane, whose own matter makes the buffer's light vary from pixel to pixel (derived): with T
  * = O E at each pixel, O what others leave and E = exp(-depth) what the plane does, the mean of T by the
  * pixels' weights is O times that of E. No more than the brightest of the pixels has. */
-LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps *taps,
-                                  const light_depths *depths, int channel) {
+LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps *taps, light_depths *depths,
+                                  int channel) {
   lanes light[NEAR_PIXELS], own[NEAR_PIXELS], greatest = lanes_set(0);
   near_light(lookup, taps, lookup->transmittance[channel], light);
   if (lookup->older[channel] != NULL) {
@@ -73,15 +84,21 @@ LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps
   }
   lanes sum = between_taps(taps, light[0], light[1], light[2], light[3], 1);
   lanes of_own = between_taps(taps, own[0], own[1], own[2], own[3], 1);
+  if (lanes_bits(depths->face) != 0) {
+    pass_face(depths, channel, sum, of_own);
+    of_own = lanes_select(depths->face, lanes_max(of_own, lanes_set(DARK)), of_own);
+    greatest = lanes_select(depths->face, lanes_set(1.0f), greatest);
+  }
   lanes reached = lanes_min(sum / lanes_max(of_own, lanes_set(1e-6f)), greatest);
   return lanes_select(taps->inside, reached, lanes_set(1.0f));
 }
 
 /* Of the mean over many parts of a light, their pixels' phases of every kind. */
-LANES_INLINE void correct_parts(const light_depths *depths, int channels, color_lanes *reached) {
+LANES_INLINE void correct_parts(light_depths *depths, int channels, color_lanes *reached) {
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);
     for (int i = 0; i < NEAR_PIXELS; i++) own = own + exp_of_depth(depths->near[c][i]);
+    if (lanes_bits(depths->face) != 0) pass_face(depths, c, reached->c[c], own * (1.0f / NEAR_PIXELS));
     reached->c[c] = lanes_min(reached->c[c] / lanes_max(own * (1.0f / NEAR_PIXELS), lanes_set(1e-6f)),
                               lanes_set(1.0f));
   }
@@ -89,19 +106,25 @@ LANES_INLINE void correct_parts(const light_depths *depths, int channels, color_
 
 /* The light that reaches the slab's first sheet below a place, in the active lanes. */
 LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *taps, lanes3 position,
-                                  const light_depths *depths, uint32_t active) {
-  uint32_t planes = lanes_bits(depths->plane) & active;
+                                  light_depths *depths, uint32_t active) {
+  uint32_t planes = lanes_bits(depths->plane | depths->face) & active;
   color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   if (light->sublight_count > 0) {
     reached = mean_of_sublights(light, position, active);
     if (planes != 0) correct_parts(depths, light->channels, &reached);
     return reached;
   }
+  lanes_int faint = depths->face & ~depths->plane & (depths->beside < 1.0f);
+  int fades = light->cubic && (lanes_bits(faint) & active) != 0;
   for (int c = 0; c < light->channels; c++) {
-    if (planes != active) reached.c[c] = interpolated(light->lookup, taps, light->cubic, c);
+    if (planes != active || fades) reached.c[c] = interpolated(light->lookup, taps, light->cubic, c);
     if (planes == 0) continue;
     lanes of_plane = reaching_plane(light->lookup, taps, depths, c);
-    reached.c[c] = lanes_select(depths->plane, of_plane, reached.c[c]);
+    if (fades) { /* towards the cubic look-up, by as much as it differs from the bilinear one */
+      lanes differ = reached.c[c] - interpolated(light->lookup, taps, 0, c);
+      of_plane = lanes_max(of_plane + lanes_keep(faint, differ * (1.0f - depths->beside)), lanes_set(0));
+    }
+    reached.c[c] = lanes_select(depths->plane | depths->face, of_plane, reached.c[c]);
   }
   return reached;
 }

@@ -324,6 +324,51 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
                                 error);
 }
 
+/* Faces are as far outside as this where another volume goes on: voxels. */
+static const float FACE_FAR_OUT = 1e9f;
+
+/* Moves the faces of a volume's box outside that the other's touches: matter goes on there, most often the
+ * same volume's, cut into parts. */
+static void open_faces(grid *grid, const struct grid *other) {
+  static const double TOUCHING = 1e-3;
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (int i = 0; i < 8; i++) {
+    vec3 corner = {i & 1 ? other->box_high[0] : other->box_low[0],
+                   i & 2 ? other->box_high[1] : other->box_low[1],
+                   i & 4 ? other->box_high[2] : other->box_low[2]};
+    vec3 at = affine3_apply(grid->frame_to_index, affine3_apply(other->index_to_frame, corner));
+    const double place[3] = {at.x, at.y, at.z};
+    for (int axis = 0; axis < 3; axis++) {
+      low[axis] = fmin(low[axis], place[axis]);
+      high[axis] = fmax(high[axis], place[axis]);
+    }
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    if (low[u] > grid->box_high[u] - TOUCHING || high[u] < grid->box_low[u] + TOUCHING ||
+        low[v] > grid->box_high[v] - TOUCHING || high[v] < grid->box_low[v] + TOUCHING)
+      continue;
+    if (fabs(high[axis] - grid->box_low[axis]) < TOUCHING) grid->face_low[axis] = -FACE_FAR_OUT;
+    if (fabs(low[axis] - grid->box_high[axis]) < TOUCHING) grid->face_high[axis] = FACE_FAR_OUT;
+  }
+}
+
+/* Faces that cut something visible stay where they are. */
+static void find_faces(const hl_scene_description *scene, grid *grids) {
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    grid *grid = &grids[i];
+    for (int axis = 0; axis < 3; axis++) {
+      double low = (double)grid->relevant_low[axis] * HL_BRICK_CELLS - 1,
+             high = (double)(grid->relevant_high[axis] + 1) * HL_BRICK_CELLS - 1;
+      bool cut_low = low - 1 < grid->box_low[axis], cut_high = high + 1 > grid->box_high[axis];
+      grid->face_low[axis] = cut_low ? (float)grid->box_low[axis] : -FACE_FAR_OUT;
+      grid->face_high[axis] = cut_high ? (float)grid->box_high[axis] : FACE_FAR_OUT;
+    }
+    for (size_t k = 0; k < scene->volume_count; k++)
+      if (k != i && scene->volumes[k].casts_shadow) open_faces(grid, &grids[k]);
+  }
+}
+
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
                               const hl_layers *layers, float *pixels, size_t row_stride, frame_work *work,
                               hl_error *error) {
@@ -341,6 +386,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
     hl_frame_content(&work->grids[i], frame->points + frame->point_count);
     frame->point_count += 8;
   }
+  find_faces(scene, work->grids);
   frame->middle = content_middle(frame);
   hl_status status = set_up_eye(renderer, scene, frame, error);
   if (status != HL_OK) return status;

@@ -134,6 +134,7 @@ typedef struct block_slab {
   uint32_t starts;         /* lanes at which those of one block follow those of another; the first included */
   block_geometry geometry; /* its position: where the slab is seen on average, and lit */
   covered_span part;       /* from where the first volume that is seen begins to where the last one ends */
+  lanes place;             /* where in the slab its position is, 0 (first sheet) to 1 */
   lanes_int joined;        /* where some of several volumes fill less than that */
   lanes centre;            /* there: where in the slab extinction lies on average */
   lanes total, depth;      /* extinction averaged over the slab; optical depth */
@@ -335,6 +336,7 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   lanes seen_at = place_of_part(densities, count, slab, u);
   g->start = add_scaled3(g->position, g->step_sheet, lanes_set(-0.5f));
   g->position = add_scaled3(g->start, g->step_sheet, seen_at);
+  slab->place = seen_at;
 }
 
 /* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which

@@ -1,0 +1,141 @@
+/* render/before_slab_lanes.h - near a face of a volume's box: how far light has come within the box before it
+ * reaches a slab, at a sample and at the shadow buffer's pixels around the sample.
+ *
+ * A shadow buffer's pixel on one side of a face holds light that the box's matter has partly taken, one on
+ * the other side light that has passed beside the box; how far each has come through the box is known. */
+#ifndef HL_RENDER_BEFORE_SLAB_LANES_H
+#define HL_RENDER_BEFORE_SLAB_LANES_H
+
+#include "render/pack_lanes.h"
+#include "shadow/shadow_lookup_lanes.h"
+
+/* The pixels of a buffer whose light stands for a place's: the four around it, and steps to them in pixels.
+ * Of the mean over many parts of a light, four that are as far from the place as the parts' pixels are on
+ * average. */
+enum { NEAR_PIXELS = 4 };
+typedef struct near_pixels {
+  lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the place */
+  lanes3 along_u, along_v;              /* a pixel along u and v, on the sheet; frame space */
+} near_pixels;
+
+/* Root of 1/6: bilinear look-ups at places of every phase weigh by a tent, whose variance that is
+ * (derived). */
+static const float PART_SPREAD = 0.408248f;
+
+LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
+  return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/* Derived: u = (row 1 . x) / (row 0 . x) has the gradient (row 1 - u row 0) / (row 0 . x), v likewise; the
+ * step on the sheet along which u rises by one and v stays is (grad v x h) / (grad u . (grad v x h)), and
+ * likewise with u and v exchanged. */
+LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal, lanes3 position,
+                             near_pixels *near) {
+  lanes3 gradient_u = set3(map->rows[1]), gradient_v = set3(map->rows[2]);
+  if (!parallel) {
+    lanes ahead = row_of_point(map->rows[0], position),
+          inverse = 1.0f / lanes_select(ahead > 0.0f, ahead, lanes_set(1.0f));
+    lanes u = row_of_point(map->rows[1], position) * inverse,
+          v = row_of_point(map->rows[2], position) * inverse;
+    gradient_u = scale3(add_scaled3(gradient_u, set3(map->rows[0]), -u), inverse);
+    gradient_v = scale3(add_scaled3(gradient_v, set3(map->rows[0]), -v), inverse);
+  }
+  lanes3 along_u = cross3(gradient_v, normal), along_v = cross3(normal, gradient_u);
+  lanes rise = dot3(gradient_u, along_u);
+  lanes inverse = 1.0f / lanes_select(rise == 0.0f, lanes_set(1.0f), rise);
+  near->along_u = scale3(along_u, inverse);
+  near->along_v = scale3(along_v, inverse);
+}
+
+LANES_INLINE near_pixels pixels_around(const shadow_taps *taps) {
+  near_pixels near;
+  for (int i = 0; i < NEAR_PIXELS; i++) {
+    near.u[i] = lanes_set((float)(i % 2)) - taps->fx;
+    near.v[i] = lanes_set((float)(i / 2)) - taps->fy;
+  }
+  return near;
+}
+
+LANES_INLINE near_pixels pixels_of_parts(void) {
+  near_pixels near;
+  for (int i = 0; i < NEAR_PIXELS; i++) {
+    near.u[i] = lanes_set(i % 2 ? PART_SPREAD : -PART_SPREAD);
+    near.v[i] = lanes_set(i / 2 ? PART_SPREAD : -PART_SPREAD);
+  }
+  return near;
+}
+
+/* How far light has come within a volume's box when it reaches the slab's first sheet: on its way to the ends
+ * of the eye's way, and to the near pixels. */
+typedef struct ways_before {
+  lanes first, last, near[NEAR_PIXELS];
+} ways_before;
+
+/* The faces of a box across one axis, on the light's way back from the place lit: the one ahead and the one
+ * behind; and how much less far both are for a step to a near pixel along u or v, and for the whole slab
+ * along the eye's ray. */
+typedef struct faces_of_axis {
+  lanes ahead, behind, u, v, along;
+} faces_of_axis;
+
+/* A face that is nearly parallel to the light counts fully where a step to a near pixel moves it on the
+ * light's way by this fraction of the light's way through the box, and not at all at twice the fraction:
+ * light to both of its sides then comes in by another face, far away. */
+static const float ALONG_FACE = 0.5f;
+
+/* How far each face of a box is from the place lit. Derived (slab method): a step s beside a point moves a
+ * face on the light's way by -row.s / row.l, l the light's direction. Returns 1 where some near pixel's light
+ * may come past a face that the place lies behind, falling to 0 where the face is twice as far as the pixels
+ * reach. */
+LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *g, lanes3 towards,
+                              const near_pixels *near, faces_of_axis faces[3]) {
+  lanes close[3], reach[3], longest = lanes_set(1e30f), likely = lanes_set(0);
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis];
+    const grid *grid = volume->grid;
+    lanes speed = row_of_vector(row, towards);
+    speed = lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
+    lanes slowness = 1.0f / speed, at = row_of_point(row, g->position);
+    lanes_int rising = speed > 0.0f;
+    lanes low = lanes_set(grid->face_low[axis]), high = lanes_set(grid->face_high[axis]);
+    faces[axis] = (faces_of_axis){.ahead = (lanes_select(rising, high, low) - at) * slowness,
+                                  .behind = (lanes_select(rising, low, high) - at) * slowness,
+                                  .u = row_of_vector(row, near->along_u) * slowness,
+                                  .v = row_of_vector(row, near->along_v) * slowness,
+                                  .along = row_of_vector(row, g->step_sheet) * slowness};
+    reach[axis] = lanes_abs(faces[axis].u) + lanes_abs(faces[axis].v);
+    close[axis] = lanes_clamp(2.0f - faces[axis].ahead / lanes_max(reach[axis], lanes_set(1e-30f)), 0, 1);
+    likely = lanes_max(likely, close[axis]);
+    longest = lanes_min(longest, (volume->high[axis] - volume->low[axis]) * lanes_abs(slowness));
+  }
+  if (lanes_bits(likely > 0.0f) == 0) return likely;
+  lanes through = longest * ALONG_FACE;
+  likely = lanes_set(0);
+  for (int axis = 0; axis < 3; axis++)
+    likely = lanes_max(likely, close[axis] * lanes_clamp(2.0f - reach[axis] / through, 0, 1));
+  return likely;
+}
+
+/* Of a point that is so many steps from the place lit, and to which light comes so far through the slab. */
+LANES_INLINE lanes way_before(const faces_of_axis faces[3], lanes u, lanes v, lanes along, lanes within) {
+  lanes leave = lanes_set(1e30f), enter = within;
+  for (int axis = 0; axis < 3; axis++) {
+    const faces_of_axis *f = &faces[axis];
+    lanes less = lanes_fma(f->u, u, lanes_fma(f->v, v, f->along * along));
+    leave = lanes_min(leave, f->ahead - less);
+    enter = lanes_max(enter, f->behind - less);
+  }
+  return lanes_max(leave - enter, lanes_set(0));
+}
+
+LANES_INLINE ways_before find_ways_before(const faces_of_axis faces[3], const block_slab *slab, lanes path,
+                                          const near_pixels *near) {
+  lanes none = lanes_set(0), begin = slab->part.begin, end = begin + slab->part.length;
+  ways_before ways = {way_before(faces, none, none, begin - slab->place, begin * path),
+                      way_before(faces, none, none, end - slab->place, end * path)};
+  for (int i = 0; i < NEAR_PIXELS; i++)
+    ways.near[i] = way_before(faces, near->u[i], near->v[i], none, slab->place * path);
+  return ways;
+}
+
+#endif
