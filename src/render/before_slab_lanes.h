@@ -56,7 +56,7 @@ LANES_INLINE near_pixels pixels_around(const shadow_taps *taps) {
   return near;
 }
 
-LANES_INLINE near_pixels pixels_of_parts(void) {
+LANES_INLINE near_pixels pixels_of_sublights(void) {
   near_pixels near;
   for (int i = 0; i < NEAR_PIXELS; i++) {
     near.u[i] = lanes_set(i % 2 ? PART_SPREAD : -PART_SPREAD);
