@@ -131,8 +131,9 @@ LANES_INLINE lanes way_before(const faces_of_axis faces[3], lanes u, lanes v, la
 LANES_INLINE ways_before find_ways_before(const faces_of_axis faces[3], const block_slab *slab, lanes path,
                                           const near_pixels *near) {
   lanes none = lanes_set(0), begin = slab->part.begin, end = begin + slab->part.length;
-  ways_before ways = {way_before(faces, none, none, begin - slab->place, begin * path),
-                      way_before(faces, none, none, end - slab->place, end * path)};
+  ways_before ways;
+  ways.first = way_before(faces, none, none, begin - slab->place, begin * path);
+  ways.last = way_before(faces, none, none, end - slab->place, end * path);
   for (int i = 0; i < NEAR_PIXELS; i++)
     ways.near[i] = way_before(faces, near->u[i], near->v[i], none, slab->place * path);
   return ways;
