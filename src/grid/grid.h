@@ -49,8 +49,8 @@ typedef struct grid {
   double value_scale, value_offset; /* data value = value_scale * stored + value_offset */
   affine3 index_to_frame, frame_to_index;
   double box_low[3], box_high[3];  /* index space: where the volume exists */
-  float face_low[3], face_high[3]; /* of a frame: where faces of that box cut something visible and no other
-                                      volume goes on beyond; elsewhere far outside */
+  float face_low[3], face_high[3]; /* the box's faces that cut something visible; others are far outside, and
+                                      in a frame those where another volume goes on */
   int32_t brick_count[3];
   void *brick_bounds;      /* [bricks z][y][x][2]; least and greatest stored value, of the voxels' type,
                               of the voxels that the brick's cells and the cells around it depend on */

@@ -64,15 +64,6 @@ static int voxels_along(int32_t b, int32_t count) {
   return last > first ? last - first : 0;
 }
 
-/* Whether a brick comes within a voxel of the box's faces. */
-static bool reaches_faces(const grid *grid, const int32_t b[3]) {
-  for (int axis = 0; axis < 3; axis++) {
-    double low = (double)b[axis] * HL_BRICK_CELLS - 1, high = low + HL_BRICK_CELLS;
-    if (low - 1 < grid->box_low[axis] || high + 1 > grid->box_high[axis]) return true;
-  }
-  return false;
-}
-
 /* Whether a brick has a visible cell. Call after mark_cells() and before fill_lookups(). */
 static bool has_visible_cell(const grid *grid, size_t brick) {
   return grid->lookup[1].visible == NULL || grid->lookup[1].visible[brick];
@@ -289,11 +280,25 @@ static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_
 
 /* ---- all steps together ---- */
 
-/* Lists the relevant bricks, bounds their coordinates and counts their voxels. */
+/* Finds which faces of the box cut something visible: those that relevant bricks reach, a slab's neighbours
+ * included. */
+static void find_faces(grid *grid, bool any_relevant) {
+  grid->cut = false;
+  for (int axis = 0; axis < 3; axis++) {
+    double low = (double)grid->relevant_low[axis] * HL_BRICK_CELLS - 1,
+           high = (double)(grid->relevant_high[axis] + 1) * HL_BRICK_CELLS - 1;
+    bool cut_low = any_relevant && low - 1 < grid->box_low[axis],
+         cut_high = any_relevant && high + 1 > grid->box_high[axis];
+    grid->face_low[axis] = cut_low ? (float)grid->box_low[axis] : -FACE_FAR_OUT;
+    grid->face_high[axis] = cut_high ? (float)grid->box_high[axis] : FACE_FAR_OUT;
+    grid->cut = grid->cut || cut_low || cut_high;
+  }
+}
+
+/* Lists the relevant bricks, bounds their coordinates, counts their voxels and finds the faces they reach. */
 static void list_relevant(grid *grid) {
   grid->kept_voxels = 0;
   grid->relevant_count = 0;
-  grid->cut = false;
   bool first = true;
   for (size_t at = 0; at < hl_grid_bricks(grid); at++) {
     if (!grid->relevant[at]) continue;
@@ -305,11 +310,11 @@ static void list_relevant(grid *grid) {
     }
     first = false;
     if (has_visible_cell(grid, at)) grid->relevant_list[grid->relevant_count++] = (uint32_t)at;
-    grid->cut = grid->cut || reaches_faces(grid, b);
     grid->kept_voxels += (uint64_t)voxels_along(b[0], grid->dimension[0]) *
                          (uint64_t)voxels_along(b[1], grid->dimension[1]) *
                          (uint64_t)voxels_along(b[2], grid->dimension[2]);
   }
+  find_faces(grid, !first);
 }
 
 void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const classifier *classifier,
@@ -320,4 +325,28 @@ void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const cl
   list_relevant(grid);
   find_cell_bits(grid, classifier, functions->brick_bits, pool);
   fill_lookups(grid, pool);
+}
+
+void hl_open_faces(grid *grid, const struct grid *other) {
+  static const double TOUCHING = 1e-3;
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (int i = 0; i < 8; i++) {
+    vec3 corner = {i & 1 ? other->box_high[0] : other->box_low[0],
+                   i & 2 ? other->box_high[1] : other->box_low[1],
+                   i & 4 ? other->box_high[2] : other->box_low[2]};
+    vec3 at = affine3_apply(grid->frame_to_index, affine3_apply(other->index_to_frame, corner));
+    const double place[3] = {at.x, at.y, at.z};
+    for (int axis = 0; axis < 3; axis++) {
+      low[axis] = fmin(low[axis], place[axis]);
+      high[axis] = fmax(high[axis], place[axis]);
+    }
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    if (low[u] > grid->box_high[u] - TOUCHING || high[u] < grid->box_low[u] + TOUCHING ||
+        low[v] > grid->box_high[v] - TOUCHING || high[v] < grid->box_low[v] + TOUCHING)
+      continue;
+    if (fabs(high[axis] - grid->box_low[axis]) < TOUCHING) grid->face_low[axis] = -FACE_FAR_OUT;
+    if (fabs(low[axis] - grid->box_high[axis]) < TOUCHING) grid->face_high[axis] = FACE_FAR_OUT;
+  }
 }

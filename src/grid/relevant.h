@@ -22,6 +22,13 @@ void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double
 /* Finds the box around all relevant bricks; false if there are none. */
 bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
+/* Faces that cut nothing visible are so far outside the box, voxels. */
+#define FACE_FAR_OUT 1e9f
+
+/* Moves those faces of a grid outside that touch the other grid's box: matter goes on there, most often that
+ * of the same volume, cut into parts. */
+void hl_open_faces(grid *grid, const struct grid *other);
+
 /* A pixel samples a sheet at one point: a block of pixels is empty if no pixel's point lies in a cell that
  * may show something, even if cells between the points do. With a bit for each cell, a quarter of the blocks
  * that pass the test by boxes (fill/relevant_blocks_lanes.h) turn out to be empty. In a cell, a cubic

@@ -112,15 +112,6 @@ static hl_status read_camera(hl_json_reader *reader, const json_t *value, hl_sce
   return status;
 }
 
-static hl_status read_render(hl_json_reader *reader, const json_t *value, hl_render_settings *render) {
-  if (value == NULL) return HL_OK;
-  size_t mark = hl_json_enter(reader, "render");
-  hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_RENDER, -1, NULL);
-  if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_RENDER, 0, render);
-  if (status == HL_OK) hl_json_leave(reader, mark);
-  return status;
-}
-
 static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gathered *g) {
   const json_t *value = json_object_get(root, "volumes");
   if (value == NULL)
@@ -208,7 +199,9 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   if (status == HL_OK) status = hl_json_text(reader, root, "description", &d->description);
   if (status == HL_OK) status = read_image(reader, root, d);
   if (status == HL_OK) status = hl_json_settings(reader, root, HL_SETTINGS_SCENE, 0, d);
-  if (status == HL_OK) status = read_render(reader, json_object_get(root, "render"), &d->render);
+  if (status == HL_OK)
+    status = hl_json_settings_member(reader, json_object_get(root, "render"), "render", HL_SETTINGS_RENDER,
+                                     &d->render);
   if (status == HL_OK) status = hl_json_check_groups(reader, json_object_get(root, "groups"));
   if (status == HL_OK) status = read_volumes(reader, root, g);
   if (status == HL_OK) status = check_volumes(reader, d);

@@ -92,3 +92,13 @@ hl_status hl_json_settings(hl_json_reader *reader, const json_t *object, hl_sett
   }
   return status;
 }
+
+hl_status hl_json_settings_member(hl_json_reader *reader, const json_t *value, const char *key,
+                                  hl_setting_kind kind, void *target) {
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, key);
+  hl_status status = hl_json_settings_object(reader, value, kind, -1, NULL);
+  if (status == HL_OK) status = hl_json_settings(reader, value, kind, 0, target);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}

@@ -11,6 +11,11 @@
 hl_status hl_json_settings_object(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, int type,
                                   const char *const *others);
 
+/* Reads the object `key` into the struct `target`: a table's keys, without types, and no others. value null:
+ * the object is absent, and nothing is read. */
+hl_status hl_json_settings_member(hl_json_reader *reader, const json_t *value, const char *key,
+                                  hl_setting_kind kind, void *target);
+
 /* Reads what an object says for rows of a table into the struct `target`: for one key, which may be absent
  * ("rotate/axis" is read from the object "rotate" itself), and for all keys without a "/". */
 hl_status hl_json_setting(hl_json_reader *reader, const json_t *object, hl_setting_kind kind, const char *key,

@@ -59,15 +59,6 @@ static hl_status read_transform(hl_json_reader *reader, const json_t *value, hl_
   return status;
 }
 
-static hl_status read_material(hl_json_reader *reader, const json_t *value, hl_material *material) {
-  if (value == NULL) return HL_OK;
-  size_t mark = hl_json_enter(reader, "material");
-  hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_MATERIAL, -1, NULL);
-  if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_MATERIAL, 0, material);
-  if (status == HL_OK) hl_json_leave(reader, mark);
-  return status;
-}
-
 static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   static const char *const keys[] = {"min", "max", NULL};
   if (value == NULL) return HL_OK;
@@ -295,7 +286,9 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   if (status == HL_OK) status = choose_stand_in(reader, &value, shelf);
   if (status == HL_OK) status = hl_json_text(reader, value, "name", &volume->name);
   if (status == HL_OK) status = read_transform(reader, json_object_get(value, "transform"), volume);
-  if (status == HL_OK) status = read_material(reader, json_object_get(value, "material"), &volume->material);
+  if (status == HL_OK)
+    status = hl_json_settings_member(reader, json_object_get(value, "material"), "material",
+                                     HL_SETTINGS_MATERIAL, &volume->material);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_VOLUME, 0, volume);
   if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);

@@ -9,18 +9,17 @@
 #include "render/pack_lanes.h"
 #include "shadow/shadow_lookup_lanes.h"
 
-/* The pixels of a buffer whose light stands for a place's: the four around it, and steps to them in pixels.
- * Of the mean over many parts of a light, four that are as far from the place as the parts' pixels are on
- * average. */
+/* The four pixels of a shadow buffer around a sample, and the steps to them. With sub-lights, four pixels as
+ * far from the sample as the pixels of all their buffers are on average. */
 enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
-  lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the place */
+  lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample, pixels */
   lanes3 along_u, along_v;              /* a pixel along u and v, on the sheet; frame space */
 } near_pixels;
 
-/* Root of 1/6: bilinear look-ups at places of every phase weigh by a tent, whose variance that is
- * (derived). */
-static const float PART_SPREAD = 0.408248f;
+/* The root of 1/6. Bilinear look-ups, averaged over all positions between pixels, weigh by a tent of variance
+ * 1/6 (derived). */
+static const float SUBLIGHT_SPREAD = 0.408248f;
 
 LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
   return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -59,8 +58,8 @@ LANES_INLINE near_pixels pixels_around(const shadow_taps *taps) {
 LANES_INLINE near_pixels pixels_of_sublights(void) {
   near_pixels near;
   for (int i = 0; i < NEAR_PIXELS; i++) {
-    near.u[i] = lanes_set(i % 2 ? PART_SPREAD : -PART_SPREAD);
-    near.v[i] = lanes_set(i / 2 ? PART_SPREAD : -PART_SPREAD);
+    near.u[i] = lanes_set(i % 2 ? SUBLIGHT_SPREAD : -SUBLIGHT_SPREAD);
+    near.v[i] = lanes_set(i / 2 ? SUBLIGHT_SPREAD : -SUBLIGHT_SPREAD);
   }
   return near;
 }
@@ -116,7 +115,8 @@ LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *
   return likely;
 }
 
-/* Of a point that is so many steps from the place lit, and to which light comes so far through the slab. */
+/* The light's way within the box before the slab, for a point u, v and along steps away from the sample.
+ * within: the light's way from the slab's first sheet to the point. */
 LANES_INLINE lanes way_before(const faces_of_axis faces[3], lanes u, lanes v, lanes along, lanes within) {
   lanes leave = lanes_set(1e30f), enter = within;
   for (int axis = 0; axis < 3; axis++) {

@@ -1,4 +1,4 @@
-/* render/frame.c - the eye's view and the content's bounds. */
+/* render/frame.c - the eye's view, the lights and the content's bounds. */
 #include "render/frame.h"
 
 #include "grid/relevant.h"
@@ -118,4 +118,128 @@ int hl_frame_visible_points(const frame *frame, vec3 *points) {
   for (int box = 0; box < frame->point_count / 8; box++)
     count += visible_points_of_box(frame, frame->points + 8 * box, points + count);
   return count;
+}
+
+/* ---- the eye ---- */
+
+/* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to
+ * the content's middle: closer voxels are magnified anyway. */
+static double pixel_at_content(const frame *frame, double middle_depth) {
+  const view *eye = &frame->eye;
+  double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
+  if (!eye->perspective) return edge;
+  double nearest = INFINITY;
+  vec3 start, forward;
+  hl_view_ray(eye, eye->width / 2.0, eye->height / 2.0, &start, &forward);
+  for (int i = 0; i < frame->point_count; i++)
+    nearest = fmin(nearest, vec3_dot(forward, vec3_subtract(frame->points[i], eye->origin)));
+  return edge * fmax(nearest, middle_depth / 3);
+}
+
+/* The volume of a box that hl_frame_content wrote the corners of; above 0 where the box is flat. */
+static double box_volume(const vec3 corners[8]) {
+  vec3 x = vec3_subtract(corners[1], corners[0]), y = vec3_subtract(corners[2], corners[0]),
+       z = vec3_subtract(corners[4], corners[0]);
+  return fmax(fabs(vec3_dot(vec3_cross(x, y), z)), 1e-300);
+}
+
+/* The mean of the volumes' boxes' centres, each weighted by the box's volume (derived: sum V c over the parts
+ * of a box is V c of the box). It stays where it is when a volume is cut into parts, as far as the visible
+ * boxes of the parts fill that of the whole. Sheets of near lights follow it: it gives a light's
+ * direction. */
+static vec3 content_middle(const frame *frame) {
+  vec3 sum = {0, 0, 0};
+  double volumes = 0;
+  for (int i = 0; i < frame->point_count; i += 8) {
+    double volume = box_volume(frame->points + i);
+    vec3 centre = vec3_scale(vec3_add(frame->points[i], frame->points[i + 7]), 0.5);
+    sum = vec3_add(sum, vec3_scale(centre, volume));
+    volumes += volume;
+  }
+  return frame->point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
+}
+
+/* e: towards the middle of the content where the eye is outside of it, else straight ahead. */
+static void look(frame *frame) {
+  vec3 start, forward;
+  hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);
+  forward = vec3_normalise(forward);
+  frame->eye_direction = forward;
+  vec3 way = vec3_subtract(frame->middle, frame->eye.origin);
+  double distance = vec3_length(way), radius = 0;
+  for (int i = 0; i < frame->point_count; i++)
+    radius = fmax(radius, vec3_length(vec3_subtract(frame->points[i], frame->middle)));
+  if (frame->eye.perspective && distance > radius) {
+    vec3 towards = vec3_normalise(way);
+    if (vec3_dot(towards, forward) > 0.5) frame->eye_direction = vec3_normalise(vec3_add(towards, forward));
+  }
+  double middle_depth = frame->eye.perspective ? vec3_dot(forward, way) : 1;
+  frame->pixel = pixel_at_content(frame, middle_depth);
+  frame->middle_pixel = fmax(frame->pixel,
+                             fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
+}
+
+/* Where voxels are smaller than pixels, their footprints must not fall between pixels: the frame is made of
+ * as many more pixels as it takes for voxels to be no smaller, and averaged. */
+enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
+
+static int oversampling(const frame *frame, const hl_scene_description *scene) {
+  int longer = scene->width > scene->height ? scene->width : scene->height,
+      most = GREATEST_OVERSAMPLED_SIDE / longer;
+  if (most > GREATEST_OVERSAMPLING) most = GREATEST_OVERSAMPLING;
+  double wanted = floor(frame->middle_pixel / frame->voxel + 0.5);
+  return wanted > most ? (most < 1 ? 1 : most) : wanted < 1 ? 1 : (int)wanted;
+}
+
+hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error) {
+  frame->middle = content_middle(frame);
+  for (frame->oversampling = 1;;) {
+    frame->width = scene->width * frame->oversampling;
+    frame->height = scene->height * frame->oversampling;
+    hl_status status = hl_frame_eye(&scene->camera, frame->width, frame->height, &frame->eye, error);
+    if (status != HL_OK) return status;
+    look(frame);
+    int wanted = frame->oversampling > 1 || frame->point_count == 0 ? 1 : oversampling(frame, scene);
+    if (wanted == 1) return HL_OK;
+    frame->oversampling = wanted;
+  }
+}
+
+/* ---- the lights ---- */
+
+/* The angle of the eye's outermost ray to its direction. */
+static double widest_ray(const frame *frame) {
+  double least = 1;
+  for (int corner = 0; corner < 4; corner++) {
+    vec3 start, way;
+    hl_view_ray(&frame->eye, corner & 1 ? frame->eye.width : 0, corner & 2 ? frame->eye.height : 0, &start,
+                &way);
+    least = fmin(least, vec3_dot(vec3_normalise(way), frame->eye_direction));
+  }
+  return acos(fmax(least, -1));
+}
+
+/* Whether any volume's picture depends on arriving light: flat colours and maximum projections do not. */
+static bool is_lit(const hl_scene_description *scene) {
+  for (size_t i = 0; i < scene->volume_count && !hl_is_maximum(scene); i++)
+    if (scene->volumes[i].visible && scene->volumes[i].shading != HL_SHADING_FLAT) return true;
+  return false;
+}
+
+void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene) {
+  frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
+  frame->light_count = 0;
+  for (size_t i = 0; i < scene->light_count && !hl_is_maximum(scene); i++) {
+    const hl_light *light = &scene->lights[i];
+    light_source source = hl_light_source(light, &scene->render, frame->middle);
+    source.light_index = (int)i;
+    if (!is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
+    bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) ||
+                  light->texture.pixels != NULL;
+    bool whole = source.shadows == HL_SHADOWS_OFF || narrow ||
+                 hl_frame_serves(frame, &scene->render, &source);
+    for (int sector = 0; sector < (whole ? 1 : LIGHT_SECTORS); sector++)
+      frame->lights[frame->light_count++] = whole ? source
+                                                  : hl_light_in_sector(&source, &frame->sectors, sector);
+  }
 }

@@ -41,6 +41,19 @@ typedef struct frame {
 /* The eye's view in width x height pixels. */
 hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye, hl_error *error);
 
+/* Sets the frame's size, its eye, oversampling and middle: the eye at the resolution that the content needs.
+ * The frame's points and voxel must be set. */
+hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error);
+
+/* After the eye. Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Narrow
+ * spot lights and lights with a texture shine in one direction and are never cut. The frame's lights need
+ * room for LIGHT_SECTORS each. */
+void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene);
+
+static inline bool hl_is_maximum(const hl_scene_description *scene) {
+  return scene->render.compositing == HL_COMPOSITING_MAXIMUM;
+}
+
 /* Corners of the box around a grid's relevant bricks, of which there is one at least. */
 void hl_frame_content(const grid *grid, vec3 corners[8]);
 

@@ -86,6 +86,7 @@ hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, h
     return hl_fail_memory(error, tiles * TILE_BLOCKS * sizeof *sweep->shown_from, "what is hidden");
   hidden_search search = {.shown_from = sweep->shown_from};
   front.geometry = &turned;
+  front.content.sheets = &turned.sheets;
   front.layer_pixels = NULL;
   front.first = front.measures = false;
   front.preparatory = true;

@@ -5,6 +5,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "grid/relevant.h"
 #include "render/estimate.h"
 #include "render/framed_scene.h"
 #include "render/maximum.h"
@@ -135,63 +136,6 @@ static void release_work(hl_renderer *renderer, frame_work *work) {
   hl_maximum_release(context, &work->maximum);
 }
 
-/* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to
- * the content's middle: closer voxels are magnified anyway. */
-static double pixel_at_content(const frame *frame, double middle_depth) {
-  const view *eye = &frame->eye;
-  double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
-  if (!eye->perspective) return edge;
-  double nearest = INFINITY;
-  vec3 start, forward;
-  hl_view_ray(eye, eye->width / 2.0, eye->height / 2.0, &start, &forward);
-  for (int i = 0; i < frame->point_count; i++)
-    nearest = fmin(nearest, vec3_dot(forward, vec3_subtract(frame->points[i], eye->origin)));
-  return edge * fmax(nearest, middle_depth / 3);
-}
-
-/* The volume of a box that hl_frame_content wrote the corners of; above 0 where the box is flat. */
-static double box_volume(const vec3 corners[8]) {
-  vec3 x = vec3_subtract(corners[1], corners[0]), y = vec3_subtract(corners[2], corners[0]),
-       z = vec3_subtract(corners[4], corners[0]);
-  return fmax(fabs(vec3_dot(vec3_cross(x, y), z)), 1e-300);
-}
-
-/* The mean of the volumes' boxes' centres, each weighted by the box's volume (derived: sum V c over the parts
- * of a box is V c of the box). It stays where it is when a volume is cut into parts, as far as the visible
- * boxes of the parts fill that of the whole. Sheets of near lights follow it: it gives a light's
- * direction. */
-static vec3 content_middle(const frame *frame) {
-  vec3 sum = {0, 0, 0};
-  double volumes = 0;
-  for (int i = 0; i < frame->point_count; i += 8) {
-    double volume = box_volume(frame->points + i);
-    vec3 centre = vec3_scale(vec3_add(frame->points[i], frame->points[i + 7]), 0.5);
-    sum = vec3_add(sum, vec3_scale(centre, volume));
-    volumes += volume;
-  }
-  return frame->point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
-}
-
-/* e: towards the middle of the content where the eye is outside of it, else straight ahead. */
-static void look(frame *frame) {
-  vec3 start, forward;
-  hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);
-  forward = vec3_normalise(forward);
-  frame->eye_direction = forward;
-  vec3 way = vec3_subtract(frame->middle, frame->eye.origin);
-  double distance = vec3_length(way), radius = 0;
-  for (int i = 0; i < frame->point_count; i++)
-    radius = fmax(radius, vec3_length(vec3_subtract(frame->points[i], frame->middle)));
-  if (frame->eye.perspective && distance > radius) {
-    vec3 towards = vec3_normalise(way);
-    if (vec3_dot(towards, forward) > 0.5) frame->eye_direction = vec3_normalise(vec3_add(towards, forward));
-  }
-  double middle_depth = frame->eye.perspective ? vec3_dot(forward, way) : 1;
-  frame->pixel = pixel_at_content(frame, middle_depth);
-  frame->middle_pixel = fmax(frame->pixel,
-                             fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
-}
-
 /* Rays of the eye, or of a light, then start within the box. */
 static bool inside_box(const grid *grid, vec3 origin) {
   vec3 p = affine3_apply(grid->frame_to_index, origin);
@@ -211,84 +155,12 @@ static bool rays_start_inside(const frame *frame, const grid *grid) {
   return inside;
 }
 
-/* Where voxels are smaller than pixels, their footprints must not fall between pixels: the frame is made of
- * as many more pixels as it takes for voxels to be no smaller, and averaged. */
-enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
-
-static int oversampling(const frame *frame, const hl_scene_description *scene, double voxel) {
-  int longer = scene->width > scene->height ? scene->width : scene->height,
-      most = GREATEST_OVERSAMPLED_SIDE / longer;
-  if (most > GREATEST_OVERSAMPLING) most = GREATEST_OVERSAMPLING;
-  double wanted = floor(frame->middle_pixel / voxel + 0.5);
-  return wanted > most ? (most < 1 ? 1 : most) : wanted < 1 ? 1 : (int)wanted;
-}
-
-/* The eye at the resolution that the content needs. */
-static hl_status set_up_eye(const hl_renderer *renderer, const hl_scene_description *scene, frame *frame,
-                            hl_error *error) {
-  for (frame->oversampling = 1;;) {
-    frame->width = scene->width * frame->oversampling;
-    frame->height = scene->height * frame->oversampling;
-    hl_status status = hl_frame_eye(&scene->camera, frame->width, frame->height, &frame->eye, error);
-    if (status != HL_OK) return status;
-    look(frame);
-    int wanted = frame->oversampling > 1 || frame->point_count == 0
-                     ? 1
-                     : oversampling(frame, scene, smallest_edge(renderer));
-    if (wanted == 1) return HL_OK;
-    frame->oversampling = wanted;
-  }
-}
-
 /* Depth and normals are measured from front to back: if no sweep goes that way for the eye, one more does. */
 static void choose_measuring_sweep(frame_work *work) {
   while (work->measuring_sweep < work->sweep_count && work->sweeps[work->measuring_sweep].back_to_front)
     work->measuring_sweep++;
   if (work->measuring_sweep == work->sweep_count)
     hl_frame_add_eye_sweep(&work->frame, work->sweeps, &work->sweep_count);
-}
-
-/* The angle of the eye's outermost ray to its direction. */
-static double widest_ray(const frame *frame) {
-  double least = 1;
-  for (int corner = 0; corner < 4; corner++) {
-    vec3 start, way;
-    hl_view_ray(&frame->eye, corner & 1 ? frame->eye.width : 0, corner & 2 ? frame->eye.height : 0, &start,
-                &way);
-    least = fmin(least, vec3_dot(vec3_normalise(way), frame->eye_direction));
-  }
-  return acos(fmax(least, -1));
-}
-
-static bool is_maximum(const hl_scene_description *scene) {
-  return scene->render.compositing == HL_COMPOSITING_MAXIMUM;
-}
-
-/* Whether any volume's picture depends on arriving light: flat colours and maximum projections do not. */
-static bool is_lit(const hl_scene_description *scene) {
-  for (size_t i = 0; i < scene->volume_count && !is_maximum(scene); i++)
-    if (scene->volumes[i].visible && scene->volumes[i].shading != HL_SHADING_FLAT) return true;
-  return false;
-}
-
-/* Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Narrow spot lights and
- * lights with a texture shine in one direction and are never cut. */
-static void set_up_lights(const hl_scene_description *scene, frame *frame) {
-  frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
-  frame->light_count = 0;
-  for (size_t i = 0; i < scene->light_count && !is_maximum(scene); i++) {
-    const hl_light *light = &scene->lights[i];
-    light_source source = hl_light_source(light, &scene->render, frame->middle);
-    source.light_index = (int)i;
-    if (!is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
-    bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) ||
-                  light->texture.pixels != NULL;
-    bool whole = source.shadows == HL_SHADOWS_OFF || narrow ||
-                 hl_frame_serves(frame, &scene->render, &source);
-    for (int sector = 0; sector < (whole ? 1 : LIGHT_SECTORS); sector++)
-      frame->lights[frame->light_count++] = whole ? source
-                                                  : hl_light_in_sector(&source, &frame->sectors, sector);
-  }
 }
 
 /* Chooses the memory that sweeps composite into: the caller's pixels where one sweep fills them exactly, in
@@ -324,49 +196,11 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
                                 error);
 }
 
-/* Faces are as far outside as this where another volume goes on: voxels. */
-static const float FACE_FAR_OUT = 1e9f;
-
-/* Moves the faces of a volume's box outside that the other's touches: matter goes on there, most often the
- * same volume's, cut into parts. */
-static void open_faces(grid *grid, const struct grid *other) {
-  static const double TOUCHING = 1e-3;
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (int i = 0; i < 8; i++) {
-    vec3 corner = {i & 1 ? other->box_high[0] : other->box_low[0],
-                   i & 2 ? other->box_high[1] : other->box_low[1],
-                   i & 4 ? other->box_high[2] : other->box_low[2]};
-    vec3 at = affine3_apply(grid->frame_to_index, affine3_apply(other->index_to_frame, corner));
-    const double place[3] = {at.x, at.y, at.z};
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = fmin(low[axis], place[axis]);
-      high[axis] = fmax(high[axis], place[axis]);
-    }
-  }
-  for (int axis = 0; axis < 3; axis++) {
-    int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    if (low[u] > grid->box_high[u] - TOUCHING || high[u] < grid->box_low[u] + TOUCHING ||
-        low[v] > grid->box_high[v] - TOUCHING || high[v] < grid->box_low[v] + TOUCHING)
-      continue;
-    if (fabs(high[axis] - grid->box_low[axis]) < TOUCHING) grid->face_low[axis] = -FACE_FAR_OUT;
-    if (fabs(low[axis] - grid->box_high[axis]) < TOUCHING) grid->face_high[axis] = FACE_FAR_OUT;
-  }
-}
-
-/* Faces that cut something visible stay where they are. */
-static void find_faces(const hl_scene_description *scene, grid *grids) {
-  for (size_t i = 0; i < scene->volume_count; i++) {
-    grid *grid = &grids[i];
-    for (int axis = 0; axis < 3; axis++) {
-      double low = (double)grid->relevant_low[axis] * HL_BRICK_CELLS - 1,
-             high = (double)(grid->relevant_high[axis] + 1) * HL_BRICK_CELLS - 1;
-      bool cut_low = low - 1 < grid->box_low[axis], cut_high = high + 1 > grid->box_high[axis];
-      grid->face_low[axis] = cut_low ? (float)grid->box_low[axis] : -FACE_FAR_OUT;
-      grid->face_high[axis] = cut_high ? (float)grid->box_high[axis] : FACE_FAR_OUT;
-    }
+/* Changes the frame's copies of the grids alone. */
+static void open_faces(const hl_scene_description *scene, grid *grids) {
+  for (size_t i = 0; i < scene->volume_count; i++)
     for (size_t k = 0; k < scene->volume_count; k++)
-      if (k != i && scene->volumes[k].casts_shadow) open_faces(grid, &grids[k]);
-  }
+      if (k != i && scene->volumes[k].casts_shadow) hl_open_faces(&grids[i], &grids[k]);
 }
 
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
@@ -386,14 +220,13 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
     hl_frame_content(&work->grids[i], frame->points + frame->point_count);
     frame->point_count += 8;
   }
-  find_faces(scene, work->grids);
-  frame->middle = content_middle(frame);
-  hl_status status = set_up_eye(renderer, scene, frame, error);
-  if (status != HL_OK) return status;
+  open_faces(scene, work->grids);
   frame->voxel = smallest_edge(renderer);
-  frame->spacing = fmin(scene->render.sheet_spacing, is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
+  hl_status status = hl_frame_set_up_eye(frame, scene, error);
+  if (status != HL_OK) return status;
+  frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
                    frame->voxel; /* volumes go on as far beyond their faces */
-  set_up_lights(scene, frame);
+  hl_frame_set_up_lights(frame, scene);
   for (size_t i = 0; i < scene->volume_count; i++)
     if (rays_start_inside(frame, &work->grids[i])) work->grids[i].cut = true;
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
@@ -436,7 +269,7 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
                  .scene = scene,
                  .frame = &work->frame,
                  .geometry = geometry,
-                 .act = is_maximum(scene) ? hl_maximum_tile : hl_light_tile,
+                 .act = hl_is_maximum(scene) ? hl_maximum_tile : hl_light_tile,
                  .first = index == 0,
                  .layer_pixels = &work->layers,
                  .maximum = &work->maximum,

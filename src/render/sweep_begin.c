@@ -83,10 +83,8 @@ static void find_tiles(sweep *sweep) {
 hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error) {
   struct sweep planned = *sweep;
   hl_layout counted = {0};
-  size_t tasks;
   find_tiles(&planned);
-  planned.content.sheets = &sweep->geometry->sheets;
-  tasks = planned.tiles;
+  size_t tasks = planned.tiles;
   *bytes = (sweep_bytes){
       .passing = hl_view_sheets_bytes(&planned.content, &sweep->frame->eye, PIXEL_TO_SPARE)};
   if (sweep->geometry->back_to_front)
@@ -278,7 +276,6 @@ static hl_status begin_lights(sweep *sweep, shadow_buffer *buffers, shadow_memor
 
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
   double start = hl_clock_seconds();
-  sweep->content.sheets = &sweep->geometry->sheets;
   find_tiles(sweep);
   hl_status status = hl_view_sheets_begin(&sweep->content, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image,
                                           error);
