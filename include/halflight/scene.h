@@ -127,8 +127,9 @@ typedef struct hl_scene_volume {
   const char *array;  /* how they were loaded from the file (hl_volume_load_options), for hl_scene_to_json; */
   int component;      /* null, HL_COMPONENT_DEFAULT and 0: by default */
   double spacing[3];
-  hl_volume *volume; /* retained by the scene */
-  double scale;      /* transform: scale, then rotate, then translate */
+  const char *series; /* of hl_volume_load_options too; may be null */
+  hl_volume *volume;  /* retained by the scene */
+  double scale;       /* transform: scale, then rotate, then translate */
   double rotate_axis[3];
   double rotate_angle_deg;
   double translate[3];

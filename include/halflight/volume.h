@@ -99,6 +99,8 @@ typedef struct hl_volume_load_options {
   const void *bytes; /* the file's content, borrowed during the call, in place of a file; path then names it.
                         Default null */
   size_t byte_count;
+  const char
+      *series; /* DICOM: of several series this one: its number, UID or description; null: the largest */
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);

@@ -9,7 +9,7 @@
 #include "input.h"
 #include "json_writer.h"
 
-enum info_option { INFO_JSON, INFO_ARRAY, INFO_COMPONENT, INFO_MAX_MEMORY, INFO_OPTION_COUNT };
+enum info_option { INFO_JSON, INFO_ARRAY, INFO_COMPONENT, INFO_SERIES, INFO_MAX_MEMORY, INFO_OPTION_COUNT };
 
 static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_JSON] = {.name = "json",
@@ -18,6 +18,7 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
                    .help = "as JSON, with 256 histogram bins"},
     [INFO_ARRAY] = INPUT_OPTION_ARRAY(NULL),
     [INFO_COMPONENT] = INPUT_OPTION_COMPONENT,
+    [INFO_SERIES] = INPUT_OPTION_SERIES,
     [INFO_MAX_MEMORY] =
         {.name = "max-memory",
          .kind = OPTION_BYTES,
@@ -150,7 +151,7 @@ static int run_info(const cli_value *values, char **operands) {
   hl_error error = {0};
   hl_volume_load_options load;
   cli_input input = {0};
-  input_load_options(&values[INFO_ARRAY], &values[INFO_COMPONENT], NULL, &load);
+  input_load_options(&values[INFO_ARRAY], &values[INFO_COMPONENT], &values[INFO_SERIES], NULL, &load);
   exit_code = input_open(operands[0], values[INFO_MAX_MEMORY].bytes, &input);
   hl_status status = exit_code == EXIT_CODE_OK
                          ? input_load_volume(host.context, &input, &load, &volume, &error)

@@ -142,10 +142,11 @@ void input_close(cli_input *input) {
 
 /* ---- what it holds ---- */
 
-void input_load_options(const cli_value *array, const cli_value *component, const cli_value *spacing,
-                        hl_volume_load_options *options) {
+void input_load_options(const cli_value *array, const cli_value *component, const cli_value *series,
+                        const cli_value *spacing, hl_volume_load_options *options) {
   hl_volume_load_options_defaults(options);
   if (array->given) options->array = array->text;
+  if (series->given) options->series = series->text;
   if (component->given)
     options->component = component->chosen ? HL_COMPONENT_MAGNITUDE : (int)component->number[0];
   if (spacing != NULL && spacing->given) memcpy(options->spacing, spacing->number, sizeof options->spacing);
@@ -168,6 +169,7 @@ static hl_status name_source(hl_context *context, const hl_volume_load_options *
   hl_scene_volume volume = description.volumes[0];
   hl_scene *named = NULL;
   volume.array = options->array;
+  volume.series = options->series;
   volume.component = options->component;
   memcpy(volume.spacing, options->spacing, sizeof volume.spacing);
   description.volumes = &volume;

@@ -37,6 +37,11 @@ typedef struct cli_input {
         "(default: the only one; of 2 or 3 the magnitude,\nelse 0)",                                   \
     .choices = input_magnitudes, .count = 1, .whole = true, .low = 0, .high = 1e9                      \
   }
+#define INPUT_OPTION_SERIES                                                                            \
+  {                                                                                                    \
+    .name = "series", .kind = OPTION_TEXT, .argument = "NAME",                                         \
+    .help = "of several DICOM series this one: its number, UID\nor description (default: the largest)" \
+  }
 extern const cli_choice input_magnitudes[];
 
 /* Finds out what an input is: told by name; where the name says nothing, by its first bytes. limit: bytes
@@ -45,9 +50,10 @@ extern const cli_choice input_magnitudes[];
 int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
-/* What --array, --component and --spacing (null: a command without it) say of how a volume is read. */
-void input_load_options(const cli_value *array, const cli_value *component, const cli_value *spacing,
-                        hl_volume_load_options *options);
+/* What --array, --component, --series and --spacing (null: a command without it) say of how a volume is read.
+ */
+void input_load_options(const cli_value *array, const cli_value *component, const cli_value *series,
+                        const cli_value *spacing, hl_volume_load_options *options);
 
 /* How bare volumes are read (hl_volume_load_options without bytes); null: by default. */
 hl_status input_load_volume(hl_context *context, const cli_input *input,

@@ -129,6 +129,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
 
     [RENDER_ARRAY] = INPUT_OPTION_ARRAY("Volume files"),
     [RENDER_COMPONENT] = INPUT_OPTION_COMPONENT,
+    [RENDER_SERIES] = INPUT_OPTION_SERIES,
     [RENDER_SPACING] = {.name = "spacing",
                         .kind = OPTION_NUMBERS,
                         .argument = "SX,SY,SZ",

@@ -19,6 +19,7 @@ typedef struct hl_loaded_volume {
   char *source;      /* owned; the file's path, or the text of its shapes */
   const char *array; /* how a file was read; the tree's */
   int component;
+  const char *series;
   double spacing[3];
   hl_volume *volume; /* owned */
 } hl_loaded_volume;

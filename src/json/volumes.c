@@ -21,7 +21,8 @@ static const char *const volume_keys[] = {"name",       "stand_in",
                                           "visible",    "casts_shadow",
                                           "clip",       "receives_shadow",
                                           "array",      "component",
-                                          "spacing",    NULL};
+                                          "spacing",    "series",
+                                          NULL};
 
 static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   static const char *const keys[] = {"axis", "angle_deg", NULL};
@@ -74,6 +75,10 @@ static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene
   return status;
 }
 
+static bool same_text(const char *a, const char *b) {
+  return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
+}
+
 /* options: how a file is read; null: of shapes. */
 static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
                                            const hl_volume_load_options *options) {
@@ -81,9 +86,8 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
     const hl_loaded_volume *loaded = &shelf->loaded[v];
     if (strcmp(loaded->source, source) != 0) continue;
     if (options == NULL) return loaded;
-    bool same_array = (loaded->array == NULL) == (options->array == NULL) &&
-                      (loaded->array == NULL || strcmp(loaded->array, options->array) == 0);
-    if (same_array && loaded->component == options->component &&
+    if (same_text(loaded->array, options->array) && same_text(loaded->series, options->series) &&
+        loaded->component == options->component &&
         memcmp(loaded->spacing, options->spacing, sizeof loaded->spacing) == 0)
       return loaded;
   }
@@ -97,6 +101,7 @@ static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source
   *place = (hl_loaded_volume){.source = source, .volume = volume};
   if (options == NULL) return place;
   place->array = options->array;
+  place->series = options->series;
   place->component = options->component;
   memcpy(place->spacing, options->spacing, sizeof place->spacing);
   return place;
@@ -125,6 +130,7 @@ static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
                                    hl_volume_load_options *options) {
   hl_volume_load_options_defaults(options);
   hl_status status = hl_json_text(reader, value, "array", &options->array);
+  if (status == HL_OK) status = hl_json_text(reader, value, "series", &options->series);
   if (status == HL_OK) status = read_component(reader, value, &options->component);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "spacing", 3, options->spacing);
   for (int axis = 0; status == HL_OK && axis < 3; axis++)
@@ -168,6 +174,7 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
   volume->volume = loaded->volume;
   volume->file = loaded->source;
   volume->array = options->array;
+  volume->series = options->series;
   volume->component = options->component;
   memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
   return HL_OK;
@@ -210,7 +217,7 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
     return hl_json_fail(reader, HL_ERROR_INPUT, "shapes", "and file exclude each other: remove one");
   if (!shapes && json_object_get(value, "voxel_size") != NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "voxel_size", "is for shapes: remove it");
-  static const char *const of_files[] = {"array", "component", "spacing"};
+  static const char *const of_files[] = {"array", "component", "spacing", "series"};
   for (size_t n = 0; shapes && n < sizeof of_files / sizeof *of_files; n++)
     if (json_object_get(value, of_files[n]) != NULL)
       return hl_json_fail(reader, HL_ERROR_INPUT, of_files[n], "is for files: remove it");
@@ -265,7 +272,7 @@ static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, h
   if (is_there(reader, file)) return HL_OK;
   json_t *merged = hl_json_copy(*value);
   json_object_del(merged, "stand_in");
-  static const char *const of_file[] = {"file", "array", "component", "spacing"};
+  static const char *const of_file[] = {"file", "array", "component", "spacing", "series"};
   for (size_t n = 0; n < sizeof of_file / sizeof *of_file; n++) json_object_del(merged, of_file[n]);
   if (shelf->stood_in == NULL) shelf->stood_in = json_array();
   bool failed = json_object_update(merged, (json_t *)stand_in) != 0;

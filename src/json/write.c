@@ -263,6 +263,7 @@ static void write_shapes(writer *w, const char *text) {
 /* How the file is read, where it is not by default. */
 static void write_source(writer *w, const hl_scene_volume *volume) {
   write_name(w, "file", volume->file);
+  if (volume->series != NULL) write_name(w, "series", volume->series);
   if (volume->array != NULL) write_name(w, "array", volume->array);
   if (volume->component == HL_COMPONENT_MAGNITUDE) write_name(w, "component", "magnitude");
   else if (volume->component >= 0) write_number(w, "component", volume->component);
@@ -342,9 +343,11 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "/volumes/%zu/shapes: is no text that hl_volume_from_shapes() reads: give that, or null",
                    index);
-  if (is_utf8(volume->file) && is_utf8(volume->name) && is_utf8(volume->array)) return HL_OK;
+  if (is_utf8(volume->file) && is_utf8(volume->name) && is_utf8(volume->array) && is_utf8(volume->series))
+    return HL_OK;
   return hl_fail(error, HL_ERROR_ARGUMENT,
-                 "/volumes/%zu: name, file or array is not UTF-8, as JSON texts must be: rename it", index);
+                 "/volumes/%zu: name, file, array or series is not UTF-8, as JSON texts must be: rename it",
+                 index);
 }
 
 static hl_status check_light_image(const float *pixels, const char *file, const char *key, size_t light,

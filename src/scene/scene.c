@@ -39,6 +39,7 @@ static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_release(context, (void *)volume->name);
   hl_release(context, (void *)volume->file);
   hl_release(context, (void *)volume->array);
+  hl_release(context, (void *)volume->series);
   hl_release(context, (void *)volume->shapes);
   hl_transfer_function_release(context, &volume->transfer_function);
   hl_volume_release(volume->volume);
@@ -96,13 +97,14 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
 static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to,
                              hl_error *error) {
   *to = *from;
-  to->name = to->file = to->shapes = to->array = NULL;
+  to->name = to->file = to->shapes = to->array = to->series = NULL;
   to->transfer_function = (hl_transfer_function){0};
   hl_volume_retain(to->volume);
   hl_status status = copy_text(context, from->name, &to->name, error);
   if (status == HL_OK) status = copy_text(context, from->file, &to->file, error);
   if (status == HL_OK) status = copy_text(context, from->shapes, &to->shapes, error);
   if (status == HL_OK) status = copy_text(context, from->array, &to->array, error);
+  if (status == HL_OK) status = copy_text(context, from->series, &to->series, error);
   if (status == HL_OK)
     status = hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);
   return status;

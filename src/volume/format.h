@@ -17,6 +17,7 @@ typedef struct hl_load_request {
   const char *array;      /* null: choose */
   int component;          /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
   double spacing[3];      /* world units; all 0: as in the file */
+  const char *series;     /* DICOM: number, UID or description; null: choose */
   hl_array_entry *arrays; /* owned; [array_count]; in the file's order */
   size_t array_count;
   size_t chosen; /* the array that is read */

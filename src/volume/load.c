@@ -161,7 +161,10 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
   if (options == NULL) options = &chosen;
   hl_status status = check_options(options, error);
   if (status != HL_OK) return status;
-  hl_load_request request = {.context = context, .array = options->array, .component = options->component};
+  hl_load_request request = {.context = context,
+                             .array = options->array,
+                             .component = options->component,
+                             .series = options->series};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
   status = options->bytes != NULL
