@@ -178,7 +178,7 @@ static cli_option with_setting(const cli_option *option) {
   const hl_setting *setting = option->setting != NULL ? hl_setting_find(option->setting_kind, option->setting)
                                                       : NULL;
   if (setting == NULL) return full;
-  full.choices = setting->choices;
+  if (setting->choices != NULL) full.choices = setting->choices;
   full.low = setting->low;
   full.high = setting->high;
   full.above = setting->open_low != 0;

@@ -40,7 +40,8 @@ typedef struct cli_option {
   bool whole;          /* whole numbers only */
   bool above;          /* low itself is excluded */
   double low, high;    /* the accepted range */
-  const char *setting; /* the key of a setting, whose range and choices the option has; null: its own */
+  const char *setting; /* the key of a setting: the option has its range, and its choices if it has any; null:
+                          its own */
   hl_setting_kind setting_kind;
   bool repeatable; /* OPTION_TEXT: each time adds a text */
   bool reserved;   /* known, but not in this version: not shown in help, refused when given */

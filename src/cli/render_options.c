@@ -54,8 +54,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .help = "under a .png: linear R,G,B 0..1, #rrggbb or a CSS\nname (both sRGB; "
                                    "default black, of bare volumes\ndark grey; black for --look mip)",
                            .choices = backgrounds,
-                           .low = 0,
-                           .high = 1},
+                           .setting_kind = HL_SETTINGS_IMAGE,
+                           .setting = "background"},
     [RENDER_EXPOSURE] =
         {.name = "exposure",
          .kind = OPTION_NUMBERS,
@@ -121,8 +121,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                      .argument = "DEG",
                      .help = "perspective with this vertical field of view\n(default 30)",
                      .count = 1,
-                     .low = 0.1,
-                     .high = 170},
+                     .setting_kind = HL_SETTINGS_CAMERA,
+                     .setting = "fovy_deg"},
     [RENDER_ORTHO] = {.name = "ortho",
                       .kind = OPTION_SWITCH,
                       .help = "parallel projection, the same framing"},
@@ -198,8 +198,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .group = "Light and shadows",
                         .help = "light from everywhere: a number for grey, linear\nR,G,B, #rrggbb or a CSS "
                                 "name (default 0.2; of bare\nvolumes chosen)",
-                        .low = 0,
-                        .high = 1000},
+                        .setting_kind = HL_SETTINGS_SCENE,
+                        .setting = "ambient"},
     [RENDER_LIGHT] = {.name = "light",
                       .kind = OPTION_NUMBERS,
                       .argument = "AZ,EL",

@@ -1,6 +1,7 @@
 /* scene/settings_table.c - the tables of settings: one row says all that is known about a key of a scene.
  *
- * A new setting is a field of a public struct and a row here. Ranges, defaults and names stand nowhere else.
+ * A new setting is a field of a public struct and a row here; scripts/settings then writes it into the schema
+ * and the manual page. Ranges, defaults and names stand nowhere else.
  */
 #include <stddef.h>
 
@@ -109,8 +110,8 @@ static const hl_setting camera_rows[] = {
 static const hl_setting light_rows[] = {
     {.key = "type", FIELD(hl_light, type), A_CHOICE(light_types), .sentence = "The shape of the light."},
     {.key = "frame", FIELD(hl_light, frame), A_CHOICE(light_frames), .optional = 1,
-     .sentence = "The axes that the light's positions and directions are in; a light in the camera's "
-                 "goes with it."},
+     .sentence = "The axes of the light's positions and directions: the world's, or the camera's (right, up, "
+                 "towards the viewer; from its target), with which the light goes."},
     {.key = "position", FIELD(hl_light, position), A_POINT, .only_for = PLACED,
      .sentence = "The centre of the light."},
     {.key = "direction", FIELD(hl_light, direction), A_DIRECTION, .standard = {0, 0, -1},
@@ -122,9 +123,9 @@ static const hl_setting light_rows[] = {
                  "its shadows are soft.",
      .mend = "give an angle in degrees from {low} (a sharp light) to {high}"},
     {.key = "edge1", FIELD(hl_light, edge1), A_POINT, .standard = {1, 0, 0}, .only_for = ONE(HL_LIGHT_RECT),
-     .sentence = "One full edge of the parallelogram."},
+     .sentence = "One full edge of the parallelogram; of no length, the light is a line."},
     {.key = "edge2", FIELD(hl_light, edge2), A_POINT, .standard = {0, 1, 0}, .only_for = ONE(HL_LIGHT_RECT),
-     .sentence = "The other full edge of the parallelogram."},
+     .sentence = "The other full edge of the parallelogram, likewise."},
     {.key = "normal", FIELD(hl_light, normal), A_DIRECTION, .standard = {0, 0, -1},
      .only_for = ONE(HL_LIGHT_DISK), .sentence = "The direction that the disk faces."},
     {.key = "opening_angle_deg", FIELD(hl_light, opening_angle_deg), .type = HL_SETTING_NUMBER,
@@ -137,7 +138,7 @@ static const hl_setting light_rows[] = {
      .mend = "give the width of the cone's smooth edge in degrees, from {low} to half the opening angle"},
     {.key = "radius", FIELD(hl_light, radius), .type = HL_SETTING_NUMBER, .unit = "world units",
      .high = HL_LIMIT_LENGTH, .only_for = ONE(HL_LIGHT_POINT) | ONE(HL_LIGHT_SPOT) | ONE(HL_LIGHT_DISK),
-     .sentence = "The radius of the sphere or the disk.",
+     .sentence = "The radius of the sphere or the disk; above 0 its shadows are soft.",
      .mend = "give a length in world units, {low} for a point"},
     {.key = "falloff", FIELD(hl_light, falloff), A_CHOICE(falloffs),
      .sentence = "How the light falls with the distance from its centre."},
@@ -145,7 +146,7 @@ static const hl_setting light_rows[] = {
      .high = HL_LIMIT_LENGTH, .standard = {1, 1, 1}, .sentence = "The colour of the light.",
      .mend = "give linear RGB, none below 0"},
     {.key = "intensity", FIELD(hl_light, intensity), .type = HL_SETTING_NUMBER, .unit = "",
-     .high = HL_LIMIT_INTENSITY, .standard = {1}, .sentence = "A factor on the colour.",
+     .high = HL_LIMIT_INTENSITY, .standard = {1}, .sentence = "A factor on the colour: a sample gets their product.",
      .mend = "give a factor, {low} or more"},
     {.key = "shadows", FIELD(hl_light, shadows), A_CHOICE(shadows), .standard = {HL_SHADOWS_DEFAULT},
      .optional = 1, .option = "shadows",
