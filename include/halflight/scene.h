@@ -141,6 +141,8 @@ typedef struct hl_scene_volume {
   int clipped;                     /* non-zero: only the box clip_min..clip_max is there */
   double clip_min[3], clip_max[3]; /* world units of the volume's own file, before the transform */
   double axis_scale[3]; /* times `scale`: along x, y and z of the volume's own file, before the rotation */
+  int time, channel, level; /* of the file (hl_volume_load_options), for hl_scene_to_json; default
+                               HL_INDEX_DEFAULT */
 } hl_scene_volume;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;

@@ -88,6 +88,10 @@ enum {
   HL_COMPONENT_MAGNITUDE = -2 /* the square root of the sum of squares, as float */
 };
 
+/* Instead of the index of a time step or channel: the first; of a resolution: the finest that the memory
+ * limit leaves room for. */
+enum { HL_INDEX_DEFAULT = -1 };
+
 typedef struct hl_volume_load_options {
   size_t struct_size; /* set by hl_volume_load_options_defaults() */
   const char *array;  /* name of one of the file's arrays; null: the file's active one, else the first scalar,
@@ -101,6 +105,8 @@ typedef struct hl_volume_load_options {
   size_t byte_count;
   const char
       *series; /* DICOM: of several series this one: its number, UID or description; null: the largest */
+  int time, channel, level; /* of several time steps, channels or resolutions (0: the finest) this one, from 0
+                               on; default HL_INDEX_DEFAULT */
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);
@@ -138,6 +144,17 @@ typedef struct hl_volume_array {
 HL_API size_t hl_volume_array_count(const hl_volume *volume);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_array(const hl_volume *volume, size_t index,
                                                     hl_volume_array *array);
+
+/* How many time steps, channels and resolutions the volume's file has, each at least 1, and which were
+ * read. */
+typedef struct hl_volume_selection {
+  size_t struct_size; /* set by the caller */
+  size_t times, channels, levels;
+  int time, channel, level;
+} hl_volume_selection;
+
+HL_API HL_WARN_UNUSED hl_status hl_volume_get_selection(const hl_volume *volume,
+                                                        hl_volume_selection *selection);
 
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */
 HL_API double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k);

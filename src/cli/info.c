@@ -9,7 +9,17 @@
 #include "input.h"
 #include "json_writer.h"
 
-enum info_option { INFO_JSON, INFO_ARRAY, INFO_COMPONENT, INFO_SERIES, INFO_MAX_MEMORY, INFO_OPTION_COUNT };
+enum info_option {
+  INFO_JSON,
+  INFO_ARRAY,
+  INFO_COMPONENT,
+  INFO_SERIES,
+  INFO_TIME,
+  INFO_CHANNEL,
+  INFO_LEVEL,
+  INFO_MAX_MEMORY,
+  INFO_OPTION_COUNT
+};
 
 static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_JSON] = {.name = "json",
@@ -19,6 +29,9 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_ARRAY] = INPUT_OPTION_ARRAY(NULL),
     [INFO_COMPONENT] = INPUT_OPTION_COMPONENT,
     [INFO_SERIES] = INPUT_OPTION_SERIES,
+    [INFO_TIME] = INPUT_OPTION_TIME,
+    [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
+    [INFO_LEVEL] = INPUT_OPTION_LEVEL,
     [INFO_MAX_MEMORY] =
         {.name = "max-memory",
          .kind = OPTION_BYTES,
@@ -44,6 +57,26 @@ static void print_json_arrays(json_writer *json, const hl_volume *volume) {
   json_integer(json, "components", chosen.components);
   if (chosen.component == HL_COMPONENT_MAGNITUDE) json_text(json, "component", "magnitude");
   else json_integer(json, "component", (uint64_t)chosen.component);
+}
+
+/* How many time steps, channels and resolutions there are, and which were read. */
+static void print_json_selection(json_writer *json, const hl_volume *volume) {
+  hl_volume_selection selection = {.struct_size = sizeof selection};
+  if (hl_volume_get_selection(volume, &selection) != HL_OK) return;
+  json_integer(json, "times", selection.times);
+  json_integer(json, "time", (uint64_t)selection.time);
+  json_integer(json, "channels", selection.channels);
+  json_integer(json, "channel", (uint64_t)selection.channel);
+  json_integer(json, "levels", selection.levels);
+  json_integer(json, "level", (uint64_t)selection.level);
+}
+
+static void print_selection(const hl_volume *volume) {
+  hl_volume_selection s = {.struct_size = sizeof s};
+  if (hl_volume_get_selection(volume, &s) != HL_OK) return;
+  if (s.times > 1) printf("  times       %zu: time %d is shown\n", s.times, s.time);
+  if (s.channels > 1) printf("  channels    %zu: channel %d is shown\n", s.channels, s.channel);
+  if (s.levels > 1) printf("  levels      %zu: level %d is shown\n", s.levels, s.level);
 }
 
 static void print_arrays(const hl_volume *volume) {
@@ -86,6 +119,7 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   json_number(&json, "mean", info->mean);
   json_integer(&json, "nonfinite_count", info->nonfinite_count);
   print_json_arrays(&json, volume);
+  print_json_selection(&json, volume);
   json_text(&json, "taken_for", kind);
   json_integers(&json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
   json_close(&json);
@@ -122,6 +156,7 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
          info->dimensions[2], voxels);
   printf("  type        %s\n", hl_voxel_type_name(info->type));
   print_arrays(volume);
+  print_selection(volume);
   printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
   printf("  origin      %.9g, %.9g, %.9g\n", info->origin[0], info->origin[1], info->origin[2]);
   for (int axis = 0; axis < 3; axis++)
@@ -151,7 +186,7 @@ static int run_info(const cli_value *values, char **operands) {
   hl_error error = {0};
   hl_volume_load_options load;
   cli_input input = {0};
-  input_load_options(&values[INFO_ARRAY], &values[INFO_COMPONENT], &values[INFO_SERIES], NULL, &load);
+  input_load_options(&values[INFO_ARRAY], NULL, &load);
   exit_code = input_open(operands[0], values[INFO_MAX_MEMORY].bytes, &input);
   hl_status status = exit_code == EXIT_CODE_OK
                          ? input_load_volume(host.context, &input, &load, &volume, &error)

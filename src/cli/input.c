@@ -142,13 +142,16 @@ void input_close(cli_input *input) {
 
 /* ---- what it holds ---- */
 
-void input_load_options(const cli_value *array, const cli_value *component, const cli_value *series,
-                        const cli_value *spacing, hl_volume_load_options *options) {
+void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options) {
+  const cli_value *component = &reading[READ_COMPONENT];
   hl_volume_load_options_defaults(options);
-  if (array->given) options->array = array->text;
-  if (series->given) options->series = series->text;
+  if (reading[READ_ARRAY].given) options->array = reading[READ_ARRAY].text;
+  if (reading[READ_SERIES].given) options->series = reading[READ_SERIES].text;
   if (component->given)
     options->component = component->chosen ? HL_COMPONENT_MAGNITUDE : (int)component->number[0];
+  if (reading[READ_TIME].given) options->time = (int)reading[READ_TIME].number[0];
+  if (reading[READ_CHANNEL].given) options->channel = (int)reading[READ_CHANNEL].number[0];
+  if (reading[READ_LEVEL].given) options->level = (int)reading[READ_LEVEL].number[0];
   if (spacing != NULL && spacing->given) memcpy(options->spacing, spacing->number, sizeof options->spacing);
 }
 
@@ -171,6 +174,7 @@ static hl_status name_source(hl_context *context, const hl_volume_load_options *
   volume.array = options->array;
   volume.series = options->series;
   volume.component = options->component;
+  volume.time = options->time, volume.channel = options->channel, volume.level = options->level;
   memcpy(volume.spacing, options->spacing, sizeof volume.spacing);
   description.volumes = &volume;
   hl_status status = hl_scene_create(context, &description, &named, error);

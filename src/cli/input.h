@@ -23,7 +23,8 @@ typedef struct cli_input {
   size_t length;
 } cli_input;
 
-/* The rows of --array and --component in a subcommand's table of options; heading: see cli_option.group. */
+/* The rows of --array, --component, --time, --channel and --level in a subcommand's table of options;
+ * heading: see cli_option.group. */
 #define INPUT_OPTION_ARRAY(heading)                                                                     \
   {                                                                                                     \
     .name = "array", .kind = OPTION_TEXT, .argument = "NAME", .group = (heading),                       \
@@ -42,7 +43,22 @@ typedef struct cli_input {
     .name = "series", .kind = OPTION_TEXT, .argument = "NAME",                                         \
     .help = "of several DICOM series this one: its number, UID\nor description (default: the largest)" \
   }
+#define INPUT_OPTION_INDEX(word, text)                                                                  \
+  {                                                                                                     \
+    .name = (word), .kind = OPTION_NUMBERS, .argument = "N", .help = (text), .count = 1, .whole = true, \
+    .low = 0, .high = 1e9                                                                               \
+  }
+#define INPUT_OPTION_TIME INPUT_OPTION_INDEX("time", "of several time steps this one, from 0 (default: 0)")
+#define INPUT_OPTION_CHANNEL \
+  INPUT_OPTION_INDEX("channel", "of several channels this one, from 0 (default: 0)")
+#define INPUT_OPTION_LEVEL \
+  INPUT_OPTION_INDEX(      \
+      "level",             \
+      "of several resolutions this one; 0 is the finest\n(default: the finest that fits into memory)")
 extern const cli_choice input_magnitudes[];
+
+/* The order in which a subcommand's table has these options. */
+enum input_reading { READ_ARRAY, READ_COMPONENT, READ_SERIES, READ_TIME, READ_CHANNEL, READ_LEVEL };
 
 /* Finds out what an input is: told by name; where the name says nothing, by its first bytes. limit: bytes
  * that may be held of a pipe; 0: half of the machine's memory. Returns the exit code; close it in any
@@ -50,10 +66,9 @@ extern const cli_choice input_magnitudes[];
 int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
-/* What --array, --component, --series and --spacing (null: a command without it) say of how a volume is read.
- */
-void input_load_options(const cli_value *array, const cli_value *component, const cli_value *series,
-                        const cli_value *spacing, hl_volume_load_options *options);
+/* What --array and the options after it (enum input_reading), and --spacing (null: a command without it), say
+ * of how a volume is read. */
+void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
 /* How bare volumes are read (hl_volume_load_options without bytes); null: by default. */
 hl_status input_load_volume(hl_context *context, const cli_input *input,

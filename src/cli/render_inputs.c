@@ -79,8 +79,7 @@ static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene 
 static int load_each(cli_host *host, const cli_value *values, const cli_input *inputs, size_t count,
                      hl_scene **scenes) {
   hl_volume_load_options options;
-  input_load_options(&values[RENDER_ARRAY], &values[RENDER_COMPONENT], &values[RENDER_SERIES],
-                     &values[RENDER_SPACING], &options);
+  input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], &options);
   for (size_t n = 0; n < count; n++) {
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;

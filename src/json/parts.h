@@ -18,7 +18,7 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
 typedef struct hl_loaded_volume {
   char *source;      /* owned; the file's path, or the text of its shapes */
   const char *array; /* how a file was read; the tree's */
-  int component;
+  int component, time, channel, level;
   const char *series;
   double spacing[3];
   hl_volume *volume; /* owned */

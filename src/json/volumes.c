@@ -21,8 +21,12 @@ static const char *const volume_keys[] = {"name",       "stand_in",
                                           "visible",    "casts_shadow",
                                           "clip",       "receives_shadow",
                                           "array",      "component",
-                                          "spacing",    "series",
-                                          NULL};
+                                          "time",       "channel",
+                                          "level",      "spacing",
+                                          "series",     NULL};
+
+/* How a file is read. */
+static const char *const of_file[] = {"array", "component", "time", "channel", "level", "series", "spacing"};
 
 static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   static const char *const keys[] = {"axis", "angle_deg", NULL};
@@ -86,7 +90,9 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
     const hl_loaded_volume *loaded = &shelf->loaded[v];
     if (strcmp(loaded->source, source) != 0) continue;
     if (options == NULL) return loaded;
-    if (same_text(loaded->array, options->array) && same_text(loaded->series, options->series) &&
+    bool same_step = loaded->time == options->time && loaded->channel == options->channel &&
+                     loaded->level == options->level;
+    if (same_text(loaded->array, options->array) && same_text(loaded->series, options->series) && same_step &&
         loaded->component == options->component &&
         memcmp(loaded->spacing, options->spacing, sizeof loaded->spacing) == 0)
       return loaded;
@@ -103,6 +109,7 @@ static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source
   place->array = options->array;
   place->series = options->series;
   place->component = options->component;
+  place->time = options->time, place->channel = options->channel, place->level = options->level;
   memcpy(place->spacing, options->spacing, sizeof place->spacing);
   return place;
 }
@@ -125,6 +132,15 @@ static hl_status read_component(hl_json_reader *reader, const json_t *value, int
   return hl_json_integer(reader, value, "component", component);
 }
 
+static hl_status read_index(hl_json_reader *reader, const json_t *value, const char *key, int *index) {
+  const json_t *given = json_object_get(value, key);
+  if (given == NULL) return HL_OK;
+  hl_status status = hl_json_integer(reader, value, key, index);
+  return status == HL_OK && *index < 0
+             ? hl_json_fail(reader, HL_ERROR_INPUT, key, "is below 0: give a number from 0 on")
+             : status;
+}
+
 /* How the volume's file is read. */
 static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
                                    hl_volume_load_options *options) {
@@ -132,6 +148,9 @@ static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
   hl_status status = hl_json_text(reader, value, "array", &options->array);
   if (status == HL_OK) status = hl_json_text(reader, value, "series", &options->series);
   if (status == HL_OK) status = read_component(reader, value, &options->component);
+  if (status == HL_OK) status = read_index(reader, value, "time", &options->time);
+  if (status == HL_OK) status = read_index(reader, value, "channel", &options->channel);
+  if (status == HL_OK) status = read_index(reader, value, "level", &options->level);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "spacing", 3, options->spacing);
   for (int axis = 0; status == HL_OK && axis < 3; axis++)
     if (json_object_get(value, "spacing") != NULL && !(options->spacing[axis] > 0))
@@ -176,6 +195,7 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
   volume->array = options->array;
   volume->series = options->series;
   volume->component = options->component;
+  volume->time = options->time, volume->channel = options->channel, volume->level = options->level;
   memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
   return HL_OK;
 }
@@ -217,10 +237,9 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
     return hl_json_fail(reader, HL_ERROR_INPUT, "shapes", "and file exclude each other: remove one");
   if (!shapes && json_object_get(value, "voxel_size") != NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "voxel_size", "is for shapes: remove it");
-  static const char *const of_files[] = {"array", "component", "spacing", "series"};
-  for (size_t n = 0; shapes && n < sizeof of_files / sizeof *of_files; n++)
-    if (json_object_get(value, of_files[n]) != NULL)
-      return hl_json_fail(reader, HL_ERROR_INPUT, of_files[n], "is for files: remove it");
+  for (size_t n = 0; shapes && n < sizeof of_file / sizeof *of_file; n++)
+    if (json_object_get(value, of_file[n]) != NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, of_file[n], "is for files: remove it");
   if (shapes) return read_shapes(reader, value, shelf, volume);
   if (file == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is missing: name the volume's file, or give shapes");
@@ -272,7 +291,7 @@ static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, h
   if (is_there(reader, file)) return HL_OK;
   json_t *merged = hl_json_copy(*value);
   json_object_del(merged, "stand_in");
-  static const char *const of_file[] = {"file", "array", "component", "spacing", "series"};
+  json_object_del(merged, "file");
   for (size_t n = 0; n < sizeof of_file / sizeof *of_file; n++) json_object_del(merged, of_file[n]);
   if (shelf->stood_in == NULL) shelf->stood_in = json_array();
   bool failed = json_object_update(merged, (json_t *)stand_in) != 0;

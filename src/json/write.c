@@ -267,6 +267,9 @@ static void write_source(writer *w, const hl_scene_volume *volume) {
   if (volume->array != NULL) write_name(w, "array", volume->array);
   if (volume->component == HL_COMPONENT_MAGNITUDE) write_name(w, "component", "magnitude");
   else if (volume->component >= 0) write_number(w, "component", volume->component);
+  if (volume->time >= 0) write_number(w, "time", volume->time);
+  if (volume->channel >= 0) write_number(w, "channel", volume->channel);
+  if (volume->level >= 0) write_number(w, "level", volume->level);
   if (volume->spacing[0] > 0) write_row(w, "spacing", volume->spacing, 3);
 }
 

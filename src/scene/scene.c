@@ -20,7 +20,11 @@ void hl_light_defaults(hl_light *light) {
 
 void hl_scene_volume_defaults(hl_scene_volume *volume) {
   if (volume == NULL) return;
-  *volume = (hl_scene_volume){.component = HL_COMPONENT_DEFAULT, .axis_scale = {1, 1, 1}};
+  *volume = (hl_scene_volume){.component = HL_COMPONENT_DEFAULT,
+                              .axis_scale = {1, 1, 1},
+                              .time = HL_INDEX_DEFAULT,
+                              .channel = HL_INDEX_DEFAULT,
+                              .level = HL_INDEX_DEFAULT};
   hl_settings_defaults(HL_SETTINGS_VOLUME, volume);
   hl_settings_defaults(HL_SETTINGS_MATERIAL, &volume->material);
   hl_settings_defaults(HL_SETTINGS_TRANSFER_FUNCTION, &volume->transfer_function);

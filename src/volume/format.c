@@ -81,23 +81,91 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   return HL_OK;
 }
 
+/* One of `count` things of a kind; by default the first. */
+static hl_status choose_step(const char *path, const char *kind, int wanted, size_t count, int *chosen,
+                             hl_error *error) {
+  if (wanted >= 0 && (size_t)wanted >= count && count <= 1)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no %s %d: the file has one, 0: leave \"%s\" out",
+                   path, kind, wanted, kind);
+  if (wanted >= 0 && (size_t)wanted >= count)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no %s %d: choose 0 to %zu", path, kind, wanted,
+                   count - 1);
+  *chosen = wanted >= 0 ? wanted : 0;
+  return HL_OK;
+}
+
+hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
+                          hl_error *error) {
+  hl_selection *selection = &request->selection;
+  selection->times = times;
+  selection->channels = channels;
+  hl_status status = choose_step(path, "time", request->time, times, &selection->time, error);
+  if (status == HL_OK)
+    status = choose_step(path, "channel", request->channel, channels, &selection->channel, error);
+  bool time = times > 1 && request->time<0, channel = channels> 1 && request->channel < 0;
+  if (status == HL_OK && (time || channel))
+    snprintf(request->selection_told, sizeof request->selection_told,
+             "%.200s: %zu time step%s and %zu channel%s: %s%s%s %s taken: choose by %s%s%s", path, times,
+             times > 1 ? "s" : "", channels, channels > 1 ? "s" : "", time ? "time 0" : "",
+             time && channel ? " and " : "", channel ? "channel 0" : "", time && channel ? "are" : "is",
+             time ? "\"time\" (--time)" : "", time && channel ? " and " : "",
+             channel ? "\"channel\" (--channel)" : "");
+  return status;
+}
+
+/* Refuses numbers that the file does not have. */
+static hl_status check_steps(const hl_load_request *request, const char *path, hl_error *error) {
+  const hl_selection *selection = &request->selection;
+  int unused;
+  hl_status status = choose_step(path, "time", request->time, selection->times, &unused, error);
+  if (status == HL_OK)
+    status = choose_step(path, "channel", request->channel, selection->channels, &unused, error);
+  return status == HL_OK ? choose_step(path, "level", request->level, selection->levels, &unused, error)
+                         : status;
+}
+
 /* Chooses the default component, and writes a warning that names it. */
 static int default_component(hl_load_request *request, const char *path, bool is_series, size_t components) {
   bool magnitude = !is_series && components <= 3;
-  snprintf(request->component_told, sizeof request->component_told,
-           "%.200s: %s: %s is taken: choose by \"component\" (--component): 0 to %zu, or magnitude", path,
-           is_series ? "a series of volumes" : "voxels of several components",
-           magnitude   ? "their magnitude"
-           : is_series ? "the first, 0,"
-                       : "component 0",
-           components - 1);
+  if (is_series)
+    snprintf(request->component_told, sizeof request->component_told,
+             "%.200s: a series of volumes: the first, 0, is taken: choose by \"time\" (--time): 0 to %zu",
+             path, components - 1);
+  else
+    snprintf(request->component_told, sizeof request->component_told,
+             "%.200s: voxels of several components: %s is taken: choose by \"component\" (--component): 0 to "
+             "%zu, or magnitude",
+             path, magnitude ? "their magnitude" : "component 0", components - 1);
   return magnitude ? HL_COMPONENT_MAGNITUDE : 0;
+}
+
+/* In a series, sets *wanted to the component that the caller names by its time or channel. */
+static hl_status component_of_steps(hl_load_request *request, const char *path, bool is_series,
+                                    const hl_payload *payload, int *wanted, hl_error *error) {
+  hl_selection *selection = &request->selection;
+  if (selection->times == 1 && selection->channels == 1 && is_series) selection->times = payload->components;
+  hl_status status = check_steps(request, path, error);
+  bool named = is_series && ((request->time >= 0 && selection->times > 1) ||
+                             (request->channel >= 0 && selection->channels > 1));
+  if (status != HL_OK || !named) return status;
+  if (request->component != HL_COMPONENT_DEFAULT)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: its components are its time steps and channels: leave \"component\" out", path);
+  int time = request->time >= 0 ? request->time : 0, channel = request->channel >= 0 ? request->channel : 0;
+  int first; /* component of the channel's first time step */
+  if (!__builtin_mul_overflow(selection->times, channel, &first) &&
+      !__builtin_add_overflow(first, time, wanted))
+    return HL_OK;
+  return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: time %d of channel %d lies too far in the file", path,
+                 time, channel);
 }
 
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error) {
   size_t components = payload->components;
   int wanted = request->component;
+  hl_status status = component_of_steps(request, path, is_series, payload, &wanted, error);
+  if (status != HL_OK) return status;
   if (components == 1 && (wanted == HL_COMPONENT_DEFAULT || wanted == 0)) {
     payload->component = request->chosen_component = 0;
     return HL_OK;
@@ -110,6 +178,10 @@ hl_status hl_component_choose(hl_load_request *request, const char *path, bool i
     return hl_fail(error, HL_ERROR_INPUT, "%s: there is no component %d: choose 0 to %zu, or magnitude", path,
                    wanted, components - 1);
   payload->component = request->chosen_component = wanted;
+  if (is_series && wanted >= 0) {
+    request->selection.time = (int)((size_t)wanted % request->selection.times);
+    request->selection.channel = (int)((size_t)wanted / request->selection.times);
+  }
   return HL_OK;
 }
 

@@ -14,17 +14,21 @@ enum { HL_ARRAYS_MOST = 256 }; /* most arrays that are listed for one file */
 /* The caller's wishes, and what the reader found in the file. */
 typedef struct hl_load_request {
   hl_context *context;
-  const char *array;      /* null: choose */
-  int component;          /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
-  double spacing[3];      /* world units; all 0: as in the file */
-  const char *series;     /* DICOM: number, UID or description; null: choose */
-  hl_array_entry *arrays; /* owned; [array_count]; in the file's order */
+  const char *array;        /* null: choose */
+  int component;            /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
+  double spacing[3];        /* world units; all 0: as in the file */
+  int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
+  const char *series;       /* DICOM: number, UID or description; null: choose */
+  hl_array_entry *arrays;   /* owned; [array_count]; in the file's order */
   size_t array_count;
   size_t chosen; /* the array that is read */
   int chosen_component;
-  bool more; /* the file has arrays beyond HL_ARRAYS_MOST */
-  char array_told[1000],
-      component_told[400]; /* warnings that name the array and component chosen by default; "": none */
+  bool more;              /* the file has arrays beyond HL_ARRAYS_MOST */
+  hl_selection selection; /* what there is of times, channels and levels, and what is read; counts are 1
+                             before the reader chooses */
+  char array_told[1000], component_told[400],
+      selection_told[600]; /* warnings that name the array, component, time and channel chosen by default; "":
+                              none */
 } hl_load_request;
 
 /* Adds an array to the list. name: "" if the format has no names; type: 0 if arrays of this type cannot be
@@ -39,9 +43,16 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
 
 /* Chooses the component to read, and sets it in the payload, whose `components` and `block` are known: the
  * wanted component; else the only one; else the magnitude of vectors of two or three components; else the
- * first component. is_series: components are steps of a series, of which the first is read by default. */
+ * first component. is_series: components are the time steps of each channel, of which the first is read by
+ * default; their numbers are those of request->selection, or all are time steps. Refuses a time, a channel or
+ * a level that request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
+
+/* Chooses among the file's time steps and channels, and sets request->selection, but for its levels; refuses
+ * a number that the file does not have. */
+hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
+                          hl_error *error);
 
 /* For formats of one array without a name: lists it and chooses the component. */
 hl_status hl_component_only(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,

@@ -130,7 +130,11 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
 
 void hl_volume_load_options_defaults(hl_volume_load_options *options) {
   if (options == NULL) return;
-  *options = (hl_volume_load_options){.struct_size = sizeof *options, .component = HL_COMPONENT_DEFAULT};
+  *options = (hl_volume_load_options){.struct_size = sizeof *options,
+                                      .component = HL_COMPONENT_DEFAULT,
+                                      .time = HL_INDEX_DEFAULT,
+                                      .channel = HL_INDEX_DEFAULT,
+                                      .level = HL_INDEX_DEFAULT};
 }
 
 static hl_status check_options(const hl_volume_load_options *options, hl_error *error) {
@@ -142,6 +146,11 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
   if (options->component < HL_COMPONENT_MAGNITUDE)
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s: component is %d: give an index or an HL_COMPONENT_ value",
                    subject, options->component);
+  if (options->time < HL_INDEX_DEFAULT || options->channel < HL_INDEX_DEFAULT ||
+      options->level < HL_INDEX_DEFAULT)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "%s: time %d, channel %d, level %d: give an index or HL_INDEX_DEFAULT for each", subject,
+                   options->time, options->channel, options->level);
   bool given = options->spacing[0] != 0 || options->spacing[1] != 0 || options->spacing[2] != 0;
   for (int axis = 0; axis < 3; axis++)
     if (given && !(options->spacing[axis] > 0 && isfinite(options->spacing[axis])))
@@ -164,7 +173,11 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
   hl_load_request request = {.context = context,
                              .array = options->array,
                              .component = options->component,
-                             .series = options->series};
+                             .series = options->series,
+                             .time = options->time,
+                             .channel = options->channel,
+                             .level = options->level,
+                             .selection = {1, 1, 1, 0, 0, 0}};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
   status = options->bytes != NULL
@@ -178,6 +191,8 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
   }
   if (request.array_told[0] != 0) hl_log(context, HL_LOG_WARNING, "%s", request.array_told);
   if (request.component_told[0] != 0) hl_log(context, HL_LOG_WARNING, "%s", request.component_told);
+  if (request.selection_told[0] != 0) hl_log(context, HL_LOG_WARNING, "%s", request.selection_told);
+  (*volume)->selection = request.selection;
   (*volume)->arrays = request.arrays;
   (*volume)->array_count = request.array_count;
   (*volume)->chosen_array = request.chosen;

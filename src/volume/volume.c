@@ -115,6 +115,7 @@ static hl_volume *make_volume(hl_context *context, const hl_volume_description *
   memcpy(volume->dimension, description->dimensions, sizeof volume->dimension);
   volume->type = description->type;
   volume->space = description->space;
+  volume->selection = (hl_selection){1, 1, 1, 0, 0, 0};
   volume->storage = hl_voxel_type_storage(description->type);
   volume->value_scale = description->value_scale;
   volume->value_offset = description->value_offset -
@@ -292,6 +293,15 @@ hl_status hl_volume_get_array(const hl_volume *volume, size_t index, hl_volume_a
                              entry->of_cells,
                              chosen,
                              chosen ? volume->component : HL_COMPONENT_DEFAULT};
+  return HL_OK;
+}
+
+hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *selection) {
+  if (volume == NULL || selection == NULL || selection->struct_size != sizeof *selection)
+    return HL_ERROR_ARGUMENT;
+  const hl_selection *read = &volume->selection;
+  *selection = (hl_volume_selection){sizeof *selection, read->times,   read->channels, read->levels,
+                                     read->time,        read->channel, read->level};
   return HL_OK;
 }
 

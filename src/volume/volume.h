@@ -23,6 +23,12 @@ typedef struct hl_array_entry {
   bool of_cells;
 } hl_array_entry;
 
+/* Time steps, channels and resolutions of a file, each at least 1, and those that are read. */
+typedef struct hl_selection {
+  size_t times, channels, levels;
+  int time, channel, level;
+} hl_selection;
+
 struct hl_volume {
   hl_context *context;
   atomic_int references;
@@ -42,6 +48,7 @@ struct hl_volume {
   hl_array_entry *arrays; /* owned; [array_count]; null unless loaded */
   size_t array_count, chosen_array;
   int component; /* index of the component that was read, or HL_COMPONENT_MAGNITUDE */
+  hl_selection selection;
 };
 
 static inline size_t hl_storage_bytes(hl_storage storage) {

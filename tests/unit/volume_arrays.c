@@ -156,6 +156,67 @@ static void test_series(void **state) {
   hl_context_destroy(context);
 }
 
+static hl_status load_step(hl_context *context, const byte_buffer *file, int time, int channel, int level,
+                           double *value, hl_error *error) {
+  hl_volume_load_options options = load_options(NULL, HL_COMPONENT_DEFAULT);
+  options.bytes = file->data, options.byte_count = file->length;
+  options.time = time, options.channel = channel, options.level = level;
+  hl_volume *volume = NULL;
+  hl_status status = hl_volume_load_with(context, "memory", &options, &volume, error);
+  if (status != HL_OK) return status;
+  hl_volume_selection s = {.struct_size = sizeof s};
+  assert_int_equal(hl_volume_get_selection(volume, &s), HL_OK);
+  assert_int_equal(s.times, 3);
+  assert_int_equal(s.channels, 2);
+  assert_true(s.levels == 1 && s.level == 0 && s.time == (time > 0 ? time : 0) &&
+              s.channel == (channel > 0 ? channel : 0));
+  *value = hl_volume_value(volume, 1, 0, 0);
+  hl_volume_release(volume);
+  return HL_OK;
+}
+
+/* NIfTI: the fourth axis is time, the fifth channels. */
+static void test_times_and_channels(void **state) {
+  (void)state;
+  told t = {0};
+  hl_context *context = make_context(&t);
+  byte_buffer file = {.length = 0};
+  unsigned char header[352] = {
+      [0] = 348 & 255, [1] = 348 >> 8, [40] = 5, [42] = 2,    [44] = 1, [46] = 1, [48] = 3,
+      [50] = 2,        [70] = 2,       [72] = 8, [344] = 'n', '+',      '1'};
+  memcpy(header + 108, (const unsigned char[]){0, 0, 0xb0, 0x43}, 4); /* vox_offset: 352 */
+  add(&file, header, sizeof header);
+  for (int n = 0; n < 2 * 3 * 2; n++) add_integer(&file, (uint64_t)n, 1, false);
+  hl_error error = {0};
+  double value = 0;
+  for (int time = 0; time < 3; time++)
+    for (int channel = 0; channel < 2; channel++) {
+      assert_int_equal(load_step(context, &file, time, channel, HL_INDEX_DEFAULT, &value, &error), HL_OK);
+      assert_true(value == 1 + 2 * (time + 3 * channel));
+    }
+  assert_int_equal(t.warnings, 0);
+  assert_int_equal(load_step(context, &file, HL_INDEX_DEFAULT, 1, 0, &value, &error), HL_OK);
+  assert_true(value == 7);
+  assert_int_equal(load_step(context, &file, -1, -1, -1, &value, &error), HL_OK);
+  assert_true(value == 1 && t.warnings == 1);
+  assert_non_null(strstr(t.last, "(--time)"));
+  assert_int_equal(load_step(context, &file, 3, 0, 0, &value, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "there is no time 3: choose 0 to 2"));
+  assert_int_equal(load_step(context, &file, 0, 2, 0, &value, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "there is no channel 2: choose 0 to 1"));
+  assert_int_equal(load_step(context, &file, 0, 0, 1, &value, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "there is no level 1: the file has one, 0"));
+  assert_int_equal(load_step(context, &file, -2, 0, 0, &value, &error), HL_ERROR_ARGUMENT);
+  hl_volume_load_options options = load_options(NULL, 1);
+  options.bytes = file.data, options.byte_count = file.length;
+  options.time = 1;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "leave \"component\" out"));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* More values than a stage holds, in blocks that are read and blocks that are passed over. */
 static void test_large_components(void **state) {
   (void)state;
@@ -280,6 +341,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_arrays_are_chosen_by_name),
                                      cmocka_unit_test(test_components),
                                      cmocka_unit_test(test_series),
+                                     cmocka_unit_test(test_times_and_channels),
                                      cmocka_unit_test(test_large_components),
                                      cmocka_unit_test(test_spacing_takes_the_place_of_the_files),
                                      cmocka_unit_test(test_values_of_half_floats),

@@ -10,3 +10,8 @@ halflight info a.vti --array v 2>message | grep -A2 arrays
 halflight info a.vti --array v --component magnitude --json >info.json
 tool json info.json "[[a[key] for key in ('name', 'type', 'components', 'of_cells', 'chosen')] for a in d['arrays']]"
 tool json info.json "d['components'], d['component'], d['type'], d['range']"
+# A series: its time steps.
+printf 'NDims = 4\nDimSize = 2 1 1 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n123456' >s.mha
+halflight info s.mha --time 2 | grep -A1 times
+halflight info s.mha --time 1 --json >info.json
+tool json info.json "[d[key] for key in ('times', 'time', 'channels', 'channel', 'levels', 'level', 'range')]"
