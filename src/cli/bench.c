@@ -1,4 +1,4 @@
-/* cli/bench.c - `halflight bench [INPUT ...]`: times frames of moving scenes, kinds of shadows in turn. */
+/* cli/bench.c - `halflight bench [INPUT ...]`: times frames of a moving scene with each kind of shadows. */
 #define _GNU_SOURCE
 #include "bench.h"
 
@@ -104,7 +104,7 @@ typedef struct bench_job {
   bench_result *result;
 } bench_job;
 
-/* Options that bench shares with render, as render's own. */
+/* Applies the options that bench has in common with render, by render's own function. */
 static int change_scene(bench_job *job) {
   static const struct {
     enum bench_option from;
@@ -161,7 +161,7 @@ static int open_renderers(bench_job *job) {
   return EXIT_CODE_OK;
 }
 
-/* What all threads have spent: on a busy machine it says more than the clock. */
+/* Processor time of all threads together: on a busy machine it says more than the clock. */
 static double processor_seconds(void) {
   struct timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -182,8 +182,8 @@ static bench_sample sample_of(double frame, const hl_render_statistics *statisti
   return sample;
 }
 
-/* One frame of one setting; frame -1 is the warm-up. A setting that the renderer does not know is left out
- * from then on. */
+/* Renders one frame of one setting; frame -1 is the warm-up. Where sub-lights are not supported, their
+ * setting is left out from then on. */
 static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   bench_result *result = job->result;
   bench_run *run = &result->run[setting];
@@ -249,8 +249,7 @@ static double seconds_of(const bench_sample *sample, int stage) {
   return stage == WHOLE_FRAME ? sample->frame : stage == PROCESSOR ? sample->processor : sample->stage[stage];
 }
 
-/* The first kind of shadows that was measured; its figures of the volume and the machine hold for every kind.
- */
+/* The first kind of shadows that was measured. Its counts of voxels and threads are those of every kind. */
 static const bench_run *first_measured(const bench_result *result) {
   int setting = 0;
   while (setting < SETTING_COUNT - 1 && !result->run[setting].supported) setting++;
@@ -275,7 +274,7 @@ static void print_pair(json_writer *json, const char *key, uint64_t filled, uint
   json_close(json);
 }
 
-/* Of the last frame. */
+/* The work of the last frame. */
 static void print_work(json_writer *json, const char *key, const hl_render_statistics *s) {
   json_open_object(json, key);
   json_integer(json, "sheets", (uint64_t)s->sheets);

@@ -65,12 +65,12 @@ typedef struct bench_result {
   bench_run run[SETTING_COUNT];
 } bench_result;
 
-/* The scene as a frame of one setting sees it; null after a printed error. at: 0 to 1, the place in the
- * motion. */
+/* A scene with the shadows of one setting at one moment of the motion; at: from 0, its start, to 1, its end.
+ * Null after a printed error, with *exit_code set. */
 hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setting setting,
                          enum bench_move move, double at, int *exit_code);
 
-/* A scene without files: balls in a box. */
+/* Makes a scene without files: balls along a knotted line. */
 hl_status bench_scene_built_in(hl_context *context, hl_scene **scene, hl_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-/* cli/bench_scene.c - the scenes of `halflight bench`: one for each setting and place in a motion. */
+/* cli/bench_scene.c - the scenes of `halflight bench`: one for each setting and moment of the motion. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,8 +27,8 @@ static void turn_camera(hl_camera *camera, const double axis[3], double angle_ra
   for (int i = 0; i < 3; i++) camera->position[i] += camera->target[i];
 }
 
-/* A light turns about the camera's target, and about its up: the second of its own axes where it goes with
- * the camera. */
+/* Turns a light about the camera's target and up vector. A light that goes with the camera is described in
+ * axes of its own: there the target is the origin and up is the second axis. */
 static void turn_light(hl_light *light, const double target_in_world[3], const double axis_in_world[3],
                        double angle_rad) {
   static const double origin[3] = {0, 0, 0}, up[3] = {0, 1, 0};
@@ -40,8 +40,7 @@ static void turn_light(hl_light *light, const double target_in_world[3], const d
   for (int i = 0; i < 3; i++) light->position[i] += target[i];
 }
 
-/* Lights turn a sixth of the way round and back: seen from the camera, they stay on their side of the
- * volume. */
+/* Lights swing 30 degrees to either side: seen from the camera, they stay on their side of the volume. */
 static double light_angle(double at) { return turn / 12 * sin(turn * at); }
 
 static void set_shadows(hl_scene_description *description, hl_light *lights, enum bench_setting setting) {
@@ -68,7 +67,7 @@ static void move_scene(hl_scene_description *description, hl_light *lights, enum
     turn_light(&lights[i], camera->target, axis, light_angle(at));
 }
 
-/* Scales opacities by a factor from 3/4 to 1. */
+/* A copy of the opacity points, scaled by a factor between 3/4 and 1; owned by the caller (free). */
 static hl_opacity_point *fade(const hl_transfer_function *function, double at) {
   hl_opacity_point *points = malloc((function->opacity_count + 1) * sizeof *points);
   for (size_t i = 0; points != NULL && i < function->opacity_count; i++)
@@ -114,7 +113,7 @@ hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setti
 
 enum { BUILT_IN_SIDE = 128, BALLS = 24 };
 
-/* 255 inside a ball of this radius, falling to 0 over three voxels. */
+/* The value that a ball gives the voxel at p: 255 inside, falling to 0 over three voxels. */
 static double ball(const double p[3], const double centre[3], double radius) {
   double d[3] = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
   double inside = radius - sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);

@@ -1,4 +1,4 @@
-/* cli/diff.c - `halflight diff A B`: how much two pictures differ; with a limit, a test. */
+/* cli/diff.c - `halflight diff A B`: prints how much two pictures differ; with limits, fails beyond them. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -75,7 +75,7 @@ typedef struct image_pair {
   double mean; /* greatest absolute mean of a channel */
 } image_pair;
 
-/* The measured value that each limit limits. */
+/* The measured value that a limit is for. */
 static double measured(const image_pair *comparison, int limit) {
   switch (limit) {
     case DIFF_MAX_RMSE: return comparison->difference.rmse;
@@ -85,7 +85,8 @@ static double measured(const image_pair *comparison, int limit) {
   }
 }
 
-/* NaN, as from a picture that holds one, is within no limit. */
+/* True if the limit is not given, or not exceeded. A measured NaN, from a picture that holds one, exceeds
+ * every limit. */
 static bool within(const image_pair *comparison, int limit) {
   const cli_value *value = &comparison->values[limit];
   return !value->given || measured(comparison, limit) <= value->number[0];
@@ -139,7 +140,8 @@ static int print_text(const image_pair *comparison) {
   return finish_stdout();
 }
 
-/* |b - a| times a factor; alpha becomes 1, its difference is added to every colour. */
+/* Writes |b - a| times a factor, opaque. A colour shows the difference of alpha where that is greater than
+ * its own. */
 static int write_picture(cli_host *host, const image_pair *comparison) {
   const char *path = comparison->values[DIFF_OUTPUT].text;
   const cli_value *amplify = &comparison->values[DIFF_AMPLIFY];

@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Set by the handler, read by the library's cancel callback: the one variable a handler may write. */
+/* Set by the signal handler, read by the library's cancel callback. */
 static volatile sig_atomic_t interrupted = 0;
 
 static void on_signal(int signal_number) {
@@ -87,14 +87,14 @@ static void listen_to_signals(void) {
     sigaction(SIGHUP, &action, NULL);
 }
 
-/* The default memory limit: the machine's memory. A run that needs more then fails with a message instead of
- * being killed by the system. */
+/* The default memory limit, bytes: the machine's memory. A run that needs more fails with a message instead
+ * of being killed by the system. 0: unknown. */
 static uint64_t physical_memory(void) {
   long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   return pages > 0 && page_bytes > 0 ? (uint64_t)pages * (uint64_t)page_bytes : 0;
 }
 
-/* Where the files are that scenes call "data:...". */
+/* The folder of the files that scenes call "data:...". */
 static const char *choose_data_folder(const char *asked) {
   const char *named = getenv("HALFLIGHT_DATA");
   return asked != NULL ? asked : named != NULL && named[0] != '\0' ? named : "../shared/data";

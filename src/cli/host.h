@@ -1,4 +1,5 @@
-/* cli/host.h - what the program gives the library: memory limit, log, progress bar, interruption. */
+/* cli/host.h - the library's context as the program sets it up: memory limit, warnings, progress bar,
+ * interruption by signals. */
 #ifndef HL_CLI_HOST_H
 #define HL_CLI_HOST_H
 
@@ -32,7 +33,7 @@ typedef struct cli_host_options {
 int host_open(const cli_host_options *options, cli_host *host);
 void host_close(cli_host *host);
 
-/* Removes the bar, so that a line can be printed. */
+/* Removes the progress bar, so that a line can be printed. */
 void host_clear_bar(cli_host *host);
 
 /* Prints the line of a library error after clearing the bar; returns the exit code. */

@@ -39,7 +39,7 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
          .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
 };
 
-/* The file's arrays, and what the volume is made of. */
+/* The file's arrays, and which array and component the volume was read from. */
 static void print_json_arrays(json_writer *json, const hl_volume *volume) {
   hl_volume_array array = {.struct_size = sizeof array}, chosen = {.components = 1};
   json_open_array(json, "arrays");
@@ -126,7 +126,8 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   return finish_stdout();
 }
 
-/* Sixteen bars, their length logarithmic: air outnumbers what it surrounds a thousand times. */
+/* Sixteen bars. Their lengths are logarithmic: there are often a thousand times as many voxels of air as of
+ * anything else. */
 static void print_histogram(const hl_volume_info *info) {
   enum { BARS = 16, LONGEST = 40, BINS = HL_HISTOGRAM_BINS / BARS };
   uint64_t count[BARS] = {0}, most = 0, total = 0;

@@ -1,4 +1,4 @@
-/* cli/input.c - what subcommands take as INPUT. */
+/* cli/input.c - reading INPUT: which kind it is, and its scene or volume. */
 #define _GNU_SOURCE
 #include "input.h"
 
@@ -15,11 +15,11 @@
 
 #include "output.h"
 
-#define STANDARD_INPUT "/dev/stdin" /* what a scene calls it: rendered again, it reads it again */
+#define STANDARD_INPUT "/dev/stdin" /* the volume's file in a scene made from standard input */
 
 const cli_choice input_magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
 
-/* ---- reading whole ---- */
+/* ---- reading pipes ---- */
 
 static input_kind kind_by_content(const unsigned char *bytes, size_t length) {
   static const unsigned char png[4] = {0x89, 'P', 'N', 'G'}, byte_order_mark[3] = {0xef, 0xbb, 0xbf};
@@ -29,7 +29,7 @@ static input_kind kind_by_content(const unsigned char *bytes, size_t length) {
   return at < length && bytes[at] == '{' ? INPUT_SCENE : INPUT_VOLUME;
 }
 
-/* Waits until there is something to read; false: the user wants to stop. */
+/* Waits until there is something to read; false: the user asked to stop. */
 static bool await_bytes(int descriptor) {
   enum { MILLISECONDS_BETWEEN_QUESTIONS = 20 };
   struct pollfd wanted = {.fd = descriptor, .events = POLLIN};
@@ -39,6 +39,7 @@ static bool await_bytes(int descriptor) {
   return !host_interrupted();
 }
 
+/* Appends the bytes that can be read now; *ended: there are no more. Returns the exit code. */
 static int read_piece(cli_input *input, int descriptor, size_t *capacity, uint64_t limit, bool *ended) {
   enum { LEAST_ROOM = 65536 };
   if (!await_bytes(descriptor)) return fail(EXIT_CODE_INTERRUPTED, "interrupted; nothing was written");
@@ -67,10 +68,8 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
   size_t capacity = 0;
   long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   if (limit == 0 && pages > 0 && page_bytes > 0) limit = (uint64_t)pages * (uint64_t)page_bytes / 2;
-  enum {
-    LONGEST_SCENE = 16 << 20,
-    TELLING = 65536
-  }; /* bytes: what the library reads of a scene; that tell what it is */
+  enum { LONGEST_SCENE = 16 << 20 }; /* bytes; the library reads no longer scene */
+  enum { TELLING = 65536 };          /* bytes at the beginning that are enough to tell the kind */
   bool ended = false, scene = false;
   int exit_code = EXIT_CODE_OK;
   while (exit_code == EXIT_CODE_OK && !ended) {
@@ -83,9 +82,9 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
   return exit_code;
 }
 
-/* ---- what it is ---- */
+/* ---- kinds of input ---- */
 
-/* False where the name says nothing. */
+/* False where the name does not tell the kind. */
 static bool kind_by_name(const char *path, input_kind *kind) {
   static const char *const volumes[] = {".raw", ".gz",  ".nrrd", ".nhdr", ".mha",
                                         ".mhd", ".nii", ".vti",  ".vtk",  ".npy"};
@@ -111,7 +110,7 @@ static int open_standard_input(cli_input *input, uint64_t limit) {
   return open_pipe(input, STDIN_FILENO, limit);
 }
 
-/* An ordinary file; a missing one is left to its reader, which says it. */
+/* An ordinary file; of a missing one (descriptor < 0) the error comes from the reader. */
 static int open_file(cli_input *input, int descriptor, uint64_t limit) {
   unsigned char first[1024];
   ssize_t got = descriptor >= 0 ? pread(descriptor, first, sizeof first, 0) : 0;
@@ -140,7 +139,7 @@ void input_close(cli_input *input) {
   input->bytes = NULL;
 }
 
-/* ---- what it holds ---- */
+/* ---- scenes and volumes ---- */
 
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options) {
   const cli_value *component = &reading[READ_COMPONENT];
@@ -165,7 +164,7 @@ hl_status input_load_volume(hl_context *context, const cli_input *input,
   return hl_volume_load_with(context, input->title, &chosen, volume, error);
 }
 
-/* The scene's volume says how it was read. */
+/* Writes into the scene which array, component and spacing its volume was read with. */
 static hl_status name_source(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,
                              hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
@@ -195,7 +194,8 @@ static hl_status load_volume_scene(hl_context *context, const cli_input *input,
   return status;
 }
 
-/* A picture names files as the command line did that made it: from the current folder. */
+/* Relative file names in a picture's scene start in the current folder, as on the command line that made the
+ * picture. */
 static hl_status load_picture_scene(hl_context *context, const cli_input *input, hl_scene **scene,
                                     hl_error *error) {
   char *text = NULL;

@@ -1,8 +1,8 @@
-/* cli/input.h - what subcommands take as INPUT: a scene, a picture that carries one, or a bare volume for
- * which one is made.
+/* cli/input.h - INPUT of a subcommand: a scene, a picture that carries a scene, or a bare volume, for which a
+ * scene is made.
  *
- * A pipe, "-" among them, is read whole, once: then its first bytes tell what it is, and a reader that needs
- * to go back can.
+ * A pipe ("-" is standard input) is read once, into memory: its first bytes tell its kind, and readers can go
+ * back in it.
  */
 #ifndef HL_CLI_INPUT_H
 #define HL_CLI_INPUT_H
@@ -18,8 +18,7 @@ typedef struct cli_input {
   const char *path;  /* as given; "-" is standard input */
   const char *title; /* what messages call it */
   input_kind kind;
-  unsigned char
-      *bytes; /* owned; [length]: the content of what is no ordinary file, or of a picture; else null */
+  unsigned char *bytes; /* owned; [length]: the content of a pipe or a picture; else null */
   size_t length;
 } cli_input;
 
@@ -60,25 +59,26 @@ extern const cli_choice input_magnitudes[];
 /* The order in which a subcommand's table has these options. */
 enum input_reading { READ_ARRAY, READ_COMPONENT, READ_SERIES, READ_TIME, READ_CHANNEL, READ_LEVEL };
 
-/* Finds out what an input is: told by name; where the name says nothing, by its first bytes. limit: bytes
- * that may be held of a pipe; 0: half of the machine's memory. Returns the exit code; close it in any
- * case. */
+/* Finds out the kind of an input, by its name or, where that does not tell, by its first bytes; reads pipes
+ * and pictures into memory. limit: the most bytes to hold; 0: half of the machine's memory. Returns the exit
+ * code; call input_close() even after a failure. */
 int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
-/* What --array and the options after it (enum input_reading), and --spacing (null: a command without it), say
- * of how a volume is read. */
+/* The load options that --array and the options after it (enum input_reading) and --spacing ask for; spacing
+ * null: the command does not have it. */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
-/* How bare volumes are read (hl_volume_load_options without bytes); null: by default. */
+/* Reads an input that is a volume. options: without bytes, which are the input's; null: the defaults. */
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
-/* The box around the cells of a volume's voxels, half a voxel beyond their centres, in its file's world:
+/* The box around a volume's voxels, half a voxel beyond their outermost centres, in the world of its file:
  * least and greatest x, y, z. */
 void input_world_box(const hl_volume_info *info, double low[3], double high[3]);
 
-/* The scene that it is, carries, or that is made for it. */
+/* The scene of an input: read from it, or made for a bare volume, which is read by `options` (null: the
+ * defaults). */
 hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
                      hl_scene **scene, hl_error *error);
 

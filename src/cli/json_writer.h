@@ -12,7 +12,7 @@
 
 typedef struct json_writer {
   int depth;
-  bool first;     /* nothing yet in the innermost object or array */
+  bool first;     /* the innermost open object or array is still empty */
   char close[16]; /* closing bracket of each level */
 } json_writer;
 

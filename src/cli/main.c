@@ -14,7 +14,7 @@ static const cli_command *const commands[] = {&render_command, &info_command, &m
                                               &bench_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-/* Names that are promised, and refused until they are kept. */
+/* Names of commands to come: refused as unsupported. */
 static const char *const reserved_commands[] = {"view"};
 enum { RESERVED_COUNT = sizeof reserved_commands / sizeof reserved_commands[0] };
 

@@ -16,16 +16,16 @@ enum {
 /* Prints "halflight: ..." on stderr, control characters replaced, and returns exit_code. */
 __attribute__((format(printf, 2, 3))) int fail(int exit_code, const char *format, ...);
 
-/* The same, "halflight: warning: ...". */
+/* Prints "halflight: warning: ..." on stderr, control characters replaced. */
 __attribute__((format(printf, 1, 2))) void warn(const char *format, ...);
 
-/* The same without a word before it. */
+/* Prints a line on stderr, control characters replaced. */
 __attribute__((format(printf, 1, 2))) void say(const char *format, ...);
 
 /* The phase in which a library call failed; it decides whether the user's options, a file or the system is to
  * blame, and so the exit code. */
 typedef enum cli_phase {
-  PHASE_SETUP,  /* from options alone */
+  PHASE_SETUP,  /* setting up, by the options alone */
   PHASE_READ,   /* reading a file that the user named */
   PHASE_CHANGE, /* applying options to a scene that was good */
   PHASE_RUN     /* rendering, writing */
@@ -34,7 +34,7 @@ typedef enum cli_phase {
 /* Prints the library's message and returns the exit code of the status in this phase. */
 int fail_with(cli_phase phase, hl_status status, const hl_error *error);
 
-/* Flushes stdout; a full disk or a closed pipe is an error like any other. */
+/* Flushes stdout and prints an error if its disk is full or its pipe closed. Returns the exit code. */
 int finish_stdout(void);
 
 #endif

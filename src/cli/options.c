@@ -23,7 +23,7 @@ static const char *option_name(const void *data, size_t index) {
                                           : NULL;
 }
 
-/* "off, hard, soft", without the reserved ones. */
+/* "off, hard, soft": the names of an option's choices, without the reserved ones. */
 static void list_choices(const cli_option *option, const char *separator, char *text, size_t size) {
   size_t used = 0;
   text[0] = '\0';
@@ -32,7 +32,7 @@ static void list_choices(const cli_option *option, const char *separator, char *
       used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? separator : "", choice->name);
 }
 
-/* What OPTION_NUMBERS accepts, in words. */
+/* The values that an OPTION_NUMBERS accepts, in words: "a whole number from 1 to 64". */
 static void describe_numbers(const cli_option *option, char *text, size_t size) {
   const char *kind = option->whole ? "whole number" : "number";
   char range[80];
@@ -153,7 +153,7 @@ static int parse_value(const cli_option *option, const char *text, cli_value *va
   return EXIT_CODE_OK;
 }
 
-/* "-30,20", "-.5": a value, although it begins with a dash. */
+/* False for a value that begins with a dash: "-30,20", "-.5". */
 static bool looks_like_option(const char *text) {
   return text[0] == '-' && text[1] != '\0' && strchr("0123456789.", text[1]) == NULL;
 }
@@ -172,7 +172,7 @@ static const cli_option *find_letter(const cli_command *command, char letter) {
   return NULL;
 }
 
-/* The option with the range and the choices of its setting. */
+/* A copy of the option with the range and the choices of its setting. */
 static cli_option with_setting(const cli_option *option) {
   cli_option full = *option;
   const hl_setting *setting = option->setting != NULL ? hl_setting_find(option->setting_kind, option->setting)
@@ -206,7 +206,7 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
               command->name);
 }
 
-/* Parses the option at arguments[*index], and its value; *index ends at the last argument used. */
+/* Parses the option at arguments[*index] and its value. *index becomes that of the last argument used. */
 static int parse_option(const cli_command *command, int argument_count, char **arguments, int *index,
                         cli_value *values) {
   const char *argument = arguments[*index], *attached = NULL;
@@ -279,7 +279,7 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
   return EXIT_CODE_OK;
 }
 
-/* "--shadows off|hard|soft" */
+/* "--shadows off|hard|soft": an option's first column in the help. */
 static void option_heading(const cli_option *option, char *text, size_t size) {
   size_t used = (size_t)(option->letter != '\0'
                              ? snprintf(text, size, "-%c, --%s", option->letter, option->name)

@@ -16,13 +16,13 @@
 typedef enum cli_option_kind {
   OPTION_SWITCH,  /* takes no value */
   OPTION_TEXT,    /* any text but an empty one */
-  OPTION_CHOICE,  /* one of choices */
-  OPTION_NUMBERS, /* count numbers joined by separator; or one of choices, if there are any */
+  OPTION_CHOICE,  /* one of `choices` */
+  OPTION_NUMBERS, /* `count` numbers joined by `separator`; or one of `choices`, if there are any */
   OPTION_BYTES,   /* a whole number with an optional K, M, G or T (powers of 1024) */
-  OPTION_COLOR    /* linear R,G,B or a grey, #rgb, #rrggbb, a CSS name; or one of choices, if there are any */
+  OPTION_COLOR /* linear R,G,B or a grey, #rgb, #rrggbb, a CSS name; or one of `choices`, if there are any */
 } cli_option_kind;
 
-/* The value of a choice that is known, but not in this version: not listed, refused when given. */
+/* The value of a choice that this version does not have yet: not listed, refused when given. */
 enum { CHOICE_RESERVED = -1 };
 
 typedef hl_setting_choice cli_choice; /* a null name ends the list */
@@ -35,26 +35,25 @@ typedef struct cli_option {
   const char *help;     /* lines, the first one short */
   const char *group;    /* heading above this option in help; null: same group as the one before */
   const cli_choice *choices;
-  int count;           /* OPTION_NUMBERS: 1 to 3 */
-  char separator;      /* between them: ',' or 'x' */
+  int count;           /* OPTION_NUMBERS: how many numbers, 1 to 3 */
+  char separator;      /* between the numbers: ',' or 'x' */
   bool whole;          /* whole numbers only */
   bool above;          /* low itself is excluded */
   double low, high;    /* the accepted range */
-  const char *setting; /* the key of a setting: the option has its range, and its choices if it has any; null:
-                          its own */
+  const char *setting; /* key of a scene's setting: its range, and its choices if any, replace these; or null */
   hl_setting_kind setting_kind;
-  bool repeatable; /* OPTION_TEXT: each time adds a text */
-  bool reserved;   /* known, but not in this version: not shown in help, refused when given */
+  bool repeatable; /* OPTION_TEXT: may be given again; every text is kept */
+  bool reserved;   /* not in this version yet: not shown in help, refused when given */
 } cli_option;
 
 enum { MAXIMUM_REPEATS = 32 };
 
 typedef struct cli_value {
   bool given;
-  const char *text;                   /* as given; of a repeatable option the last one */
-  const char *texts[MAXIMUM_REPEATS]; /* all of them; [count] */
+  const char *text;                   /* the value as typed; of a repeatable option the last one */
+  const char *texts[MAXIMUM_REPEATS]; /* the values as typed; [count] */
   int count;
-  bool chosen; /* one of the choices was given, and choice is its value */
+  bool chosen; /* one of the choices was given: `choice` is its value */
   int choice;
   double number[3];
   uint64_t bytes;
@@ -63,28 +62,28 @@ typedef struct cli_value {
 typedef struct cli_command {
   const char *name;
   const char *operands; /* as help shows them: "INPUT" */
-  int operand_count;    /* so many at least */
-  int operand_most;     /* so many at most; 0: exactly operand_count */
+  int operand_count;    /* the least number of operands */
+  int operand_most;     /* the greatest; 0: exactly operand_count */
   const char *summary;  /* one line, for the list of commands */
   const char *description;
   const cli_option *options;
   size_t option_count;
-  /* values: [option_count]; operands: those given, null after the last. Returns the exit code. */
+  /* values: [option_count]; operands: null after the last. Returns the exit code. */
   int (*run)(const cli_value *values, char **operands);
 } cli_command;
 
 enum { MAXIMUM_OPTIONS = 96, MAXIMUM_OPERANDS = 16 };
 
-/* Parses what follows the subcommand's name. Returns EXIT_CODE_OK, or another exit code after having
- * printed one line. *help is set, and parsing stops, at --help or -h. */
+/* Parses the arguments after the subcommand's name. Returns EXIT_CODE_OK, or another exit code after printing
+ * an error. At --help or -h *help is set and parsing stops. */
 int options_parse(const cli_command *command, int argument_count, char **arguments, cli_value *values,
                   char **operands, bool *help);
 
 /* Prints the help text of a subcommand on stdout. */
 void options_print_help(const cli_command *command);
 
-/* A colour as OPTION_COLOR takes it, as linear RGB: numbers between low and high are linear already, #rgb,
- * #rrggbb and CSS names are sRGB. False if text is none. */
+/* Linear RGB of a colour on the command line: numbers from low to high are linear already; #rgb, #rrggbb and
+ * CSS names are sRGB. False if text is no colour. */
 bool parse_color(const char *text, double low, double high, double color[3]);
 
 #endif

@@ -1,7 +1,8 @@
 /* cli/options_color.c - colours on the command line.
  *
- * Numbers are linear RGB, as in scene files; #rgb, #rrggbb and the names of CSS (CSS Color Module Level 4,
- * section 6.1) are sRGB and decoded (IEC 61966-2-1), so that a .png shows the colour that was named.
+ * Numbers are linear RGB, as in scene files. #rgb, #rrggbb and the names of CSS (CSS Color Module Level 4,
+ * section 6.1) are sRGB: they are decoded (IEC 61966-2-1), so that a .png shows the very colour that was
+ * named.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* cli/output.c - names of files, and whether OUT may be written: found out before the work. */
+/* cli/output.c - names of files, and checks before the work that OUT can be written. */
 #define _GNU_SOURCE
 #include "output.h"
 
@@ -39,7 +39,7 @@ static int check_folder(const char *path) {
   return exit_code;
 }
 
-/* A name in one of the formats that OUT is for. */
+/* Refuses a path that ends in none of the extensions. */
 static int check_extension(const char *path, const char *const *extensions) {
   char list[80] = "";
   size_t used = 0;

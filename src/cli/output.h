@@ -1,4 +1,4 @@
-/* cli/output.h - names of files, and whether OUT may be written: found out before the work, not after. */
+/* cli/output.h - names of files, and checks before the work that OUT can be written. */
 #ifndef HL_CLI_OUTPUT_H
 #define HL_CLI_OUTPUT_H
 
@@ -15,18 +15,18 @@ bool has_extension(const char *path, const char *extension);
 /* The extensions that can be written; null after the last. */
 extern const char *const picture_extensions[], *const volume_extensions[];
 
-/* Refuses a name without one of the extensions, a folder, a place that cannot be written, and any of
- * the inputs. Returns the exit code. */
+/* Refuses a path that ends in none of the extensions, is a folder or one of the inputs, or lies in a folder
+ * that cannot be written to. Returns the exit code. */
 int output_check(const char *path, const char *const *extensions, char *const *inputs, int input_count);
 
-/* All of the bytes on standard output; returns the exit code. */
+/* Writes all the bytes to standard output; returns the exit code. */
 int output_to_stdout(const unsigned char *bytes, size_t length);
 
-/* "head.png" for "scans/head.nii.gz" and ".png", in the current folder; owned by the caller (free), null
+/* "head.png", in the current folder, for "scans/head.nii.gz" and ".png"; owned by the caller (free), null
  * without memory. */
 char *output_default_name(const char *input, const char *extension);
 
-/* ---- files that the run has read, so that it writes over none of them ---- */
+/* ---- files that the run has read: it must write over none of them ---- */
 
 /* Identifies a file whichever of its names or links is used. */
 typedef struct cli_file_identity {
@@ -43,8 +43,8 @@ typedef struct cli_read_files {
 void read_files_add(cli_read_files *read, const char *path);
 void read_files_release(cli_read_files *read);
 
-/* Refuses a path that leads to one of the files, or is too long for any; reader: what read them
- * ("scene.json"). Returns the exit code. */
+/* Refuses to write to a path that leads to one of the files that were read, or is too long for a file;
+ * reader: the input that needs these files ("scene.json"). Returns the exit code. */
 int read_files_protect(const cli_read_files *read, const char *path, const char *reader);
 
 #endif

@@ -1,4 +1,5 @@
-/* cli/render.c - `halflight render INPUT`: load, change as the options say, render, write, report. */
+/* cli/render.c - `halflight render INPUT`: loads a scene, changes it by the options, renders it, writes the
+ * picture and reports. */
 #define _GNU_SOURCE
 #include "render.h"
 
@@ -36,14 +37,13 @@ static const char *wanted_extension(const cli_value *values) {
   return extensions[values[RENDER_FORMAT].given ? values[RENDER_FORMAT].choice : 0];
 }
 
-/* The name to derive the picture's name from; pipes have none of their own and get one here. */
+/* The name that the picture's name is made from: INPUT's, or "stdin" and "pipe" for pipes. */
 static const char *nameable(const char *input) {
   if (strcmp(input, "-") == 0) return "stdin";
   return strncmp(input, "/dev/fd/", 8) == 0 ? "pipe" : input;
 }
 
-/* INPUT's name with the format's extension; of a picture's own scene "NAME-again.png", not the picture
- * itself. */
+/* INPUT's name with the format's extension. Where INPUT is NAME.png itself, "NAME-again.png". */
 static char *default_output(const render_job *job) {
   const char *extension = wanted_extension(job->values);
   bool again = has_extension(job->input, ".png") && strcmp(extension, ".png") == 0;
@@ -84,7 +84,7 @@ static int job_open(render_job *job) {
   return host_open(&options, &job->host);
 }
 
-/* No file that the scene needs is written over. */
+/* Refuses to write over a file that the scene needs. */
 static int protect_what_was_read(const render_job *job) {
   if (job->to_stdout || job->values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
   int exit_code = read_files_protect(&job->host.read, job->output, job->input);
@@ -112,7 +112,7 @@ static uint64_t count_voxels(const hl_scene_description *description) {
   return voxels;
 }
 
-/* What --layers asks for; null: nothing. */
+/* The layers to render; null: none. */
 static const hl_layers *wanted_layers(const render_job *job) {
   return job->values[RENDER_LAYERS].given ? &job->layers.all : NULL;
 }
@@ -178,7 +178,7 @@ static hl_status write_to_stdout(render_job *job, const hl_image_write_options *
   return status;
 }
 
-/* --print-scene: what would be rendered. */
+/* --print-scene: prints the scene that would be rendered. */
 static int job_print_scene(render_job *job) {
   char *text = NULL;
   hl_error error = {0};
@@ -210,8 +210,8 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-/* Finds out what kind of data a bare volume was taken for, where its transfer function was chosen
- * automatically. */
+/* Finds out, for the report, which kind of data a bare volume was taken for, where the transfer function was
+ * chosen by that. */
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));

@@ -1,7 +1,7 @@
-/* cli/render_clip.c - `--clip AXIS=LO:HI`: a part of each volume along an axis of its own world.
+/* cli/render_clip.c - `--clip AXIS=LO:HI`: keeps a part of each volume along an axis of its file's world.
  *
- * A bare number is a fraction of the box around the volume's cells; a number with a unit is a coordinate. A
- * side that is left out stays where the box, or the scene's own clip box, ends.
+ * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. An
+ * end that is left out stays at the end of the scene's own clip box, or else of the volume.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "input.h"
 #include "render.h"
 
-/* One end of a range. */
+/* LO or HI; fraction: of the box around the volume's voxels, else a coordinate. */
 typedef struct clip_end {
   bool given, fraction;
   double number;
@@ -21,7 +21,7 @@ typedef struct clip_range {
   clip_end ends[2];
 } clip_range;
 
-/* "0.25", "10mm" or nothing; text moves past it. False if something else is there. */
+/* Reads "0.25", "10mm" or nothing, and moves *text past it. False if something else is there. */
 static bool read_end(const char **text, clip_end *end) {
   size_t length = strspn(*text, "0123456789+-.eE");
   char *rest;
@@ -56,7 +56,8 @@ int render_check_clip(const cli_value *clip) {
   return EXIT_CODE_OK;
 }
 
-static double place_of(const clip_end *end, double otherwise, double low, double high) {
+/* The coordinate of an end; otherwise: where it is left out; low, high: the ends of the volume's box. */
+static double coordinate_of(const clip_end *end, double otherwise, double low, double high) {
   if (!end->given) return otherwise;
   return end->fraction ? low + end->number * (high - low) : end->number;
 }
@@ -76,8 +77,8 @@ int render_clip(const cli_value *clip, hl_scene_volume *volume) {
     clip_range range;
     if (!read_range(clip->texts[n], &range)) continue; /* refused before: render_check_clip() */
     double *least = &volume->clip_min[range.axis], *greatest = &volume->clip_max[range.axis];
-    *least = place_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
-    *greatest = place_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);
+    *least = coordinate_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
+    *greatest = coordinate_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);
     if (!(*least < *greatest))
       return fail(EXIT_CODE_USAGE,
                   "--clip: '%s': nothing is left between %.9g and %.9g; the volume goes from %.9g to %.9g",

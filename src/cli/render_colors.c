@@ -1,6 +1,5 @@
-/* cli/render_colors.c - the look that --look names, and the transfer function that --tf, --colormap, --range
- * and
- * --threshold ask for. */
+/* cli/render_colors.c - looks (--look), and transfer functions by --tf, --colormap, --range and --threshold.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,8 +57,8 @@ static bool is_volume(const hl_scene_description *description, const char *name,
   return false;
 }
 
-/* Where "NAME=..." goes on after the name; null: for every volume. A file that is there may have a '=' in its
- * name. */
+/* The text after "NAME="; null: the option is for every volume. A text that names an existing file is that
+ * file, even with a '=' in it. */
 static const char *after_name(const char *text) {
   const char *equals = strchr(text, '=');
   return equals == NULL || access(text, F_OK) == 0 ? NULL : equals + 1;
@@ -97,7 +96,7 @@ int render_check_names(const cli_value *values, const hl_scene_description *desc
                                    : exit_code;
 }
 
-/* The value that a repeatable option gives a volume; null: none. Of several the last one counts. */
+/* The value that a repeatable option gives one volume, the last one if there are several; null: none. */
 static const char *said_of(const cli_value *given, const hl_scene_volume *volume, size_t index) {
   char own[256];
   const char *chosen = NULL;
@@ -124,7 +123,8 @@ static int load_function(cli_host *host, const char *name, const hl_volume *volu
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 
-/* The values from where opacity first rises to where it last falls to zero, within the volume's. */
+/* The range of values from where opacity first rises above zero to where it last falls to zero, within the
+ * volume's values. */
 static void visible_range(const hl_volume *volume, const hl_transfer_function *function, double range[2]) {
   hl_volume_info info = {.struct_size = sizeof info};
   range[0] = 0;
@@ -142,8 +142,7 @@ static void visible_range(const hl_volume *volume, const hl_transfer_function *f
   if (high > range[0] && high < range[1]) range[1] = high;
 }
 
-/* Opacity and colours are spread anew, so that what was seen from visible[0] to visible[1] is from range[0]
- * to range[1]. */
+/* Moves the points so that values visible[0] to visible[1] become range[0] to range[1]. */
 static void spread(hl_transfer_function *function, const double visible[2], const double range[2]) {
   double factor = (range[1] - range[0]) / (visible[1] - visible[0]);
   hl_opacity_point *opacity = (hl_opacity_point *)function->opacity;
@@ -154,9 +153,9 @@ static void spread(hl_transfer_function *function, const double visible[2], cons
     color[n].value = range[0] + (color[n].value - visible[0]) * factor;
 }
 
-/* Clear below, then nearly opaque within a voxel's edge. The ramp before it gives surfaces a slope that is
- * shaded without stairs; it is a twentieth of the volume's values wide, and ends halfway to the least of
- * them. */
+/* Makes values clear below the threshold and nearly opaque, over a voxel's edge, from it on. A ramp below the
+ * threshold lets surfaces be shaded without stairs. It is a twentieth of the volume's range wide, but at most
+ * half the way from the least value to the threshold. */
 static int make_opaque_from(const cli_host *host, const hl_volume *volume, double threshold,
                             hl_transfer_function *function) {
   enum { POINTS = 2 };
@@ -179,7 +178,7 @@ static int make_opaque_from(const cli_host *host, const hl_volume *volume, doubl
   return EXIT_CODE_OK;
 }
 
-/* Copies the points, so that the caller owns them (free); null stays null. */
+/* Copies the points; the copies are owned by the caller (render_release_function). */
 static int copy_function(const hl_transfer_function *from, hl_transfer_function *to) {
   size_t opacity_bytes = from->opacity_count * sizeof *from->opacity,
          color_bytes = from->color_count * sizeof *from->color;
@@ -197,7 +196,7 @@ void render_release_function(hl_transfer_function *function) {
   free((void *)function->color);
 }
 
-/* Replaces the old points where new ones are given. */
+/* Gives a function the points of another one; where `loaded` has no opacity, the function keeps its own. */
 static int replace(const hl_transfer_function *loaded, hl_transfer_function *function) {
   hl_transfer_function old = *function, copy;
   hl_transfer_function both = *loaded;
@@ -212,8 +211,8 @@ static int replace(const hl_transfer_function *loaded, hl_transfer_function *fun
   return exit_code;
 }
 
-/* One colour for all values. With ramp, for maximum projections, from black to this colour, linearly from
- * range[0] to range[1]. The points are the function's own copies. */
+/* Gives all values one colour. ramp, for maximum projections: from black at range[0] to this colour at
+ * range[1]. */
 static int color_plainly(const double color[3], bool ramp, const double range[2],
                          hl_transfer_function *function) {
   hl_color_point points[2] = {{range[0], {0}}, {range[1], {0}}};
@@ -222,7 +221,8 @@ static int color_plainly(const double color[3], bool ramp, const double range[2]
   return replace(&colors, function);
 }
 
-/* name: a colormap or a colour. range: null: the values that are seen. */
+/* Colours by a colormap or a colour's name. range: the values that it spreads over; null: those that are
+ * seen. */
 static int color_by_name(cli_host *host, const char *name, const hl_volume *volume, const double *range,
                          bool maximum, hl_transfer_function *function) {
   hl_transfer_function colors = {0};

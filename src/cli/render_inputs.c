@@ -1,8 +1,8 @@
-/* cli/render_inputs.c - the scene of what `halflight render` is given: one scene, or volumes.
+/* cli/render_inputs.c - one scene from the operands of `halflight render`: a scene, or volumes.
  *
- * Each of several volumes gets the look that it would have alone; light, background and direction of view are
- * those of the first, whose camera is moved so that all are in the picture. Sheets are as fine as the finest
- * of them asks for.
+ * Each of several volumes keeps the look that it would have alone. Light, background and render settings are
+ * those of the first volume; the camera frames all volumes, and the sheets are as close as the finest of the
+ * volumes needs them.
  */
 #include <math.h>
 #include <stdio.h>
@@ -12,9 +12,8 @@
 #include "input.h"
 #include "render.h"
 
-/* A place in the scene (a JSON pointer) follows the scene's name, as in what is found when it is read; a bare
- * volume is itself the file of the scene's volume. A line that begins with the name, which may begin with a
- * slash too, stays. */
+/* Errors of a bare volume's scene lose "/volumes/0/file", as INPUT is that file. An error that already begins
+ * with the input's name, which may begin with a slash too, is left alone. */
 void render_name_scene(const char *input, bool bare, hl_error *error) {
   char line[sizeof error->message];
   if (error->message[0] != '/' || strncmp(error->message, input, strlen(input)) == 0) return;
@@ -25,7 +24,7 @@ void render_name_scene(const char *input, bool bare, hl_error *error) {
            strcmp(input, "-") == 0 ? "standard input" : input, line);
 }
 
-/* Options of how a volume is read are for volumes alone. */
+/* Refuses several inputs of which one is no volume, and options for reading volumes beside a scene. */
 static int check_kinds(const cli_value *values, const cli_input *inputs, size_t count) {
   for (size_t n = 0; n < count && count > 1; n++)
     if (inputs[n].kind != INPUT_VOLUME)
@@ -41,7 +40,7 @@ static int check_kinds(const cli_value *values, const cli_input *inputs, size_t 
   return EXIT_CODE_OK;
 }
 
-/* "head" for scans/head.nii.gz, "head-2" where there is one already. */
+/* Names a volume "head" for scans/head.nii.gz, or "head-2" where an earlier volume has that name. */
 static void name_volume(hl_scene_volume *volumes, size_t index, char *name, size_t size) {
   char stem[200];
   render_volume_name(&volumes[index], index, stem, sizeof stem);
@@ -54,7 +53,7 @@ static void name_volume(hl_scene_volume *volumes, size_t index, char *name, size
   volumes[index].name = name;
 }
 
-/* scenes: one for each volume. */
+/* Makes one scene of the scenes of several volumes. */
 static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene **scene) {
   enum { NAME_BYTES = 256 };
   hl_scene_volume volumes[MAXIMUM_OPERANDS];

@@ -1,5 +1,4 @@
-/* cli/render_layers.c - `halflight render --layers`: the layers of a picture, in buffers of the picture's
- * own. */
+/* cli/render_layers.c - `halflight render --layers`: adds layers to the picture, and checks where they go. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +18,7 @@ static bool shines(const hl_scene_volume *volume) {
   return volume->shading == HL_SHADING_FLAT || volume->material.emission > 0;
 }
 
-/* Where no volume shines there is no layer for it, as before volumes could. */
+/* Adds the layer "emission" if a volume shines by itself. */
 static hl_status add_emission(hl_image *image, const hl_scene_description *description, hl_layers *layers,
                               hl_error *error) {
   for (size_t i = 0; i < description->volume_count; i++)
@@ -52,7 +51,8 @@ hl_status render_layers_create(hl_image *image, const hl_scene_description *desc
 
 void render_layers_release(render_layers *layers) { free(layers->lights); }
 
-/* "picture-NAME.npy" for "picture.npy", as hl_image_write() calls a layer's file. */
+/* Refuses if "picture-NAME.npy", where hl_image_write() writes layer NAME of "picture.npy", is a file that
+ * was read. */
 static int protect_from_layer(const cli_host *host, const char *output, const char *name, const char *input) {
   const char *dot = strrchr(output, '.');
   size_t size = strlen(output) + strlen(name) + 2;

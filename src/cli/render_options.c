@@ -1,4 +1,4 @@
-/* cli/render_options.c - the options of `halflight render`: one table, and what contradicts. */
+/* cli/render_options.c - the table of options of `halflight render`, and which of them exclude each other. */
 #include <math.h>
 #include <string.h>
 

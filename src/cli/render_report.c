@@ -17,8 +17,8 @@ static const char *soft_method_name(hl_soft_method method) {
   return choice->name == NULL ? "unknown" : choice->name;
 }
 
-/* The most memory this program ever had resident. Linux counts in KiB; ru_maxrss, the way elsewhere, starts
- * at what the process that started this one had. */
+/* The most memory that this program ever had resident. Linux tells it in /proc; elsewhere ru_maxrss (KiB)
+ * does, which may include the memory of the program that started this one. */
 static uint64_t peak_memory_bytes(void) {
   unsigned long long kibibytes = 0;
   FILE *status = fopen("/proc/self/status", "r");
@@ -42,7 +42,7 @@ static void print_seconds(json_writer *json, const render_result *result) {
   json_number(json, "write", result->seconds.write);
   json_number(json, "total", result->seconds.total);
   json_close(json);
-  json_open_object(json, "render_seconds"); /* what "render" above is made of */
+  json_open_object(json, "render_seconds"); /* the stages of "render" above */
   json_number(json, "sort", statistics->seconds_sort);
   json_number(json, "fill_image", statistics->seconds_fill_image);
   json_number(json, "fill_light", statistics->seconds_fill_light);

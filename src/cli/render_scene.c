@@ -1,7 +1,7 @@
-/* cli/render_scene.c - a scene changed as the options of `halflight render` say.
+/* cli/render_scene.c - applies the options of `halflight render` to a scene.
  *
- * In: the scene of the file, or the one made for a bare volume. Out: another scene. The description
- * is copied flat; only the arrays that change (lights, volumes, transfer functions) are copied too.
+ * A scene cannot be changed: its description is copied and another scene made of the copy. Of the arrays only
+ * those that change (lights, volumes, transfer functions) are copied too.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 
 static const double degree = 3.14159265358979323846 / 180;
 
-/* The changed description with what it owns. */
+/* The changed description and its own arrays. */
 typedef struct scene_change {
   cli_host *host;
   const cli_value *values;
@@ -35,7 +35,8 @@ static double distance(const double a[3], const double b[3]) {
   return sqrt(dot(difference, difference));
 }
 
-/* The same height of the world is seen at the target before and after the change of projection. */
+/* --ortho and --fovy: changes the projection so that the picture shows the same height of the world at the
+ * target as before. */
 static void change_projection(const cli_value *values, hl_camera *camera) {
   double away = distance(camera->position, camera->target);
   if (values[RENDER_ORTHO].given && camera->type == HL_CAMERA_PERSPECTIVE) {
@@ -52,7 +53,8 @@ static void change_projection(const cli_value *values, hl_camera *camera) {
   camera->fovy_deg = values[RENDER_FOVY].number[0];
 }
 
-/* The scene is looked at as its own camera does, a bare volume as is best, unless --view or --up say how. */
+/* The view to change: the one of the scene's camera, of a bare volume the automatic one; or the one that
+ * --view and --up ask for. */
 static int choose_view(const scene_change *change, hl_view *view) {
   const cli_value *values = change->values, *up = &values[RENDER_UP];
   hl_error error = {0};
@@ -71,7 +73,7 @@ static int choose_view(const scene_change *change, hl_view *view) {
   return status == HL_OK ? EXIT_CODE_OK : host_fail(change->host, PHASE_CHANGE, status, &error);
 }
 
-/* Angles that are given; false if all are what they were. */
+/* Sets the angles that are given; false if none of them changes. */
 static bool turn_view(const cli_value *values, hl_view *view) {
   const hl_view before = *view;
   if (values[RENDER_AZIMUTH].given) view->azimuth_deg = values[RENDER_AZIMUTH].number[0];
@@ -81,8 +83,7 @@ static bool turn_view(const cli_value *values, hl_view *view) {
          view->roll_deg != before.roll_deg;
 }
 
-/* A camera that is framed anew is framed before it is turned: frames of a turn have one target and one
- * distance. */
+/* Frames the camera before it turns it: then all frames of a turn have one target and one distance. */
 static int change_camera(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
@@ -150,7 +151,7 @@ static int change_first_light(scene_change *change) {
   return EXIT_CODE_OK;
 }
 
-/* The scene's shadows, and those of each light that casts any. */
+/* --shadows: sets the scene's shadows, and makes every light that casts any follow them. */
 static void change_shadows(scene_change *change) {
   if (!change->values[RENDER_SHADOWS].given) return;
   hl_shadows shadows = (hl_shadows)change->values[RENDER_SHADOWS].choice;
@@ -208,7 +209,7 @@ static int change_volumes(scene_change *change) {
   return exit_code;
 }
 
-/* Each option of a render setting is written into the setting's field. */
+/* Writes each option for a render setting into the setting's field. */
 static void change_render_settings(const cli_value *values, hl_render_settings *render) {
   for (int which = 0; which < RENDER_OPTION_COUNT; which++) {
     const cli_option *option = &render_options[which];
@@ -234,7 +235,7 @@ static void change_settings(const cli_value *values, hl_scene_description *descr
     memcpy(description->background, background->number, sizeof description->background);
 }
 
-/* Options that were asked for and change nothing are said, not swallowed. */
+/* Warns of options that were given and change nothing. */
 static void warn_of_idle_options(const scene_change *change) {
   const hl_render_settings *settings = &change->description.render;
   const cli_value *values = change->values;
@@ -261,7 +262,8 @@ static void change_release(scene_change *change) {
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
   const hl_scene_description *before = hl_scene_describe(*scene);
   scene_change change = {.host = host, .values = values, .bare = bare, .description = *before};
-  int exit_code = change_volumes(&change); /* first: what is seen of them is framed */
+  int exit_code = change_volumes(&change); /* first: the camera frames what is seen of the volumes */
+
   if (exit_code == EXIT_CODE_OK) exit_code = change_camera(&change);
   if (exit_code == EXIT_CODE_OK) exit_code = change_lights(&change);
   if (exit_code == EXIT_CODE_OK) {

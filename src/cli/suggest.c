@@ -1,9 +1,5 @@
-/* cli/suggest.c - what somebody who typed an unknown name may have meant.
- *
- * Known names that are nearly the same come first. Words of ParaView, VTK, ImageMagick, ffmpeg, Blender,
- * Mitsuba and plotting libraries lead to the option that does the same; a subcommand that lacks this option
- * offers nothing. Settings that only scenes have lead to what the scene writes.
- */
+/* cli/suggest.c - suggestions for an unknown name: known names spelled alike, and the names of the same thing
+ * here for words of ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba and plotting libraries. */
 #include "suggest.h"
 
 #include <string.h>

@@ -1,19 +1,19 @@
-/* cli/suggest.h - what somebody who typed an unknown name may have meant. */
+/* cli/suggest.h - suggestions for an unknown name. */
 #ifndef HL_CLI_SUGGEST_H
 #define HL_CLI_SUGGEST_H
 
 #include "options.h"
 
-/* The candidate nearest to text, or null if none is near. candidate(data, i) is null past the last. */
+/* The candidate spelled most like text, or null if none is spelled like it. candidate(data, i) is null past
+ * the last. */
 const char *nearest_name(const char *text, const char *(*candidate)(const void *data, size_t index),
                          const void *data);
 
-/* The subcommand's option that does what a word of other programs means ("rotate" -> "azimuth"); null: none
- * is known. */
+/* The subcommand's option for a word of other programs ("rotate" -> "azimuth"); null: none is known. */
 const char *synonym_of(const char *word, const cli_command *command);
 
-/* The setting that a word names and that only a scene has, as the scene writes it ("emission" -> its JSON
- * with an example); null: none is known. */
+/* For the name of a setting that only scene files have, the JSON that sets it ("diffuse" -> "\"material\": {
+ * \"diffuse\": 0.7 } in a volume"); null: none is known. */
 const char *scene_setting_of(const char *word);
 
 #endif

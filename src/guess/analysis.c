@@ -1,5 +1,4 @@
 /* guess/analysis.c - what kind of data a volume is, and where its things begin.
-
  *
  * In: a volume. Out: its background, thresholds and kind, all of which scale and shift with the data. The
  * background is what the grid's faces mostly have. From there, along the distance to the background, the

@@ -1,5 +1,4 @@
 /* guess/exposure.c - the brightness of a picture, estimated by a few thousand rays on the voxels' lattice.
-
  *
  * In: a scene with its camera, lights and first volume. Out: a factor for the lights. Steps are the shortest
  * voxel edge long; a sample is the B-spline at the nearest voxel's centre, lit as by the renderer

@@ -1,5 +1,4 @@
 /* guess/framing.c - a camera so placed that what is seen fills the picture and is in its middle.
-
  *
  * In: the outline of what is seen, and a direction of view. Each side of the picture is a plane through the
  * eye, so the nearest eye that has all of it inside follows from the greatest reach to each side. With room

@@ -1,5 +1,4 @@
 /* guess/function_writer.c - from an analysis of the data to a transfer function that shows it: one writer for
-
  * each look.
  *
  * In: measurements of a volume. Out: opacities and colours. Opacities are per smallest voxel edge. Surfaces

@@ -1,5 +1,4 @@
 /* guess/looks.c - from what is measured of a volume to what it is taken for, and the table of looks.
-
  *
  * In: a volume's analysis (analysis.c, labels.c). Out: a row of the table: transfer function, shading and
  * lights. The colour of skin is for what can be a body; all other scanned things are ivory.

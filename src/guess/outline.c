@@ -1,5 +1,4 @@
 /* guess/outline.c - the outermost points of what is seen of a scene.
-
  *
  * Of each row of voxels only the first and the last that are seen can be extreme, and of these only the
  * corners of each slice's convex hull. */

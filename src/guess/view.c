@@ -1,5 +1,4 @@
 /* guess/view.c - which way up a volume is, where its file cannot say.
-
  *
  * In: a volume and the thresholds of its things. Out: up and right for the default camera. Only the picture's
  * orientation follows from it, never a coordinate.

@@ -55,9 +55,9 @@ static void rgb_to_hsv(const double rgb[3], double hsv[3]) {
 
 static void hsv_to_rgb(const double hsv[3], double rgb[3]) {
   for (int c = 0; c < 3; c++) { /* each channel is a trapezium over the hue */
-    double place = 6 * (hsv[0] + (c == 0 ? 0 : c == 1 ? 2.0 / 3 : 1.0 / 3));
-    place -= 6 * floor(place / 6);
-    rgb[c] = hsv[2] * (1 - hsv[1] + hsv[1] * fmin(fmax(fabs(place - 3) - 1, 0), 1));
+    double hue = 6 * (hsv[0] + (c == 0 ? 0 : c == 1 ? 2.0 / 3 : 1.0 / 3));
+    hue -= 6 * floor(hue / 6);
+    rgb[c] = hsv[2] * (1 - hsv[1] + hsv[1] * fmin(fmax(fabs(hue - 3) - 1, 0), 1));
   }
 }
 
@@ -85,7 +85,8 @@ static msh msh_of(const double srgb[3]) {
   return (msh){m, s, s > 0.001 ? atan2(lab[2], lab[1]) : 0};
 }
 
-/* The hue that an unsaturated end takes so that colours change evenly. */
+/* The hue that an unsaturated colour of magnitude m takes so that colours change evenly towards the saturated
+ * one. */
 static double spun_hue(msh saturated, double m) {
   if (saturated.m >= m - 0.1) return saturated.h;
   double spin = saturated.s * sqrt(m * m - saturated.m * saturated.m) / (saturated.m * sin(saturated.s));

@@ -1,4 +1,4 @@
-/* json/color_space.h - mixing two sRGB colours in the spaces that colour map files name. */
+/* json/color_space.h - mixing two sRGB colours in the spaces that files of colour maps name. */
 #ifndef HL_JSON_COLOR_SPACE_H
 #define HL_JSON_COLOR_SPACE_H
 
@@ -10,7 +10,7 @@ typedef enum hl_color_space {
   HL_SPACE_STEP = 4       /* the second colour right after the first point, as VTK has it */
 } hl_color_space;
 
-/* mixed = the colour at t in [0,1] from a to b; all sRGB from 0 to 1. */
+/* *mixed: the colour at t, from a at 0 to b at 1. All colours are sRGB from 0 to 1. */
 void hl_color_mix(hl_color_space space, const double a[3], const double b[3], double t, double mixed[3]);
 
 #endif

@@ -29,14 +29,14 @@ static hl_status read_screen(hl_json_reader *reader, const json_t *value, hl_lig
   return status;
 }
 
-/* Where an image goes. */
+/* The fields that an image is loaded into: a light texture's or an emission image's. */
 typedef struct light_emission {
   const char **file;
   const float **pixels;
   int *width, *height;
 } light_emission;
 
-/* Premultiplied colours are those over black: alpha is left out. */
+/* Copies an image's colours without alpha: premultiplied, they are the image over black. */
 static hl_status take_pixels(hl_context *context, const hl_image *image, const light_emission *to,
                              hl_error *error) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
@@ -51,7 +51,7 @@ static hl_status take_pixels(hl_context *context, const hl_image *image, const l
   return HL_OK;
 }
 
-/* The image that an object's "file" names. */
+/* Loads the image that an object's "file" names. */
 static hl_status load(hl_json_reader *reader, const json_t *value, const light_emission *to) {
   const char *file = NULL;
   hl_status status = hl_json_text(reader, value, "file", &file);
@@ -98,7 +98,7 @@ hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_
 
 /* ---- lights ---- */
 
-/* The vertices in memory of the light's own. */
+/* Reads a polygon's vertices into memory owned by the light. */
 static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_light *light) {
   const json_t *value = json_object_get(object, "vertices");
   if (value == NULL)
@@ -122,7 +122,7 @@ static hl_status read_vertices(hl_json_reader *reader, const json_t *object, hl_
   return HL_OK;
 }
 
-/* Without a word on it the edge is as wide as a narrow cone allows. */
+/* Where the scene gives no width of a spot light's edge, the default is cut to what fits into its cone. */
 static void narrow_edge(const json_t *value, hl_light *light) {
   if (json_object_get(value, "falloff_angle_deg") == NULL &&
       light->falloff_angle_deg > light->opening_angle_deg / 2)

@@ -10,12 +10,12 @@
 json_t *hl_json_copy(const json_t *value) {
   json_t *copy = json_copy((json_t *)value);
   if (json_object_size(copy) == json_object_size(value))
-    return copy; /* members that it had no room for are left out */
+    return copy; /* for lack of memory jansson leaves members out */
   json_decref(copy);
   return NULL;
 }
 
-/* What JSON does not have, and what is often written nevertheless. */
+/* How to mend text that JSON does not allow but is often written. */
 static const char *mend_of_fault(const char *fault) {
   static const struct {
     const char *near, *mend;
@@ -32,8 +32,7 @@ static const char *mend_of_fault(const char *fault) {
   return "";
 }
 
-/* Windows programs begin UTF-8 with a byte-order mark, which says nothing; in other encodings it says what
- * they are. */
+/* Skips a byte-order mark of UTF-8, which some Windows programs write; refuses text in UTF-16. */
 static hl_status pass_byte_order_mark(const char **text, size_t *length, const char *name, hl_error *error) {
   if (*length >= 2 && (memcmp(*text, "\xff\xfe", 2) == 0 || memcmp(*text, "\xfe\xff", 2) == 0))
     return hl_fail_at(error, HL_ERROR_INPUT, 1, 1, "%s:1:1: UTF-16 text: save it as UTF-8", name);
@@ -52,7 +51,7 @@ hl_status hl_json_parse(const char *text, size_t length, const char *name, json_
   if (status != HL_OK) return status;
   *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
-  /* without memory for its first buffer the parser gives no reason, and no line */
+  /* without memory for its first buffer jansson gives neither a reason nor a line */
   if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1)
     return hl_fail_memory(error, length, name);
   return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line,

@@ -1,8 +1,8 @@
-/* json/read.h - tools for strict readers of JSON: typed values, places for errors, no unknown keys.
+/* json/read.h - strict reading of JSON: values of the right type, no unknown keys, errors that name the
+ * place.
  *
- * A reader knows where it is as a JSON pointer. Getters leave their target alone where the key is absent, so
- * that targets start as their defaults. The first fault stops everything: every getter returns a
- * status. */
+ * A reader keeps its place in the text as a JSON pointer. Getters leave their target alone where the key is
+ * absent: set targets to their defaults first. Every getter returns a status; stop at the first error. */
 #ifndef HL_JSON_READ_H
 #define HL_JSON_READ_H
 
@@ -23,22 +23,22 @@ typedef struct hl_json_reader {
   char place[400]; /* JSON pointer of the value being read */
 } hl_json_reader;
 
-/* Text to a tree (json_decref by the caller); a syntax error gives NAME:LINE:COLUMN. */
+/* Parses a text. *root is owned by the caller (json_decref); a syntax error gives NAME:LINE:COLUMN. */
 hl_status hl_json_parse(const char *text, size_t length, const char *name, json_t **root, hl_error *error);
 
-/* A copy, members shared, with all of them; null without memory. */
+/* A copy of an object with all its members, which are shared, not copied; null without memory. */
 json_t *hl_json_copy(const json_t *value);
 
-/* "NAME: PLACE/KEY: ..."; key may be null (the place itself). */
+/* Fails with "NAME: PLACE/KEY: ..."; key null: "NAME: PLACE: ...". */
 __attribute__((format(printf, 4, 5))) hl_status hl_json_fail(hl_json_reader *reader, hl_status code,
                                                              const char *key, const char *format, ...);
-/* Puts "NAME: " (and the place, if not null) before a message that is already there; returns its code. */
+/* Puts "NAME: ", and "PLACE: " if place is not null, before the error's message; returns the error's code. */
 hl_status hl_json_prefix(hl_json_reader *reader, const char *place);
 
 /* "an object", "a string", ... */
 const char *hl_json_type_name(const json_t *value);
 
-/* Goes into a member or an element; the mark that leave() needs comes back. */
+/* Enter a member or an element: add it to the place. Returns the mark for hl_json_leave(). */
 size_t hl_json_enter(hl_json_reader *reader, const char *key);
 size_t hl_json_enter_index(hl_json_reader *reader, size_t index);
 void hl_json_leave(hl_json_reader *reader, size_t mark);

@@ -1,9 +1,6 @@
-/* json/scene.c - a scene file: the top level, and the loading of what it names.
-
+/* json/scene.c - reads a scene file's top level, and loads the files that it names.
  *
- * In: JSON text. Out: an hl_scene. Order matters: volumes are loaded before the camera, which frames them
- * where the file does not say, and the camera is known before the lights, which stand as it sees them where
- * the file has none.
+ * The image's size and the volumes come before the camera, which by default frames the volumes.
  */
 #include <string.h>
 
@@ -17,7 +14,7 @@
 #include "scene/scene.h"
 #include "scene/settings.h"
 
-/* What reading gathers and must let go of, whatever happens. */
+/* Everything that reading allocates; released at the end, after a failure too. */
 typedef struct gathered {
   hl_scene_description description;
   hl_light *lights;         /* owned; [light_count] */
@@ -43,7 +40,7 @@ static void release(hl_context *context, gathered *g) {
   hl_release(context, g->lights);
 }
 
-/* The ranges of a table are checked where what follows in the file depends on them. */
+/* Checks the ranges of a table's settings early, where reading the rest of the scene depends on them. */
 static hl_status check_settings(hl_json_reader *reader, hl_setting_kind kind, const void *object,
                                 const char *place) {
   hl_status status = hl_settings_check(kind, object, 0, place, reader->error);
@@ -64,12 +61,12 @@ static hl_status read_image(hl_json_reader *reader, const json_t *root, hl_scene
 
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
 
-/* A key that says nothing for this kind of thing would be ignored, so it is refused. */
+/* Refuses a key that would have no effect. */
 static hl_status refuse_key(hl_json_reader *reader, const json_t *object, const char *key, const char *mend) {
   return has(object, key) ? hl_json_fail(reader, HL_ERROR_INPUT, key, "%s", mend) : HL_OK;
 }
 
-/* What the camera would be if the file said no more than its type and field of view. */
+/* Frames the volumes with a camera whose type and field of view are set. */
 static hl_status frame(hl_json_reader *reader, const hl_scene_description *d, hl_camera *camera) {
   hl_status status = camera->type == HL_CAMERA_PERSPECTIVE
                          ? hl_settings_check_key(HL_SETTINGS_CAMERA, "fovy_deg", camera, "/camera",
@@ -103,8 +100,8 @@ static hl_status read_camera_members(hl_json_reader *reader, const json_t *value
                          : status;
 }
 
-/* The camera (value null: absent) of a description whose image and volumes are known: what is absent is
- * framed. */
+/* Reads the camera (value null: absent) when the image's size and the volumes are known; without a position
+ * it frames the volumes. */
 static hl_status read_camera(hl_json_reader *reader, const json_t *value, hl_scene_description *d) {
   size_t mark = hl_json_enter(reader, "camera");
   hl_status status = value != NULL ? read_camera_members(reader, value, d) : frame(reader, d, &d->camera);
@@ -166,7 +163,7 @@ static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathere
   return HL_OK;
 }
 
-/* A camera can frame only what is possible. */
+/* Checks the volumes early: the camera may have to frame them. */
 static hl_status check_volumes(hl_json_reader *reader, const hl_scene_description *d) {
   for (size_t v = 0; v < d->volume_count; v++) {
     hl_status status = hl_scene_volume_check(&d->volumes[v], v, reader->error);

@@ -1,7 +1,7 @@
-/* json/settings.c - settings from JSON, by the rows of their tables.
+/* json/settings.c - reading settings from JSON by the rows of their tables.
  *
- * Types and names are checked here; ranges are where a scene is created, but for whole numbers that may be
- * words, as no number may stand for a word.
+ * Types and names are checked here, ranges when a scene is created. Settings that are a whole number or a
+ * word are the exception: their ranges are checked here, so that no number is taken for a word's value.
  */
 #include "json/settings.h"
 

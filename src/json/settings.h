@@ -1,4 +1,4 @@
-/* json/settings.h - settings from JSON, by the rows of their tables. */
+/* json/settings.h - reading settings from JSON by the rows of their tables. */
 #ifndef HL_JSON_SETTINGS_H
 #define HL_JSON_SETTINGS_H
 
@@ -6,20 +6,21 @@
 
 #include "json/read.h"
 
-/* The value must be an object whose keys are all in the table or in the null-terminated list of others. type:
- * that of the light or camera, whose keys alone are allowed; -1: those of all types. */
+/* The value must be an object whose keys are all in the table or in the null-terminated list `others`. type:
+ * of the light or camera, for which only the keys of this type are allowed; -1: keys of every type are. */
 hl_status hl_json_settings_object(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, int type,
                                   const char *const *others);
 
-/* Reads the object `key` into the struct `target`: a table's keys, without types, and no others. value null:
- * the object is absent, and nothing is read. */
+/* Reads the object `value`, called `key` in errors, into the struct `target`; its keys must be the table's.
+ * value null: nothing is read. */
 hl_status hl_json_settings_member(hl_json_reader *reader, const json_t *value, const char *key,
                                   hl_setting_kind kind, void *target);
 
-/* Reads what an object says for rows of a table into the struct `target`: for one key, which may be absent
- * ("rotate/axis" is read from the object "rotate" itself), and for all keys without a "/". */
+/* Reads one key of a table, which may be absent, into the struct `target`. `object` is the innermost one: for
+ * the key "transform/translate" the object "transform". */
 hl_status hl_json_setting(hl_json_reader *reader, const json_t *object, hl_setting_kind kind, const char *key,
                           void *target);
+/* Reads all keys of a table that have no "/" and belong to this type of light or camera. */
 hl_status hl_json_settings(hl_json_reader *reader, const json_t *object, hl_setting_kind kind, int type,
                            void *target);
 

@@ -1,8 +1,7 @@
-/* json/shapes.c - shapes from JSON: their keys, their groups, the volume they make.
-
+/* json/shapes.c - reads shapes and groups of shapes, and makes a volume of them.
  *
- * A list may hold groups: by name, as the scene's "groups" say, or with their shapes in place. A group is
- * read where it is placed, its errors point to where it is written.
+ * A group in a list names one of the scene's "groups", or holds its shapes itself. A named group is read each
+ * time it is used; its errors point into "groups".
  */
 #include "json/shapes.h"
 
@@ -36,14 +35,14 @@ static const char *const keys_of_type[][16] = {
     [HL_SHAPE_GROUP] = {COMMON_KEYS, "shapes"},
 };
 
-/* A list being read, and the groups that are open. */
+/* A list being read, and the groups that it is inside of. */
 typedef struct reading {
   hl_json_reader *reader;
   const json_t *groups;
   hl_shape_list *list;
-  const char *open[HL_SHAPES_DEEPEST];
+  const char *open[HL_SHAPES_DEEPEST]; /* [depth]; the groups' names, null for one without a name */
   size_t depth;
-  int seed; /* added to every texture's */
+  int seed; /* added to every hypertexture's seed */
 } reading;
 
 static hl_status check_between(hl_json_reader *reader, const char *key, double value, double low, double high,
@@ -235,7 +234,7 @@ static hl_status read_form(hl_json_reader *reader, const json_t *value, hl_shape
 
 static hl_status read_list(reading *r, const json_t *value);
 
-/* A group's shapes, read in place of its name; errors point to where they are written. */
+/* Reads the shapes of one of "groups", where errors then point to. */
 static hl_status read_named_group(reading *r, const char *name) {
   hl_json_reader *reader = r->reader;
   const json_t *members = json_object_get(r->groups, name);
@@ -379,7 +378,8 @@ hl_status hl_json_check_groups(hl_json_reader *reader, const json_t *groups) {
   return HL_OK;
 }
 
-/* By the size asked for, by the text, or by DEFAULT_SIZE. */
+/* Chooses the edge of voxels: by size, the voxels along the longest side; for size 0 by "voxel_size", or else
+ * by DEFAULT_SIZE. */
 static hl_status choose_voxel_size(hl_json_reader *reader, const json_t *object, const hl_shape_list *list,
                                    int size, double *voxel_size) {
   double extent = hl_shapes_extent(list), margin = HL_SHAPE_EDGE + 2 * HL_SHAPE_MARGIN;

@@ -1,4 +1,4 @@
-/* json/shapes_volume.c - volumes of shapes for programs: hl_volume_from_shapes(). */
+/* json/shapes_volume.c - hl_volume_from_shapes(), and the text of shapes with their groups expanded. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,8 +56,9 @@ hl_status hl_volume_from_shapes(hl_context *context, const char *text, size_t le
   return status;
 }
 
-/* ---- lists of shapes that stand for themselves, with their groups in place. */
+/* ---- expanding groups ---- */
 
+/* left: how many shapes the whole list may still have. */
 static json_t *expand_list(const json_t *shapes, const json_t *groups, int depth, int *left) {
   json_t *expanded = json_array();
   for (size_t n = 0; n < json_array_size(shapes); n++) {
@@ -85,7 +86,8 @@ json_t *hl_json_expand_shapes(const json_t *shapes, const json_t *groups) {
   return expand_list(shapes, groups, 0, &left);
 }
 
-/* Without memory jansson leaves keys out and calls it a success. */
+/* True if the text says all that the tree holds: without memory, jansson leaves keys out and reports success.
+ */
 static bool says(const char *text, const json_t *root) {
   json_t *again = text != NULL ? json_loads(text, 0, NULL) : NULL;
   bool same = json_equal(root, again);

@@ -1,9 +1,8 @@
-/* json/transfer_function.c - a transfer function from JSON: explicit points, a colormap, a preset or another
-
- * file.
+/* json/transfer_function.c - a transfer function from JSON: points, a colormap, a preset or another file.
  *
- * A preset, a file or, without opacity points, the automatic function (for shapes: the solid one) is the
- * ground; points, colormap and unit_distance given beside it take the place of its own.
+ * The function starts as the preset or the file that is named or, where neither a file nor opacity is given,
+ * as the automatic one (for shapes: an opaque solid). Points, colormap and unit_distance then replace its
+ * own.
  */
 #include <string.h>
 
@@ -16,7 +15,7 @@
 
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
 
-/* An array of arrays of `width` numbers, in memory of its own. */
+/* Reads an array of rows of `width` numbers. *rows is owned by the caller (hl_release). */
 static hl_status read_rows(hl_json_reader *reader, const json_t *object, const char *key, size_t width,
                            double **rows, size_t *count) {
   const json_t *value = json_object_get(object, key);
@@ -53,11 +52,12 @@ static hl_status read_rows(hl_json_reader *reader, const json_t *object, const c
 _Static_assert(sizeof(hl_opacity_point) == 2 * sizeof(double), "opacity points are rows of two numbers");
 _Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are rows of four numbers");
 
-/* Solids appear over the middle voxel of the HL_SHAPE_EDGE that their density falls over. */
+/* A solid's density falls from 1 to 0 over HL_SHAPE_EDGE voxels; the default opacity rises over the middle
+ * one of them. */
 enum { SOLID_POINTS = 2 };
 static const double solid_begins = 0.375, solid_is_full = 0.625, solid_opacity = 0.95;
 
-/* function->opacity = nothing outside, this opacity inside. */
+/* Makes a solid clear outside, with this opacity inside. */
 static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_transfer_function *function) {
   hl_opacity_point *points = hl_allocate(reader->context, SOLID_POINTS, sizeof *points);
   if (points == NULL)
@@ -81,7 +81,7 @@ static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
   return hl_json_numbers(reader, value, "color", 3, point->color);
 }
 
-/* An opaque solid: per voxel edge, so that its skin is one voxel thick. */
+/* An opaque solid. Opacity is per voxel edge, so its skin is one voxel thick. */
 static hl_status read_solid(hl_json_reader *reader, const hl_volume *volume, hl_transfer_function *function) {
   function->unit_distance = mat3_shortest_column(volume->index_to_world.linear);
   return set_solid_opacity(reader, solid_opacity, function);
@@ -142,7 +142,7 @@ static hl_status read_colormap(hl_json_reader *reader, const json_t *value, cons
   return status;
 }
 
-/* For files that have colours only. */
+/* Takes the automatic opacity, for files that have colours only. */
 static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume *volume,
                                         hl_transfer_function *function) {
   hl_transfer_function automatic;
@@ -155,9 +155,9 @@ static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume 
   return HL_OK;
 }
 
-/* The function that the rest changes. */
-static hl_status read_ground(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
-                             hl_transfer_function *function) {
+/* Reads the function that points, colormap and unit_distance then change. */
+static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
+                            hl_transfer_function *function) {
   const hl_volume *volume = subject.volume;
   const char *preset = NULL, *file = NULL, *key = "preset";
   hl_status status = hl_json_text(reader, value, "preset", &preset);
@@ -198,7 +198,7 @@ static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_fu
   static const char *const keys[] = {"unit_distance", "opacity", "color", "colormap",
                                      "range",         "preset",  "file",  NULL};
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = read_ground(reader, value, subject, function);
+  if (status == HL_OK) status = read_start(reader, value, subject, function);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
   if (status == HL_OK) status = read_points(reader, value, subject.is_solid, function);
   return status == HL_OK ? read_colormap(reader, value, subject.volume, function) : status;
@@ -218,7 +218,7 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
     return status;
   }
   size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function")
-                                       : 0; /* a file of its own is the root */
+                                       : 0; /* in a file of its own the function is the root */
   hl_status status = read_members(reader, value, subject, function);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;

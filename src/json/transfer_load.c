@@ -1,11 +1,9 @@
-/* json/transfer_load.c - transfer functions from files: Halflight's own, ParaView's colour maps, Slicer's
-
- * presets.
+/* json/transfer_load.c - transfer functions from files: Halflight's own, a scene's first, ParaView's colour
+ * maps, Slicer's presets.
  *
- * The kind is told by content: an array is ParaView's, an object with volumeProperties Slicer's. Foreign
- * colours are sRGB, mixed in the space that the file names; they become linear points, close enough together
- * that straight lines between them stand for the mixing. What cannot be carried over is said in a
- * warning. */
+ * An array is ParaView's, an object with "volumeProperties" Slicer's, one with "volumes" a scene. Foreign
+ * colours are sRGB, mixed in the space that the file names. They become points in linear RGB, so close
+ * together that straight lines between them come near that mixing. A warning names what is left out. */
 #include <math.h>
 #include <string.h>
 
@@ -18,15 +16,17 @@
 #include "scene/scene.h"
 #include "scene/transfer_function.h"
 
-#define PIECES     16   /* of a segment that is no straight line */
-#define MOST_NODES 2048 /* of a foreign function: its pieces stay below the limit of points */
+#define PIECES     16   /* straight pieces that a curved segment becomes */
+#define MOST_NODES 2048 /* of a foreign function, whose pieces must stay below HL_LIMIT_POINTS */
 
-/* A point of a foreign function; the pair rules the segment to the next one, as in VTK's functions. */
+/* A point of a foreign function: an opacity or an sRGB colour at a value. Midpoint and sharpness shape the
+ * segment to the next point, as in VTK. */
 typedef struct node {
   double value, y[3], midpoint, sharpness;
 } node;
 
-/* VTK's piecewise functions: where in [0,1] a place t of a segment lies, and how it is eased. */
+/* How far, from 0 to 1, the function has come from one node to the next at the fraction t of their distance
+ * (vtkPiecewiseFunction). */
 static double ease(double t, const node *n) {
   if (n->midpoint == 0.5 && n->sharpness < 0.01) return t;
   t = t < n->midpoint ? 0.5 * t / n->midpoint : 0.5 + 0.5 * (t - n->midpoint) / (1 - n->midpoint);
@@ -83,7 +83,7 @@ static hl_status set_color(hl_context *context, const node *nodes, size_t count,
   return HL_OK;
 }
 
-/* Foreign functions are checked where their own places can be named. */
+/* Checks a foreign function here, where errors can name its own points. */
 static hl_status check_nodes(hl_json_reader *reader, const node *nodes, size_t count) {
   for (size_t n = 0; n < count; n++) {
     if (n > 0 && nodes[n].value < nodes[n - 1].value)
@@ -100,8 +100,8 @@ static hl_status check_nodes(hl_json_reader *reader, const node *nodes, size_t c
   return HL_OK;
 }
 
-/* ParaView: rows of four numbers in one flat array: value, then three colours or an opacity and what eases
- * it. */
+/* ParaView: one flat array of four numbers per point: value, red, green, blue (ordinates 3), or value,
+ * opacity, midpoint, sharpness (ordinates 1). */
 static hl_status read_flat(hl_json_reader *reader, const json_t *map, const char *key, size_t ordinates,
                            node **nodes, size_t *count) {
   const json_t *value = json_object_get(map, key);
@@ -198,7 +198,7 @@ static hl_status read_points(hl_json_reader *reader, const json_t *component, co
   return status;
 }
 
-/* Slicer's presets may make opacity depend on the gradient; ours never does. */
+/* Slicer's presets may make opacity depend on the gradient, which is not supported: warns. */
 static void warn_of_gradient(hl_json_reader *reader, const json_t *component) {
   const json_t *points = json_object_get(json_object_get(component, "gradientOpacity"), "points");
   if (json_is_true(json_object_get(component, "disableGradientOpacity"))) return;
@@ -237,8 +237,8 @@ static hl_status read_slicer(hl_json_reader *reader, const json_t *root, hl_tran
   return status;
 }
 
-/* The transfer function of a scene's first volume. One that the scene leaves to be chosen depends on the
- * voxels, which are not read here. */
+/* The transfer function of a scene's first volume; refused where it depends on the voxels, which are not read
+ * here. */
 static hl_status read_of_scene(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
   const json_t *volume = json_array_get(json_object_get(root, "volumes"), 0);
   const json_t *value = json_object_get(volume, "transfer_function");

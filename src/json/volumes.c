@@ -1,4 +1,4 @@
-/* json/volumes.c - one volume of a scene from JSON: its file, place, material and transfer function. */
+/* json/volumes.c - one volume of a scene from JSON: its file, transform, material and transfer function. */
 #include <string.h>
 #include <unistd.h>
 
@@ -11,7 +11,7 @@
 #include "json/shapes.h"
 #include "scene/scene.h"
 
-#define DATA_PREFIX "data:" /* of files that are in the context's data folder */
+#define DATA_PREFIX "data:" /* begins the names of files in the context's data folder */
 
 static const char *const volume_keys[] = {"name",       "stand_in",
                                           "file",       "shapes",
@@ -83,7 +83,8 @@ static bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* options: how a file is read; null: of shapes. */
+/* The volume that was already read from this source; null: none. options: how a file is read; null: the
+ * source is a text of shapes. */
 static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
                                            const hl_volume_load_options *options) {
   for (size_t v = 0; v < shelf->count; v++) {
@@ -100,7 +101,7 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
   return NULL;
 }
 
-/* Takes over source and volume. */
+/* Adds a volume to the shelf, which then owns source and volume. */
 static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source,
                                             const hl_volume_load_options *options, hl_volume *volume) {
   hl_loaded_volume *place = &shelf->loaded[shelf->count++];
@@ -141,7 +142,7 @@ static hl_status read_index(hl_json_reader *reader, const json_t *value, const c
              : status;
 }
 
-/* How the volume's file is read. */
+/* Reads the options for loading the file. */
 static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
                                    hl_volume_load_options *options) {
   hl_volume_load_options_defaults(options);
@@ -161,14 +162,15 @@ static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
 
 static bool is_data(const char *file) { return strncmp(file, DATA_PREFIX, strlen(DATA_PREFIX)) == 0; }
 
-/* Where a file name leads: "data:" to the data folder, the rest from the scene's. Null without memory. */
+/* The path of a file that the scene names: in the data folder for "data:...", else relative to the scene's
+ * folder. Owned by the caller (hl_release); null without memory. */
 static char *path_of(const hl_json_reader *reader, const char *file) {
   bool data = is_data(file);
   return hl_path_join(reader->context, data ? reader->context->options.data_folder : reader->folder,
                       data ? file + strlen(DATA_PREFIX) : file);
 }
 
-/* The volume of a file, loaded now or earlier. */
+/* Loads the volume's file, or takes it from the shelf. */
 static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
                       hl_volume_shelf *shelf, hl_scene_volume *volume) {
   if (is_data(file) && reader->context->options.data_folder == NULL)
@@ -200,7 +202,8 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
   return HL_OK;
 }
 
-/* The volume of shapes; the same list, voxel size and groups make it once. */
+/* Makes the volume of shapes, or takes it from the shelf if the same shapes with the same voxel size were
+ * made before. */
 static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
                              hl_scene_volume *volume) {
   const json_t *shapes = json_object_get(value, "shapes");
@@ -249,12 +252,12 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
   return status == HL_OK ? load(reader, file, &options, shelf, volume) : status;
 }
 
-/* Orbitals are signed, everything else that shapes make is a density. */
+/* True for volumes of shapes, except for orbitals, whose values are signed floats. */
 static bool is_solid(const hl_scene_volume *volume) {
   return volume->shapes != NULL && volume->volume->storage != HL_STORAGE_F32;
 }
 
-/* Without a word on it, smoke is a medium and the rest has surfaces. */
+/* Where neither shading nor a transfer function is given, shades what looks like smoke as a medium. */
 static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   if (json_object_get(value, "shading") != NULL || json_object_get(value, "transfer_function") != NULL ||
       volume->shapes != NULL)
@@ -274,8 +277,8 @@ static bool is_there(const hl_json_reader *reader, const char *file) {
   return there;
 }
 
-/* Where the volume's file is absent, *value becomes the volume with the keys of its stand-in, kept on the
- * shelf. */
+/* Where the volume's file is absent, replaces *value by a copy with the keys of its stand-in, which the shelf
+ * owns. */
 static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
   const json_t *stand_in = json_object_get(*value, "stand_in");
   const char *file = NULL;

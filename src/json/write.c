@@ -1,8 +1,6 @@
-/* json/write.c - a scene as JSON text that reads back as the same scene.
-
+/* json/write.c - writes a scene as JSON text that reads back as the same scene.
  *
- * Numbers are written with the fewest digits that give the same double again; rows of numbers stay on one
- * line.
+ * Numbers have the fewest digits that give the same double again; rows of numbers stay on one line.
  */
 #define _GNU_SOURCE
 #include <stdarg.h>
@@ -18,7 +16,7 @@
 #include "scene/settings.h"
 #include "text/json_value.h"
 
-/* A text that grows. After a failed allocation everything is ignored until the end. */
+/* A growing text. After a failed allocation nothing more is written, and the end reports it. */
 typedef struct writer {
   hl_context *context;
   char *text;
@@ -130,13 +128,13 @@ static void write_key(writer *w, hl_setting_kind kind, const char *key, const vo
   write_setting(w, hl_setting_find(kind, key), object);
 }
 
-/* Nothing for a key that objects of this type do not have, or whose default goes without saying. */
+/* Writes a setting, unless objects of this type do not have it or it is optional and has its default. */
 static void write_if_told(writer *w, const hl_setting *setting, int type, const void *object) {
   if (!hl_setting_is_for(setting, type)) return;
   if (!setting->optional || !hl_setting_is_standard(setting, object)) write_setting(w, setting, object);
 }
 
-/* The keys of a table without a "/". */
+/* Writes the keys of a table that have no "/". */
 static void write_settings(writer *w, hl_setting_kind kind, int type, const void *object) {
   for (size_t s = 0; s < hl_setting_count(kind); s++)
     if (strchr(hl_setting_get(kind, s)->key, '/') == NULL)
@@ -219,7 +217,6 @@ static void write_transform(writer *w, const hl_scene_volume *volume) {
 
 static void write_json(writer *w, const char *key, const json_t *value);
 
-/* Members on one line where they are plain, each shape on a line of its own. */
 static void write_object(writer *w, const char *key, const json_t *value) {
   const char *name;
   json_t *member;
@@ -248,7 +245,8 @@ static void write_json(writer *w, const char *key, const json_t *value) {
   else write_flag(w, key, json_is_true(value));
 }
 
-/* text: {"shapes": [...], "voxel_size": h}, found good by hl_scene_to_json(); groups go into their shapes. */
+/* Writes shapes with their groups expanded. text: {"shapes": [...], "voxel_size": h, "groups": ...}, checked
+ * by is_text_of_shapes(). */
 static void write_shapes(writer *w, const char *text) {
   json_t *root = json_loads(text, 0, NULL);
   json_t *shapes = hl_json_expand_shapes(json_object_get(root, "shapes"), json_object_get(root, "groups"));
@@ -260,7 +258,7 @@ static void write_shapes(writer *w, const char *text) {
   json_decref(root);
 }
 
-/* How the file is read, where it is not by default. */
+/* Writes the file, and array, component and spacing where they are not the default. */
 static void write_source(writer *w, const hl_scene_volume *volume) {
   write_name(w, "file", volume->file);
   if (volume->series != NULL) write_name(w, "series", volume->series);
@@ -323,7 +321,7 @@ static void write_scene(writer *w, const hl_scene_description *d) {
 
 static bool is_utf8(const char *text) {
   if (text == NULL) return true;
-  json_t *string = json_string(text); /* null for what is not */
+  json_t *string = json_string(text); /* null if it is not UTF-8 */
   bool good = string != NULL;
   json_decref(string);
   return good;
@@ -366,7 +364,8 @@ static hl_status check_light_image(const float *pixels, const char *file, const 
                  "/lights/%zu/%s/file: is not UTF-8, as JSON texts must be: rename it", light, key);
 }
 
-/* What a text cannot say: voxels and pixels without a file, names that are not UTF-8. */
+/* Refuses scenes that a text cannot describe: voxels or pixels without a file, names that are not UTF-8. */
+
 static hl_status check_writable(const hl_scene_description *d, hl_error *error) {
   for (size_t l = 0; l < d->light_count; l++) {
     const hl_light *light = &d->lights[l];
