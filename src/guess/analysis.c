@@ -1,10 +1,9 @@
-/* guess/analysis.c - what kind of data a volume is, and where its things begin.
+/* guess/analysis.c - the kind of data in a volume, and the values that divide objects from their background.
  *
- * In: a volume. Out: its background, thresholds and kind, all of which scale and shift with the data. The
- * background is what the grid's faces mostly have. From there, along the distance to the background, the
- * threshold of least cross entropy finds where things begin and that of greatest variance between classes
- * where they surely are; smoothness and the shape of the histogram tell simulations, media and scanned things
- * apart; labels are found by scene/labels.c.
+ * Nothing here depends on the data's scale and offset. The background is the commonest value on the grid's
+ * faces. Of the distances from the background, the threshold of least cross entropy is where objects may
+ * begin, the one of greatest variance between classes where they surely are. Smoothness and the shape of the
+ * histogram tell simulations, media and scanned objects apart.
  */
 #include "guess/analysis.h"
 
@@ -15,20 +14,21 @@
 #include "core/memory.h"
 #include "guess/sample.h"
 
-#define BINS   32    /* of the histogram whose shape is looked at */
-#define ROUGH  0.65  /* between simulations and turbulence or noise */
-#define SMOOTH 0.18  /* smoother than any scanner's pictures */
-#define FOG    0.4   /* least roughness of smoke on fine grids (made of 200 to 320 voxels: 0.50 to 0.58) */
-#define NOISY  1.2   /* rougher than a simulation's turbulence; white noise has 1.7 */
-#define TAIL   0.005 /* part of the voxels beyond a flow's ends */
-#define FLOOR  0.002 /* least mean of the background, as a part of top */
+#define BINS   32    /* of the histogram whose shape is judged */
+#define ROUGH  0.65  /* roughness (hl_roughness) between simulations below and turbulence or noise above */
+#define SMOOTH 0.18  /* roughness below any scanner's */
+#define FOG    0.4   /* least roughness of smoke on fine grids (on 200 to 320 voxels: 0.50 to 0.58) */
+#define NOISY  1.2   /* roughness above any simulated turbulence's; white noise has 1.7 */
+#define TAIL   0.005 /* fraction of the voxels below `lower`, and of those above `upper` */
+#define FLOOR  0.002 /* least mean of the background, as a fraction of top */
 
 typedef struct distances {
   float *values; /* owned; ascending; [count]; relative */
   size_t count;
 } distances;
 
-/* The distances of a sorted sample's values from background, those on the other side as 0. */
+/* The distances of a sorted sample's values from the background, ascending; values on its other side count as
+ * 0. */
 static void measure(const float *values, size_t count, double background, double direction, float *distance) {
   for (size_t n = 0; n < count; n++) {
     size_t from = direction > 0 ? n : count - 1 - n;
@@ -36,7 +36,7 @@ static void measure(const float *values, size_t count, double background, double
   }
 }
 
-/* Counts in equal bins over (low, high]; what lies outside is left out. */
+/* Counts the distances between low and high in equal bins. */
 static void shape_of(const distances *d, double low, double high, double counts[BINS]) {
   memset(counts, 0, BINS * sizeof *counts);
   for (size_t n = 0; n < d->count; n++) {
@@ -45,8 +45,9 @@ static void shape_of(const distances *d, double low, double high, double counts[
   }
 }
 
-/* Does the histogram fall all the way (of pure density) or have peaks (of materials)? Averages of two bins
- * bridge the gaps of quantised data; the last bins hold saturated values, and very few voxels say nothing. */
+/* True if the histogram falls all the way, as of a density; false if it has peaks, as of materials. Sums of
+ * two bins bridge the gaps of quantised data. The last two bins, which may hold saturated values, and bins of
+ * very few voxels are ignored. */
 static bool falls(const distances *d, double low, double high) {
   double counts[BINS], least = INFINITY;
   shape_of(d, low, high, counts);
@@ -58,21 +59,21 @@ static bool falls(const distances *d, double low, double high) {
   return true;
 }
 
-/* The part of the sample that has exactly one value, the commonest. */
+/* The fraction of the sample that has exactly the background's value. */
 static double exact_share(const hl_sample *sample, double background) {
   size_t equal = 0;
   for (size_t n = 0; n < sample->count; n++) equal += (double)sample->values[n] == background;
   return (double)equal / (double)sample->count;
 }
 
-/* True if the values are finer than steps of an integer: more levels than a byte has. */
+/* True if the sample has more different values than a byte has. */
 static bool is_continuous(const hl_sample *sample) {
   size_t levels = 1;
   for (size_t n = 1; n < sample->count; n++) levels += sample->values[n] != sample->values[n - 1];
   return levels > 256;
 }
 
-/* Much of the things has about one value: the body of a cloud. */
+/* True if more than two fifths of the objects' voxels have about one value, like the body of a cloud. */
 static bool has_one_body(const distances *d, double low, double high) {
   double counts[BINS], sum = 0, most = 0;
   shape_of(d, low, high, counts);
@@ -83,14 +84,15 @@ static bool has_one_body(const distances *d, double low, double high) {
   return most > 0.4 * sum;
 }
 
-/* Thresholds of one side of the background, relative. */
+/* Finds the thresholds and measures of the objects, relative to the sample's range; d: distances to one side
+ * of the background. */
 static void find_thresholds(const distances *d, const float *border, size_t border_count,
                             hl_data_analysis *a) {
   a->top = fmax(hl_quantile(d->values, d->count, 0.9999), 1e-9);
   a->solid = hl_threshold_otsu(d->values, d->count, -1);
   a->faint = fmin(hl_threshold_cross_entropy(d->values, d->count, FLOOR * a->top), a->solid);
   a->dense = hl_threshold_otsu(d->values, d->count, a->solid);
-  /* Most of the border is background: things begin above its noise. */
+  /* Most of the border is background: objects begin above its noise. */
   if (border_count > 0) {
     double middle = hl_quantile(border, border_count, 0.5), upper = hl_quantile(border, border_count, 0.75);
     a->faint = fmax(a->faint, middle + 6 * (upper - middle)); /* 3.5 sigma of one-sided Gaussian noise */
@@ -109,7 +111,7 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
   a->depth = (double)beyond;
 }
 
-/* Much of the border is not the background: the grid lies within its matter. */
+/* True if more than three tenths of the border are not background: the grid lies within its matter. */
 static bool fills_grid(const hl_sample *sample, double background, double range) {
   size_t near = 0;
   for (size_t n = 0; n < sample->border_count; n++)
@@ -121,11 +123,11 @@ static bool is_floating(const hl_volume *volume) {
   return volume->type == HL_VOXEL_F32 || volume->type == HL_VOXEL_F64;
 }
 
-/* What a volume's values are, relative as the sample's. */
+/* Where a volume's values lie, relative to the sample's range. */
 typedef struct spread {
-  double low, high;  /* hardly any voxel is beyond */
+  double low, high;  /* hardly any voxel has a value below or above */
   double zero;       /* the data value 0 */
-  bool fills, signs; /* no air around; clearly on both sides of the data value 0 */
+  bool fills, signs; /* no air around the matter; values clearly on both sides of the data value 0 */
 } spread;
 
 static spread spread_of(const hl_sample *sample, double background) {
@@ -139,8 +141,8 @@ static spread spread_of(const hl_sample *sample, double background) {
   return s;
 }
 
-/* A scanner's values have noise and peaks; a flow's are smooth, or rough with one peak. distance has room for
- * the sample. */
+/* True if the volume is a flow: its values fill the grid and are smooth, or rough with a single peak; a
+ * scanner's have noise and several peaks. distance: scratch, [sample->count]. */
 static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode,
                     float *distance) {
   if (!s->fills || !is_floating(volume) || !is_continuous(sample)) return false;
@@ -153,7 +155,8 @@ static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spre
   return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03));
 }
 
-/* A good part of the things has the greatest value of all: the inside of a solid shape. */
+/* True if more than three tenths of the objects' voxels have the greatest value of all: the inside of a solid
+ * shape. */
 static bool is_filled_up(const distances *d, const hl_data_analysis *a) {
   size_t things = 0, greatest = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, things++)
@@ -166,14 +169,15 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
   double roughness = hl_roughness(volume, sample, a->background, a->faint);
   bool falling = falls(d, a->faint, a->top);
   if (roughness < ROUGH && is_filled_up(d, a)) return HL_DATA_SURFACES;
-  bool fog = a->zeroed > 0.4 && is_continuous(sample); /* exactly nothing around it */
+  bool fog = a->zeroed > 0.4 && is_continuous(sample); /* the air around it is exactly empty */
   if (roughness < ROUGH && roughness > FOG && fog && falling) return HL_DATA_MEDIUM;
   if (roughness < ROUGH) return falling || roughness < SMOOTH ? HL_DATA_FIELD : HL_DATA_SURFACES;
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-/* Lobes that thin out to both sides of the background; else the mode is a material, and air is low. Lobes
- * about the data value 0 need not thin out. */
+/* True if objects have values on both sides of the background and thin out away from it on both, which values
+ * on both sides of the data value 0 need not. Otherwise the commonest value is a material, and air has low
+ * values. */
 static bool has_lobes(const hl_sample *sample, const spread *s, double background, float *distance) {
   double above = s->high - background, below = background - s->low;
   if (!(fmin(above, below) > 0.25 * fmax(above, below))) return false;
@@ -185,7 +189,8 @@ static bool has_lobes(const hl_sample *sample, const spread *s, double backgroun
   return thins && falls(&d, 0.02, above);
 }
 
-/* The background of data without a clear sign lies below or above all things. */
+/* Chooses the direction of the objects. Where values lie on both sides of the background without being lobes,
+ * the background becomes the lowest value. */
 static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
   double above = s->high - a->background, below = a->background - s->low;
   a->direction = above >= below ? 1 : -1;
@@ -194,7 +199,7 @@ static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
   a->direction = 1;
 }
 
-/* Distances to both sides. */
+/* Finds the thresholds for objects on both sides of the background. */
 static hl_status find_two_sided(const hl_sample *sample, distances *d, hl_data_analysis *a, hl_error *error) {
   for (size_t n = 0; n < sample->count; n++)
     d->values[n] = (float)fabs((double)sample->values[n] - a->background);
@@ -216,11 +221,11 @@ static void find_middle(const hl_sample *sample, double mode, hl_data_analysis *
   a->common = (double)common / (double)sample->count;
 }
 
-/* memory: room for the sample and its border. */
+/* memory: scratch, [sample->count + sample->border_count]. */
 static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample, float *memory,
                                 hl_data_analysis *a, hl_error *error) {
   distances d = {memory, sample->count};
-  bool bordered = sample->border_count > 0; /* else NaNs are the air, and the commonest value has to do */
+  bool bordered = sample->border_count > 0; /* else the air is NaN: take the commonest value instead */
   a->background = bordered ? hl_mode(sample->border, sample->border_count)
                            : hl_mode(sample->values, sample->count);
   spread s = spread_of(sample, a->background);
@@ -267,7 +272,7 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
     return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume");
   }
   if (sample.count == 0 || sample.values[0] == sample.values[sample.count - 1]) {
-    /* Nothing differs where the lattice is: shown like a constant. */
+    /* All sampled voxels are equal: the volume is shown like a constant. */
     hl_sample_release(&sample);
     return HL_OK;
   }
@@ -281,21 +286,21 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
   return status == HL_OK ? hl_data_find_labels(volume, analysis, error) : status;
 }
 
-/* ---- tells label maps from amounts: few whole numbers, each in blocks.
+/* ---- label maps: few whole numbers, each in blocks.
  *
- * In: a volume and its background. Out: the labels. Edges of smooth shapes and noise have numbers too, but no
- * two voxels side by side share them.
- */
+ * Noise and the edges of smooth shapes may be whole numbers too, but there few neighbours are equal. */
 
-#define PLACES    5e5   /* looked at, about */
-#define IN_BLOCKS 0.5   /* least part of a label's neighbours that share it */
-#define WIDEST    65535 /* between the least label and the greatest */
+#define PLACES 5e5 /* the most voxels to look at */
+#define IN_BLOCKS                                                                                          \
+  0.5                /* a label lies in blocks if more than this fraction of its voxels' neighbours has it \
+                      */
+#define WIDEST 65535 /* the greatest difference of two labels */
 
 typedef struct tally {
-  unsigned int seen, shared; /* neighbours looked at of voxels with this value; those that have it too */
+  unsigned int seen, shared; /* neighbours of voxels with this value; those of them that have it too */
 } tally;
 
-/* False at a value that is no whole number. tallies: one for each whole number from least on. */
+/* Fills in tallies, one for each whole number from least on; false at a value that is no whole number. */
 static bool count_neighbours(const hl_volume *volume, double least, tally *tallies) {
   const size_t *n = volume->dimension;
   size_t step = hl_lattice_step(n, PLACES);
@@ -316,7 +321,8 @@ static bool count_neighbours(const hl_volume *volume, double least, tally *talli
   return true;
 }
 
-/* More than half of the values, the background apart, lie in blocks. 0 is no label. */
+/* Lists the labels: all values but the background, which is 0 if any value is 0 or less. True if there are
+ * two or more and most of them lie in blocks. */
 static bool list(const tally *tallies, size_t count, double least, hl_data_analysis *a) {
   size_t found = 0, in_blocks = 0;
   double background = least <= 0 ? 0 : a->background;

@@ -1,8 +1,8 @@
-/* guess/exposure.c - the brightness of a picture, estimated by a few thousand rays on the voxels' lattice.
+/* guess/exposure.c - estimates the brightness of a picture by marching a few thousand rays.
  *
- * In: a scene with its camera, lights and first volume. Out: a factor for the lights. Steps are the shortest
- * voxel edge long; a sample is the B-spline at the nearest voxel's centre, lit as by the renderer
- * (docs/scene.md, "Brightness and colour") but for shadows, of which the caller says what they leave.
+ * Steps are as long as the shortest voxel edge. A sample is the B-spline at the nearest voxel's centre, lit
+ * as by the renderer (docs/scene.md, "Brightness and colour") except for shadows, for which the caller gives
+ * one fraction.
  */
 #include "guess/exposure.h"
 
@@ -13,7 +13,7 @@
 #include "scene/scene.h"
 
 #define TARGET    0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
-#define BRIGHTEST 0.99  /* part of the picture that is darker */
+#define BRIGHTEST 0.99  /* fraction of the pixels that are darker */
 #define OPAQUE    0.98
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
@@ -22,17 +22,19 @@ typedef struct exposure {
   const hl_scene_description *scene;
   const hl_scene_volume *volume;
   affine3 world_to_index;
-  vec3 right, up, forward;   /* of the camera; half the picture's width and height long, and 1 */
-  vec3 towards[MOST_LIGHTS]; /* the lights */
+  vec3 right, up,
+      forward; /* the camera's; lengths: half the picture's width and height at distance 1, and 1 */
+  vec3 towards[MOST_LIGHTS]; /* unit vectors */
   double intensity[MOST_LIGHTS];
-  double step, empty,
-      flat; /* world units; a value; a gradient in values per world unit that is no surface's */
+  double step;  /* world units */
+  double empty; /* a value of the invisible surroundings */
+  double flat;  /* gradients up to this, in values per world unit, are no surface's */
   double opacity[TABLE], color[TABLE][3]; /* over the volume's range */
 } exposure;
 
-/* Uniform cubic B-spline at a voxel's centre: weights 1/6, 2/3, 1/6, of its slope -1/2, 0, 1/2 (derived: the
- * spline at whole numbers). Beyond the grid its outermost voxels go on. *gradient: per voxel. NaN where a
- * voxel is not finite. */
+/* The uniform cubic B-spline at a voxel's centre: weights 1/6, 2/3, 1/6, and -1/2, 0, 1/2 for its slope
+ * (derived: the spline and its derivative at whole numbers). Beyond the grid the outermost voxels are
+ * repeated. *gradient: per voxel. NaN where a voxel is not finite. */
 static double smooth_value(const hl_volume *volume, const long at[3], double gradient[3]) {
   static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6}, slope[3] = {-0.5, 0, 0.5};
   double value = 0;
@@ -82,7 +84,8 @@ static void shade(const exposure *e, int entry, double value, const double slope
   for (int c = 0; c < 3; c++) sent[c] = e->color[entry][c] * matt[c] + gloss;
 }
 
-/* The part of a ray, in its own parameter, that is within the grid; false if none is. */
+/* The parameters, from the origin on, where a ray enters and leaves the volume's box; false if it misses it.
+ */
 static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, double part[2]) {
   double low[3], high[3];
   const double origin[3] = {from.x, from.y, from.z}, direction[3] = {along.x, along.y, along.z};
@@ -90,13 +93,13 @@ static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, dou
   part[0] = 0, part[1] = INFINITY;
   for (int a = 0; a < 3; a++) {
     double s = (low[a] - origin[a]) / direction[a], t = (high[a] - origin[a]) / direction[a];
-    part[0] = fmax(part[0], fmin(s, t)); /* fmax and fmin leave out the NaN of a ray that runs along a face */
+    part[0] = fmax(part[0], fmin(s, t)); /* fmax and fmin ignore the NaN of a ray within a face's plane */
     part[1] = fmin(part[1], fmax(s, t));
   }
   return part[1] > part[0] && isfinite(part[1]);
 }
 
-/* The brightest channel of a pixel; negative where it is mostly background. */
+/* The brightest channel of a pixel; -1 where the pixel is mostly background. */
 static double brightness_along(const exposure *e, vec3 origin, vec3 direction) {
   const hl_volume *volume = e->volume->volume;
   vec3 from = affine3_apply(e->world_to_index, origin),

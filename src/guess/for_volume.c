@@ -1,4 +1,4 @@
-/* guess/for_volume.c - the scene that shows one volume well with no further choice. */
+/* guess/for_volume.c - makes a scene that shows one volume well without being told how. */
 #include "guess/for_volume.h"
 
 #include <string.h>
@@ -13,7 +13,7 @@
 
 #define LIGHT_AZIMUTH   -40 /* key light from the upper left, degrees from the line of sight */
 #define LIGHT_ELEVATION 45
-#define FILL_AZIMUTH    0 /* fill light from where the eye is: it sides with no key light that is asked for */
+#define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
 #define FILL_ELEVATION  0
 /* Sheets across the grid's diagonal. Shaded surfaces need more of them: one normal lights a whole slab. */
 #define SHEETS_OF_MEDIA    540
@@ -40,7 +40,8 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
   return frame(description, NULL, camera, error);
 }
 
-/* The key light as strong as the look says, and a light without shadows from the eye. *count: 1 or 2. */
+/* The key light, and where the look asks for one a fill light from the eye without shadows. *count: 1 or 2.
+ */
 static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count) {
   hl_scene_key_light(&lights[0]);
   lights[0].intensity = look->key;
@@ -52,7 +53,7 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
   lights[1].shadows = HL_SHADOWS_OFF;
 }
 
-/* All lights by one factor, so that the picture is as bright as it can be without being clipped. */
+/* Scales all lights by one factor, so that the picture is as bright as it can be without being clipped. */
 static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, hl_light lights[2],
                         hl_scene_description *description, hl_error *error) {
   double factor = 1, empty = analysis->kind == HL_DATA_FLOW ? analysis->middle : analysis->background;
@@ -63,10 +64,10 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
-/* About as many sheets across any grid: coarse grids would show rings on smooth skins where sheets are a
- * voxel apart, and cost little with more sheets. Rings on shaded surfaces fall with the square of the
- * spacing: the 99.9 percentile of the high-passed error is 0.9 to 2.0 % of full scale on bonsai, engine and
- * two MR heads (1.3 to 2.6 % with 540 sheets). */
+/* The sheet spacing, in smallest voxel edges, that puts about the same number of sheets across any grid, from
+ * 0.25 to 1. With sheets a voxel apart, coarse grids would show rings on smooth surfaces, and more sheets
+ * cost little there. The rings fall with the square of the spacing: the 99.9th percentile of the high-passed
+ * error is 0.9 to 2.0 % of full scale on bonsai, engine and two MR heads (1.3 to 2.6 % with 540 sheets). */
 static double enough_sheets(const hl_volume *volume, hl_shading shading) {
   double sheets = shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA;
   double edge = INFINITY, diagonal = 0;

@@ -1,35 +1,36 @@
-/* guess/framing.c - a camera so placed that what is seen fills the picture and is in its middle.
+/* guess/framing.c - places a camera so that everything seen fills the picture and is in its middle.
  *
- * In: the outline of what is seen, and a direction of view. Each side of the picture is a plane through the
- * eye, so the nearest eye that has all of it inside follows from the greatest reach to each side. With room
- * for turning the eye goes farther away, about a target that stays. */
+ * Each side of the picture is a plane through the eye. How far the outline of the visible voxels reaches
+ * towards each side gives the nearest eye that has them all inside. With room for turning, the eye stands
+ * farther away and turns about a fixed target. */
 #include <string.h>
 
 #include "core/error.h"
 #include "guess/outline.h"
 #include "guess/view.h"
 
-#define FILLED       0.92 /* of the picture's half width or height, by what is seen along a fixed direction */
-#define FILLED_LEAST 0.82 /* the same, less room for turning */
-#define OVER                                                                                               \
-  1.04 /* so much less room is enough at the narrowest place of a turn: less than the rims of what is seen \
-        * \ */
-#define WIDER 1.04 /* so much more has a view to show to be taken instead of an earlier one */
-#define ASIDE                                                                                               \
-  0.012 /* of the picture's sides: so far beside the middle what is seen may be, for a turn that needs less \
-           room */
+/* The fraction of the picture's half width or height that the visible voxels fill. */
+#define FILLED       0.92 /* seen from one direction */
+#define FILLED_LEAST 0.82 /* at least, where the eye stands back for turning */
+/* In a turn the outline may reach beyond the picture by this factor, which is less than its invisible rim. */
+#define OVER 1.04
+/* A view replaces an earlier one if it is wider by this factor. */
+#define WIDER 1.04
+/* How far the middle of the visible voxels may be from the picture's, as a fraction of its sides, where the
+ * turn then needs less room. */
+#define ASIDE 0.012
 
 enum { TURNS = 36, HALVINGS = 48, SECTIONS = 12 };
 
-/* One direction of view; tangents of half the picture's angles, 0: parallel. */
+/* A view to frame; tangents: of half the picture's angles, 0 for parallel projection. */
 typedef struct frame_job {
   const hl_outline *outline;
   vec3 right, up, forward;
   double aspect, tangent_x, tangent_y;
 } frame_job;
 
-/* Where the eye is along right, up and forward; for parallel projections half the picture's height instead of
- * `forward`. */
+/* The eye's coordinates along the view's axes; half_height: half the picture's height, for parallel
+ * projection, which has no `forward`. */
 typedef struct frame_place {
   double right, up, forward, half_height;
 } frame_place;
@@ -44,8 +45,9 @@ static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
   return -(reach(job, along, tangent) + reach(job, vec3_scale(along, -1), tangent)) / 2 / tangent;
 }
 
-/* Where the eye is along `along` if it is at this depth and what is seen is to be in the middle. Derived:
- * then both sides are at the same tangent t, for which that depth is the nearest; the depth grows with t. */
+/* The eye's coordinate along `along`, at this depth, that puts the outline in the middle. Derived: both sides
+ * are then seen at the same tangent t, for which this depth is the nearest possible; it grows with t, so t is
+ * found by halving. */
 static double middle_from(const frame_job *job, vec3 along, double greatest, double depth) {
   double low = 0, high = greatest;
   for (int n = 0; n < HALVINGS && greatest > 0; n++) {
@@ -56,7 +58,7 @@ static double middle_from(const frame_job *job, vec3 along, double greatest, dou
   return (reach(job, along, high) - reach(job, vec3_scale(along, -1), high)) / 2;
 }
 
-/* So far away, or with so much more height, than what fills this part of the picture. */
+/* The nearest eye, or the least height, with which the outline fills this fraction of the picture. */
 static frame_place fit(const frame_job *job, double filled) {
   frame_place place = {0};
   if (job->tangent_y > 0) {
@@ -101,7 +103,7 @@ static void look(frame_job *job, const hl_view *view) {
   hl_view_axes(view, &job->right, &job->up, &job->forward);
 }
 
-/* The same whatever the azimuth. */
+/* The same for every azimuth. */
 static double needed_in_a_turn(const frame_job *job, const hl_view *view, vec3 target) {
   frame_job turned = *job;
   hl_view at = *view;
@@ -121,20 +123,20 @@ static double radius_about(const hl_outline *outline, vec3 target) {
   return greatest;
 }
 
-/* The same whatever the direction. */
+/* The same for every direction. */
 static double needed_at_all(const frame_job *job, vec3 target) {
   double radius = radius_about(job->outline, target), tangent = fmin(job->tangent_x, job->tangent_y);
   return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* over the sine */
                      : radius / fmin(1, job->aspect);
 }
 
-/* The distance from the target, at this depth, or half the height: one number for both projections. */
+/* The eye's distance from a target at this depth or, in parallel projection, half the picture's height. */
 static double room_of(const frame_job *job, const frame_place *place, double depth) {
   return job->tangent_y > 0 ? depth - place->forward : place->half_height;
 }
 
-/* Lowers what a turn needs along one coordinate of the target (golden section; it is convex, as a maximum of
- * linear functions). */
+/* Moves the target along one axis to where a turn needs least room (golden section; the room is a maximum of
+ * linear functions and so convex). */
 static void improve(const frame_job *job, const hl_view *view, vec3 along, double reach_each_way,
                     vec3 *target) {
   const double ratio = (sqrt(5) - 1) / 2;
@@ -149,12 +151,13 @@ static void improve(const frame_job *job, const hl_view *view, vec3 along, doubl
   *target = vec3_add(*target, vec3_scale(along, (low + high) / 2));
 }
 
-/* Moves the eye back for a turn about a target as good as can be: at any depth, and a little beside the
- * middle. few: some of the outline, for the turn. Returns the target's depth. */
+/* Moves the eye back to make room for turning. The target may lie at any depth and a little beside the
+ * middle, where a turn needs least room. few: the job with a thinned outline, which is faster. Returns the
+ * target's depth. */
 static double make_room(const frame_job *job, const frame_job *few, const hl_view *view, frame_place *place) {
   const frame_place tight = *place, loose = fit(job, FILLED_LEAST);
   double depth = (reach(job, job->forward, 0) - reach(job, vec3_scale(job->forward, -1), 0)) / 2;
-  for (int round = 0; round < 3; round++) { /* what is in the middle depends on the distance a little */
+  for (int round = 0; round < 3; round++) { /* the middle depends a little on the distance */
     centre(job, place);
     double room = room_of(job, place, depth),
            height = 2 * (job->tangent_y > 0 ? room * job->tangent_y : room);
@@ -191,7 +194,7 @@ static hl_status begin(const hl_scene_description *description, double zoom, con
   return hl_outline_find(description, outline, error);
 }
 
-/* Parallel projection does not depend on the eye's place: it is well before all that is seen. */
+/* The eye's distance from the target; in parallel projection, where any would do, well before the outline. */
 static double distance_to(const frame_job *job, const frame_place *place, double depth, double extent,
                           double zoom) {
   double wide = fmax(place->half_height, place->half_height * job->aspect);
@@ -249,7 +252,7 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, 
   return status;
 }
 
-/* Tight along axes that are already in *job. */
+/* Places the camera without room for turning; its axes are already in *job. */
 static void place_tightly(const frame_job *job, double zoom, hl_camera *camera) {
   double near = -reach(job, vec3_scale(job->forward, -1), 0), far = reach(job, job->forward, 0),
          depth = (near + far) / 2;

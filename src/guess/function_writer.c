@@ -1,9 +1,7 @@
-/* guess/function_writer.c - from an analysis of the data to a transfer function that shows it: one writer for
- * each look.
+/* guess/function_writer.c - writes the transfer function of each look, by the analysis of a volume.
  *
- * In: measurements of a volume. Out: opacities and colours. Opacities are per smallest voxel edge. Surfaces
- * become solid within the ramp between where things begin and where they surely are; fields and media get an
- * optical depth across the whole object, so that large and small grids look alike.
+ * Opacities are per smallest voxel edge. Surfaces become solid between the distances `faint` and `solid`.
+ * Fields and media get an optical depth across the whole object, so that large and small grids look alike.
  */
 #include "guess/function_writer.h"
 
@@ -15,11 +13,10 @@
 #include "scene/scene.h"
 #include "scene/transfer_function.h"
 
-#define FLOW_DEPTH   2.0 /* of a flow whose values are all seen */
+#define FLOW_DEPTH   2.0 /* optical depth of a flow all of whose values are shown */
 #define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */
 
-/* Four colours in linear RGB: at the rim of things, on their surface, in their denser matter, and at the
- * top. */
+/* Colours in linear RGB at the distances faint, solid, dense and top. */
 typedef struct palette {
   double rim[3], surface[3], dense[3], top[3];
 } palette;
@@ -70,8 +67,8 @@ void hl_write_field(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * (top - a->solid), 0.25, 0.92);
 }
 
-/* One side of a flow: what is common is clear, what is rare is dense; part of the way to the end, optical
- * depth. */
+/* One side of a flow: common values are clear, rare ones dense. Rows: fraction of the way from the middle to
+ * the end of the values, optical depth. */
 static void add_rare(hl_function_writer *w, double reach, int side) {
   static const double rarity[][2] = {{0.4, 0}, {0.6, 0.5}, {0.8, 3}, {1, 20}};
   enum { STEPS = sizeof rarity / sizeof *rarity };
@@ -82,7 +79,7 @@ static void add_rare(hl_function_writer *w, double reach, int side) {
   }
 }
 
-/* Seen are the flow's extremes, each side for itself; where no value is common, all are seen alike. */
+/* Shows a flow's extreme values on each side; where no value is common, all values alike. */
 void hl_write_flow(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double reach = fmax(a->lower, a->upper), middle = a->middle - a->background;
@@ -108,8 +105,8 @@ static void label_color(size_t label, double linear[3]) {
   }
 }
 
-/* A label's band: opaque close to its own number alone. What the kernel passes on its way to another number
- * is no region's. */
+/* Makes a label opaque close to its own number only: between two regions the kernel passes through numbers
+ * that belong to neither. */
 static void add_label(hl_function_writer *w, double label, double before, double after, double narrowest) {
   static const double part = 0.03; /* of the way to the next number */
   double down = fmin(fmax(part * (label - before), narrowest), 0.45 * (label - before)),
@@ -130,7 +127,7 @@ void hl_write_labels(hl_function_writer *w) {
   for (size_t n = 0; n <= last; n++) {
     double label = a->labels[n], before = n > 0 ? a->labels[n - 1] : label - 1,
            after = n < last ? a->labels[n + 1] : label + 1;
-    if (before < 0 && label > 0) before = 0; /* no label, but a number that is there */
+    if (before < 0 && label > 0) before = 0; /* 0 is no label, but a value of the volume */
     if (label < 0 && after > 0) after = 0;
     double color[3];
     label_color(n, color);
@@ -171,7 +168,7 @@ void hl_write_constant(hl_function_writer *w) {
   hl_add_color(w, 0, grey);
 }
 
-/* ---- writes transfer functions in distances from a volume's background. */
+/* ---- points ---- */
 
 void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis) {
   *w = (hl_function_writer){.analysis = analysis, .direction = analysis->direction};
@@ -203,7 +200,8 @@ double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth) {
   return 1 - exp(-optical_depth / fmax(analysis->depth, 1));
 }
 
-/* Points were added with rising distance: where things are below the background, values fall. */
+/* Reverses the points where objects lie below the background: points were added with rising distance, so
+ * their values fall. */
 static void put_in_order(hl_function_writer *w) {
   if (w->direction > 0) return;
   for (size_t a = 0, b = w->opacity_count; a + 1 < b; a++) {

@@ -1,4 +1,5 @@
-/* guess/function_writer.h - a transfer function being written, in distances from a volume's background. */
+/* guess/function_writer.h - writes transfer functions in distances from a volume's background
+ * (hl_data_analysis). */
 #ifndef HL_GUESS_FUNCTION_WRITER_H
 #define HL_GUESS_FUNCTION_WRITER_H
 
@@ -15,21 +16,21 @@ typedef struct hl_function_writer {
 /* The analysis must outlive the writer. */
 void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis);
 
-/* Points with rising distance; more than fit are left out. */
+/* Add points with rising distance; points beyond the arrays' ends are left out. */
 void hl_add_opacity(hl_function_writer *w, double distance, double opacity);
 void hl_add_color(hl_function_writer *w, double distance, const double color[3]); /* linear RGB */
-/* The part start..end of a named colormap over the distances from..to. */
+/* Adds the range start..end (0 to 1) of a named colormap over the distances from..to. */
 void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start,
                      double end);
 
-/* The opacity per voxel edge that gives an optical depth across the whole object. */
+/* The opacity per voxel edge that adds up to an optical depth across the objects. */
 double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth);
 
 /* Opacities hold per smallest voxel edge of the volume. *function gets memory of its own. */
 hl_status hl_finish_function(hl_function_writer *w, hl_context *context, const hl_volume *volume,
                              hl_transfer_function *function, hl_error *error);
 
-/* One for each look (automatic.c); smoke suits any data. */
+/* Write the function of one look each (looks.h). */
 void hl_write_matter(hl_function_writer *w);
 void hl_write_body(hl_function_writer *w);
 void hl_write_brain(hl_function_writer *w);

@@ -1,7 +1,6 @@
-/* guess/looks.c - from what is measured of a volume to what it is taken for, and the table of looks.
+/* guess/looks.c - chooses a look by a volume's analysis; the table of looks; presets of transfer functions.
  *
- * In: a volume's analysis (analysis.c, labels.c). Out: a row of the table: transfer function, shading and
- * lights. The colour of skin is for what can be a body; all other scanned things are ivory.
+ * Scans that may be of a body are coloured like skin, all other scans like ivory.
  */
 #define _GNU_SOURCE /* strcasecmp */
 #include "guess/looks.h"
@@ -18,8 +17,8 @@
 
 typedef enum subject { BODY, BRAIN, MATTER, LABELS, FIELD, FLOW, SIGNED, MEDIUM, CONSTANT } subject;
 
-/* Lights are so strong that the brightest hundredth of the picture is about 235 of 255 in sRGB, and shadows
- * stay readable. */
+/* Rows: name, writer, shading, kernel; intensities of key, fill and ambient light; left. Where left is not 0,
+ * the exposure scales the intensities afterwards. */
 static const hl_look looks[] = {
     [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.75},
     [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.7},
@@ -42,11 +41,11 @@ static bool ends_with(const char *text, const char *end) {
   return length >= tail && strcasecmp(text + length - tail, end) == 0;
 }
 
-/* The file tells where a patient's left and right are. */
+/* True if the file's format (NIfTI) tells a patient's left and right. */
 static bool is_anatomical(const char *file) { return ends_with(file, ".nii") || ends_with(file, ".nii.gz"); }
 
-/* What is denser than air is mostly tissue: -200 to 200 Hounsfield units, where metal, stone and wood have
- * hardly anything. */
+/* True if more than two fifths of the voxels denser than air are tissue: -200 to 200 Hounsfield units, which
+ * few voxels of metal, stone and wood have. */
 static bool is_mostly_tissue(const hl_volume *volume) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS, tissue = 0, matter = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
@@ -57,7 +56,7 @@ static bool is_mostly_tissue(const hl_volume *volume) {
   return tissue > 0.4 * matter;
 }
 
-/* A body fills its picture: trees, vessels and machine parts leave most of it empty. */
+/* True for a scan of a body: it fills the grid, which trees, vessels and machine parts leave mostly empty. */
 static bool is_body(const hl_volume *volume, const char *file, const hl_data_analysis *a) {
   if (a->kind != HL_DATA_SURFACES || a->direction < 0) return false;
   if (hl_is_hounsfield(volume)) return is_mostly_tissue(volume);
@@ -69,7 +68,7 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   switch (analysis->kind) {
     case HL_DATA_SURFACES:
       if (is_body(volume, file, analysis))
-        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* cut out by a program */
+        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* zeroed: a program has cut the brain out */
       break;
     case HL_DATA_FIELD: is = FIELD; break;
     case HL_DATA_SIGNED: is = SIGNED; break;
@@ -109,13 +108,13 @@ hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char 
   return status;
 }
 
-/* ---- named transfer functions that adapt to the volume.
+/* ---- presets: named transfer functions that adapt to the volume.
  *
- * CT presets are written in Hounsfield units. They hold as they are for volumes in Hounsfield units; for
- * others (8 bit, 0 to 1) a piecewise linear map through four landmarks stands in: air is the background, half
- * way from air to tissue is where things surely are, bone begins where the denser of two materials does, and
- * dense bone is the top. Where much of the things is dense there is no tissue about the bone, which then
- * begins where things do. The other presets are written in the landmarks themselves.
+ * CT presets are written in Hounsfield units. For volumes in other units (8 bit, 0 to 1) a piecewise linear
+ * map through four landmarks replaces them: -1000 (air) is the background, -400 (half way to tissue) the
+ * distance `solid`, 350 (where bone begins) `dense`, and 2000 (dense bone) `top`. Where much of the objects
+ * is dense there is no tissue around the bone: bone then begins about at `solid`. The other presets are
+ * written in these landmarks.
  */
 
 /* A row of a CT preset: Hounsfield units, opacity per voxel edge, sRGB colour. */
@@ -138,7 +137,8 @@ static const hounsfield_row soft_tissue[] = {
     {60, 0.07, {0.78, 0.30, 0.24}},  {150, 0.12, {0.82, 0.36, 0.26}},   {250, 0.35, {0.92, 0.76, 0.60}},
     {500, 0.90, {0.97, 0.92, 0.84}}, {2000, 0.97, {1.00, 0.98, 0.95}}};
 
-/* The distance from the background of a value given in Hounsfield units. */
+/* The distance from the background of a value in Hounsfield units; hounsfield: the volume is in these units.
+ */
 static double distance_of(const hl_function_writer *w, bool hounsfield, double value) {
   const hl_data_analysis *a = w->analysis;
   if (hounsfield) return value - a->background;
@@ -176,7 +176,7 @@ static void write_soft_tissue(hl_function_writer *w, const hl_volume *volume) {
   write_rows(w, volume, soft_tissue, sizeof soft_tissue / sizeof *soft_tissue);
 }
 
-/* A bare brain: a soft ramp, grey matter darker and pinker than white. */
+/* A brain without its skull: a soft ramp; grey matter is darker and pinker than white matter. */
 static void write_brain(hl_function_writer *w, const hl_volume *volume) {
   (void)volume;
   const hl_data_analysis *a = w->analysis;
@@ -216,8 +216,8 @@ static void write_electron_density(hl_function_writer *w, const hl_volume *volum
   hl_add_colormap(w, "plasma", 0.6 * a->faint, core, 0.25, 0.95);
 }
 
-/* The value that all but one voxel in a hundred thousand stay below: a single bright one does not darken the
- * rest. */
+/* A value that at most one voxel in a hundred thousand exceeds, so that a single bright voxel does not darken
+ * the others. */
 static double almost_greatest(const hl_volume *volume) {
   uint64_t voxels = 0, above = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) voxels += volume->histogram[bin];
@@ -228,8 +228,8 @@ static double almost_greatest(const hl_volume *volume) {
              : volume->minimum + (volume->maximum - volume->minimum) * bin / HL_HISTOGRAM_BINS;
 }
 
-/* For maximum projections: greys from what surrounds the things, which is not shown, to the greatest value.
- * Where things lie below what surrounds them, or to both sides of it, from the least value. */
+/* For maximum projections: greys from the background, which is not shown, to almost the greatest value. Where
+ * objects lie below the background, or on both sides of it, greys begin at the least value. */
 static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
   const hl_data_analysis *a = w->analysis;
   bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;

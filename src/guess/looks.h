@@ -1,4 +1,4 @@
-/* guess/looks.h - how each kind of volume is shown where nobody says it. */
+/* guess/looks.h - how each kind of volume is shown by default. */
 #ifndef HL_GUESS_LOOKS_H
 #define HL_GUESS_LOOKS_H
 
@@ -6,22 +6,21 @@
 #include "guess/function_writer.h"
 
 typedef struct hl_look {
-  const char *name;                     /* of the kind of data, in words */
+  const char *name;                     /* the kind of data, in words */
   void (*write)(hl_function_writer *w); /* the transfer function */
   hl_shading shading;
   hl_kernel kernel;
-  double key, fill,
-      ambient; /* intensities: the light with shadows, the one without, the light from everywhere */
-  double left; /* for exposure.h; 0: the lights stay as they are */
+  double key, fill, ambient; /* intensities: the light with shadows, the one without, the ambient light */
+  double left;               /* fraction of the key light for hl_scene_exposure(); 0: no exposure */
 } hl_look;
 
-/* The look of a volume that was analysed; file as in hl_scene_volume. */
+/* The look for a volume and its analysis; file: as in hl_scene_volume. */
 const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
-/* The values can be Hounsfield units: air is there, and more than water. */
+/* True if the values can be Hounsfield units: they reach from air to denser than water. */
 bool hl_is_hounsfield(const hl_volume *volume);
 
-/* The transfer function of a look. */
+/* Makes the transfer function of a look; its points are owned by *function. */
 hl_status hl_look_write(const hl_look *look, hl_context *context, const hl_volume *volume,
                         const hl_data_analysis *analysis, hl_transfer_function *function, hl_error *error);
 

@@ -1,7 +1,7 @@
-/* guess/outline.c - the outermost points of what is seen of a scene.
+/* guess/outline.c - the outermost visible voxels of a scene, and the range of visible values.
  *
- * Of each row of voxels only the first and the last that are seen can be extreme, and of these only the
- * corners of each slice's convex hull. */
+ * Only the first and the last visible voxel of a row can be outermost, and of these only the corners of each
+ * slice's convex hull. */
 #include "guess/outline.h"
 
 #include <string.h>
@@ -30,14 +30,14 @@ static hl_status add(hl_outline *outline, vec3 point, double radius, hl_error *e
   return HL_OK;
 }
 
-/* The ends of a slice's rows on one side, as far as they are corners of a convex hull; j ascends. */
+/* One side of a slice's convex hull: ends of rows, with rising j. */
 typedef struct chain {
   ptrdiff_t *i, *j; /* owned */
   int count;
   int side; /* 1: the last voxels of rows; -1: the first */
 } chain;
 
-/* Derived: the corner before the new one is none if the three turn to the inside or not at all (monotone
+/* Adds a corner. Derived: an earlier corner is dropped if the chain does not turn outwards there (monotone
  * chain; Andrew 1979). */
 static void chain_add(chain *c, ptrdiff_t i, ptrdiff_t j) {
   for (; c->count >= 2; c->count--) {
@@ -159,15 +159,14 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
   return status;
 }
 
-/* ---- the values of a volume that a transfer function lets be seen, from any side.
+/* ---- the range of values that a transfer function shows, from any side.
  *
- * In: voxels and opacities. Out: two values between which nearly all lies that is seen. What opaque matter
- * surrounds is hidden from every side, and a surface is seen by the voxels at its rim: a voxel counts with
- * its opacity and with the light that its most transparent neighbour lets through, in and out again.
+ * Voxels within opaque matter are hidden from every side; a surface is seen by its outer voxels. So a voxel
+ * counts with its opacity times the light that its most transparent neighbour lets through, in and out again.
  */
 
-#define PLACES 5e5  /* looked at, about */
-#define TAIL   0.01 /* part of what is seen that lies beyond either end */
+#define PLACES 5e5  /* the most voxels to look at */
+#define TAIL   0.01 /* fraction of the counts beyond each end of the range */
 
 enum { BINS = 4096 };
 
@@ -184,7 +183,7 @@ static double least_opacity_around(const hl_volume *volume, const hl_transfer_fu
   return least;
 }
 
-/* Counts what is seen in equal bins over [low, high]. */
+/* Adds the weights of visible voxels in equal bins over [low, high]; returns their sum. */
 static double count_seen(const hl_volume *volume, const hl_transfer_function *function, double low,
                          double high, double *counts) {
   const size_t *n = volume->dimension;
@@ -204,7 +203,7 @@ static double count_seen(const hl_volume *volume, const hl_transfer_function *fu
   return sum;
 }
 
-/* The value that the part `fraction` of the counts lies below. */
+/* The value below which this fraction of the counts lies. */
 static double quantile(const double *counts, double sum, double fraction, double low, double high) {
   double below = 0;
   int bin = 0;

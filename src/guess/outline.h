@@ -1,11 +1,11 @@
-/* guess/outline.h - the outermost points of what is seen of a scene: all that framing it needs to know. */
+/* guess/outline.h - the outermost visible voxels of a scene, by which it is framed. */
 #ifndef HL_GUESS_OUTLINE_H
 #define HL_GUESS_OUTLINE_H
 
 #include "scene/scene.h"
 
-/* Balls: a voxel's half diagonal about its centre. The greatest of what they reach in any direction, in
- * perspective too, is the greatest of all voxels that are seen. */
+/* Balls around the outermost voxels, half a voxel's diagonal in radius. In every direction they reach as far
+ * as all visible voxels do, in perspective too. */
 typedef struct hl_outline {
   hl_context *context;
   vec3 *point;    /* owned; [count]; world */
@@ -13,13 +13,13 @@ typedef struct hl_outline {
   size_t count, capacity;
 } hl_outline;
 
-/* Of all visible volumes; where nothing is seen of any, the corners of all volumes' boxes. Fails for lack of
- * memory alone; release in any case. description has a volume at least. */
+/* The outline of all visible volumes or, where none of them shows anything, the corners of all volumes'
+ * boxes. Fails for lack of memory alone; release it even then. description: at least one volume. */
 hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error);
 void hl_outline_release(hl_outline *outline);
 
-/* *thinned: the points that reach farthest in some hundred directions, which tell of any other to half a per
- * cent of the whole. */
+/* *thinned: the points that reach farthest in 400 directions; in any other direction they reach as far as all
+ * points but for half a per cent of the extent. */
 hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error);
 
 /* The greatest of p . along - tangent p . forward over all points of all balls; along is perpendicular to

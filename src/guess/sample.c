@@ -9,8 +9,8 @@
 
 #define SAMPLE_COUNT 5e5 /* voxels looked at, about */
 
-/* Floats in an order that their bits have as unsigned integers: negative ones inverted, others above
-   them. */
+/* An unsigned integer that sorts like the float: the bits of a negative one inverted, of others with the
+ * highest bit set. */
 static uint32_t key_of(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);

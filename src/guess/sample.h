@@ -1,7 +1,6 @@
-/* guess/sample.h - a sample of a volume's voxels, sorted: the ground that automatic choices stand on.
+/* guess/sample.h - a sorted sample of a volume's voxels, by which automatic choices are made.
  *
- * Values are relative to the volume's range, 0 its least and 1 its greatest, so that it does not matter in
- * which units a volume is.
+ * Values are relative to the volume's range, 0 its least and 1 its greatest: the data's units do not matter.
  */
 #ifndef HL_GUESS_SAMPLE_H
 #define HL_GUESS_SAMPLE_H
@@ -16,16 +15,15 @@ typedef struct hl_sample {
   double low, range; /* data value = low + range * relative value */
   float *values; /* owned; [count]; relative values of finite voxels on a regular sub-lattice, ascending */
   size_t count;
-  float *border; /* owned; [border_count]; the same for the grid's six faces */
+  float *border; /* owned; [border_count]; the same of voxels on the grid's six faces */
   size_t border_count;
   size_t step; /* voxels from one sample to the next along each axis */
 } hl_sample;
 
-/* The step along each axis of a lattice of at most `most` places in a grid, thin grids included; at least
- * 1. */
+/* The step along each axis with which a lattice takes at most `most` voxels of a grid; at least 1. */
 size_t hl_lattice_step(const size_t dimension[3], double most);
 
-/* Fails for lack of memory alone; either array may be empty where the volume is full of NaNs. */
+/* Fails for lack of memory alone. Either array may be empty, where voxels are NaN. */
 hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *error);
 void hl_sample_release(hl_sample *sample);
 
@@ -36,17 +34,17 @@ double hl_quantile(const float *ascending, size_t count, double fraction);
  * Bickel and Fruehwirth 2006). */
 double hl_mode(const float *ascending, size_t count);
 
-/* Threshold between two classes of greatest variance between them (Otsu 1979); of values above `above`
- * only. */
+/* The threshold with the greatest variance between the two classes that it makes (Otsu 1979), of the values
+ * above `above`. */
 double hl_threshold_otsu(const float *ascending, size_t count, double above);
 
-/* Threshold of least cross entropy between an image and its two classes' means (Li and Tam 1998), of values
- * that are 0 or more; floor stands for a mean of zero, whose logarithm does not exist. */
+/* The threshold with the least cross entropy between the values and the means of the two classes that it
+ * makes (Li and Tam 1998), of values of at least 0. floor: the least mean, as 0 has no logarithm. */
 double hl_threshold_cross_entropy(const float *ascending, size_t count, double floor);
 
-/* How rough the things are: mean |second difference| / |first difference| of voxels whose relative value is
- * further than `distance` from `background`. Smooth simulations have less than about 0.5, turbulence and
- * noise more than about 0.7. */
+/* How rough objects are: the sum of |second differences| over the sum of |first differences|, of voxels whose
+ * relative value is further than `distance` from `background`. Smooth simulations have less than about 0.5,
+ * turbulence and noise more than about 0.7. */
 double hl_roughness(const hl_volume *volume, const hl_sample *sample, double background, double distance);
 
 /* Ascending order; false without memory. */

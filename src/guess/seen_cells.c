@@ -1,4 +1,5 @@
-/* guess/seen_cells.c - what of a volume is seen: optical depths by cells and columns, without specks. */
+/* guess/seen_cells.c - which voxels of a volume count when a picture is framed: optical depths by cells and
+ * columns, without specks. */
 #include "guess/seen_cells.h"
 
 #include <stdbool.h>
@@ -7,12 +8,12 @@
 #include "core/memory.h"
 #include "guess/sample.h"
 
-#define FAINT           0.02   /* of the greatest opacity: fainter voxels at the rim do not count */
-#define LOST            0.04   /* optical depth of a column that is seen */
-#define OPAQUE          0.9999 /* opacity that counts as the greatest */
-#define CELLS           1e6    /* of a lattice, at most */
-#define VOXELS_EXAMINED 6e6    /* of one volume: larger ones are sampled by rows */
-#define SPECKS_AT_MOST  0.03   /* of all cells that are seen: more are matter */
+#define FAINT           0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */
+#define LOST            0.04 /* least optical depth of a column that is seen */
+#define OPAQUE          0.9999 /* the greatest opacity; an opacity of 1 has no finite depth */
+#define CELLS           1e6    /* the most cells of a lattice */
+#define VOXELS_EXAMINED 6e6    /* of one volume; in larger ones rows are skipped */
+#define SPECKS_AT_MOST  0.03   /* fraction of the seen cells; more specks than that are matter */
 
 enum { BINS = 4096, SPECK = 3, SPECK_RATIO = 50, SMALL_RATIO = 5000 };
 
@@ -50,7 +51,7 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
   }
   for (size_t p = 0; p < seen->function->opacity_count; p++) {
     double bin = (seen->function->opacity[p].value - seen->low) * seen->scale;
-    for (int side = -1; side <= 1; side++) /* a point on the line between two bins bends both */
+    for (int side = -1; side <= 1; side++) /* a point on the border of two bins bends both */
       if (bin + side * 1e-6 >= 0 && bin + side * 1e-6 < BINS) seen->bends[(int)(bin + side * 1e-6)] = 1;
   }
   return HL_OK;
@@ -190,7 +191,7 @@ static hl_status forget_specks(hl_seen *seen, hl_error *error) {
   return status;
 }
 
-/* The cells around one that is seen may hold the rim of what is in it. */
+/* Marks the cells around a seen one, which may hold the rim of its matter. */
 static void mark_neighbours(hl_seen *seen, int i, int j, int k) {
   const int *n = seen->size;
   for (int z = k > 0 ? k - 1 : 0; z <= k + 1 && z < n[2]; z++)
@@ -267,7 +268,7 @@ void hl_seen_release(hl_seen *seen) {
   hl_release(context, seen->mean);
 }
 
-/* Half of what its cell has on average is enough where the cell is seen. */
+/* The least depth per length of a voxel that counts; in a seen cell half the cell's mean is enough. */
 static float least_depth(const hl_seen *seen, size_t cell) {
   return seen->kind[cell] == HL_SEEN ? fminf(seen->faint, seen->mean[cell] / 2) : seen->faint;
 }
@@ -299,8 +300,7 @@ bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first
   return true;
 }
 
-/* ---- which marked places of a lattice hang together: a flood from each place that is not yet
- * reached. */
+/* ---- bodies: a flood from each marked place that none has reached yet ---- */
 
 typedef struct flood {
   const unsigned char *marked;

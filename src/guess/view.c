@@ -1,7 +1,6 @@
-/* guess/view.c - which way up a volume is, where its file cannot say.
+/* guess/view.c - which way is up in a volume whose file does not tell, and views from a side.
  *
- * In: a volume and the thresholds of its things. Out: up and right for the default camera. Only the picture's
- * orientation follows from it, never a coordinate.
+ * Only the default camera follows from it, never a coordinate.
  */
 #include "guess/view.h"
 
@@ -15,17 +14,17 @@
 #include "guess/seen_cells.h"
 #include "scene/scene.h"
 
-#define LATTICE       5e5 /* places looked at, about */
-#define BEND          3   /* places over which relief is felt */
-#define BODY_AT_LEAST 0.4 /* of all that is solid: a body that decides alone */
-#define CLEARLY       1.1 /* so much more relief has a side that is worth turning for */
+#define LATTICE       5e5 /* the most voxels to look at */
+#define BEND          3   /* distance, in places of the lattice, over which relief is measured */
+#define BODY_AT_LEAST 0.4 /* fraction of all solid places from which the largest body decides alone */
+#define CLEARLY       1.1 /* by this factor a side must have more relief to be turned to the eye */
 
-/* What a thing looks like from its six sides. */
+/* The objects on a coarse lattice. */
 typedef struct shape {
   int size[3];           /* places of the lattice along each axis */
-  unsigned char *solid;  /* owned; [size[2]][size[1]][size[0]]; 1 where the things are */
+  unsigned char *solid;  /* owned; [size[2]][size[1]][size[0]]; 1 where an object is */
   double *area[3];       /* owned; [size[a]]; solid places in each slice across axis a */
-  int first[3], last[3]; /* slices that hold the things, but for one part in 500 at either end */
+  int first[3], last[3]; /* slices that hold the objects, except for 0.2 % of them at either end */
 } shape;
 
 static bool is_oriented(const hl_volume *volume) {
@@ -77,8 +76,7 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
       }
 }
 
-/* The largest connected body alone is looked at, not a board beside it; many small bodies are taken
- * together. */
+/* Keeps the largest connected body alone (not a board beside it), unless it is one of many small ones. */
 static hl_status forget_others(hl_context *context, shape *s, hl_error *error) {
   hl_bodies bodies;
   hl_status status = hl_bodies_find(context, s->solid, s->size, &bodies, error);
@@ -108,7 +106,7 @@ static bool measure(shape *s) {
   return total > 0;
 }
 
-/* *any: whether there is a thing. */
+/* *any: whether there is any object. */
 static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s, bool *any,
                             hl_error *error) {
   hl_context *context = volume->context;
@@ -124,13 +122,13 @@ static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *ana
   return status;
 }
 
-/* Part of the grid's face at one end of an axis that the things touch. */
+/* The fraction of the grid's face at one end of an axis that objects touch. */
 static double touch(const shape *s, int axis, int end) {
   double face = (double)s->size[(axis + 1) % 3] * s->size[(axis + 2) % 3];
   return s->area[axis][end ? s->size[axis] - 1 : 0] / face;
 }
 
-/* How blunt the things are at one end: mean area of the last slices over the greatest. */
+/* How blunt the objects are at one end: mean area of the last slices over the greatest slice's. */
 static double bluntness(const shape *s, int axis, int end) {
   double greatest = 1e-9, sum = 0;
   for (int n = s->first[axis]; n <= s->last[axis]; n++) greatest = fmax(greatest, s->area[axis][n]);
@@ -139,7 +137,7 @@ static double bluntness(const shape *s, int axis, int end) {
   return sum / slices / greatest;
 }
 
-/* How like its mirror image the thing is: places that both have, over places that either has. */
+/* How much the objects are like their mirror image: places in both over places in either. */
 static double symmetry(const shape *s, int axis) {
   double both = 0, either = 0;
   int n[3];
@@ -155,7 +153,7 @@ static double symmetry(const shape *s, int axis) {
   return either > 0 ? both / either : 0;
 }
 
-/* Axis 0..2 of up and its sign as +-(axis + 1); +3 where nothing speaks for another. */
+/* The axis that points up, as +-(axis + 1); +3 (z) where nothing speaks for another one. */
 static int up_of(const shape *s, const hl_volume *volume) {
   double extent[3], most = 0;
   int bottom = 0;
@@ -163,7 +161,7 @@ static int up_of(const shape *s, const hl_volume *volume) {
     extent[a] = (s->last[a] - s->first[a]) * vec3_length(mat3_column(volume->index_to_world.linear, a)) *
                 (double)volume->dimension[a] / s->size[a];
   if (extent[2] > 1.4 * fmax(extent[0], extent[1])) return 3; /* a column stands */
-  for (int a = 0; a < 3; a++)                                 /* cut off by a face of the grid */
+  for (int a = 0; a < 3; a++)                                 /* cut off by a face of the grid: the bottom */
     for (int end = 0; end < 2; end++)
       if (touch(s, a, end) > fmax(most, fmax(0.05, 4 * touch(s, a, !end)))) {
         most = touch(s, a, end);
@@ -182,8 +180,8 @@ static int up_of(const shape *s, const hl_volume *volume) {
   return sideways ? -2 : 3; /* rows of pictures run downwards */
 }
 
-/* Places from one end of an axis to the thing, along the row (u, v) of the other two axes; -1: nothing
- * there. */
+/* Places from one end of an axis to the first solid one in the row (u, v) of the other two axes; -1: there is
+ * none. */
 static int depth_at(const shape *s, int axis, int end, int u, int v) {
   int n[3];
   n[(axis + 1) % 3] = u;
@@ -195,8 +193,8 @@ static int depth_at(const shape *s, int axis, int end, int u, int v) {
   return -1;
 }
 
-/* Relief of the side at one end of an axis: how depths bend over a few places both ways, cliffs counted as
- * steps. */
+/* Relief of the side at one end of an axis: the sum of second differences of the depth, each at most 4, so
+ * that cliffs do not outweigh all else. */
 static double relief(const shape *s, int axis, int end) {
   int u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
   double sum = 0;
@@ -224,7 +222,7 @@ static bool opposite_shows_more(const shape *s, vec3 v) {
   return relief(s, axis, !end) > CLEARLY * relief(s, axis, end);
 }
 
-/* Around an up that is an axis; the eye is at the front at azimuth 0 (hl_view_about). */
+/* The three-quarter azimuth from which the sides with most relief are seen; up must be an axis. */
 static double best_azimuth(const shape *s, const hl_view *view) {
   vec3 front = vec3_of(view->front), right = vec3_cross(vec3_of(view->up), front);
   double azimuth = opposite_shows_more(s, front) ? 180 - HL_VIEW_AZIMUTH : HL_VIEW_AZIMUTH;
@@ -254,15 +252,12 @@ hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis
   return status;
 }
 
-/* ---- views by name: from a side, with this or that up.
- *
- * In: a scene, of which anatomy or the shape of its things tells which way is up and where the front is. Out:
- * an hl_view. */
+/* ---- views from a side ---- */
 
 static vec3 left_of(hl_space space) { return (vec3){space == HL_SPACE_RAS ? -1 : 1, 0, 0}; }
 
-/* Who turns or moves volumes knows their way up, and so does who makes them of shapes; of several files as
- * they are, the first decides. */
+/* True if the first volume decides which way is up: it is the only one and not rotated, or all volumes are
+ * files placed as they are. Other scenes are taken to have z up. */
 static bool first_decides(const hl_scene_description *description) {
   if (description->volume_count == 1) return description->volumes[0].rotate_angle_deg == 0;
   for (size_t v = 0; v < description->volume_count; v++) {
@@ -278,8 +273,8 @@ hl_status hl_view_automatic(const hl_scene_description *description, const hl_da
                             hl_view *view, hl_error *error) {
   const hl_scene_volume *first = &description->volumes[0];
   hl_view_about(description, (vec3){0, 0, 1}, view);
-  /* Left-posterior-superior is written for anything, grids along its axes are looked at;
-   * right-anterior-superior is meant. */
+  /* Programs write left-posterior-superior for any data, so it says little; right-anterior-superior is meant.
+   */
   if (hl_scene_space(description) == HL_SPACE_RAS || !first_decides(description)) return HL_OK;
   hl_data_analysis made;
   hl_status status = analysis == NULL ? hl_data_analyse(first->volume, &made, error) : HL_OK;
@@ -292,7 +287,9 @@ hl_status hl_view_automatic(const hl_scene_description *description, const hl_da
   return analysis->kind == HL_DATA_SURFACES ? HL_OK : hl_view_widen(description, view, error);
 }
 
-/* Anatomy's left, where there is one: at the viewer's right unless the world is left-handed. */
+/* The azimuth of a view from the left: of the body's left where the file tells the anatomy, else the viewer's
+ * left. */
+
 static double azimuth_of_left(const hl_scene_description *description, const hl_view *view) {
   hl_space space = hl_scene_space(description);
   if (space == HL_SPACE_UNKNOWN) return -90;

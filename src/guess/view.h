@@ -17,17 +17,18 @@ hl_status hl_view_automatic(const hl_scene_description *description, const hl_da
 
 /* ---- which way up a volume is, where its file cannot say. */
 
-/* Up: an axis of the world, or its opposite. And the three-quarter view: which azimuth shows most. */
+/* up: an axis of the world, or its opposite; azimuth_deg: of the three-quarter view that shows most. */
 typedef struct hl_upright {
   vec3 up;
   double azimuth_deg;
 } hl_upright;
 
-/* Of a volume whose file has no anatomy. Axes that are not the grid's own are believed: z is up. Smoke comes
- * from computer graphics, where y is up. Scanned things stand on, or are cut off by, their bottom; heads and
- * vessels are mirrored left to right, never top to bottom. Else z is up. Of the four three-quarter views the
- * one is taken whose sides have the most relief, so that heads show their faces. Fails for lack of memory and
- * when cancelled. */
+/* Finds out which way is up in a volume whose file has no anatomy. Where the file turns the grid against the
+ * world, z is up. In smoke, which comes from computer graphics, y is. Scanned objects stand on their bottom
+ * or are cut off there; where they do not, y points down if they are symmetric along z alone, as heads and
+ * vessels are from left to right. Otherwise z is up. The azimuth is that of the three-quarter view whose
+ * sides have the most relief, so that heads show their faces. Fails for lack of memory and when cancelled. */
+
 hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis,
                            hl_upright *upright, hl_error *error);
 
