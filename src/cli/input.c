@@ -164,7 +164,7 @@ hl_status input_load_volume(hl_context *context, const cli_input *input,
   return hl_volume_load_with(context, input->title, &chosen, volume, error);
 }
 
-/* Writes into the scene which array, component and spacing its volume was read with. */
+/* Writes into the scene the options that its volume was read with. */
 static hl_status name_source(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,
                              hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);

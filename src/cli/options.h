@@ -35,12 +35,13 @@ typedef struct cli_option {
   const char *help;     /* lines, the first one short */
   const char *group;    /* heading above this option in help; null: same group as the one before */
   const cli_choice *choices;
-  int count;           /* OPTION_NUMBERS: how many numbers, 1 to 3 */
-  char separator;      /* between the numbers: ',' or 'x' */
-  bool whole;          /* whole numbers only */
-  bool above;          /* low itself is excluded */
-  double low, high;    /* the accepted range */
-  const char *setting; /* key of a scene's setting: its range, and its choices if any, replace these; or null */
+  int count;        /* OPTION_NUMBERS: how many numbers, 1 to 3 */
+  char separator;   /* between the numbers: ',' or 'x' */
+  bool whole;       /* whole numbers only */
+  bool above;       /* low itself is excluded */
+  double low, high; /* the accepted range */
+  const char
+      *setting; /* key of a scene's setting: its range, and its choices if any, replace these; or null */
   hl_setting_kind setting_kind;
   bool repeatable; /* OPTION_TEXT: may be given again; every text is kept */
   bool reserved;   /* not in this version yet: not shown in help, refused when given */

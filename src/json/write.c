@@ -258,7 +258,7 @@ static void write_shapes(writer *w, const char *text) {
   json_decref(root);
 }
 
-/* Writes the file, and array, component and spacing where they are not the default. */
+/* Writes the file, and the options for loading it that are not the default. */
 static void write_source(writer *w, const hl_scene_volume *volume) {
   write_name(w, "file", volume->file);
   if (volume->series != NULL) write_name(w, "series", volume->series);
