@@ -1,7 +1,7 @@
 /* halflight/context.h - the context: memory, messages, progress and cancellation.
  *
- * Where a function takes a pointer and does not say that it may be null, null is refused with
- * HL_ERROR_ARGUMENT; functions without a status do nothing then, or answer null, 0 or NaN. No null crashes.
+ * Pointers may be null only where a function says so; otherwise null is refused with HL_ERROR_ARGUMENT.
+ * Functions that return no status then do nothing, or return null, 0 or NaN. No null crashes.
  *
  * Every other object is made with a context and must not outlive it. The library keeps no
  * global state, prints nothing, never exits and reads no environment variables.
@@ -39,9 +39,9 @@ typedef enum hl_status {
   HL_ERROR_INTERNAL = 7     /* a fault in the library itself */
 } hl_status;
 
-/* What went wrong, for a person. Filled by every fallible call that is given one; a null
- * pointer is always allowed. `message` is one line that names the file or key, the place and
- * the mend. line and column count from 1; 0 means not applicable. byte_offset is -1 if unknown. */
+/* Why a call failed. Filled by every failing call that is given one; null is always allowed. `message` is one
+ * line: the file or key, the place in it, what is wrong and how to mend it. line and column count from 1; 0:
+ * not applicable. byte_offset is -1 if unknown. */
 typedef struct hl_error {
   hl_status code;
   int line;
@@ -79,9 +79,9 @@ typedef struct hl_context_options {
   int (*cancelled)(void *user_data);
   uint64_t memory_limit;              /* bytes held through this context at once; 0: no limit */
   hl_instruction_set instruction_set; /* an unsupported choice is refused */
-  const char *data_folder;            /* where "data:" in a scene's file names leads; copied; null: nowhere */
+  const char *data_folder; /* the folder of files that scenes call "data:..."; copied; null: none */
   /* Called with the path of every file that is opened for reading: scenes, volumes, the data files that their
-   * headers name, transfer functions, pictures. A program can so avoid writing over one of them. */
+   * headers name, transfer functions, pictures. A program can use it to avoid writing over one of them. */
   void (*reads)(void *user_data, const char *path);
 } hl_context_options;
 

@@ -1,6 +1,6 @@
-/* halflight/halflight.h - pictures of volumes in which light is attenuated by what it passes.
+/* halflight/halflight.h - the whole library in one header: pictures of volumes that cast shadows.
  *
- * The whole library in one header. A program that turns a volume file into a picture:
+ * A program that turns a volume file into a picture:
  *
  *     #include <halflight/halflight.h>
  *     #include <stdio.h>
@@ -38,7 +38,7 @@
  *       return done ? 0 : 1;
  *     }
  *
- * More of them, from arrays in memory, for windows and with layers, are installed in
+ * Programs that start from arrays in memory, show pictures in windows or ask for layers are installed in
  * share/doc/halflight/examples.
  */
 #ifndef HALFLIGHT_HALFLIGHT_H

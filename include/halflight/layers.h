@@ -1,9 +1,9 @@
-/* halflight/layers.h - what a picture is made of, kept apart: lights, shadows, depth, normals.
+/* halflight/layers.h - layers beside a picture: the share of each light, shadows, depth, normals.
  *
  * The sum of all lights' pictures, the ambient picture and the emission is the picture's RGB, up to rounding:
- * lights can be turned up, down and to other colours without rendering again. The other layers are means
- * along each ray, every sample weighted by what it adds to the picture's alpha (its opacity times what is
- * left of the ray); they are divided by alpha, not premultiplied. Top row first, like the picture. */
+ * lights can be brightened, dimmed and coloured afterwards without rendering again. The other layers are
+ * means along each ray, weighted by what each sample adds to the picture's alpha (its opacity times the
+ * transmittance up to it). They are divided by alpha, not premultiplied. Top row first, like the picture. */
 #ifndef HALFLIGHT_LAYERS_H
 #define HALFLIGHT_LAYERS_H
 
@@ -16,9 +16,9 @@ extern "C" {
 /* The caller's buffers for the layers of one light. */
 typedef struct hl_light_layers {
   float *picture; /* [height][width][3]; what the light adds to the linear premultiplied RGB; or null */
-  float *shadow; /* [height][width][3]; mean part of the light, in R, G and B, that the volumes let through to
-                    what is seen: 1 is full light; 1 too for lights and volumes without shadows; 0 where alpha
-                    is 0; or null */
+  float *shadow;  /* [height][width][3]; mean transmittance, in R, G and B, from the light to the visible
+                     samples: 1 is  full light, and holds for lights and volumes without shadows too; 0 where
+                     alpha is 0; or null */
 } hl_light_layers;
 
 /* The caller's buffers; null where a layer is not wanted. They must not overlap. */
@@ -33,7 +33,7 @@ typedef struct hl_layers {
   const hl_light_layers *lights; /* [light_count], in the order of the scene's lights; or null */
   size_t light_count;            /* the scene's; or 0 */
   float *emission; /* [height][width][3]; what volumes add to the linear premultiplied RGB without any light:
-                      by their material's emission, or shaded flat */
+                      by their material's emission, or because they are shaded flat */
 } hl_layers;
 
 /* Depths are world lengths along the pixel's ray: from the eye, or, orthographic, from the plane through the

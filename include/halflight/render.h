@@ -1,4 +1,4 @@
-/* halflight/render.h - from a scene to an image. */
+/* halflight/render.h - rendering a scene. */
 #ifndef HALFLIGHT_RENDER_H
 #define HALFLIGHT_RENDER_H
 
@@ -10,9 +10,9 @@
 extern "C" {
 #endif
 
-/* Reusable: keeps buffers and prepared volumes between frames. One thread at a time; scenes may be shared by
- * any number of renderers. After fork() the child may render with a renderer that was idle, or with one of
- * its own: either starts threads of its own. */
+/* Reusable: keeps buffers and prepared volumes between frames. For one thread at a time; scenes may be shared
+ * by any number of renderers. After fork() the child may use a renderer that was idle, or create one: either
+ * starts threads of its own. */
 typedef struct hl_renderer hl_renderer;
 
 typedef struct hl_render_statistics {
@@ -24,7 +24,7 @@ typedef struct hl_render_statistics {
   int threads;
   hl_instruction_set instruction_set;
   uint64_t voxels_total;
-  uint64_t voxels_kept;                              /* that can matter to the picture */
+  uint64_t voxels_kept;                              /* voxels that can change the picture */
   uint64_t samples_shaded;                           /* image samples classified, lit and composited */
   uint64_t tiles_filled_image, tiles_filled_light;   /* sheet tiles reconstructed */
   uint64_t tiles_skipped_image, tiles_skipped_light; /* skipped because they were already opaque or dark */
@@ -44,9 +44,9 @@ HL_API void hl_renderer_destroy(hl_renderer *renderer); /* null is allowed */
 
 /* pixels: the caller's buffer, [height][row_stride] floats, width x 4 of them used in each row: linear
  * premultiplied RGBA of the volumes alone (no background), top row first. row_stride in floats, at
- * least 4 x width. statistics may be null. On an error the buffer's content is undefined. Where it is aligned
- * to 64 bytes, its rows follow each other and its sides are multiples of 16, the picture can be made in it,
- * in less memory. */
+ * least 4 x width. statistics may be null. On an error the buffer's content is undefined. Less memory is
+ * needed where the buffer is aligned to 64 bytes, its rows follow each other without gaps and width and
+ * height are multiples of 16. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene,
                                                    float *pixels, size_t row_stride,
                                                    hl_render_statistics *statistics, hl_error *error);
@@ -58,8 +58,8 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer,
                                                           const hl_layers *layers,
                                                           hl_render_statistics *statistics, hl_error *error);
 
-/* How the scene wants its pictures written, by hl_image_write() or hl_image_to_srgb8(): the defaults with its
- * background and exposure. scene may be null: the defaults alone. */
+/* Options for writing the scene's pictures, by hl_image_write() or hl_image_to_srgb8(): the defaults with the
+ * scene's background and exposure. scene may be null: the defaults alone. */
 HL_API void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *options);
 
 typedef struct hl_reference_options {
@@ -67,13 +67,14 @@ typedef struct hl_reference_options {
   int light_points;   /* points on each extended light; default 1024 */
   double step;        /* marching step in smallest voxel edges; default 0.25 */
   int threads;        /* 0: one per processor */
-  int rays; /* along each side of a pixel, from 1 to 8; their mean is the pixel; default 1. 0: as many as the
+  int rays; /* rays along each side of a pixel, from 1 to 8, that are averaged; default 1. 0: as many as the
                renderer averages where voxels are smaller than pixels */
 } hl_reference_options;
 
 HL_API void hl_reference_options_defaults(hl_reference_options *options);
 
-/* The oracle: a slow double-precision ray marcher that shares no rendering code with the sheets. */
+/* Renders with the reference: a slow double-precision ray marcher that shares no rendering code with
+ * hl_renderer. */
 HL_API HL_WARN_UNUSED hl_status hl_reference_render(hl_context *context, const hl_scene *scene,
                                                     const hl_reference_options *options, float *pixels,
                                                     size_t row_stride, hl_error *error);

@@ -1,4 +1,4 @@
-/* halflight/scene.h - what is rendered: camera, lights, volumes, settings.
+/* halflight/scene.h - scenes: camera, lights, volumes and render settings.
  *
  * A description is plain data; hl_scene_create() checks it and keeps a deep copy, immutable from
  * then on. Lengths in world units, angles in degrees, colours linear RGB, right-handed.
@@ -40,9 +40,9 @@ typedef enum hl_shadows {
 
 typedef enum hl_falloff { HL_FALLOFF_NONE = 0, HL_FALLOFF_INVERSE_SQUARE = 1 } hl_falloff;
 
-/* An image that a light projects along its rays (section 4 of the paper): a ray has the colour of the image
- * where it passes the light screen, a parallelogram in space, over its whole length, before the screen too;
- * rays that pass beside the screen are dark. Bilinear between the middles of pixels. */
+/* An image that a light projects, like a slide (section 4 of the paper). It stands on a screen, a
+ * parallelogram in space. A ray of the light has, over its whole length, the image's colour where it crosses
+ * the screen; rays that miss the screen are dark. Bilinear between the middles of pixels. */
 typedef struct hl_light_texture {
   const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
   const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light has no texture */
@@ -52,28 +52,29 @@ typedef struct hl_light_texture {
   double screen_up[3];    /* from the centre to the middle of its top edge */
 } hl_light_texture;
 
-/* An image on the surface of an extended light itself: what each of its points sends, times color and
- * intensity. Soft shadows take its shape and colours; without them the light has its mean. A rect's image has
- * its right edge at the end of edge1 and its top at that of edge2; that of a disk or polygon fills the square
- * or rectangle around it, upright (along `up`) and not mirrored for who stands before its normal; spheres and
- * directional lights show it to every sample. Bilinear between the middles of pixels. */
+/* An image on the surface of an extended light: each point of the surface sends its colour, times color and
+ * intensity. Soft shadows have the image's shape and colours; a light without soft shadows has its mean
+ * colour. On a rect, edge1 points to the image's right edge and edge2 to its top. On a disk or polygon the
+ * image fills the square or rectangle around it, with its top towards `up`, and is not mirrored as seen from
+ * the side that the normal points to. A sphere or a directional light shows every sample the image from the
+ * front. Bilinear between the middles of pixels. */
 typedef struct hl_light_emission {
   const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
   const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light is even */
   int width, height;
-  double up[3]; /* not for rects; where it points along the light's normal, [0, 1, 0] in its place */
+  double up[3]; /* not for rects; if it is parallel to the light's normal, [0, 1, 0] is used instead */
 } hl_light_emission;
 
-/* The axes that a light's places and directions are in. */
+/* The axes that a light's positions and directions are measured in. */
 typedef enum hl_light_frame {
   HL_LIGHT_FRAME_WORLD = 0,
-  HL_LIGHT_FRAME_CAMERA =
-      1 /* right, up and towards the viewer, from the camera's target: the light goes with the camera */
+  HL_LIGHT_FRAME_CAMERA = 1 /* x right, y up, z towards the viewer; the origin is the camera's target: the
+                               light moves with the camera */
 } hl_light_frame;
 
 typedef struct hl_light {
   hl_light_type type;
-  hl_light_frame frame;        /* of all that follows, texture and emission included */
+  hl_light_frame frame;        /* of all vectors below, those of texture and emission included */
   double direction[3];         /* directional, spot: the way the light travels */
   double angular_diameter_deg; /* directional: > 0 is soft */
   double position[3];          /* point, spot, rect, disk (its centre) */
@@ -85,7 +86,8 @@ typedef struct hl_light {
   const double (*vertices)[3]; /* polygon; [vertex_count][3] */
   size_t vertex_count;
   double color[3];
-  double intensity; /* I_light = color * intensity at the sample (no falloff unless asked) */
+  double
+      intensity; /* a sample receives color * intensity, however far away the light, unless falloff is set */
   hl_falloff falloff;
   hl_shadows shadows;
   hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */
@@ -112,20 +114,20 @@ typedef struct hl_transfer_function {
 typedef enum hl_shading {
   HL_SHADING_PHONG = 0,
   HL_SHADING_NONE = 1, /* a medium: lit and shadowed, without a surface */
-  HL_SHADING_FLAT = 2  /* the transfer function's colour itself: no light, no shadow received */
+  HL_SHADING_FLAT = 2  /* the transfer function's colour itself: neither light nor shadow changes it */
 } hl_shading;
 
 typedef struct hl_material {
   double ambient, diffuse, specular, shininess; /* ka kd ks n */
-  double emission; /* ke: the part of the colour that is sent without any light; 0 by default */
+  double emission; /* ke: fraction of the colour that shines without any light; default 0 */
 } hl_material;
 
 typedef struct hl_scene_volume {
   const char *name;   /* may be null */
   const char *file;   /* where the voxels came from, for hl_scene_to_json; may be null */
-  const char *shapes; /* or the text they came from, as for hl_volume_from_shapes; may be null */
-  const char *array;  /* how they were loaded from the file (hl_volume_load_options), for hl_scene_to_json; */
-  int component;      /* null, HL_COMPONENT_DEFAULT and 0: by default */
+  const char *shapes; /* or the text that the voxels were made from (hl_volume_from_shapes); may be null */
+  const char *array; /* the hl_volume_load_options that the file was read with, for hl_scene_to_json: null, */
+  int component;     /* HL_COMPONENT_DEFAULT and 0 are the defaults */
   double spacing[3];
   const char *series; /* of hl_volume_load_options too; may be null */
   hl_volume *volume;  /* retained by the scene */
@@ -153,16 +155,16 @@ typedef enum hl_reconstruction {
   HL_RECONSTRUCTION_GATHER = 2
 } hl_reconstruction;
 typedef enum hl_slicing { HL_SLICING_HALF_VECTOR = 0, HL_SLICING_IMAGE_ALIGNED = 1 } hl_slicing;
-/* How the light that is left is read between the pixels of a shadow buffer. */
+/* How transmittance is interpolated between the pixels of a shadow buffer. */
 typedef enum hl_shadow_lookup {
   HL_LOOKUP_BILINEAR = 0,
   HL_LOOKUP_NEAREST = 1,
-  HL_LOOKUP_CUBIC = 2, /* cubic convolution: sharper; of sub-lights bilinear */
-  HL_LOOKUP_AUTO = 3 /* cubic, of coarser pixels, where shadows are a cascade and lights even, and where they
-                        are hard and sheets closer than 5/6 of a voxel; elsewhere bilinear */
+  HL_LOOKUP_CUBIC = 2, /* cubic convolution: sharper; sub-lights are read bilinearly all the same */
+  HL_LOOKUP_AUTO = 3 /* cubic, with larger pixels, for cascade shadows of lights without an emission image and
+                        for hard shadows with close sheets; else bilinear */
 } hl_shadow_lookup;
 
-/* What a pixel shows of the volumes along its ray. */
+/* How the samples along a ray make a pixel. */
 typedef enum hl_compositing {
   HL_COMPOSITING_LIGHT = 0, /* lit matter, front to back */
   HL_COMPOSITING_MAXIMUM =
@@ -173,7 +175,7 @@ typedef enum hl_compositing {
 typedef struct hl_render_settings {
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
-  int light_samples;    /* sublights: M, for M x M parts */
+  int light_samples;    /* sublights: M, for M x M sub-lights */
   double sheet_spacing; /* in voxels: the smallest voxel edge of the scene */
   hl_kernel kernel;
   hl_reconstruction reconstruction;
@@ -202,13 +204,13 @@ typedef struct hl_scene_description {
 
 typedef struct hl_scene hl_scene; /* immutable and counted */
 
-/* Documented defaults of each part. */
+/* Fill a struct with its defaults. */
 HL_API void hl_scene_description_defaults(hl_scene_description *description);
 HL_API void hl_light_defaults(hl_light *light);
 HL_API void hl_scene_volume_defaults(hl_scene_volume *volume);
 
-/* Checks everything, copies everything, retains the volumes. Errors name the place as a JSON
- * pointer ("/lights/0/radius"). */
+/* Checks and copies the description, and retains the volumes. Errors name the field as a JSON pointer
+ * ("/lights/0/radius"). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_create(hl_context *context, const hl_scene_description *description,
                                                 hl_scene **scene, hl_error *error);
 
@@ -232,14 +234,14 @@ HL_API void hl_text_release(hl_context *context, char *text);
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
                                                     hl_scene **scene, hl_error *error);
 
-/* What hl_scene_for_volume() takes a volume for, and makes its transfer function and lights for: "scanned
- * body", "scanned brain", "scanned matter", "labels", "field", "flow", "signed field", "smoke or cloud" or
- * "one value". file as there (may be null). *kind is a constant. */
+/* The kind of data that hl_scene_for_volume() takes a volume for, and chooses its look by: "scanned body",
+ * "scanned brain", "scanned matter", "labels", "field", "flow", "signed field", "smoke or cloud" or "one
+ * value". file: as for that function. *kind is a constant text. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind,
                                                 hl_error *error);
 
-/* The scene's own copy: valid as long as the scene; change a copy of it and create another scene.
- * Null for null. */
+/* The scene's own description, valid as long as the scene. To change a scene, change a copy of the
+ * description and create another scene. Null for null. */
 HL_API const hl_scene_description *hl_scene_describe(const hl_scene *scene);
 
 HL_API void hl_scene_retain(hl_scene *scene);
@@ -247,17 +249,18 @@ HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
 
 /* ---- where the camera stands ---- */
 
-/* How a scene is looked at. */
+/* A direction of view. */
 typedef struct hl_view {
-  double up[3];    /* unit: up in the picture, at elevation 0 and roll 0 */
-  double front[3]; /* unit, at a right angle to up: from the things to the eye at azimuth 0 and elevation 0 */
+  double up[3]; /* unit: up in the picture, at elevation 0 and roll 0 */
+  double
+      front[3]; /* unit, at a right angle to up: from the volumes to the eye at azimuth 0 and elevation 0 */
   double azimuth_deg;   /* positive: the eye moves to its right, about up */
   double elevation_deg; /* -90 to 90; positive: the eye rises */
   double roll_deg;      /* positive: the picture turns clockwise */
 } hl_view;
 
-/* Sides to look from. With a body's anatomy (hl_volume_info's space) they are the body's own: from the left
- * one sees its left. Else left and right are the viewer's, who stands in front. */
+/* Sides to look from. Where the file tells the anatomy (hl_volume_info's space), left is the patient's left
+ * side; else it is the left as seen from the front. */
 typedef enum hl_side {
   HL_SIDE_AUTOMATIC = 0, /* the three-quarter view that shows most */
   HL_SIDE_FRONT = 1,
@@ -269,32 +272,32 @@ typedef enum hl_side {
   HL_SIDE_ISO = 7 /* azimuth 45 and the elevation at which three edges of a cube look alike, 35.26 */
 } hl_side;
 
-/* The view from a side. up: of no set length; null: as the file's anatomy says, or else as the things seem to
- * stand. Without anatomy the picture's right at the front is +x (where up is along x: +y), so that the front
- * is at -y where z is up. The camera of a scene that has none is hl_camera_frame_view() of the automatic
- * side. */
+/* The view from a side. up: of any length; null: by the file's anatomy, or else a guess from the voxels.
+ * Without anatomy, +x is to the right in the view from the front (where up is along x: +y), so that the front
+ * is at -y where z is up. A scene without a camera gets hl_camera_frame_view() of the automatic side. */
 HL_API HL_WARN_UNUSED hl_status hl_view_choose(const hl_scene_description *description, hl_side side,
                                                const double up[3], hl_view *view, hl_error *error);
 
-/* The view that the description's camera has, with roll 0: up is its up vector, or an axis of the world that
- * this was made level with. Fails where position and target are the same. */
+/* The view of the description's camera, with roll 0. view->up is the camera's up vector, or the axis of the
+ * world from which that was made perpendicular to the line of sight. Fails where position and target are the
+ * same. */
 HL_API HL_WARN_UNUSED hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *view);
 
-/* Places the camera so that what is seen of all volumes fills the picture and is in its middle, with room for
- * turning: at zoom 1 nothing leaves the picture however the camera turns about view->up (hl_camera_turn),
- * and, as far as this view stays filled to four fifths, however it turns at all. camera->type and fovy_deg
- * are kept. Fails where zoom is not from 1e-6 to 1e6, the view or the field of view is impossible, or there
- * is no volume (HL_ERROR_ARGUMENT), and for lack of memory. */
+/* Places the camera so that the visible voxels of all volumes fill the picture and are in its middle, with
+ * room for turning: at zoom 1 nothing leaves the picture while the camera turns about view->up
+ * (hl_camera_turn). It may leave it in other turns, if room for these would fill this view to less than four
+ * fifths. camera->type and fovy_deg are kept. Fails where zoom is not from 1e-6 to 1e6, the view or the field
+ * of view is impossible, or there is no volume (HL_ERROR_ARGUMENT), and for lack of memory. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description *description,
                                                      const hl_view *view, double zoom, hl_camera *camera,
                                                      hl_error *error);
 
-/* Turns the camera about its target, at its distance. */
+/* Turns the camera about its target to a view, at the distance that it has. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *camera);
 
-/* Places the camera so that what is seen of all volumes fills the picture, tight for this direction alone:
- * azimuth 0 looks along the world's +y, positive turns the eye to the right; elevation 90 looks straight down
- * z. zoom 1 frames everything. camera->type and fovy_deg are kept. */
+/* Places the camera so that the visible voxels of all volumes fill the picture, without room for turning.
+ * Azimuth 0 looks along the world's +y, a positive one moves the eye to its right; elevation 90 looks
+ * straight down z. zoom 1 frames everything. camera->type and fovy_deg are kept. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg,
                                                 double elevation_deg, double zoom, hl_camera *camera);
 
@@ -310,12 +313,13 @@ HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, doub
 /* The same for a light in HL_LIGHT_FRAME_CAMERA. */
 HL_API void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double direction[3]);
 
-/* Transfer functions made by the library own their points: free with hl_transfer_function_release(). */
-/* From the volume's histogram: separates air from things in CT, MR and simulations alike. */
+/* ---- transfer functions: free the points of those made here with hl_transfer_function_release() ---- */
+
+/* Chosen by the volume's values: separates objects from their background in CT, MR and simulations alike. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
                                                                hl_transfer_function *function,
                                                                hl_error *error);
-/* name: one of hl_preset_name(0..). Presets in units of the volume's own kind adapt to its range. */
+/* name: one of hl_preset_name(0..). Presets adapt to the volume's values. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context, const char *name,
                                                             const hl_volume *volume,
                                                             hl_transfer_function *function, hl_error *error);
@@ -324,13 +328,13 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *contex
                                                               double low, double high,
                                                               hl_transfer_function *function,
                                                               hl_error *error);
-/* Between which two values of the volume nearly all lies that the function lets be seen, from whatever side:
- * a good range for a colormap. Where nothing is seen, the volume's range. range[0] < range[1]. */
+/* The range that holds nearly all values that are visible with this function, from any side: a good range for
+ * a colormap. Where nothing is visible, the volume's range. range[0] < range[1]. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume,
                                                                 const hl_transfer_function *function,
                                                                 double range[2], hl_error *error);
 /* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps or
- * Slicer's .vp.json. A file with colours alone gives no opacity points (opacity null): take them from
+ * Slicer's .vp.json. From a file with colours alone, opacity becomes null: take the opacity points from
  * elsewhere. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load(hl_context *context, const char *path,
                                                           hl_transfer_function *function, hl_error *error);

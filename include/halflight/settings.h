@@ -1,4 +1,4 @@
-/* halflight/settings.h - the tables of settings: what each key of a scene may be.
+/* halflight/settings.h - the tables of settings: type, range, default and meaning of each key of a scene.
  *
  * One row per key. Reading and writing scene files, the checks of hl_scene_create() and the defaults follow
  * these rows; editors and documents can be made from them.
@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-/* Which table, the struct that its rows are fields of, and the place of its keys in a scene file. */
+/* The tables. For each: the struct whose fields its rows are, and where its keys stand in a scene file. */
 typedef enum hl_setting_kind {
   HL_SETTINGS_SCENE = 0,             /* hl_scene_description; the file's top level */
   HL_SETTINGS_IMAGE = 1,             /* hl_scene_description; "image" */
@@ -51,9 +51,9 @@ typedef struct hl_setting {
   const hl_setting_choice *choices; /* null: none */
   size_t offset;                    /* of the field in the struct */
   unsigned only_for; /* lights and cameras: the types that have the key, bit (1 << type) each; 0: all */
-  int optional;      /* non-zero: hl_scene_to_json() leaves it out where it has its default */
+  int optional;      /* non-zero: hl_scene_to_json() leaves the key out where it has its default */
   const char *sentence;
-  const char *mend;   /* what an error about the value asks for; {low} and {high} stand for the range */
+  const char *mend; /* how an error asks for a value in range; {low} and {high} stand for the range's ends */
   const char *option; /* of `halflight render`, without dashes; null: none */
 } hl_setting;
 

@@ -1,7 +1,7 @@
 /* halflight/shape.h - volumes made of shapes: solids, hypertexture, electron orbitals.
  *
- * A volume is described as in a scene file (docs/scene.md, "Shapes"), by a JSON object with the keys
- * "shapes", and, if wanted, "voxel_size" and "groups":
+ * A volume is described as in a scene file (docs/scene.md, "Shapes"): by a JSON object with the keys
+ * "shapes" and, both optional, "voxel_size" and "groups":
  *
  *     { "shapes": [ { "type": "torus", "radius": 20, "tube_radius": 6 } ], "voxel_size": 1 }
  *

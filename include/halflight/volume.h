@@ -1,7 +1,7 @@
-/* halflight/volume.h - a regular grid of scalar voxels with its place in the world.
+/* halflight/volume.h - a regular grid of scalar voxels, placed in the world.
  *
  * Voxel (i, j, k) has its centre at world = origin + i*axis[0] + j*axis[1] + k*axis[2]; i runs
- * fastest in memory. Volumes are immutable and counted: retain and release.
+ * fastest in memory. Volumes are immutable and reference-counted: hl_volume_retain() and hl_volume_release().
  */
 #ifndef HALFLIGHT_VOLUME_H
 #define HALFLIGHT_VOLUME_H
@@ -28,15 +28,15 @@ typedef enum hl_voxel_type {
 
 typedef struct hl_volume hl_volume;
 
-/* How voxels lie in the caller's memory. */
-/* Which way the world's axes x, y, z point in a body, where the file says. */
+/* Which way the world's axes x, y, z point in a patient's body, if the file tells. */
 typedef enum hl_space {
   HL_SPACE_UNKNOWN = 0,
-  HL_SPACE_RAS = 1, /* to its right, its front (anterior) and its head (superior): NIfTI */
+  HL_SPACE_RAS = 1, /* to the body's right, front (anterior) and head (superior): NIfTI */
   HL_SPACE_LPS = 2, /* left, back (posterior), head: DICOM */
   HL_SPACE_LAS = 3  /* left, front, head: left-handed */
 } hl_space;
 
+/* How voxels lie in the caller's memory and in the world. */
 typedef struct hl_volume_description {
   size_t struct_size;        /* set by hl_volume_description_defaults() */
   size_t dimensions[3];      /* voxels along i, j, k; each at least 1 */
@@ -53,7 +53,7 @@ typedef struct hl_volume_description {
 
 #define HL_HISTOGRAM_BINS 256
 
-/* What a volume is. All values are data values (scale and offset applied). */
+/* Facts about a volume. All values are data values (scale and offset applied). */
 typedef struct hl_volume_info {
   size_t struct_size; /* set by the caller to sizeof(hl_volume_info) */
   size_t dimensions[3];
@@ -100,8 +100,8 @@ typedef struct hl_volume_load_options {
                     (time) are components too */
   double spacing[3]; /* distance of voxels along i, j, k, world units, in place of the file's; all 0
                         (default): the file's */
-  const void *bytes; /* the file's content, borrowed during the call, in place of a file; path then names it.
-                        Default null */
+  const void *bytes; /* the file's content in memory, borrowed during the call: nothing is opened then, and
+                        path is only its name. Default null */
   size_t byte_count;
   const char
       *series; /* DICOM: of several series this one: its number, UID or description; null: the largest */

@@ -8,7 +8,7 @@
 #include "simd/narrow.h"
 #include "view/rays_lanes.h"
 
-/* Where a block's pixels see the sheet, in the grid. */
+/* The points where a block's rays cross the sheet. */
 typedef struct block_points {
   lanes3 position;   /* index space, clamped to [-1, n) */
   lanes_int cell[3]; /* floor(position): -1 .. n-1 */
@@ -40,8 +40,8 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
   return points;
 }
 
-/* The least cell of a block along each axis. Along a row or a column of pixels, cells only rise or only
- * fall, so that the least is at a corner, but for rounding. */
+/* The least cell of a block along each axis. Along a row or a column of pixels, cells only rise or only fall,
+ * so the least is at a corner, up to rounding. */
 LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 #if defined(__AVX512BW__)
   const __m512i of_two = _mm512_set_epi32(0, 0, 0, 0, 15, 12, 3, 0, 31, 28, 19, 16, 15, 12, 3, 0);

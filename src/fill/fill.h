@@ -1,8 +1,7 @@
-/* fill/fill.h - filling a tile of a sheet with densities: one interface, two ways.
+/* fill/fill.h - filling a tile of a sheet with densities, by splatting or gathering.
  *
- * splat pushes every voxel's footprint section onto the tile (the paper's way); gather pulls, for every
- * pixel still needed, the same sum over the 4x4x4 voxels around it. Both give the same densities to
- * rounding. */
+ * Splatting, the paper's way, adds every voxel's footprint to the tile. Gathering sums, for every pixel still
+ * needed, the 4x4x4 voxels around its point. Both give the same densities up to rounding. */
 #ifndef HL_FILL_FILL_H
 #define HL_FILL_FILL_H
 

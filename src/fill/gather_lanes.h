@@ -1,4 +1,4 @@
-/* fill/gather_lanes.h - pulling: each pixel's density is the sum of the 4x4x4 voxels around its point,
+/* fill/gather_lanes.h - gathering: each pixel's density is the sum of the 4x4x4 voxels around its point,
  * weighted by the kernel.
  *
  * Four u8 voxels along x are one 32-bit load. The order of the sum is fixed: pairs along x, then
@@ -144,8 +144,7 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {
-    if (has_integer_weights(storage))
-      round_to_weights(weight[0]); /* before they are folded: splatting rounds them before, too */
+    if (has_integer_weights(storage)) round_to_weights(weight[0]); /* before folding, as splatting does */
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);
     for (int a = 0; a < 3; a++)
@@ -191,8 +190,8 @@ LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, 
   return points;
 }
 
-/* Which of the others show something is found before the first block is summed: processors cannot foresee it,
- * and would begin sums in vain. inside: tile_is_inside(). */
+/* First finds which of the others show something, then sums: mixed, the processor would guess wrong and begin
+ * sums in vain. inside: tile_is_inside(). */
 LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, int inside, float *density) {
   block_points points[TILE_BLOCKS];

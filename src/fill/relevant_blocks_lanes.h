@@ -31,8 +31,9 @@ LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   return box;
 }
 
-/* Whether a box visible something, where it spans no more units than one look-up covers; *wide: the others.
- * shift: cells to units. low, high: the box's first and last cells. */
+/* The lanes whose box may show something, by one look-up each; *wide: the lanes whose box spans more units
+ * than a look-up covers, which are left out. shift: cells to units. low, high: the box's first and last
+ * cells. */
 LANES_INLINE lanes_int box_visible(const cell_lookup *lookup, int shift, const lanes_int low[3],
                                    const lanes_int high[3], lanes_int inside, lanes_int *wide) {
   lanes_int first = lanes_set_int(0), bit = first, fits = lanes_set_int(-1);
@@ -94,7 +95,7 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     on_sheet[slab + 1] = box_on_sheet(rays + 1, u, v);
     lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
     uint32_t visible = visible_boxes(run->grid, &box);
-    /* where the eye is in the slab, rays begin there, which cuts blocks too */
+    /* an eye within the slab cuts blocks too: rays begin at it */
     int uncut = rays[0].step * rays[1].step > 0 && (visible & ~uncut_blocks(run, &box)) == 0;
     found->uncut = (uint16_t)((found->uncut & ~(1u << slab)) | (uint32_t)uncut << slab);
     found->blocks[slab] = (uint16_t)(visible & need);

@@ -42,7 +42,8 @@ LANES_INLINE void round_to_weights(lanes weight[4]) {
 
 /* ---- u8 voxels ---- */
 
-/* Four u8 taps in a 32-bit word are weighted and added. The weights are split as the processor multiplies. */
+/* Four u8 taps in a 32-bit word are weighted and added. The weights are split into the parts that the
+ * processor's instructions multiply. */
 #if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
 #define HL_PERMUTES_BYTES 1
 
@@ -197,7 +198,7 @@ typedef struct tap_slope_weights {
   lanes weight[3][4], slope[3][4];
 } tap_slope_weights;
 
-/* Weights along x and their slopes, in the form that suits the voxels' type: integers but for f32. */
+/* Weights along x and their slopes, in the form for the voxels' type: floats for f32, else integers. */
 typedef struct row_weights {
   lanes real[4];
   byte_weights bytes;
@@ -230,8 +231,8 @@ LANES_INLINE row_slopes slopes_of_row(hl_storage storage, const lanes slope[4]) 
   return slopes;
 }
 
-/* The weighted sum of four neighbouring voxels along x, for every lane. offsets: bytes from `row`. The result
- * is in units of weights where those are integers. */
+/* The weighted sum of four neighbouring voxels along x, for every lane. offsets: bytes from `row`. With
+ * integer weights the result is in units of these. */
 LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
   return weigh_floats((lanes)lanes_load_words(row, offsets), (lanes)lanes_load_words(row + 4, offsets),
                       (lanes)lanes_load_words(row + 8, offsets), (lanes)lanes_load_words(row + 12, offsets),

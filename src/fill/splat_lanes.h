@@ -1,7 +1,7 @@
-/* fill/splat_lanes.h - pushing: each voxel's kernel, cut by the sheet, is added to a tile (steps 8 to 11).
+/* fill/splat_lanes.h - splatting: each voxel's kernel, cut by the sheet, is added to a tile (steps 8 to 11).
  *
- * The kernel is evaluated where each pixel sees the sheet: this is exact at any orientation, perspective and
- * spacing, and no table of footprints could be too coarse. */
+ * There is no table of footprints: the kernel is evaluated at each pixel's point on the sheet, which is exact
+ * at any orientation, perspective and spacing. */
 #ifndef HL_FILL_SPLAT_LANES_H
 #define HL_FILL_SPLAT_LANES_H
 

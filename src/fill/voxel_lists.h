@@ -1,4 +1,4 @@
-/* fill/voxel_lists.h - relevant voxels sorted for splatting, by a bucket sort (step 2). */
+/* fill/voxel_lists.h - the relevant voxels, sorted by tile and sheet for splatting (step 2). */
 #ifndef HL_FILL_VOXEL_LISTS_H
 #define HL_FILL_VOXEL_LISTS_H
 

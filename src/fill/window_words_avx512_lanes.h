@@ -1,5 +1,5 @@
-/* fill/window_words_avx512_lanes.h - taps of u8 voxels by permutations of 32-bit words, where AVX-512 has
- * none of bytes. */
+/* fill/window_words_avx512_lanes.h - taps of u8 voxels by permutations of 32-bit words, for AVX-512 without
+ * permutations of bytes. */
 #ifndef HL_FILL_WINDOW_WORDS_AVX512_LANES_H
 #define HL_FILL_WINDOW_WORDS_AVX512_LANES_H
 

@@ -1,8 +1,9 @@
 /* render/before_slab_lanes.h - near a face of a volume's box: how far light has come within the box before it
  * reaches a slab, at a sample and at the shadow buffer's pixels around the sample.
  *
- * A shadow buffer's pixel on one side of a face holds light that the box's matter has partly taken, one on
- * the other side light that has passed beside the box; how far each has come through the box is known. */
+ * On one side of a face, a shadow buffer's pixel holds light that the box's matter has partly absorbed; on
+ * the other side it holds light that has passed beside the box. Interpolating between the two is wrong; the
+ * lengths of the ways through the box correct it. */
 #ifndef HL_RENDER_BEFORE_SLAB_LANES_H
 #define HL_RENDER_BEFORE_SLAB_LANES_H
 
@@ -13,8 +14,8 @@
  * far from the sample as the pixels of all their buffers are on average. */
 enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
-  lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample, pixels */
-  lanes3 along_u, along_v;              /* a pixel along u and v, on the sheet; frame space */
+  lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample to each pixel; in pixels */
+  lanes3 along_u, along_v;              /* one pixel along u and along v, on the sheet; frame space */
 } near_pixels;
 
 /* The root of 1/6. Bilinear look-ups, averaged over all positions between pixels, weigh by a tent of variance
@@ -64,28 +65,28 @@ LANES_INLINE near_pixels pixels_of_sublights(void) {
   return near;
 }
 
-/* How far light has come within a volume's box when it reaches the slab's first sheet: on its way to the ends
- * of the eye's way, and to the near pixels. */
+/* Lengths of light's ways within a volume's box before the slab's first sheet: to where the eye's ray enters
+ * and leaves the slab's part in the box, and to the near pixels. */
 typedef struct ways_before {
   lanes first, last, near[NEAR_PIXELS];
 } ways_before;
 
-/* The faces of a box across one axis, on the light's way back from the place lit: the one ahead and the one
- * behind; and how much less far both are for a step to a near pixel along u or v, and for the whole slab
- * along the eye's ray. */
+/* The two faces of a box across one axis, as distances from the lit position towards the light: of the face
+ * ahead and of the one behind. u, v, along: by how much both distances shrink with one pixel's step along u
+ * or v, and with the whole slab along the eye's ray. */
 typedef struct faces_of_axis {
   lanes ahead, behind, u, v, along;
 } faces_of_axis;
 
-/* A face that is nearly parallel to the light counts fully where a step to a near pixel moves it on the
- * light's way by this fraction of the light's way through the box, and not at all at twice the fraction:
- * light to both of its sides then comes in by another face, far away. */
+/* For faces nearly parallel to the light: a step to a near pixel moves such a face far along the light's way.
+ * Up to this fraction of the light's way through the box the face counts fully, at twice the fraction not at
+ * all: the light to both of its sides then enters the box by another face, far away. */
 static const float ALONG_FACE = 0.5f;
 
-/* How far each face of a box is from the place lit. Derived (slab method): a step s beside a point moves a
- * face on the light's way by -row.s / row.l, l the light's direction. Returns 1 where some near pixel's light
- * may come past a face that the place lies behind, falling to 0 where the face is twice as far as the pixels
- * reach. */
+/* Finds the distances of a box's faces from the lit position. Derived (slab method): a step s beside a point
+ * moves a face on the light's way by -row.s / row.l, l the light's direction. Returns 1 where light to some
+ * near pixel may pass beside a face through which the light to this position comes, falling to 0 where the
+ * face is twice as far away as the pixels reach. */
 LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *g, lanes3 towards,
                               const near_pixels *near, faces_of_axis faces[3]) {
   lanes close[3], reach[3], longest = lanes_set(1e30f), likely = lanes_set(0);

@@ -1,4 +1,4 @@
-/* render/cover_lanes.h - opacity alone of what the eye sees, to know what lies hidden behind it. */
+/* render/cover_lanes.h - compositing opacity alone, to find what is hidden from the eye. */
 #ifndef HL_RENDER_COVER_LANES_H
 #define HL_RENDER_COVER_LANES_H
 

@@ -122,8 +122,8 @@ int hl_frame_visible_points(const frame *frame, vec3 *points) {
 
 /* ---- the eye ---- */
 
-/* Edge of an image pixel where the content is nearest to the eye, but no nearer than a third of the way to
- * the content's middle: closer voxels are magnified anyway. */
+/* The edge of a pixel at the depth where the content is nearest to the eye, but at least a third of the depth
+ * of the content's middle: closer voxels are magnified anyway. */
 static double pixel_at_content(const frame *frame, double middle_depth) {
   const view *eye = &frame->eye;
   double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
@@ -143,10 +143,10 @@ static double box_volume(const vec3 corners[8]) {
   return fmax(fabs(vec3_dot(vec3_cross(x, y), z)), 1e-300);
 }
 
-/* The mean of the volumes' boxes' centres, each weighted by the box's volume (derived: sum V c over the parts
- * of a box is V c of the box). It stays where it is when a volume is cut into parts, as far as the visible
- * boxes of the parts fill that of the whole. Sheets of near lights follow it: it gives a light's
- * direction. */
+/* The mean of the boxes' centres, each weighted by its box's volume. Derived: the sum of V c over the parts
+ * of a box is V c of the box, so a volume that is cut into parts keeps its middle, if the parts' boxes of
+ * relevant bricks fill the box of the whole. The middle gives near lights their direction, and so the sheets.
+ */
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
   double volumes = 0;
@@ -159,7 +159,8 @@ static vec3 content_middle(const frame *frame) {
   return frame->point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
 }
 
-/* e: towards the middle of the content where the eye is outside of it, else straight ahead. */
+/* Sets eye_direction: half way between straight ahead and the middle of the content where the eye is outside
+ * the content, else straight ahead; and the sizes of pixels at the content. */
 static void look(frame *frame) {
   vec3 start, forward;
   hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);
@@ -179,8 +180,8 @@ static void look(frame *frame) {
                              fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
 }
 
-/* Where voxels are smaller than pixels, their footprints must not fall between pixels: the frame is made of
- * as many more pixels as it takes for voxels to be no smaller, and averaged. */
+/* Voxels smaller than pixels could fall between them: the frame is then made of smaller pixels, about as
+ * large as voxels, and averaged. */
 enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
 
 static int oversampling(const frame *frame, const hl_scene_description *scene) {

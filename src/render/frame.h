@@ -25,7 +25,7 @@ typedef struct frame {
   int oversampling;  /* a pixel of the picture is the mean of oversampling x oversampling pixels of the
                       * frame */
   view eye;
-  vec3 eye_direction;  /* e: unit, from the eye to the content */
+  vec3 eye_direction;  /* e: unit, from the eye towards the content */
   vec3 middle;         /* of the content */
   double pixel;        /* edge of an image pixel where the content is nearest, frame units */
   double middle_pixel; /* edge of an image pixel at the content's middle, frame units */
@@ -41,8 +41,7 @@ typedef struct frame {
 /* The eye's view in width x height pixels. */
 hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye, hl_error *error);
 
-/* Sets the frame's size, its eye, oversampling and middle: the eye at the resolution that the content needs.
- * The frame's points and voxel must be set. */
+/* Sets the frame's size, oversampling, eye and middle. The frame's points and voxel must be set. */
 hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error);
 
 /* After the eye. Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Narrow

@@ -1,4 +1,4 @@
-/* render/framed_scene.c - the scene's lengths and places, from the world's to the frame's. */
+/* render/framed_scene.c - converts a scene's lengths and positions from the world to frame space. */
 #include "render/framed_scene.h"
 
 #include <string.h>
@@ -37,7 +37,7 @@ static void move_light(const hl_frame_space *space, hl_light *light, double (*ve
   if (light->falloff == HL_FALLOFF_INVERSE_SQUARE) light->intensity /= space->unit * space->unit;
 }
 
-/* The clip box stays in the world of the volume's file, which the transform starts from. */
+/* Leaves the clip box alone: it is in the world of the volume's file, to which the transform is applied. */
 static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
   move_point(space, volume->translate);
   volume->scale /= space->unit;

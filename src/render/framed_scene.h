@@ -1,8 +1,8 @@
 /* render/framed_scene.h - a scene in frame space: moved to the middle of its volumes, measured in its
  * smallest voxels.
  *
- * Floats then hold what a picture needs wherever the scene lies and whatever its unit of length is. The unit
- * is a power of two, so that scaling rounds nothing: a scene 2^k times as large gives the same bytes. */
+ * Floats are then precise enough wherever the scene lies and whatever its unit of length is. The unit is a
+ * power of two, so that scaling rounds nothing: a scene 2^k times as large gives the same bytes. */
 #ifndef HL_RENDER_FRAMED_SCENE_H
 #define HL_RENDER_FRAMED_SCENE_H
 
@@ -11,7 +11,7 @@
 
 typedef struct framed_scene {
   hl_scene_description
-      scene; /* camera, lights and volumes in frame space; volumes, textures and texts are the world's */
+      scene; /* in frame space; voxels, images and texts are borrowed from the scene in the world */
   hl_scene_volume *volumes; /* owned; [volume_count] */
   hl_light *lights;         /* owned; [light_count] */
   double (*vertices)[3];    /* owned; of all polygons */

@@ -1,9 +1,9 @@
-/* render/hidden.c - what opaque matter hides from the eye, found before a sweep that goes from back to front:
- * it would shade all of that first, to cover it later.
+/* render/hidden.c - finds what opaque matter hides from the eye, before a sweep that goes from back to front:
+ * that sweep would light hidden matter first, only to cover it later.
  *
- * The same sheets are gone through the other way, opacity alone, until blocks of pixels are opaque. What lies
- * behind is left out, as it is where sheets go from front to back. A few tiles are tried first: where little
- * is hidden, all is shaded. */
+ * A preparatory sweep passes over the same sheets from front to back and composites opacity alone, until
+ * blocks are opaque. The slabs behind these blocks are then left out. A few tiles are tried first: where
+ * little is hidden, everything is lit. */
 #include "core/memory.h"
 #include "render/sweep.h"
 
@@ -16,14 +16,15 @@ static frame_sweep turned_round(const frame_sweep *geometry) {
   return turned;
 }
 
-/* Derived: what is opaque after slab k from the eye, of the n - 1 between n sheets, hides those before slab n
- * - k from the light. */
+/* The first visible slab, counted from the light, of a block that is opaque after slab k, counted from the
+ * eye. Derived: between n sheets there are n - 1 slabs; the k nearest to the eye are the last k, from slab n
+ * - k on. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
-/* The data of the tile action: what is found. */
+/* The tile action's data. */
 typedef struct hidden_search {
-  int32_t *shown_from; /* [tiles][16]; 0: the block is not covered yet */
-  bool trying;         /* blocks stay open when they are opaque */
+  int32_t *shown_from; /* [tiles][16]; first visible slab; 0: the block is not covered yet */
+  bool trying;         /* opaque blocks stay open, to count what they cover */
 } hidden_search;
 
 static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {
@@ -54,8 +55,9 @@ static bool is_tried(const sweep *sweep, size_t tile) {
   return (hl_tile_x(sweep, tile) + hl_tile_y(sweep, tile) * 11) % 32 == 0;
 }
 
-/* Finding what covers a pixel takes about half the time of filling and lighting a covered pixel (measured).
- * The rest is a reserve: a few tiles tell little. */
+/* The search pays where more pixels than this are covered for each that is seen. A seen pixel costs it about
+ * half of what lighting a covered one would (measured); more is asked for, as a few tried tiles are no sure
+ * sign. */
 static const double COVERED_PER_SEEN = 0.75;
 
 static bool is_worth_while(const sweep *front) {
@@ -67,8 +69,8 @@ static bool is_worth_while(const sweep *front) {
   return (double)covered > COVERED_PER_SEEN * (double)seen;
 }
 
-/* Goes through the tiles that are tried, also behind what covers them, to count how much is covered; or
- * through all other tiles. */
+/* Runs the search in the tried tiles only (trying), where it goes on behind opaque blocks to count what they
+ * cover; or in all other tiles. */
 static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
   search->trying = trying;
   for (size_t tile = 0; tile < front->tiles; tile++)

@@ -1,4 +1,4 @@
-/* render/hot.h - the hot functions of all rooms behind one table, chosen once a context.
+/* render/hot.h - one table of all rooms' hot functions for each instruction set.
  *
  * Each function is written once, in a *_lanes.h of its room, and compiled for every instruction set by
  * src/hot; all give the same bytes. A room receives the table of its own functions alone. */

@@ -30,7 +30,7 @@ static float *allocate_pixels(const pixel_room *room, size_t floats, hl_status *
   return pixels;
 }
 
-/* No ray has met anything yet. */
+/* Sets the first depth of all pixels to infinity: no ray has met anything yet. */
 static void clear_first_depth(float *measures, size_t tiles) {
   for (size_t block = 0; block < tiles * TILE_BLOCKS; block++)
     for (int lane = 0; lane < BLOCK_PIXELS; lane++)
@@ -72,7 +72,7 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
 
 /* ---- passes ---- */
 
-/* White volumes without surfaces: their samples pass on all light that arrives. */
+/* Sets up copies of the volumes that are white media: their samples pass on all the light that arrives. */
 static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
@@ -191,7 +191,7 @@ void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
 
 /* ---- the caller's buffers ---- */
 
-/* Where one value of a pixel of the frame is. */
+/* The address of one value of a pixel of the frame. */
 static const float *value_at(const layer_grid *grid, const float *pixels, int floats, int column, int row,
                              int value) {
   size_t tile = (size_t)(row / TILE) * grid->tiles_x + (size_t)(column / TILE);

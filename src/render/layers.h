@@ -1,9 +1,9 @@
-/* render/layers.h - layers: the sweep's own shading, asked once more for each of them.
+/* render/layers.h - layers: the sweep shades each tile once more for each layer.
  *
- * A light's picture is what the sweep would show with this light alone, no ambient light and no emission; its
- * shadow is the picture of white volumes without surfaces under that light in white. Both are made by the
- * same function from the same sheets, tile by tile after the picture's own; without layers nothing of this
- * runs. Depth and normals are measured from a sweep that goes front to back for the eye. */
+ * A light's picture is shaded with this light alone, without ambient light and emission. Its shadow is the
+ * picture of white volumes without surfaces, lit by this light in white. Both are made by the same function
+ * from the same densities, tile by tile after the picture's own. Depth and normals are measured in a sweep
+ * that goes front to back for the eye. Without layers nothing of this runs. */
 #ifndef HL_RENDER_LAYERS_H
 #define HL_RENDER_LAYERS_H
 

@@ -1,11 +1,11 @@
-/* render/light_depth_lanes.h - what a slab's own matter takes of the light that shines on it (step 15,
- * derived).
+/* render/light_depth_lanes.h - the light that a slab's own matter absorbs before it reaches the lit position
+ * (step 15, derived).
  *
- * The shadow buffer tells what light reaches the slab's first sheet; from there on a sample's own
- * surroundings tell how the light goes on. Matter near a surface is taken to be a plane's: its density f
- * falls by k entries of the transfer function's table per frame unit towards the light, and light that comes
- * to where it is f has passed the optical depth P(f) / k of it, P the integral of extinction over entries.
- * Wherever two places lie in the plane, their depths differ by (P(f1) - P(f2)) / k. */
+ * The shadow buffer holds the light that reaches the slab's first sheet. From there on, the sample's own
+ * densities and gradient tell how much is absorbed. Matter near a surface is taken to be a plane's: its
+ * density f, in entries of the transfer function's table, falls by k per frame unit towards the light. Light
+ * that has come to density f has passed the optical depth P(f) / k, P the integral of extinction over
+ * entries. The depths at two positions in the plane's matter differ by (P(f1) - P(f2)) / k. */
 #ifndef HL_RENDER_LIGHT_DEPTH_LANES_H
 #define HL_RENDER_LIGHT_DEPTH_LANES_H
 
@@ -18,8 +18,8 @@ typedef struct color_lanes {
 /* exp(-x), also of negative x: those below -40 are as -40. */
 LANES_INLINE lanes exp_of_depth(lanes x) { return lanes_exp_negative(lanes_max(x, lanes_set(-40.0f))); }
 
-/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1], as what is to be divided by what. left:
- * exp(-x). */
+/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1], as numerator (over) and denominator
+ * (under). left: exp(-x). */
 typedef struct mean_transmittance {
   lanes over, under;
 } mean_transmittance;
@@ -30,10 +30,11 @@ LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
   return (mean_transmittance){lanes_select(thin, near, 1.0f - left), lanes_select(thin, lanes_set(1.0f), x)};
 }
 
-/* Light left within the slab, averaged as the eye sees it. e: the slab's optical depth for the eye; left:
- * exp(-e). enter: the light's depth where the eye's ray enters the matter; more: by how much more it is where
- * the ray leaves (derived; exact for extinction that varies along one direction only): int e exp(-e s)
- * exp(-enter - more s) ds / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), phi(-x) = exp(x) phi(x). */
+/* The light's transmittance within the slab, averaged as the eye sees it. e: the slab's optical depth for the
+ * eye; left: exp(-e). enter: the light's optical depth where the eye's ray enters the matter; more: the depth
+ * added where the ray leaves (derived; exact for extinction that varies along one direction only): int e
+ * exp(-e s) exp(-enter - more s) ds / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), phi(-x) = exp(x)
+ * phi(x). */
 LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes more) {
   lanes sum = e + more, both = lanes_abs(sum);
   mean_transmittance of_both = transmittance_within(both, lanes_exp_negative(both)),
@@ -42,8 +43,8 @@ LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes mor
   return seen * exp_of_depth(enter + lanes_min(sum, lanes_set(0)));
 }
 
-/* How far light has come within the box of a volume when it reaches the ends of a way, of the given lengths
- * of its way. */
+/* Lengths of the light's way within a volume's box, to where a segment of the eye's ray begins and ends.
+ * ways_of_light(): path: the light's whole ways from the slab's first sheet to these two points. */
 typedef struct ways_in_box {
   lanes first, last;
 } ways_in_box;
@@ -68,16 +69,16 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
                        lanes_max(lanes_min(path.last, leave.last) - enter.last, lanes_set(0))};
 }
 
-/* Where in the table a volume is seen. */
+/* The density, as a coordinate in the table, where a volume's matter is seen. */
 LANES_INLINE lanes coordinate_seen(const block_density *d) {
   return lanes_fma(d->after - d->before, d->seen, d->before);
 }
 
-/* Even extinction of the light's way through the slab that has the right optical depth down to what is seen
- * of a volume (derived). The eye's ray may run along a surface that the light's crosses: a way s before the
- * point seen, the density is f - s g.l to first order, g the gradient, which gives the mean extinction up to
- * there; and where extinction were even, the eye would see another place of the slab: the depths there must
- * agree. */
+/* The even extinction that gives the light's way through the slab the right optical depth down to where a
+ * volume's matter is seen (derived). The eye's ray may run along a surface that the light's ray crosses. At a
+ * distance s towards the light from the point seen, the density is f - s g.l to first order, g the gradient;
+ * this gives the mean extinction of the light's way. With even extinction the eye would see the slab at
+ * another position (`evenly`): the factor makes the depths agree there. */
 LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   if (lanes_bits(d->sloped) == 0) return d->sums.extinction;
@@ -89,9 +90,9 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
-/* The light's ways through all volumes to where the slab's covered part starts and ends: of several that
- * share a slab, each takes light on what of its way lies in the slab and in its own box, on whichever side of
- * them the eye's ray passes. */
+/* The light's ways through all volumes to where the slab's covered part starts and ends. Where several
+ * volumes share a slab, each absorbs light on the part of its way that lies in the slab and in the volume's
+ * own box, wherever the eye's ray passes. */
 LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densities, int count,
                                    lanes3 towards, lanes path) {
   const block_geometry *g = &slab->geometry;
@@ -115,16 +116,17 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
 /* Optical depths of the slab for one light, from its first sheet on. */
 typedef struct light_depths {
   lanes enter[HL_CHANNELS],
-      more[HL_CHANNELS]; /* where the eye's rays enter the matter, and by how much more where they leave it */
-  lanes near[HL_CHANNELS]
-            [NEAR_PIXELS]; /* on the first sheet at the near pixels, less that below the place lit */
-  lanes_int plane;         /* where a plane tells them; elsewhere near is 0 */
-  lanes_int face;          /* near a face of a box; near then holds all of the depth from the face on */
-  lanes beside;            /* there: how much the face counts, 0 to 1 */
-  lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS]; /* there: as enter and more, before the slab */
+      more[HL_CHANNELS]; /* where the eye's rays enter the matter; what is added where they leave it */
+  lanes near[HL_CHANNELS][NEAR_PIXELS]; /* on the first sheet at the near pixels, less the depth where the
+                                           sample's own light arrives */
+  lanes_int plane;                      /* lanes where a plane's matter gives `near`; elsewhere it is 0 */
+  lanes_int face; /* lanes near a face of a box; `near` then holds the whole depth from the face on */
+  lanes beside;   /* near a face: how much the face counts, 0 to 1 */
+  lanes before_enter[HL_CHANNELS],
+      before_more[HL_CHANNELS]; /* near a face: as enter and more, for the way before the slab */
 } light_depths;
 
-/* A place in the table of integrals. */
+/* A coordinate of the table, with the extinction and the integral there. */
 typedef struct table_origin {
   lanes x, extinction, integral;
 } table_origin;
@@ -143,18 +145,17 @@ LANES_INLINE lanes integral_between(const table_origin *from, const table_origin
                       (to->extinction + from->extinction) * 0.5f * distance);
 }
 
-/* A plane's matter at the place lit. likely: 1 where it is one, 0 where not, and between. */
+/* The plane's matter at the lit position. likely: how surely there is one, 0 to 1. */
 typedef struct plane_matter {
   lanes likely;
   lanes3 slope;        /* entries per frame unit */
   lanes fall, inverse; /* k, entries per frame unit, and 1 / k */
-  table_origin below;  /* where the light to the place lit enters the slab, or the box */
+  table_origin below;  /* where the light to the lit position enters the slab, or the box */
 } plane_matter;
 
-/* How deep below a surface matter counts as a plane's, in voxels: depth is measured by the gradient, from
- * where the transfer function's visible values begin. Down to this depth it counts fully, at twice the depth
- * no more. Where light grazes the surface (cosine of 0.2 and less) it counts less, too, and from 0.1 on not
- * at all. */
+/* How deep below a surface, in voxels, matter counts fully as a plane's; at twice the depth it does not
+ * count. The depth is measured by the gradient, from where visible values begin. Where light grazes the
+ * surface it counts less: fully from a cosine of 0.2 on, not at all below 0.1. */
 static const float SKIN_VOXELS = 2;
 
 LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes way) {
@@ -179,15 +180,15 @@ LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes
   return plane;
 }
 
-/* How far the light has come where it reaches the ends of the eye's way, of the whole way and of the volume's
- * own. cut: where some box's face makes it shorter than through the slab. */
+/* The light's ways through all boxes to the ends of the eye's way. cut: lanes where a box's face makes a way
+ * shorter than it is through the slab. */
 typedef struct light_ways {
   ways_in_box all;
   lanes_int cut;
 } light_ways;
 
-/* Adds a plane's depths: where a face cuts the way, from there on; elsewhere from the slab's first sheet.
- * share: of a volume that has a part of the matter. */
+/* Adds a plane's depths: from a box's face on where one cuts the way, else from the slab's first sheet on.
+ * share: the fraction of the way that lies in this volume. */
 LANES_INLINE void add_plane(const block_density *d, const plane_matter *plane, const light_ways *ways,
                             int back_to_front, lanes share, const near_pixels *near, int channels,
                             light_depths *depths) {
@@ -223,7 +224,7 @@ LANES_INLINE void add_plane(const block_density *d, const plane_matter *plane, c
   }
 }
 
-/* Ways as long as that part of the slab's are whole: what lacks is rounding. */
+/* A way at least this fraction of the slab's counts as the whole slab's: the rest is rounding. */
 static const float WHOLE_WAY = 0.999f;
 
 /* Where the light's way through all boxes is shorter than through the slab. */
@@ -236,11 +237,11 @@ LANES_INLINE light_ways find_light_ways(const block_slab *slab, block_density *d
   return ways;
 }
 
-/* Deeper than this no light is left; floats hold exp(-depth) of as much. */
+/* The greatest optical depth: hardly any light is left, and floats still hold exp(-depth). */
 static const float DEEPEST = 80;
 
-/* Where the optical depths of the near pixels' light, from the faces to the slab, differ by less than this,
- * the buffer is read as if there were no face; where they differ by twice as much, the face counts fully. */
+/* Where the optical depths of the near pixels, from the faces to the slab, differ by less than this, the
+ * buffer is read as if there were no face; where they differ by twice as much, the face counts fully. */
 static const float EVEN_LIGHT = 0.1f;
 
 /* Adds the depths of a volume's matter between the face of its box and the slab, near the face; to before

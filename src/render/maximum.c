@@ -1,5 +1,5 @@
-/* render/maximum.c - see maximum.h: which values a transfer function shows, and the colours of the
- * greatest. */
+/* render/maximum.c - see maximum.h: finds which values a transfer function shows, and colours the greatest.
+ */
 #include "render/maximum.h"
 
 #include <float.h>
@@ -9,9 +9,9 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-/* Coordinates come from sums of floats: ends of what is shown are moved by a few roundings of the greatest
- * voxel, so that a value at an end is on the side of it that the transfer function says. Entries, at
- * least. */
+/* Coordinates come from rounded sums of floats. So the ends of the shown ranges are moved by a few roundings
+ * of the greatest voxel, at least by LEAST_END entries: a value at an end is then shown or not as the
+ * transfer function says. */
 static const double LEAST_END = 1e-3, ROUNDINGS = 8;
 
 enum { BISECTIONS = 30 };
@@ -58,7 +58,7 @@ static bool shows(const shown_values *values, double from, double to) {
   return low <= high && hl_transfer_function_visible(values->function, low, high);
 }
 
-/* The end of what is shown from entry to entry + 1: of the greatest values, or of the least. */
+/* The greatest, or the least, value that is shown between entry and entry + 1. */
 static double end_of_step(const shown_values *values, int entry, bool greatest) {
   double inside = entry, outside = entry + 1;
   for (int i = 0; i < BISECTIONS; i++) { /* greatest: something is shown from `inside` to the step's end */
@@ -70,7 +70,7 @@ static double end_of_step(const shown_values *values, int entry, bool greatest) 
   return (inside + outside) / 2;
 }
 
-/* Whether opacity rises from 0 there, so that the end itself is not shown; after a step it is. */
+/* True if opacity rises slowly from 0 there, so that the end itself is not shown; false if it jumps. */
 static bool rises_from(const shown_values *values, double from) {
   double near = values->low + (from + values->end) * values->step,
          far = values->low + (from + 2 * values->end) * values->step;

@@ -8,8 +8,9 @@
 
 #include "render/sweep.h"
 
-/* Sheets of a maximum projection are no farther apart, in voxels: the peak of three differs from the ray's by
- * 0.2 % (root mean square, measured on noise with a B-spline: tests/analytic/sheets_maximum.c). */
+/* The greatest sheet spacing of a maximum projection, voxels: the peak of a parabola through three sheets
+ * then differs from the ray's greatest value by 0.2 % (root mean square, measured on noise with a B-spline:
+ * tests/analytic/sheets_maximum.c). */
 #define MAXIMUM_SPACING 0.5
 
 /* The projection's pixels and tables, for a frame of so many tiles of prepared volumes. values stays null
@@ -19,7 +20,7 @@ hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const hl_scene_d
                             hl_error *error);
 void hl_maximum_release(hl_context *context, maximum_values *maximum);
 
-/* What hl_maximum_create() would hold, bytes. */
+/* The bytes that hl_maximum_create() would allocate. */
 uint64_t hl_maximum_bytes(const hl_scene_description *scene, uint64_t tiles);
 
 /* A sweep's action, in place of steps 12 to 16. */

@@ -45,7 +45,7 @@ LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *pat
   return lanes_bits(value >= 0.0f);
 }
 
-/* Light does not matter: all blocks stay open. */
+/* Nothing is hidden in a maximum projection: all blocks stay open. */
 static uint32_t maximum_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
                              int tile_y, uint32_t blocks, void *scratch, float *values, uint64_t *samples) {
   (void)scratch;

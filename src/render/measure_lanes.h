@@ -1,10 +1,10 @@
-/* render/measure_lanes.h - depth and normals of what the eye sees, a 4x4 block at a time. */
+/* render/measure_lanes.h - the layers depth and normal, a 4x4 block at a time. */
 #ifndef HL_RENDER_MEASURE_LANES_H
 #define HL_RENDER_MEASURE_LANES_H
 
 #include "render/shade_lanes.h"
 
-/* Alpha from which on a ray has met something (halflight/layers.h). */
+/* The alpha at which depth_first is measured (halflight/layers.h). */
 static const float FIRST_OPACITY = 0.01f;
 
 /* Mean of the volumes' normals, weighted by extinction and by how much of a surface they are. */

@@ -1,13 +1,13 @@
-/* render/pack_lanes.h - a tile's samples moved together before they are lit: where something may be seen in
- * only some of a block's pixels, those of several blocks share sixteen lanes. */
+/* render/pack_lanes.h - packs a tile's samples before they are lit: where only some of a block's pixels may
+ * show something, the pixels of several blocks share sixteen lanes. */
 #ifndef HL_RENDER_PACK_LANES_H
 #define HL_RENDER_PACK_LANES_H
 
 #include "render/slab_lanes.h"
 #include "simd/packing.h"
 
-/* Where a block's pixels went. whole: to a slab of their own, all sixteen where they were; there is no
- * packing then. */
+/* The packed slab that a block's pixels went to. whole: all sixteen pixels have a slab of their own, without
+ * packing. */
 typedef struct packed_block {
   lanes_packing packing;
   int slab, whole;
@@ -15,7 +15,7 @@ typedef struct packed_block {
 
 typedef struct packed_tile {
   block_slab slabs[TILE_BLOCKS];
-  int filled[TILE_BLOCKS]; /* lanes of them in use */
+  int filled[TILE_BLOCKS]; /* lanes of each slab in use */
   int slab_count;
   packed_block blocks[TILE_BLOCKS];
 } packed_tile;
@@ -24,7 +24,7 @@ typedef struct packed_tile {
 _Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES,
                "a volume's scratch holds its slabs");
 
-/* A new slab; there is nothing in any lane. */
+/* Adds a slab with nothing in any lane; returns its number. */
 LANES_INLINE int add_slab(packed_tile *tile, int patch_count, block_density *densities) {
   int s = tile->slab_count++;
   tile->filled[s] = 0;
@@ -42,7 +42,7 @@ LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_c
   return add_slab(tile, patch_count, densities);
 }
 
-/* A way is lanes throughout. */
+/* A block_way consists of lanes only. */
 enum { WAY_LANES = sizeof(block_way) / sizeof(lanes) };
 
 LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *from, block_density *into) {
@@ -54,7 +54,7 @@ LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *fr
   into->there = 1;
 }
 
-/* A block of which all pixels have a bit. */
+/* Gives a block all of whose pixels may show something a slab of its own. */
 LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const block_density *ways,
                              int patch_count, block_density *densities, packed_block *packed) {
   int s = add_slab(tile, patch_count, densities);
@@ -74,7 +74,7 @@ LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const b
   packed->whole = 1;
 }
 
-/* Moves the pixels of a block with a bit to a slab. densities: of all slabs. */
+/* Packs those pixels of a block that have a bit into a slab. densities: of all slabs. */
 LANES_INLINE void pack_block(packed_tile *tile, const block_slab *block, const block_density *ways,
                              int patch_count, uint32_t bits, block_density *densities, packed_block *packed) {
   int count = __builtin_popcount(bits), s = slab_with_room(tile, count, patch_count, densities),

@@ -1,5 +1,5 @@
-/* render/prepare.c - bricks are rebuilt when a volume changes, tables and relevance when its transfer
- * function does. */
+/* render/prepare.c - rebuilds a grid when its voxels change, tables and relevance when the transfer function
+ * does. */
 #include "render/prepare.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* render/prepare.h - volumes made ready for sheets, and kept while they stay the same. */
+/* render/prepare.h - volumes made ready for rendering, and kept for the next frame. */
 #ifndef HL_RENDER_PREPARE_H
 #define HL_RENDER_PREPARE_H
 
@@ -7,7 +7,8 @@
 #include "grid/grid.h"
 #include "render/hot.h"
 
-/* A volume made ready: kept between frames while its voxels and transfer function stay. */
+/* A volume made ready; kept between frames while its voxels, kernel, clip box and transfer function stay the
+ * same. */
 typedef struct prepared_volume {
   const hl_scene_volume *scene; /* the frame's scene */
   hl_volume *volume;            /* retained */

@@ -31,12 +31,12 @@ LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 posi
   return sum;
 }
 
-/* A buffer's light at a pixel of each lane, between the chunk before's and its own where there are both. */
+/* Interpolates between the buffers of the previous chunk (older) and of this one (younger). */
 LANES_INLINE lanes between_chunks(const shadow_lookup *lookup, lanes older, lanes younger) {
   return lanes_add_scaled(older, younger - older, lookup->young);
 }
 
-/* As the buffer is interpolated. */
+/* A channel of the buffer, interpolated. */
 LANES_INLINE lanes interpolated(const shadow_lookup *lookup, const shadow_taps *taps, int cubic,
                                 int channel) {
   const float *younger = lookup->transmittance[channel], *older = lookup->older[channel];
@@ -55,9 +55,10 @@ LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *tap
   lanes_gather_pairs(buffer + lookup->map.stride, at, &light[2], &light[3]);
 }
 
-/* Near a face, what is left of the light on its way from there is told by the ways' lengths. found: what the
- * buffer has; own: what it would have were the box's matter even and nothing else in the way. Where it has
- * more the matter is thinner between the face and here, by as much as the two depths' ratio. */
+/* Near a box's face the lengths of the ways give the light's transmittance from the face to the slab. found:
+ * the buffer's transmittance; own: the transmittance if the box's matter were even and nothing else were in
+ * the way. Where the buffer has more, the matter between is thinner: the depths are scaled by the ratio of
+ * the two optical depths. */
 LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lanes own) {
   lanes_int some = own < 0.999f;
   lanes ratio = lanes_log2(lanes_clamp(found, 1e-6f, 1)) / lanes_log2(lanes_clamp(own, 1e-36f, 0.999f));
@@ -66,9 +67,10 @@ LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lane
   depths->more[channel] = lanes_fma(ratio, depths->before_more[channel], depths->more[channel]);
 }
 
-/* What reaches a plane, whose own matter makes the buffer's light vary from pixel to pixel (derived): with T
- * = O E at each pixel, O what others leave and E = exp(-depth) what the plane does, the mean of T by the
- * pixels' weights is O times that of E. No more than the brightest of the pixels has. */
+/* The light that reaches the slab where a plane's own matter makes the buffer vary from pixel to pixel.
+ * Derived: at each pixel T = O E, with O the transmittance of everything else and E = exp(-depth) that of the
+ * plane's matter; where O is even, the weighted mean of T is O times that of E. At most the brightest of the
+ * pixels. */
 LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps *taps, light_depths *depths,
                                   int channel) {
   lanes light[NEAR_PIXELS], own[NEAR_PIXELS], greatest = lanes_set(0);
@@ -93,7 +95,8 @@ LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps
   return lanes_select(taps->inside, reached, lanes_set(1.0f));
 }
 
-/* Of the mean over many parts of a light, their pixels' phases of every kind. */
+/* The same for sub-lights, whose pixels lie in all positions around the sample: by the mean over the near
+ * pixels. */
 LANES_INLINE void correct_parts(light_depths *depths, int channels, color_lanes *reached) {
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);
@@ -120,7 +123,7 @@ LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *t
     if (planes != active || fades) reached.c[c] = interpolated(light->lookup, taps, light->cubic, c);
     if (planes == 0) continue;
     lanes of_plane = reaching_plane(light->lookup, taps, depths, c);
-    if (fades) { /* towards the cubic look-up, by as much as it differs from the bilinear one */
+    if (fades) { /* adds the difference of the cubic and the bilinear look-up, the less the face counts */
       lanes differ = reached.c[c] - interpolated(light->lookup, taps, 0, c);
       of_plane = lanes_max(of_plane + lanes_keep(faint, differ * (1.0f - depths->beside)), lanes_set(0));
     }
@@ -129,8 +132,8 @@ LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *t
   return reached;
 }
 
-/* What of one light passes everything between it and a slab's samples, and the slab's own matter, averaged as
- * the eye sees it. path: of the light through the slab. */
+/* The transmittance of one light to a slab's samples, through everything before the slab and through the
+ * slab's own matter, averaged as the eye sees it. path: length of the light's way through the slab. */
 LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *light, const block_slab *slab,
                                        block_density *densities, int count, lanes3 towards, lanes path) {
   lanes3 position = slab->geometry.position;

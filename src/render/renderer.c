@@ -1,4 +1,5 @@
-/* render/renderer.c - hl_renderer: from a scene to pixels, one sweep after the other. */
+/* render/renderer.c - hl_renderer: prepares a scene, runs its sweeps one after the other, writes the pixels.
+ */
 #include <string.h>
 
 #include <halflight/render.h>
@@ -65,7 +66,7 @@ void hl_renderer_destroy(hl_renderer *renderer) {
   hl_release(renderer->context, renderer);
 }
 
-/* Threads, and room for the scene's volumes and lights. */
+/* Starts the threads, and makes room for the scene's volumes and lights. */
 static hl_status make_room(hl_renderer *renderer, const hl_scene_description *scene, hl_error *error) {
   hl_context *context = renderer->context;
   if (renderer->pool == NULL || renderer->threads != scene->render.threads ||
@@ -92,7 +93,7 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
   return HL_OK;
 }
 
-/* Where the frame would not fit beside the blocks that are kept for later, these are released first. */
+/* Refuses a frame that does not fit; first releases blocks kept for later frames if they are in the way. */
 static hl_status check_room(hl_renderer *renderer, uint64_t bytes, hl_error *error) {
   uint64_t limit = renderer->context->options.memory_limit;
   if (limit != 0 && hl_context_memory_held(renderer->context) + bytes > limit)
@@ -107,7 +108,7 @@ static double smallest_edge(const hl_renderer *renderer) {
   return edge;
 }
 
-/* What one frame needs; released when it ends. */
+/* The data of one frame; released when it ends. */
 typedef struct frame_work {
   framed_scene framed;
   frame frame;
@@ -136,7 +137,7 @@ static void release_work(hl_renderer *renderer, frame_work *work) {
   hl_maximum_release(context, &work->maximum);
 }
 
-/* Rays of the eye, or of a light, then start within the box. */
+/* Whether a position lies in a volume's box: rays of an eye or a light there begin within it. */
 static bool inside_box(const grid *grid, vec3 origin) {
   vec3 p = affine3_apply(grid->frame_to_index, origin);
   const double at[3] = {p.x, p.y, p.z};
@@ -155,7 +156,8 @@ static bool rays_start_inside(const frame *frame, const grid *grid) {
   return inside;
 }
 
-/* Depth and normals are measured from front to back: if no sweep goes that way for the eye, one more does. */
+/* Depth and normals are measured in a sweep that goes front to back for the eye; adds one if there is none.
+ */
 static void choose_measuring_sweep(frame_work *work) {
   while (work->measuring_sweep < work->sweep_count && work->sweeps[work->measuring_sweep].back_to_front)
     work->measuring_sweep++;
@@ -178,7 +180,7 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
   uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, layers);
   bytes += hl_maximum_bytes(scene, work->tiles);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
-  /* several sweeps would return blocks of sizes that fit none of them */
+  /* the blocks that one of several sweeps returns rarely fit the next one */
   renderer->reserve.keeps = work->sweep_count == 1;
   if (!renderer->reserve.keeps) hl_reserve_release(&renderer->reserve);
   hl_status status = check_room(renderer, bytes, error);
@@ -196,7 +198,7 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
                                 error);
 }
 
-/* Changes the frame's copies of the grids alone. */
+/* Opens faces where volumes touch, in the frame's copies of the grids only (hl_open_faces). */
 static void open_faces(const hl_scene_description *scene, grid *grids) {
   for (size_t i = 0; i < scene->volume_count; i++)
     for (size_t k = 0; k < scene->volume_count; k++)
@@ -225,7 +227,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   hl_status status = hl_frame_set_up_eye(frame, scene, error);
   if (status != HL_OK) return status;
   frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
-                   frame->voxel; /* volumes go on as far beyond their faces */
+                   frame->voxel; /* at most the margin by which volumes continue beyond their faces */
   hl_frame_set_up_lights(frame, scene);
   for (size_t i = 0; i < scene->volume_count; i++)
     if (rays_start_inside(frame, &work->grids[i])) work->grids[i].cut = true;

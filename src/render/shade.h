@@ -1,8 +1,8 @@
-/* render/shade.h - steps 12 to 16: gradient, classification, shadow lookup, illumination, compositing.
+/* render/shade.h - steps 12 to 16: gradient, classification, shadow look-up, illumination, compositing.
  *
- * What is shaded is the slab between two sheets: density runs linearly from one to the other along each ray,
- * the gradient is the kernel's where the slab's matter is seen, and the shadow buffer holds the light that
- * reaches the first sheet. */
+ * The slab between two sheets is shaded. Along each ray the density runs linearly from one sheet to the
+ * other; the gradient is the kernel's, at the position where the slab's matter is seen; the shadow buffer
+ * holds the light that reaches the first sheet. */
 #ifndef HL_RENDER_SHADE_H
 #define HL_RENDER_SHADE_H
 
@@ -22,14 +22,15 @@ typedef struct shade_volume {
   int lit;                                     /* 0: shaded flat, no light changes it */
   float voxel;                                 /* its smallest edge; frame units */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
-  float emission;                              /* ke; of a volume shaded flat 1 */
+  float emission;                              /* ke; 1 for a volume shaded flat */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
-  const float (*shown)[4];               /* of a maximum projection, see SHOWN_FROM; null otherwise */
+  const float (*shown)[4];               /* in a maximum projection: rows of SHOWN_...; else null */
   int rank;                              /* among the visible volumes */
 } shade_volume;
 
-/* One volume's part in a tile. On lines of the cache of its own: threads write theirs side by side. */
+/* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside
+ * another's. */
 typedef struct shade_patch {
   _Alignas(64) const shade_volume *volume;
   const float *before, *current; /* [256], block-major; on sheets k-1 and k */
@@ -53,7 +54,7 @@ typedef struct shade_light {
   light_cone cone;        /* of a spot light */
   sector_fraction sector; /* of a light within the content */
   int nearest,
-      cubic; /* lookup: nearest pixel, or between four by four, instead of bilinear; sub-lights never cubic */
+      cubic; /* how the lookup interpolates, instead of bilinearly; sub-lights are never read cubic */
 } shade_light;
 
 typedef struct shade_job {
@@ -69,37 +70,37 @@ typedef struct shade_job {
   const shade_light *lights;
   int light_count;
   float ambient[3]; /* Ia; zero in all sweeps but the first */
-  float emission;   /* what emission counts: 1 in the first sweep, zero in others */
+  float emission;   /* 1 in the first sweep, 0 in the others: volumes' emission is added once */
   int channels;     /* of light attenuation: 1 or 3 */
 } shade_job;
 
-/* Shades the tile's blocks that are open and have density. patches: of the volumes with density in the tile.
- * pixels: [16 blocks][R G B A][16]. Returns the blocks that are still open: some pixel not yet opaque.
- * samples is raised by the pixels composited. scratch: SHADE_SCRATCH_BYTES a patch, aligned to 64: its part
- * in one block and in the sixteen at most that the tile's samples are moved to (pack_lanes.h). */
+/* Shades blocks of a tile. blocks: the open blocks with density. patches: of the volumes with density in the
+ * tile. pixels: [16 blocks][R G B A][16]. Returns the blocks that are still open: some pixel is not opaque
+ * yet. *samples is raised by the number of pixels composited. scratch: SHADE_SCRATCH_BYTES a patch, aligned
+ * to 64: for one block and for the up to sixteen slabs that the samples are packed into (pack_lanes.h). */
 enum { SHADE_SCRATCH_BYTES = 17 * 1472 };
 typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *patches, int patch_count,
                                      int tile_x, int tile_y, uint32_t blocks, void *scratch, float *pixels,
                                      uint64_t *samples);
 
-/* What is measured instead of lit, for sheets that go front to back: alpha; depth where alpha first reaches
- * 0.01, infinite before; and, weighted by what a sample adds to alpha, sums of depth and normal. pixels:
- * [16 blocks][MEASURES][16]. */
+/* Measures of the layers depth and normal, for sheets that go front to back: alpha; the depth where alpha
+ * first reaches 0.01, infinite before; and sums of depth and normal, weighted by what each sample adds to
+ * alpha. pixels: [16 blocks][MEASURES][16]. */
 enum { MEASURE_ALPHA, MEASURE_DEPTH_FIRST, MEASURE_DEPTH, MEASURE_NORMAL, MEASURES = MEASURE_NORMAL + 3 };
 
 /* A maximum projection keeps for each pixel and visible volume, as coordinates in the volume's table: the
- * greatest value so far that is shown, -1 where none is; the value on the sheet before the last; and the last
- * sheet's number, -1 where the slab before it is not all within the box. [volumes][MAXIMUM_ROWS][16
- * blocks][16] for a tile. */
+ * greatest value so far that is shown, -1 where none is; the value on the sheet before the last slab; and
+ * that slab's number, -1 where the box cuts the slab. A tile: [volumes][MAXIMUM_ROWS][16 blocks][16]. */
 enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
 
-/* What a transfer function shows at coordinates from an entry to the next, one row of four an entry: values
- * above SHOWN_FROM, up to SHOWN_TO; and the greatest that it shows below the entry, -1 if there is none. */
+/* Which values a transfer function shows, one row of four per entry of its table. Between the entry and the
+ * next it shows values above SHOWN_FROM up to SHOWN_TO; SHOWN_BELOW is the greatest value below the entry
+ * that it shows, -1 if there is none. */
 enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
 
 typedef struct maximum_values {
-  float *values; /* [tiles][volumes][MAXIMUM_ROWS][256]; owns its block, in which shown lies, too; null: no
-                    maximum projection */
+  float *values;       /* [tiles][volumes][MAXIMUM_ROWS][256]; owned, with `shown` in the same block; null: no
+                          maximum       projection */
   float (*shown)[4];   /* [volumes][CLASSIFIER_ENTRIES + 2] */
   size_t volume_count; /* visible ones */
   size_t tiles;

@@ -7,9 +7,10 @@
 
 static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
-/* Steps 14 and 15's first half: what arrives of one light (eqs. 1 and 2), and from where. */
+/* The light that arrives from one light, and from where (step 14 and the first half of step 15; eqs. 1 and
+ * 2). */
 typedef struct arriving_light {
-  int dark;                   /* it lights nothing; the rest is not filled */
+  int dark;                   /* it lights nothing; the other fields are not set */
   lanes3 towards;             /* unit */
   color_lanes full, shadowed; /* without and with attenuation */
 } arriving_light;
@@ -35,7 +36,7 @@ LANES_INLINE int is_dark(const color_lanes *light) {
   return lanes_bits((light->c[0] > 0.0f) | (light->c[1] > 0.0f) | (light->c[2] > 0.0f)) == 0;
 }
 
-/* Whether light from there can light anything seen: a medium, or a surface that faces it. */
+/* Whether light from this direction can light anything visible: a medium, or a surface that faces it. */
 LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int seen, lanes3 towards) {
   lanes_int faced = lanes_set_int(0);
   for (int i = 0; i < count; i++) {
@@ -89,8 +90,8 @@ LANES_INLINE lanes power(lanes base, float exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Step 15: eqs. (3) and (4) at the light's centre; a medium where there is no surface (algorithm, optical
- * model). What shines by itself is added; flat colours are nothing else. */
+/* Step 15: eqs. (3) and (4) with the light's centre; a medium is lit alike from all sides. Emission is added;
+ * a volume shaded flat has nothing else. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color) {
   const shade_volume *volume = d->patch->volume;
@@ -146,8 +147,9 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geomet
   return sum;
 }
 
-/* A tile's slabs, one step for all of them at a time: their sums are long chains of few numbers each, and the
- * processor works on one slab's while another's wait. lit: 0 where nothing is seen. */
+/* Lights a tile's slabs, each step for all slabs before the next step: a slab's sums are long chains of
+ * dependent operations, and the processor works on one slab while another's results are pending. lit: 0 where
+ * nothing is seen. */
 LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_density *densities,
                               int patch_count, color_lanes *lit, uint64_t *samples) {
   arriving_light lights[TILE_BLOCKS][MAXIMUM_SWEEP_LIGHTS];
@@ -191,27 +193,28 @@ LANES_INLINE int composite_packed(const shade_job *job, const packed_block *bloc
   return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
 }
 
-/* A tile's blocks, so that those that share a slab lie side by side: gradients then share voxels. */
+/* The order in which a tile's blocks are packed: neighbours follow each other, so that the gradients of a
+ * packed slab share voxels. */
 static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0,  1,  4,  5,  2, 3, 6,  7,
                                                            10, 11, 14, 15, 8, 9, 12, 13};
-/* The place of each block in that order. */
-static const unsigned char PLACE_OF_BLOCK[TILE_BLOCKS] = {0,  1,  4, 5, 2,  3,  6,  7,
-                                                          12, 13, 8, 9, 14, 15, 10, 11};
+/* The rank of each block in this order. */
+static const unsigned char RANK_OF_BLOCK[TILE_BLOCKS] = {0,  1,  4, 5, 2,  3,  6,  7,
+                                                         12, 13, 8, 9, 14, 15, 10, 11};
 
-/* Of the given blocks, those in which something may be seen, one bit each at their places in that order;
- * bits: in which of their pixels. All blocks are asked before the first is gone into: half of them hold
- * nothing, which no processor foresees, and loads would wait for one another's answers. */
+/* The given blocks in which something may be seen, one bit each at the block's rank; bits: the pixels of each
+ * block in which it may. All blocks are tested before the first is shaded: about half of them show nothing,
+ * which the processor cannot predict, and mixed with shading, loads would wait for these tests. */
 LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *patches, int patch_count,
                                      uint32_t blocks, const float *pixels, uint16_t bits[TILE_BLOCKS]) {
-  uint32_t places = 0;
+  uint32_t ranks = 0;
   for (; blocks != 0; blocks &= blocks - 1) {
     int block = __builtin_ctz(blocks);
     uint32_t visible = visible_in_block(job, patches, patch_count, block,
                                         pixels + (block * 4 + 3) * BLOCK_PIXELS);
     bits[block] = (uint16_t)visible;
-    places |= (uint32_t)(visible != 0) << PLACE_OF_BLOCK[block];
+    ranks |= (uint32_t)(visible != 0) << RANK_OF_BLOCK[block];
   }
-  return places;
+  return ranks;
 }
 
 LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *patches, int patch_count,
@@ -246,7 +249,7 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *pat
   return open;
 }
 
-/* Most often there is one volume, which needs no loops over volumes. */
+/* Compiled once more for one volume, the usual case, which needs no loops over volumes. */
 static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
                            int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
   if (patch_count == 1)

@@ -13,9 +13,9 @@
  *            (soft: convolve for the next sheet)             hl_sweep_soften
  *   18. end
  *
- * What is lit, classified and composited is the slab between a sheet and the one before, so that nothing of a
- * sharp transfer function falls between sheets. A slab is lit by what passed the slabs before it. The first
- * and last sheets lie outside the content. */
+ * The slab between a sheet and the one before is classified, lit and composited, not the sheet: so nothing
+ * that a sharp transfer function shows falls between sheets. A slab is lit by the light that has passed the
+ * slabs before it. The first and the last sheet lie outside the content. */
 #include "core/context.h"
 #include "render/sweep.h"
 

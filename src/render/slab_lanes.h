@@ -1,8 +1,7 @@
-/* render/slab_lanes.h - the slab between two sheets before it is lit (steps 12 and 13): what of the volumes
- * lies on sixteen rays through it, where it is seen, and its gradient there.
+/* render/slab_lanes.h - the slab between two sheets before it is lit (steps 12 and 13): the volumes' matter
+ * on sixteen rays through the slab, where it is seen, and its gradient there.
  *
- * The sixteen are a 4x4 block of pixels, or those of several blocks in which something is seen
- * (pack_lanes.h). */
+ * The sixteen pixels are a 4x4 block, or pixels of several blocks packed together (pack_lanes.h). */
 #ifndef HL_RENDER_SLAB_LANES_H
 #define HL_RENDER_SLAB_LANES_H
 
@@ -10,10 +9,10 @@
 #include "render/shade.h"
 #include "shadow/attenuate_lanes.h"
 
-/* A pixel counts as opaque from here on: what is behind adds less than half a step of 10 bits. */
+/* The alpha from which a pixel counts as opaque: matter behind adds less than half a step of 10 bits. */
 static const float OPAQUE = 1.0f - 1.0f / 2048;
 
-/* What the volumes share: where the pixels' rays are and how they look. */
+/* The geometry of the pixels' rays, the same for all volumes. */
 typedef struct block_geometry {
   lanes3 position;    /* frame space, in the slab: where it is lit */
   lanes3 start;       /* where the ray enters the slab */
@@ -59,25 +58,25 @@ typedef struct block_way {
 
 typedef struct block_density {
   const shade_patch *patch;
-  int there; /* whether the volume may be visible in any of the pixels */
+  int there; /* the volume may be visible in some of the pixels */
   block_way way;
   lanes before, after; /* coordinates in the tables: where the slab's covered part starts and ends */
   way_sums sums;       /* between the two */
-  lanes extinction;    /* averaged over the slab, the part outside the box counting as none */
-  lanes seen;          /* the part of the covered part at which its matter is seen */
-  lanes evenly;        /* the part at which it would be seen if its extinction were even */
+  lanes extinction;    /* averaged over the slab, 0 outside the box */
+  lanes seen;          /* where its matter is seen: fraction of the way through the slab's covered part */
+  lanes evenly;        /* where it would be seen if its extinction were even */
   lanes_int sloped;    /* where the gradient is known */
   lanes3 slope;        /* where the matter is seen; elsewhere 0 */
   lanes3 normal;       /* unit, away from the matter */
   lanes surface;       /* 1 for a surface, falling to 0 for a medium, which has no normal */
   lanes light_first,
-      light_last; /* how far a light has come within its box where the slab's covered part starts and ends */
+      light_last; /* the light's way within its box to where the slab's covered part starts and ends */
 } block_density;
 
-/* In thinner slabs the gradient makes no difference to the light lost within. */
+/* Optical depth below which the gradient hardly changes how much light a slab absorbs. */
 static const float THIN_DEPTH = 1.0f / 64;
 
-/* A block's pixels in which any of a volume may be visible. */
+/* A block's pixels in which a volume may be visible. */
 LANES_INLINE lanes_int visible_in_patch(const shade_patch *patch, int block) {
   const classifier *classifier = patch->volume->classifier;
   return may_be_visible(classifier,
@@ -105,7 +104,7 @@ LANES_INLINE void classify_way(block_density *d, covered_span part) {
   d->sums = sums_of_way(classifier, a, b);
 }
 
-/* How far on the way from before to after its extinction lies on average. */
+/* The extinction's centre on the way, 0 at `before` to 1 at `after`. */
 LANES_INLINE lanes centre_of_way(const block_density *d) {
   way_means m = means_of_way(d->before, d->after, &d->sums);
   return m.from_a / (m.from_a + m.from_b);
@@ -116,9 +115,9 @@ LANES_INLINE lanes power_of_part(lanes base, lanes exponent) {
   return lanes_exp2(lanes_max(lanes_log2(lanes_max(base, lanes_set(1e-6f))) * exponent, lanes_set(-100.0f)));
 }
 
-/* Where in its optical depth a slab is seen on average, 0 (first) to 1: int e s exp(-e s) ds / (1 - exp(-e))
+/* The fraction of a slab's optical depth at which it is seen on average: int e s exp(-e s) ds / (1 - exp(-e))
  * = 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1 - exp(-e))) (derived); 1/2 - e / 12
- * for small e. left: exp(-e), which is held above 0: nothing of it is left for e > 100. */
+ * for small e. left: exp(-e). For e > 100 it is 0 to a float, and e is cut there. */
 LANES_INLINE lanes seen_part(lanes e, lanes left) {
   lanes_int thin = e < 0.05f;
   lanes lost = lanes_select(thin, lanes_set(1.0f), 1.0f - left);
@@ -127,24 +126,24 @@ LANES_INLINE lanes seen_part(lanes e, lanes left) {
   return lanes_select(thin, lanes_line(e, -1.0f / 12, 0.5f), part);
 }
 
-/* Sixteen pixels' way through the slab: geometry, and how much is seen of it where. */
+/* Sixteen pixels' rays through the slab: their geometry, opacity and where the slab is seen. */
 typedef struct block_slab {
   lanes u, v;              /* the pixels */
-  lanes_int open;          /* those that can still show something */
-  uint32_t starts;         /* lanes at which those of one block follow those of another; the first included */
+  lanes_int open;          /* the pixels that can still show something */
+  uint32_t starts;         /* the first lane of each block, one bit each */
   block_geometry geometry; /* its position: where the slab is seen on average, and lit */
   covered_span part;       /* from where the first volume that is seen begins to where the last one ends */
-  lanes place;             /* where in the slab its position is, 0 (first sheet) to 1 */
-  lanes_int joined;        /* where some of several volumes fill less than that */
-  lanes centre;            /* there: where in the slab extinction lies on average */
+  lanes place;             /* where in the slab the position lies, 0 (first sheet) to 1 */
+  lanes_int joined;        /* lanes where some of several volumes fill less than `part` */
+  lanes centre;            /* there: the extinction's centre in the slab, 0 to 1 */
   lanes total, depth;      /* extinction averaged over the slab; optical depth */
   lanes left;              /* exp(-depth) */
   lanes opacity;           /* 0 where nothing is seen */
   lanes_int seen;
 } block_slab;
 
-/* u^(b / a), the part of the way at which a part u of the depth is reached; from_a, from_b: how far from the
- * way's ends its extinction lies on average. */
+/* The fraction of the way at which the fraction u of the optical depth is reached: u^(b / a) for rising
+ * extinction, mirrored for falling. from_a, from_b: the extinction centre's distances from the way's ends. */
 LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   lanes_int rising = from_a >= from_b;
   lanes t = power_of_part(lanes_select(rising, u, 1.0f - u),
@@ -152,8 +151,8 @@ LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   return lanes_select(rising, t, 1.0f - t);
 }
 
-/* Where boxes share a slab, it is seen where one volume that held all of it would be: centres of parts have
- * the whole's as their mean, weighted by extinction. */
+/* Where boxes share a slab, it is seen where one volume with all the matter would be: the mean of the parts'
+ * centres, weighted by extinction, is the centre of the whole. */
 LANES_INLINE lanes place_of_joined(block_density *densities, int count, const block_slab *slab, lanes u,
                                    lanes place) {
   lanes length = lanes_max(slab->part.length, lanes_set(1e-6f));
@@ -164,10 +163,10 @@ LANES_INLINE lanes place_of_joined(block_density *densities, int count, const bl
   return lanes_select(slab->joined, lanes_fma(slab->part.length, t, slab->part.begin), place);
 }
 
-/* A dense slab is seen at its front, and its matter may lie at one end. Extinction is taken to rise as t^q
- * along the way with the mean m = (q + 1) / (q + 2) that the tables give, so that a part u of the depth is
- * reached at t = u^((1 - m) / m) (derived; mirrored where it falls). Returns where that is: the volumes'
- * mean, in slabs. One volume's extinction is the total. */
+/* Finds the position at which the fraction u of the slab's optical depth is reached; a dense slab's matter
+ * may lie at one end. Extinction is taken to rise as t^q along the way, with the centre m = (q + 1) / (q + 2)
+ * that the tables give; then the fraction u of the depth is reached at t = u^((1 - m) / m) (derived; mirrored
+ * where extinction falls). Returns the mean of the volumes' positions, 0 to 1 through the slab. */
 LANES_INLINE lanes place_of_part(block_density *densities, int count, const block_slab *slab, lanes u) {
   lanes sum = lanes_set(0);
   for (int i = 0; i < count; i++) {
@@ -192,8 +191,8 @@ LANES_INLINE lanes3 slope_of_block(const block_density *d) {
   return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
 }
 
-/* Step 12 where shading asks for it: surfaces, and dense slabs whose light must be told from the eye's
- * way. */
+/* Step 12, where the gradient is needed: for surfaces, and in dense slabs, where the light's optical depth
+ * differs from the eye's. */
 LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, block_density *densities,
                               int count) {
   const block_geometry *g = &slab->geometry;
@@ -217,9 +216,9 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
   }
 }
 
-/* Its normal there. The slope is taken in steps of the transfer function's table: squares of data in units of
- * 1e-27 or 1e30 are no floats. Where even those vanish, components are below 1e-19: the normal stays
- * short. */
+/* Finds a volume's normal. The slope is measured in steps of the transfer function's table: the squares of
+ * data values of 1e-27 or 1e30 are beyond floats. Where components are below 1e-19 even so, the normal is
+ * shorter than 1. */
 LANES_INLINE void find_normal(block_density *d) {
   const shade_volume *volume = d->patch->volume;
   lanes3 slope = scale3(slope_of_block(d), lanes_set(fabsf(volume->classifier->scale)));
@@ -248,8 +247,8 @@ LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *
   return lanes_bits(visible & open);
 }
 
-/* A block's ways and pixels; bits: of those in which something may be seen, of which there is one at
- * least. */
+/* Sets up a slab for a block of pixels: its volumes and their ways. bits: the pixels in which something may
+ * be seen, at least one. */
 LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
                                 int tile_y, int block, uint32_t bits, block_density *densities,
                                 block_slab *slab) {
@@ -266,7 +265,7 @@ LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches
   slab->starts = 1;
 }
 
-/* From the first box that some of a slab's visible matter begins in to the last that it ends in. */
+/* Finds the part of the slab that the boxes of visible volumes cover together. */
 LANES_INLINE void join_parts(const block_density *densities, int count, block_slab *slab) {
   lanes begin = lanes_set(1.0f), end = lanes_set(0);
   for (int i = 0; i < count; i++) {
@@ -285,8 +284,9 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
       slab->joined |= densities[i].way.part.length < slab->part.length;
 }
 
-/* Of several volumes each takes what lies in its own box; how it looks and what it takes of the light is
- * found over what all cover: one volume cut into boxes is then what it was before. */
+/* Step 13 for several volumes. Each volume's extinction is that of its own box's part of the slab; where it
+ * is seen, and the light that it absorbs, are found over the part that all boxes cover together. So one
+ * volume that is cut into boxes looks as before. */
 LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
   join_parts(densities, count, slab);
   int joined = lanes_bits(slab->joined) != 0;
@@ -304,7 +304,7 @@ LANES_INLINE void classify_joined(block_density *densities, int count, block_sla
   }
 }
 
-/* Step 13: what of the slab can be seen. */
+/* Step 13: the slab's extinction and the pixels in which it is visible. */
 LANES_INLINE void classify_slab(block_density *densities, int count, block_slab *slab) {
   slab->total = lanes_set(0);
   if (count == 1) {
@@ -323,7 +323,7 @@ LANES_INLINE void classify_slab(block_density *densities, int count, block_slab 
   slab->opacity = lanes_set(0);
 }
 
-/* How much is seen of a slab in which something is, and where. */
+/* Finds the slab's geometry and opacity, and where it is seen. */
 LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   block_geometry *g = &slab->geometry;
   *g = geometry_of_block(job, slab->u, slab->v);
@@ -339,8 +339,8 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   slab->place = seen_at;
 }
 
-/* Steps 12 and 13: the rest of the slab from its pixels and the volumes' ways. Returns the pixels in which
- * something is seen, one bit each; if there are none, only the opacity is filled. */
+/* Steps 12 and 13 for a slab that slab_of_block() set up. Returns the pixels in which something is visible,
+ * one bit each; if there are none, of the results only the opacity, 0, is set. */
 LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   classify_slab(densities, count, slab);
   uint32_t bits = lanes_bits(slab->seen);

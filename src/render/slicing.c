@@ -1,16 +1,16 @@
-/* render/slicing.c - the slicing axis of section 3.1, and which lights share it. */
+/* render/slicing.c - chooses the direction of the sheets (section 3.1), and which lights share a sweep. */
 #include "render/frame.h"
 
-/* cos 60 degrees: the steepest crossing of a sheet by an eye or light ray that one axis may ask of several
- * lights. */
+/* cos 60 degrees: lights share a sweep only if the eye's direction and each light's are within this angle of
+ * the slicing axis. */
 static const double STEEPEST = 0.5;
 
-/* The least |cos| at which a ray may cross the sheets (87 degrees): of the picture's outermost rays, and of a
- * light's direction. Flatter crossings are refused. */
+/* The least |cos| of the angle between the slicing axis and the picture's outermost rays (87 degrees), and a
+ * light's direction (80 degrees). Flatter crossings are refused. */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
-/* Least |cos| between the eye's rays through the picture's corners and h, all crossing in the same sense; 0
- * if not. */
+/* The least |cos| of the angle between h and the eye's rays through the picture's corners; 0 unless all cross
+ * the sheets in the same direction. */
 static double flattest_eye_ray(const view *eye, vec3 h) {
   double least = INFINITY, sense = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -43,7 +43,7 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   return h;
 }
 
-/* Flattest crossing of a sheet by a light's ray to the content. */
+/* The least cosine of the angle between the slicing axis and a near light's rays to the content. */
 static const double FLATTEST = 0.2;
 
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
@@ -124,7 +124,7 @@ static vec3 sum_of_directions(const frame *frame, const frame_sweep *sweep) {
   return vec3_normalise(sum);
 }
 
-/* Takes the light into the sweep if one axis serves all. */
+/* Adds the light to the sweep if one axis serves all of its lights. */
 static bool try_light(const frame *frame, const hl_render_settings *settings, frame_sweep *sweep, int light) {
   if (sweep->light_count == FRAME_LIGHTS || sweep->of_sectors) return false;
   sweep->light[sweep->light_count++] = light;
@@ -192,7 +192,8 @@ void hl_frame_add_eye_sweep(const frame *frame, frame_sweep *sweeps, int *count)
   place_sheets(frame, &added->sheets);
 }
 
-/* Lights without shadows go with any sweep; with none, sheets are image-aligned. */
+/* Adds a light without shadows to any sweep with room, else to a new image-aligned sweep. light -1: adds only
+ * the sweep. */
 static void add_plain_light(const frame *frame, int light, frame_sweep *sweeps, int *count) {
   int s = 0;
   while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;

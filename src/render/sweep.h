@@ -23,7 +23,7 @@ typedef struct sweep_light {
 
 typedef struct sweep sweep;
 
-/* What the slab before the current sheet shows in one tile. */
+/* The slab before the current sheet, in one tile. */
 typedef struct tile_slab {
   size_t tile;
   const shade_patch *patches; /* [patch_count] */
@@ -48,13 +48,12 @@ struct sweep {
   void *action;     /* of act; the caller's */
   bool first;       /* the sweep that carries ambient light and opacity */
   bool measures;    /* the sweep that carries depth and normals */
-  bool preparatory; /* this sweep finds something for another one: it reports no progress, and statistics
-                       leave its sheets out */
-  const layer_pixels *layer_pixels; /* where the layers go; null: none */
-  const maximum_values
-      *maximum;        /* what a maximum projection keeps; where its values are null, matter is lit */
-  float *pixels;       /* [tiles][16][4][16] */
-  int32_t *shown_from; /* [tiles][16]; first visible slab per block; null: nothing is hidden */
+  bool preparatory; /* this sweep prepares another one: it reports no progress, and its sheets are not counted
+                     */
+  const layer_pixels *layer_pixels; /* pixels of the layers; null: none */
+  const maximum_values *maximum;    /* values of a maximum projection; values null: matter is lit */
+  float *pixels;                    /* [tiles][16][4][16] */
+  int32_t *shown_from;              /* [tiles][16]; first visible slab per block; null: nothing is hidden */
   /* the picture */
   view_sheets image;
   size_t tiles;

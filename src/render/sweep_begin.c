@@ -41,7 +41,7 @@ static shadow_setup setup_of_light(const sweep *sweep, const light_source *sourc
                         .content_count = frame->point_count};
 }
 
-/* What begin_light would hold of one light; raises the tasks by the tiles of its view. */
+/* Adds the bytes that begin_light() would allocate for one light, and the tiles of its view to *tasks. */
 static hl_status add_light_bytes(const sweep *sweep, int index, light_emission *emission, vec3 *points,
                                  sweep_bytes *bytes, size_t *tasks, hl_error *error) {
   light_shadow shadow;
@@ -241,8 +241,8 @@ static void set_up_jobs(sweep *sweep) {
 /* Light that climbs by less than this fraction of its way counts as running along the sheets. */
 static const double LEAST_CLIMB = 0.05;
 
-/* Directions within some angle of the normal form a cone, so light climbs nowhere in the content less than at
- * the corner where it climbs least. */
+/* The least rise of a light's rays per length, within the content. Directions within some angle of the normal
+ * form a cone, so the least is at one of the content's corners. */
 static double least_climb(const sweep *sweep, const light_source *source) {
   vec3 normal = sweep->geometry->sheets.normal;
   if (source->parallel) return vec3_dot(source->direction, normal);

@@ -1,4 +1,4 @@
-/* render/sweep_counts.c - what a sweep counted and how long it took. */
+/* render/sweep_counts.c - adds a sweep's counts and times to the statistics. */
 #define _POSIX_C_SOURCE 200809L
 #include <time.h>
 

@@ -23,7 +23,7 @@ static double read_clock(bool timed) { return timed ? hl_clock_seconds() : 0; }
 
 /* ---- the image ---- */
 
-/* Prefetches the tile's opacities while its densities are found: they are not in the nearest cache. */
+/* Prefetches a tile's alpha while its densities are being filled. */
 static void fetch_opacities(const float *pixels, uint32_t blocks) {
   for (; blocks != 0; blocks &= blocks - 1)
     __builtin_prefetch(pixels + (__builtin_ctz(blocks) * 4 + 3) * BLOCK_PIXELS, 1);
@@ -210,7 +210,7 @@ static void attenuate_task(void *data, size_t index, int worker) {
   }
 }
 
-/* Whether a slab lies beyond a point light within the content, so that the light reaches it. */
+/* Whether a slab lies beyond the light, on the side that its rays travel to in this sweep. */
 static bool is_beyond(const sweep *sweep, const light_source *source, int sheet) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);

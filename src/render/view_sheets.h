@@ -1,5 +1,5 @@
-/* render/view_sheets.h - what one view, the eye's or a light's, sees of the last sheets: where anything is,
- * and the densities of patches, filled when they are asked for and kept for the next slab. */
+/* render/view_sheets.h - the last sheets of one view, the eye's or a light's: densities of patches, filled
+ * when they are asked for and kept for the next slab. */
 #ifndef HL_RENDER_VIEW_SHEETS_H
 #define HL_RENDER_VIEW_SHEETS_H
 
@@ -9,7 +9,7 @@
 #include "render/hot.h"
 #include "render/prepare.h"
 
-/* What all views of a sweep have in common; borrowed. */
+/* Data that all views of a sweep share; borrowed. */
 typedef struct sheet_content {
   hl_context *context;
   hl_pool *pool;
@@ -44,8 +44,7 @@ typedef struct patch_run {
 typedef struct view_sheets {
   const sheet_content *content;
   const view *view;
-  double beside; /* how far from a sample its light may come through the slab, at most; frame units. 0: of a
-                    light */
+  double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's: 0 */
   occupancy occupancy;
   voxel_lists *lists;    /* owned; [grids]; splat only */
   int bundle;            /* sheets that are filled in one go; a divisor of RUN_SLABS */
@@ -72,7 +71,7 @@ void hl_view_sheets_end(view_sheets *sheets);
  * only when they are made. */
 uint64_t hl_view_sheets_bytes(const sheet_content *content, const view *view, double spare);
 
-/* Before patches of a sheet are asked for; sheets rise from 1. */
+/* Call before patches of a sheet are asked for; sheets rise from 1. */
 void hl_view_sheets_reach(view_sheets *sheets, int sheet);
 
 /* A patch of a tile, in the slab before a sheet. */
@@ -81,7 +80,7 @@ typedef struct slab_place {
   int sheet;
 } slab_place;
 
-/* The needed blocks in which the slab may hold anything visible, as far as is known. */
+/* The needed blocks in which the slab may show something. May be more than hl_patch_slab() then finds. */
 uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need);
 
 /* A patch's densities on a slab's two sheets. */
@@ -92,8 +91,8 @@ typedef struct patch_slab {
   int uncut; /* the box cuts nothing in this slab, and no light on its way through it to the eye's pixels */
   uint32_t blocks; /* those in which any density may be visible */
 } patch_slab;
-/* After hl_patch_relevant() gave one block at least. need: what the bundle's next slabs may ask for, too.
- * pixels: is raised by the pixels filled. */
+/* Call after hl_patch_relevant() gave at least one block. need: all blocks that this and the bundle's next
+ * slabs may ask for. *pixels is raised by the number of pixels filled. */
 patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, uint64_t *pixels);
 
 #endif

@@ -1,4 +1,5 @@
-/* render/write_options.c - how a scene wants its pictures written. */
+/* render/write_options.c - hl_scene_write_options(). */
+
 #include <string.h>
 
 #include <halflight/render.h>

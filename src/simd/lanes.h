@@ -23,9 +23,8 @@ typedef int32_t lanes_int __attribute__((vector_size(64)));
 
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 
-/* For functions that are one instruction or a few with AVX2, and long without: without it they are called
- * instead of inlined, which keeps the baseline's code (and its compile time under sanitizers) within bounds.
- */
+/* For functions that are a few instructions with AVX2 and long without. Without AVX2 they are called, not
+ * inlined, to keep the baseline's code small and quick to compile under sanitizers. */
 #if defined(__AVX2__)
 #define LANES_CALL LANES_INLINE
 #else
@@ -149,11 +148,11 @@ LANES_INLINE lanes_int lower_words(lanes_double x) {
   return __builtin_shufflevector(words, words, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 }
 
-/* A product of floats is exact in doubles, a sum is not. Rounded to floats from there it is wrong only where
- * it lies in the middle between two of them and was not exact (among subnormal floats: where any digits were
- * lost). There it is rounded to odd, to the one of the two doubles around it that has an odd last bit, and
- * rounds to the right float then (Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums",
- * 2008). */
+/* In doubles, a product of floats is exact, a sum is not. Rounding the sum to a float is wrong only where the
+ * sum lies in the middle between two floats and is not exact (among subnormal floats: where it is not exact).
+ * There the sum is first rounded to odd: to the one of the two doubles around the exact sum that has an odd
+ * last bit, which then rounds to the right float (Boldo and Melquiond, "Emulation of a FMA and correctly
+ * rounded sums", 2008). */
 LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   lanes_double product = __builtin_convertvector(a, lanes_double) * __builtin_convertvector(b, lanes_double);
   lanes_double addend = __builtin_convertvector(c, lanes_double), sum = product + addend;
@@ -277,23 +276,20 @@ LANES_CALL lanes_int lanes_floor(lanes x) {
 #endif
 }
 
-/* Offsets of sixteen loads, in memory: taking them from a vector register lane by lane costs more than the
- * loads. */
+/* Offsets of sixteen loads, in memory: taking them out of a vector register one by one would cost more than
+ * the loads. */
 typedef struct lanes_offsets {
   _Alignas(64) int32_t at[LANES];
 } lanes_offsets;
 
 LANES_INLINE void lanes_store_offsets(lanes_offsets *offsets, lanes_int value) {
   memcpy(offsets->at, &value, sizeof offsets->at);
-  __asm__ volatile(""
-                   :
-                   : "r"(offsets)
-                   : "memory"); /* keeps the compiler from reading the register after all */
+  __asm__ volatile("" : : "r"(offsets) : "memory"); /* keeps the compiler from using the register instead */
 }
 
 /* Sixteen 4-byte loads at base + offset (bytes). Plain loads: gather instructions were measured four times
- * slower on processors with the mitigations against data sampling. (clang 19 makes some of them for AVX-512
- * of its own accord.) */
+ * slower on processors with the mitigations against data sampling. (clang 19 nevertheless generates some for
+ * AVX-512.) */
 LANES_CALL lanes_int lanes_load_words(const unsigned char *base, const lanes_offsets *offsets) {
 #define LANES_WORD(lane) lanes_word(base + offsets->at[lane])
   return (lanes_int){LANES_WORD(0),  LANES_WORD(1),  LANES_WORD(2),  LANES_WORD(3),
@@ -473,7 +469,7 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
 #endif
 }
 
-/* The same for 16-bit numbers: one load of four bytes a lane. */
+/* table[index] and table[index + 1] of 16-bit numbers: one load of four bytes a lane. */
 LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int index, lanes_int *first,
                                            lanes_int *second) {
   lanes_int pair = lanes_gather_bytes((const unsigned char *)table, index * 2);

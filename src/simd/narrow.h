@@ -1,5 +1,5 @@
-/* simd/narrow.h - sixteen small numbers in 16 or 8 bits each, for AVX2: numbers close to each other are
- * counted from the least of them. The packing instructions order lanes as 0-3, 8-11, 4-7, 12-15. */
+/* simd/narrow.h - sixteen small numbers in 16 or 8 bits each, for AVX2. The packing instructions order lanes
+ * as 0-3, 8-11, 4-7, 12-15. */
 #ifndef HL_SIMD_NARROW_H
 #define HL_SIMD_NARROW_H
 
@@ -24,8 +24,8 @@ LANES_INLINE int any_short_above(__m256i x, int limit) {
   return !_mm256_testz_si256(above, above);
 }
 
-/* These numbers in memory. narrow_pair() points at the number of lane k of a half; lane k + 4's follows
- * NARROW_SECOND later. */
+/* Narrow numbers in memory. narrow_pair() points at the number of lane k of a half; the one of lane k + 4
+ * follows NARROW_SECOND numbers later. */
 typedef struct narrow_offsets {
   _Alignas(32) uint16_t at[LANES];
 } narrow_offsets;
@@ -37,7 +37,7 @@ LANES_INLINE void narrow_store(narrow_offsets *offsets, __m256i shorts) {
 LANES_INLINE const uint16_t *narrow_pair(const narrow_offsets *offsets, int half, int k) {
   return offsets->at + 4 * half + k;
 }
-enum { NARROW_SECOND = 8 /* from lane k's to lane k + 4's */ };
+enum { NARROW_SECOND = 8 };
 #endif
 
 #endif

@@ -1,4 +1,4 @@
-/* simd/packing.h - some of sixteen lanes moved together, and back. */
+/* simd/packing.h - packing: chosen lanes of a vector moved side by side, and back. */
 #ifndef HL_SIMD_PACKING_H
 #define HL_SIMD_PACKING_H
 
@@ -69,7 +69,7 @@ LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   return packing;
 }
 
-/* The other lanes of `into` stay. */
+/* `into` with the packed lanes replaced by the chosen lanes of x. */
 LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_mask_permutexvar_ps((__m512)into, packing->packed, packing->from, (__m512)x);
@@ -78,7 +78,7 @@ LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #endif
 }
 
-/* Moves packed lanes back; the lanes without a bit are 0. */
+/* Moves packed lanes back to where they came from; all other lanes are 0. */
 LANES_CALL lanes lanes_unpack(const lanes_packing *packing, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_maskz_permutexvar_ps(packing->bits, packing->to, (__m512)x);
