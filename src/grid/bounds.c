@@ -128,8 +128,8 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
-/* They are computed slice by slice and kept packed, for all later transfer functions. Packing helps because
- * most bricks of a volume are empty or even. */
+/* The bounds of cells are computed slice by slice and kept packed, for all later transfer functions. Packing
+ * helps because most bricks of a volume are empty or even. */
 enum { CELL_LAYERS = HL_BRICK_CELLS / HL_LOOKUP_CELLS, LAYERS_A_TASK = 4 };
 
 typedef struct cell_job {

@@ -1,4 +1,4 @@
-/* codes.c - pixels as sRGB codes of 8 or 16 bits, for files and for the caller's memory.
+/* image/codes.c - pixels as sRGB codes of 8 or 16 bits, for files and for the caller's memory.
  *
  * In: linear premultiplied floats, a linear background. Out: RGB over the background or, with
  * background_transparent, unassociated RGBA.

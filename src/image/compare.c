@@ -1,4 +1,4 @@
-/* compare.c - the differences of two pictures.
+/* image/compare.c - the differences of two pictures.
  *
  * In: two pictures of one size. Out: hl_image_difference. The first pass finds the sums and the greatest
  * difference. The second finds the percentile by counting the differences' float bits (which sort like the

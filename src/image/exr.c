@@ -1,4 +1,4 @@
-/* exr.c - pictures as OpenEXR scanlines, through OpenEXRCore.
+/* image/exr.c - pictures as OpenEXR scanlines, through OpenEXRCore.
  *
  * In: the bytes of a file, which may be anything. Out: a picture of the first part's data window: channels R,
  * G, B (or Y for grey) and A (1 where missing), from half, float or integer samples. Out to a file: named

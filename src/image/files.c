@@ -1,4 +1,4 @@
-/* files.c - finds a picture's format, reads and writes pictures of every format.
+/* image/files.c - finds a picture's format, reads and writes pictures of every format.
  *
  * The name's extension decides the format of a written file; the first bytes decide the format of a read
  * file, so that a wrongly named picture is still read. */

@@ -1,4 +1,4 @@
-/* format.c - shared by the encoders of all formats: options, progress, the error of a failed write. */
+/* image/format.c - shared by the encoders of all formats: options, progress, the error of a failed write. */
 #include "image/format.h"
 
 #include <math.h>

@@ -1,8 +1,7 @@
-/* format.h - the interface between picture formats and hl_image_write and hl_image_read, and the functions
- * that encoders share.
+/* image/format.h - the interface between picture formats and hl_image_write and hl_image_read, and the
+ * functions that encoders share.
  *
- * The registry of formats is in files.c.
- * */
+ * The registry of formats is in files.c. */
 #ifndef HL_IMAGE_FORMAT_H
 #define HL_IMAGE_FORMAT_H
 

@@ -1,4 +1,4 @@
-/* image.c - creation of pictures and access to their pixels.
+/* image/image.c - creation of pictures and access to their pixels.
  *
  * In: a size. Out: zeroed pixels, which the renderer or a reader (format.h) fills. Sizes are checked
  * before anything is allocated.

@@ -1,4 +1,4 @@
-/* npy.c - pictures as NumPy arrays (NPY format), float32, C order.
+/* image/npy.c - pictures as NumPy arrays (NPY format), float32, C order.
  *
  * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer as height x width x
  * channels, or as height x width where it has one channel. Read: versions 1 to 3, '<f4' or '<f8', height x

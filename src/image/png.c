@@ -1,5 +1,5 @@
-/* png.c - reads PNG files of any kind and writes them with 8 or 16 bits, through libpng; finds the scene that
- * a picture carries.
+/* image/png.c - reads PNG files of any kind and writes them with 8 or 16 bits, through libpng; finds the
+ * scene that a picture carries.
  *
  * In: the bytes of a file, which may be anything. Out: a picture. Grey, palette, 1 to 16 bits, transparency
  * and interlacing are all expanded to RGBA; samples are taken as sRGB whatever gAMA or iCCP say.

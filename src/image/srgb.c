@@ -1,4 +1,4 @@
-/* srgb.c - the sRGB transfer curve (IEC 61966-2-1).
+/* image/srgb.c - the sRGB transfer curve (IEC 61966-2-1).
  *
  * In: linear floats or whole codes. Out: the other. Used by the PNG writer and reader. Only + - * / and
  * comparisons are used: the C library's pow differs between machines in the last bit, but pictures must be

@@ -66,7 +66,7 @@ typedef struct view_functions {
 
 enum { PIXEL_TO_SPARE = 1 };
 
-/* The input of hl_occupancy_make(): the grids and the view. */
+/* The input of hl_occupancy_build(): the grids and the view. */
 typedef struct occupancy_source {
   const grid *grids; /* [grid_count] */
   int grid_count;
