@@ -76,7 +76,8 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
                                                  const hl_volume_description *description, hl_volume **volume,
                                                  hl_error *error);
 
-/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk and NumPy .npy files (axes [z][y][x]).
+/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk, NumPy .npy (axes [z][y][x]) and MRC
+ * files.
  * The format is recognised by the content, or by the name where the content has no mark. Of several arrays or
  * components one is read by default (hl_volume_load_options), and a warning says which. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume,

@@ -12,4 +12,5 @@
   HL_FORMAT(vti)       \
   HL_FORMAT(legacy_vtk) \
   HL_FORMAT(npy)       \
+  HL_FORMAT(mrc)       \
   HL_FORMAT(dat)

@@ -21,6 +21,8 @@ TARGETS = {
     "metaimage": ("MetaImage", ["volume/metaimage.c"]),
     "legacy_vtk": ("legacy VTK", ["volume/legacy_vtk.c"]),
     "vti": ("VTK XML", ["volume/vti.c", "volume/xml.c"]),
+    "npy": ("NumPy", ["volume/npy.c"]),
+    "mrc": ("MRC, CCP4", ["volume/mrc.c"]),
     "raw": ("bare voxels, descriptors", ["volume/raw.c"]),
     "transfer": ("transfer functions", ["json/transfer_load.c", "json/transfer_function.c"]),
     "shapes": ("shapes", ["json/shapes.c", "json/shapes_volume.c", "shape/"]),
@@ -28,7 +30,7 @@ TARGETS = {
     "scene": ("scene files", ["json/", "scene/"]),
     "render": ("whole renders", ["render/", "light/", "shadow", "grid/", "view/", "fill/"])}
 SHARED = ("all volume files, what they share included", ["volume/"],
-          ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "raw"])
+          ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "npy", "mrc", "raw"])
 
 root = pathlib.Path(__file__).resolve().parents[2]
 coverage = root / "build-coverage"

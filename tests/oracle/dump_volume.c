@@ -1,8 +1,9 @@
 /* tests/oracle/dump_volume.c - prints what a volume file holds, for comparison with other readers.
  *
- * usage: dump_volume VOLUME [VOXELS]...   (pairs: each VOLUME with the file for its voxels, or "-" for none)
- * One JSON object a line on stdout: the volume's info, or {"error": line, "status": code}. VOXELS receives
- * the data values as native float64, i fastest.
+ * usage: dump_volume VOLUME [VOXELS]...   (pairs: each VOLUME with the file for its voxels, or "-" for none);
+ * VOLUME may end with #TIME,CHANNEL,LEVEL, each -1 for the default One JSON object a line on stdout: the
+ * volume's info, or {"error": line, "status": code}. VOXELS receives the data values as native float64, i
+ * fastest.
  */
 #include <stdio.h>
 #include <string.h>
@@ -40,7 +41,14 @@ static int write_voxels(const hl_volume *volume, const hl_volume_info *info, con
 static int dump(hl_context *context, const char *path, const char *voxels) {
   hl_error error = {0};
   hl_volume *volume = NULL;
-  hl_status status = hl_volume_load(context, path, &volume, &error);
+  hl_volume_load_options options;
+  hl_volume_load_options_defaults(&options);
+  char name[4096];
+  snprintf(name, sizeof name, "%s", path);
+  char *mark = strrchr(name, '#');
+  if (mark != NULL && sscanf(mark, "#%d,%d,%d", &options.time, &options.channel, &options.level) == 3)
+    *mark = 0;
+  hl_status status = hl_volume_load_with(context, name, &options, &volume, &error);
   if (status != HL_OK) {
     printf("{\"status\": %d, \"error\": ", (int)status);
     print_text(error.message);

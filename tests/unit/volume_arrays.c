@@ -278,6 +278,56 @@ static void test_spacing_takes_the_place_of_the_files(void **state) {
   hl_context_destroy(context);
 }
 
+/* MRC: voxels of four bits, complex numbers, a cell of other angles, and headers that are refused. */
+static void test_mrc(void **state) {
+  (void)state;
+  told t = {0};
+  hl_context *context = make_context(&t);
+  byte_buffer file = {.length = 1024};
+  static const unsigned char words[] = {3, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 101, 0, 0, 0};
+  static const float cell[6] = {6, 4, 5, 90, 120, 60};
+  memset(file.data, 0, 1024);
+  memcpy(file.data, words, sizeof words);
+  memcpy(file.data + 28, (const int32_t[]){3, 2, 1}, 12);
+  memcpy(file.data + 40, cell, sizeof cell);
+  memcpy(file.data + 208, "MAP ", 4);
+  add(&file, (const unsigned char[]){0x21, 0xf3, 0x54, 0x06}, 4);
+  hl_error error = {0};
+  hl_volume *volume = load(context, &file, NULL, HL_COMPONENT_DEFAULT, &error);
+  static const double values[6] = {1, 2, 3, 4, 5, 6};
+  for (size_t n = 0; n < 6; n++) assert_true(hl_volume_value(volume, n % 3, n / 3, 0) == values[n]);
+  hl_volume_info info = {.struct_size = sizeof info};
+  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
+  double dot[3] = {0};
+  for (int axis = 0; axis < 3; axis++) {
+    assert_true(fabs(info.spacing[axis] - (axis == 2 ? 5 : 2)) < 1e-12);
+    for (int row = 0; row < 3; row++)
+      dot[axis] += info.direction[row][(axis + 1) % 3] * info.direction[row][(axis + 2) % 3];
+  }
+  /* alpha is the angle of b and c, beta of c and a, gamma of a and b */
+  assert_true(fabs(dot[0]) < 1e-12 && fabs(dot[1] + 0.5) < 1e-12 && fabs(dot[2] - 0.5) < 1e-12);
+  assert_true(info.direction[1][0] == 0 && info.direction[2][0] == 0 && info.direction[2][1] == 0);
+  hl_volume_release(volume);
+  file.data[12] = 3; /* pairs of 16 bits */
+  file.length = 1024;
+  for (int n = 0; n < 6; n++) add(&file, (const int16_t[]){(int16_t)(3 * n), (int16_t)(-4 * n)}, 4);
+  volume = load(context, &file, NULL, HL_COMPONENT_DEFAULT, &error);
+  assert_true(hl_volume_value(volume, 2, 1, 0) == 25);
+  hl_volume_release(volume);
+  volume = load(context, &file, NULL, 1, &error);
+  assert_true(hl_volume_value(volume, 2, 1, 0) == -20);
+  hl_volume_release(volume);
+  file.data[56] = file.data[60] = 0, file.data[58] = 52, file.data[59] = 67; /* beta 180: flat */
+  assert_null(load(context, &file, NULL, 1, &error));
+  assert_int_equal(error.code, HL_ERROR_INPUT);
+  file.data[95] = 0x80;
+  file.data[58] = file.data[59] = 0;
+  assert_null(load(context, &file, NULL, 1, &error));
+  assert_non_null(strstr(error.message, "extended header"));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* IEEE 754 binary16: subnormal, normal, greatest, negative, infinite. */
 static void test_values_of_half_floats(void **state) {
   (void)state;
@@ -344,6 +394,7 @@ int main(void) {
                                      cmocka_unit_test(test_times_and_channels),
                                      cmocka_unit_test(test_large_components),
                                      cmocka_unit_test(test_spacing_takes_the_place_of_the_files),
+                                     cmocka_unit_test(test_mrc),
                                      cmocka_unit_test(test_values_of_half_floats),
                                      cmocka_unit_test(test_a_pipe_is_read_once)};
   return cmocka_run_group_tests(tests, NULL, NULL);

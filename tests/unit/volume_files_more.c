@@ -53,6 +53,71 @@ void for_each_numpy_sample(sample_function *function, void *data) {
     }
 }
 
+/* ---- MRC ---- */
+
+static void put_word(byte_buffer *file, size_t place, uint32_t word, bool big) {
+  for (int n = 0; n < 4; n++) file->data[place + (size_t)(big ? 3 - n : n)] = (unsigned char)(word >> 8 * n);
+}
+
+static void put_real(byte_buffer *file, size_t place, float value, bool big) {
+  uint32_t bits;
+  memcpy(&bits, &value, 4);
+  put_word(file, place, bits, big);
+}
+
+/* A header of one volume whose cell has intervals of 0.5, 2 and 3 along X, Y and Z. */
+static void add_mrc_header(byte_buffer *file, int mode, const int axes[3], bool big) {
+  static const uint32_t sizes[3] = {NI, NJ, NK};
+  memset(file->data, 0, 1024);
+  file->length = 1024;
+  for (size_t n = 0; n < 3; n++) {
+    put_word(file, 4 * n, sizes[n], big);
+    put_word(file, 16 + 4 * n, (uint32_t)-1, big);
+    put_word(file, 28 + 4 * n, 4 * sizes[n], big);
+    put_real(file, 40 + 4 * n, 4 * (float)sizes[n] * (n == 0 ? 0.5F : 1 + (float)n), big);
+    put_real(file, 52 + 4 * n, 90, big);
+    put_word(file, 64 + 4 * n, (uint32_t)axes[n], big);
+  }
+  put_word(file, 12, (uint32_t)mode, big);
+  put_word(file, 92, 80, big);
+  memcpy(file->data + 208, big ? "MAP \x11\x11" : "MAP \x44\x44", 6);
+}
+
+/* The origin is ORIGIN, or -1 step along each of the file's axes. */
+static void mrc_samples(sample_function *function, void *data) {
+  static const int modes[] = {0, 0, 1, 2, 6, 12};
+  static const hl_voxel_type types[] = {HL_VOXEL_I8,  HL_VOXEL_U8,  HL_VOXEL_I16,
+                                        HL_VOXEL_F32, HL_VOXEL_U16, HL_VOXEL_F16};
+  static const int orders[4][3] = {{1, 2, 3}, {3, 1, 2}, {2, 1, 3}, {3, 3, 1}};
+  static const double step[3] = {0.5, 2, 3};
+  for (size_t t = 0; t < sizeof modes / sizeof *modes; t++)
+    for (int variant = (int)t % 3; variant < 16; variant += 3) { /* the header is long: every third will do */
+      bool big = variant & 1, placed = variant & 2, series = variant == 12;
+      const int *order = orders[variant / 4];
+      volume_sample made = begin_sample(types[t], "%zu_%d.mrc", t, variant);
+      add_mrc_header(&made.file, modes[t], order, big);
+      if (types[t] == HL_VOXEL_U8) put_word(&made.file, 152, 1146047817, big); /* IMOD's unsigned bytes */
+      for (size_t n = 0; n < 3; n++) {
+        size_t axis = order[0] == order[1] ? n : (size_t)order[n] - 1;
+        memset(made.axis[n], 0, sizeof made.axis[n]);
+        made.axis[n][axis] = step[axis];
+        made.origin[axis] = placed ? 7.5 * (double)(axis + 1) : -step[axis];
+        if (placed) put_real(&made.file, 196 + 4 * axis, 7.5F * (float)(axis + 1), big);
+      }
+      if (series) { /* of three volumes, as wide as their cell */
+        put_word(&made.file, 8, 3 * NK, big);
+        put_word(&made.file, 36, NK, big);
+        put_real(&made.file, 48, NK * 3, big);
+        put_word(&made.file, 88, 401, big);
+      }
+      for (int n = 0; n < 80; n++) add_text(&made.file, "x");
+      for (int volume = 0; volume < (series ? 3 : 1); volume++) add_voxels(&made.file, made.type, big);
+      function(&made, data);
+    }
+}
+
+void for_each_microscope_sample(sample_function *function, void *data) { mrc_samples(function, data); }
+
 /* ---- several components ---- */
 
 enum { COMPONENTS = 5 };
