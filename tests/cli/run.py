@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the command-line cases and prints TAP.
 
-usage: run.py PROGRAM [CASE ...]            (all cases without a name)
+usage: run.py [--quick] PROGRAM [CASE ...]            (all cases without a name)
 
 A case is a shell script NAME.sh in a folder beside this file, run with `sh -eu` in an empty folder of its own.
 Beside it may stand
@@ -10,8 +10,10 @@ Beside it may stand
     NAME.sh.stderr.glob    the same for standard error; without it, standard error must be empty
     NAME.sh.exit           the exit code; 0 without it
 In the script, `halflight` is the program, `tool` is tool.py, and $SOURCE the source folder. Exit code 77 skips the
-case; the last line of standard output is the reason. `await_handler PID` waits until a process catches SIGINT.
+case; the last line of standard output is the reason. --quick leaves out the cases that hold a line `# slow: REASON`:
+a sanitized program would take minutes for each. As many cases run at a time as there are processors. `await_handler PID` waits until a process catches SIGINT.
 """
+import concurrent.futures
 import fnmatch
 import os
 import pathlib
@@ -30,7 +32,7 @@ tool() { "$PYTHON" "$SOURCE/tests/cli/tool.py" "$@"; }
 # Waits until process $1 catches SIGINT (bit 1 of the mask), and a little more, so that it is at work.
 await_handler() {
   for _ in $(seq 300); do
-    if grep -q '^SigCgt:.*[2367abef]$' "/proc/$1/status"; then break; fi
+    if grep -qs '^SigCgt:.*[2367abef]$' "/proc/$1/status"; then break; fi
     sleep 0.1
   done
   sleep 0.5
@@ -76,20 +78,25 @@ def run_case(name, environment):
 
 
 def main():
-    program = pathlib.Path(sys.argv[1]).resolve()
+    quick = sys.argv[1] == "--quick"
+    program, *wanted = sys.argv[2 if quick else 1:]
+    program = pathlib.Path(program).resolve()
     all_cases = sorted(str(path.relative_to(HERE)) for path in HERE.glob("*/*.sh"))
-    cases = [name for name in all_cases if not sys.argv[2:] or name in sys.argv[2:] or name[:-3] in sys.argv[2:]]
+    cases = [name for name in all_cases if not wanted or name in wanted or name[:-3] in wanted]
+    if quick:
+        cases = [name for name in cases if "\n# slow: " not in (HERE / name).read_text()]
     environment = dict(os.environ, HALFLIGHT=str(program), PYTHON=sys.executable, SOURCE=str(HERE.parent.parent),
                        LC_ALL="C.UTF-8")
     print(f"1..{len(cases)}")
     failed = 0
-    for number, name in enumerate(cases, 1):
-        problems, skipped = run_case(name, environment)
-        failed += bool(problems)
-        suffix = f" # SKIP {skipped}" if skipped is not None else ""
-        print(f"{'not ok' if problems else 'ok'} {number} - {name[:-3]}{suffix}", flush=True)
-        for problem in problems:
-            print(f"# {problem}")
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        results = pool.map(lambda name: run_case(name, environment), cases)
+        for number, (name, (problems, skipped)) in enumerate(zip(cases, results), 1):
+            failed += bool(problems)
+            suffix = f" # SKIP {skipped}" if skipped is not None else ""
+            print(f"{'not ok' if problems else 'ok'} {number} - {name[:-3]}{suffix}", flush=True)
+            for problem in problems:
+                print(f"# {problem}")
     sys.exit(1 if failed or not cases else 0)
 
 

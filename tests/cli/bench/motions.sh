@@ -1,4 +1,5 @@
 # Each motion runs, on several inputs and on the built-in volume.
+# slow: it times many frames
 tool ball 16 ball_16x16x16_uint8.raw
 for move in light tf; do
   halflight bench ball_16x16x16_uint8.raw --frames 1 --size 16x16 --move $move | grep -q "moving $move; milliseconds"

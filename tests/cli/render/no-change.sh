@@ -1,4 +1,5 @@
 # Options that say what is so already change nothing, to the last bit, on volumes with any way up; other angles keep what is up.
+# slow: it renders each of four volumes twenty times
 tool ball 16 ball_16x16x16_uint8.raw
 "$PYTHON" - <<'END' # smoke: y is up; a pot on a plate at low -y; and one with anatomy, whose front is +y
 import math, random, struct

@@ -1,4 +1,5 @@
 # Every instruction set that this machine has gives the bytes of the scalar one, however the sheets are filled.
+# slow: it renders thirty pictures
 tool ball 20 ball_20x20x20_uint8.raw
 compared=0
 for how in splat gather; do

@@ -1,4 +1,5 @@
 # Two volumes in one world, each with the look that it has alone, or its own; names are those of the files.
+# slow: it guesses many looks
 tool ball 16 a_16x16x16_uint8.raw
 mkdir b
 { printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\naxis mins: 30 0 0\nencoding: raw\n\n'; cat a_16x16x16_uint8.raw; } >b/c.nrrd
