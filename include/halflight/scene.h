@@ -224,6 +224,15 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_from_json(hl_context *context, const ch
                                                    const char *base_folder, const char *name,
                                                    hl_scene **scene, hl_error *error);
 
+/* hl_scene_from_json() for editors and viewers, whose scene changes many times a second: no file is opened.
+ * Volumes and lights' images are those of `like`, found by their file and how it was read, or by their
+ * shapes; a scene that names another one is refused with HL_ERROR_INPUT. like may be null: nothing is
+ * refused. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t length,
+                                                        const char *base_folder, const char *name,
+                                                        const hl_scene *like, hl_scene **scene,
+                                                        hl_error *error);
+
 /* The scene as JSON text, null-terminated; free with hl_text_release(). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text,
                                                  hl_error *error);

@@ -9,5 +9,6 @@ extern const cli_command info_command;   /* info.c */
 extern const cli_command diff_command;   /* diff.c */
 extern const cli_command bench_command;  /* bench.c */
 extern const cli_command make_command;   /* make.c */
+extern const cli_command view_command;   /* view.c */
 
 #endif

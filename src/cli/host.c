@@ -20,8 +20,8 @@ static void on_signal(int signal_number) {
 bool host_interrupted(void) { return interrupted != 0; }
 
 static int on_cancelled(void *user_data) {
-  (void)user_data;
-  return interrupted != 0;
+  const cli_host *host = user_data;
+  return interrupted != 0 || (host->cancelled != NULL && host->cancelled());
 }
 
 double clock_seconds(void) {
@@ -103,6 +103,7 @@ static const char *choose_data_folder(const char *asked) {
 int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
+  host->cancelled = options->cancelled;
   host->bar = options->progress && !options->quiet && terminal_can_redraw();
   host->color = color_wanted();
   snprintf(host->subject, sizeof host->subject, "%s", options->subject);

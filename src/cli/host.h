@@ -13,10 +13,11 @@ typedef struct cli_host {
   bool quiet; /* no warnings, no bar, no summary */
   bool bar;   /* stderr is a terminal that can redraw a line */
   bool color;
-  bool drawn;          /* a bar is on the line now */
-  double drawn_at;     /* seconds; bars are redrawn ten times a second at most */
-  cli_read_files read; /* the files that the context has read */
-  char subject[32];    /* the input's name beside the bar, cut to keep the line short */
+  bool drawn;              /* a bar is on the line now */
+  double drawn_at;         /* seconds; bars are redrawn ten times a second at most */
+  bool (*cancelled)(void); /* or null */
+  cli_read_files read;     /* the files that the context has read */
+  char subject[32];        /* the input's name beside the bar, cut to keep the line short */
 } cli_host;
 
 typedef struct cli_host_options {
@@ -25,6 +26,7 @@ typedef struct cli_host_options {
   const char *subject;
   uint64_t memory_limit; /* bytes; 0: the machine's memory */
   hl_instruction_set instruction_set;
+  bool (*cancelled)(void); /* asked, besides for signals, by the thread that renders; or null */
   const char *data_folder; /* null: HALFLIGHT_DATA, or ../shared/data */
 } cli_host_options;
 

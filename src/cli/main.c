@@ -10,13 +10,9 @@
 #include "message.h"
 #include "suggest.h"
 
-static const cli_command *const commands[] = {&render_command, &info_command, &make_command, &diff_command,
-                                              &bench_command};
+static const cli_command *const commands[] = {&render_command, &info_command,  &make_command,
+                                              &diff_command,   &bench_command, &view_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
-
-/* Names of commands to come: refused as unsupported. */
-static const char *const reserved_commands[] = {"view"};
-enum { RESERVED_COUNT = sizeof reserved_commands / sizeof reserved_commands[0] };
 
 static const char *command_name(const void *data, size_t index) {
   (void)data;
@@ -30,9 +26,6 @@ static const cli_command *find_command(const char *name) {
 }
 
 static int refuse_command(const char *name) {
-  for (size_t i = 0; i < RESERVED_COUNT; i++)
-    if (strcmp(reserved_commands[i], name) == 0)
-      return fail(EXIT_CODE_UNSUPPORTED, "'%s' is not yet in this version (%s)", name, hl_version());
   const char *meant = nearest_name(name, command_name, NULL);
   if (meant != NULL) return fail(EXIT_CODE_USAGE, "unknown command '%s': did you mean '%s'?", name, meant);
   return fail(EXIT_CODE_USAGE, "unknown command '%s': see 'halflight --help'", name);

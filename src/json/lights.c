@@ -36,6 +36,28 @@ typedef struct light_emission {
   int *width, *height;
 } light_emission;
 
+/* Whether an image of `like` was read from this file; *pixels are a copy, owned by the caller. */
+static hl_status copy_known(hl_json_reader *reader, const char *path, const light_emission *to, bool *found) {
+  *found = false;
+  for (size_t l = 0; l < reader->like->light_count; l++) {
+    const hl_light *light = &reader->like->lights[l];
+    const hl_light_texture *texture = &light->texture;
+    const hl_light_emission *emission = &light->emission;
+    bool projected = texture->file != NULL && strcmp(texture->file, path) == 0;
+    if (!projected && (emission->file == NULL || strcmp(emission->file, path) != 0)) continue;
+    *to->width = projected ? texture->width : emission->width;
+    *to->height = projected ? texture->height : emission->height;
+    size_t count = 3 * (size_t)*to->width * (size_t)*to->height;
+    float *pixels = hl_allocate(reader->context, count, sizeof *pixels);
+    if (pixels == NULL) return hl_fail_memory(reader->error, count * sizeof *pixels, "a light's image");
+    memcpy(pixels, projected ? texture->pixels : emission->pixels, count * sizeof *pixels);
+    *to->pixels = pixels;
+    *found = true;
+    return HL_OK;
+  }
+  return HL_OK;
+}
+
 /* Copies an image's colours without alpha: premultiplied, they are the image over black. */
 static hl_status take_pixels(hl_context *context, const hl_image *image, const light_emission *to,
                              hl_error *error) {
@@ -62,6 +84,13 @@ static hl_status load(hl_json_reader *reader, const json_t *value, const light_e
   char *path = hl_path_join(reader->context, reader->folder, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
   *to->file = path;
+  if (reader->like != NULL) {
+    bool found;
+    status = copy_known(reader, path, to, &found);
+    if (status != HL_OK || found) return status;
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file",
+                        "\"%.200s\" is no image of the open scene: open it anew", file);
+  }
   hl_image *image = NULL;
   status = hl_image_read(reader->context, path, &image, reader->error);
   if (status == HL_OK) status = take_pixels(reader->context, image, to, reader->error);

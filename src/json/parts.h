@@ -39,6 +39,9 @@ typedef struct hl_volume_shelf {
 hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
                               hl_scene_volume *volume);
 
+/* Puts the volumes of the reader's `like` on the shelf, which has room for them. */
+hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf);
+
 /* The volume that a transfer function is read for. */
 typedef struct hl_function_subject {
   const hl_volume *volume; /* null: a file of its own; functions that depend on the voxels are refused */

@@ -20,6 +20,8 @@ typedef struct hl_json_reader {
   const char *name;   /* what errors call the text */
   const char *folder; /* where relative paths start; may be null */
   hl_error *error;
+  const hl_scene_description
+      *like;       /* only its volumes and images are known, and no file is opened; or null */
   char place[400]; /* JSON pointer of the value being read */
 } hl_json_reader;
 

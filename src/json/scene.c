@@ -94,7 +94,9 @@ static hl_status read_camera_members(hl_json_reader *reader, const json_t *value
       status = refuse_key(reader, value, with_position[k],
                           "needs a position: give both, or neither to frame the volumes");
   if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_CAMERA, "fovy_deg", camera);
-  if (status == HL_OK) status = frame(reader, d, camera);
+  const char *size = camera->type == HL_CAMERA_PERSPECTIVE ? "fovy_deg" : "height";
+  bool complete = has(value, "position") && has(value, "target") && has(value, "up") && has(value, size);
+  if (status == HL_OK && !complete) status = frame(reader, d, camera);
   if (status == HL_OK && has(value, "position")) memcpy(camera->up, (double[3]){0, 0, 1}, sizeof camera->up);
   return status == HL_OK ? hl_json_settings(reader, value, HL_SETTINGS_CAMERA, (int)camera->type, camera)
                          : status;
@@ -121,10 +123,13 @@ static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gather
   hl_status status = hl_json_array(reader, value, 1, HL_LIMIT_VOLUMES);
   if (status != HL_OK) return status;
   size_t count = json_array_size(value);
+  size_t known = reader->like != NULL ? reader->like->volume_count : 0;
   g->volumes = hl_allocate_zeroed(reader->context, count, sizeof *g->volumes);
-  g->shelf.loaded = hl_allocate_zeroed(reader->context, count, sizeof *g->shelf.loaded);
+  g->shelf.loaded = hl_allocate_zeroed(reader->context, count + known, sizeof *g->shelf.loaded);
   if (g->volumes == NULL || g->shelf.loaded == NULL)
     return hl_fail_memory(reader->error, count * sizeof *g->volumes, "a scene's volumes");
+  status = known > 0 ? hl_json_shelve_known(reader, &g->shelf) : HL_OK;
+  if (status != HL_OK) return status;
   g->description.volumes = g->volumes;
   for (size_t v = 0; v < count; v++) {
     g->description.volume_count = v + 1;
@@ -208,11 +213,20 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
 
 hl_status hl_scene_from_json(hl_context *context, const char *text, size_t length, const char *base_folder,
                              const char *name, hl_scene **scene, hl_error *error) {
+  return hl_scene_from_json_like(context, text, length, base_folder, name, NULL, scene, error);
+}
+
+hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t length,
+                                  const char *base_folder, const char *name, const hl_scene *like,
+                                  hl_scene **scene, hl_error *error) {
   if (context == NULL || text == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_from_json: null context, text or scene");
   *scene = NULL;
-  hl_json_reader reader = {
-      .context = context, .name = name != NULL ? name : "scene", .folder = base_folder, .error = error};
+  hl_json_reader reader = {.context = context,
+                           .name = name != NULL ? name : "scene",
+                           .folder = base_folder,
+                           .error = error,
+                           .like = hl_scene_describe(like)};
   json_t *root = NULL;
   hl_status status = hl_json_parse(text, length, reader.name, &root, error);
   if (status != HL_OK) return status;

@@ -173,6 +173,9 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
     key = "file";
     if (volume == NULL)
       return hl_json_fail(reader, HL_ERROR_INPUT, key, "in a file of its own: name that file directly");
+    if (reader->like != NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, key,
+                          "no file is opened for a changed scene: give its points");
     char *path = hl_path_join(reader->context, reader->folder, file);
     if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
     status = hl_transfer_function_load(reader->context, path, function, reader->error);

@@ -115,6 +115,26 @@ static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source
   return place;
 }
 
+hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf) {
+  for (size_t v = 0; v < reader->like->volume_count; v++) {
+    const hl_scene_volume *known = &reader->like->volumes[v];
+    const char *source = known->file != NULL ? known->file : known->shapes;
+    if (source == NULL) continue;
+    char *copy = hl_copy_text(reader->context, source);
+    if (copy == NULL) return hl_fail_memory(reader->error, strlen(source) + 1, "a path");
+    hl_volume_load_options options;
+    hl_volume_load_options_defaults(&options);
+    options.array = known->array;
+    options.series = known->series;
+    options.component = known->component;
+    options.time = known->time, options.channel = known->channel, options.level = known->level;
+    memcpy(options.spacing, known->spacing, sizeof options.spacing);
+    hl_volume_retain(known->volume);
+    put_on_shelf(shelf, copy, &options, known->volume);
+  }
+  return HL_OK;
+}
+
 /* An index, or "magnitude". */
 static hl_status read_component(hl_json_reader *reader, const json_t *value, int *component) {
   const json_t *given = json_object_get(value, "component");
@@ -181,6 +201,11 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
   const hl_loaded_volume *loaded = find_loaded(shelf, path, options);
   if (loaded != NULL) {
     hl_release(reader->context, path);
+  } else if (reader->like != NULL) {
+    hl_release(reader->context, path);
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file",
+                        "\"%.200s\" is no volume of the open scene, or is read in another way: open it anew",
+                        file);
   } else {
     hl_volume *made = NULL;
     hl_status status = hl_volume_load_with(reader->context, path, options, &made, reader->error);
@@ -211,6 +236,8 @@ static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_vol
   char *text = hl_json_shapes_text(reader->context, shapes, shelf->groups, voxel_size);
   const hl_loaded_volume *loaded = text != NULL ? find_loaded(shelf, text, NULL) : NULL;
   hl_release(reader->context, text);
+  if (loaded == NULL && reader->like != NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "shapes", "are not those of the open scene: open it anew");
   if (loaded == NULL) {
     hl_shapes_options options;
     hl_shapes_options_defaults(&options);

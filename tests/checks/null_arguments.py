@@ -28,6 +28,9 @@ hl_reference_render_layers options
 hl_reference_render_layers layers
 hl_scene_from_json base_folder
 hl_scene_from_json name
+hl_scene_from_json_like base_folder
+hl_scene_from_json_like like
+hl_scene_from_json_like name
 hl_scene_for_volume file
 hl_volume_guess file
 hl_view_choose up

@@ -470,6 +470,67 @@ static void damaged_scenes_are_answered(void **state) {
   hl_context_destroy(context);
 }
 
+static hl_status read_like(hl_context *context, const char *text, const hl_scene *like, hl_scene **scene,
+                           hl_error *error) {
+  return hl_scene_from_json_like(context, text, strlen(text), folder, "changed", like, scene, error);
+}
+
+/* The files are gone when the changed text is read: what it names is the open scene's own. */
+static void changed_texts_open_no_file(void **state) {
+  (void)state;
+  const char *text =
+      "{\"halflight\": 1, \"lights\": [{\"type\": \"directional\", \"direction\": [0, 0, 1], \"texture\": "
+      "{\"file\": \"slide.png\", \"screen\": {\"center\": [0, 0, 9], \"right\": [1, 0, 0], \"up\": [0, 1, "
+      "0]}}}], "
+      "\"volumes\": [{\"file\": \"cube_4x4x4_uint8.raw\"}, {\"shapes\": [{\"type\": \"sphere\", \"radius\": "
+      "4}], "
+      "\"voxel_size\": 1}]}";
+  const struct {
+    const char *from, *to, *place;
+  } refused[] = {
+      {"cube_4x4x4", "cube_4x4x5", "/volumes/0/file"},
+      {"\"cube_4x4x4_uint8.raw\"", "\"cube_4x4x4_uint8.raw\", \"spacing\": [1, 1, 2]", "/volumes/0/file"},
+      {"\"radius\": 4", "\"radius\": 5", "/volumes/1/shapes"},
+      {"slide.png", "other.png", "/lights/0/texture/file"},
+      {"_uint8.raw\"", "_uint8.raw\", \"transfer_function\": {\"file\": \"function.json\"}",
+       "/volumes/0/transfer_function/file"},
+  };
+  hl_context *context = make_context();
+  hl_scene *open = NULL, *changed = NULL;
+  assert_int_equal(read_like(context, text, NULL, &open, NULL), HL_OK);
+  char written_before[300], moved[310];
+  snprintf(written_before, sizeof written_before, "%s/slide.png", folder);
+  snprintf(moved, sizeof moved, "%s-away", written_before);
+  assert_int_equal(rename(written_before, moved), 0);
+  char *json = NULL, *again = NULL;
+  assert_int_equal(hl_scene_to_json(context, open, &json, NULL), HL_OK);
+  assert_int_equal(read_like(context, json, open, &changed, NULL), HL_OK);
+  assert_int_equal(hl_scene_to_json(context, changed, &again, NULL), HL_OK);
+  assert_string_equal(json, again);
+  const hl_scene_description *a = hl_scene_describe(open), *b = hl_scene_describe(changed);
+  assert_ptr_equal(a->volumes[0].volume, b->volumes[0].volume);
+  assert_ptr_equal(a->volumes[1].volume, b->volumes[1].volume);
+  assert_memory_equal(a->lights[0].texture.pixels, b->lights[0].texture.pixels, 6 * sizeof(float));
+  for (size_t r = 0; r < sizeof refused / sizeof *refused; r++) {
+    char hostile[1000];
+    hl_scene *none = NULL;
+    hl_error error = {0};
+    const char *at = strstr(text, refused[r].from);
+    snprintf(hostile, sizeof hostile, "%.*s%s%s", (int)(at - text), text, refused[r].to,
+             at + strlen(refused[r].from));
+    assert_int_equal(read_like(context, hostile, open, &none, &error), HL_ERROR_INPUT);
+    assert_null(none);
+    assert_non_null(strstr(error.message, refused[r].place));
+  }
+  assert_int_equal(rename(moved, written_before), 0);
+  hl_text_release(context, json);
+  hl_text_release(context, again);
+  hl_scene_release(changed);
+  hl_scene_release(open);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_case),
@@ -484,6 +545,7 @@ int main(void) {
       cmocka_unit_test(textures_from_memory_cannot_be_written),
       cmocka_unit_test(volumes_from_memory_cannot_be_written),
       cmocka_unit_test(odd_values_survive),
+      cmocka_unit_test(changed_texts_open_no_file),
       cmocka_unit_test(damaged_scenes_are_answered),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);

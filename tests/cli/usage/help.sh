@@ -1,10 +1,10 @@
-# Help goes to standard output, names every command and no reserved one, and is the same in all spellings.
+# Help goes to standard output, names every command, and is the same in all spellings.
 halflight --help >help
 grep -q '^  render INPUT ' help
 grep -q '^  info VOLUME ' help
 grep -q '^  make SHAPE ' help
 grep -q '^  diff A B ' help
 grep -q '^  bench \[INPUT \.\.\.\] ' help
-if grep -qE '^  (view) ' help; then exit 1; fi
+grep -q '^  view INPUT ' help
 halflight help | cmp help -
 halflight -h | cmp help -

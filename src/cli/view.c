@@ -1,0 +1,253 @@
+/* cli/view.c - `halflight view INPUT`: the viewer's server, and the browser that shows its page. */
+#define _GNU_SOURCE
+#include <fcntl.h>
+#include <limits.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "input.h"
+#include "output.h"
+#include "render.h"
+#ifdef HL_HAS_VIEWER
+#include "server/server.h"
+#endif
+
+enum {
+  VIEW_PORT,
+  VIEW_NO_BROWSER,
+  VIEW_ARRAY,
+  VIEW_COMPONENT,
+  VIEW_SERIES,
+  VIEW_TIME,
+  VIEW_CHANNEL,
+  VIEW_LEVEL,
+  VIEW_SPACING,
+  VIEW_DATA,
+  VIEW_MAX_MEMORY,
+  VIEW_QUIET,
+  VIEW_OPTION_COUNT
+};
+
+static const cli_option view_options[VIEW_OPTION_COUNT] = {
+    [VIEW_PORT] = {.name = "port",
+                   .kind = OPTION_NUMBERS,
+                   .argument = "N",
+                   .group = "Options",
+                   .help = "of 127.0.0.1, where the page is served (default: a\nfree one)",
+                   .count = 1,
+                   .whole = true,
+                   .low = 1,
+                   .high = 65535},
+    [VIEW_NO_BROWSER] = {.name = "no-browser",
+                         .kind = OPTION_SWITCH,
+                         .help =
+                             "only print the URL (default: open a browser too, where\nthere is a screen)"},
+    [VIEW_ARRAY] = INPUT_OPTION_ARRAY("Volume files"),
+    [VIEW_COMPONENT] = INPUT_OPTION_COMPONENT,
+    [VIEW_SERIES] = INPUT_OPTION_SERIES,
+    [VIEW_TIME] = INPUT_OPTION_TIME,
+    [VIEW_CHANNEL] = INPUT_OPTION_CHANNEL,
+    [VIEW_LEVEL] = INPUT_OPTION_LEVEL,
+    [VIEW_SPACING] = {.name = "spacing",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "SX,SY,SZ",
+                      .help = "distance of voxels in world units (default: the\nfile's)",
+                      .count = 3,
+                      .separator = ',',
+                      .above = true,
+                      .low = 0,
+                      .high = 1e30},
+    [VIEW_DATA] =
+        {.name = "data",
+         .kind = OPTION_TEXT,
+         .argument = "FOLDER",
+         .group = "Running",
+         .help = "of the files that scenes call data:NAME (default:\n$HALFLIGHT_DATA, or ../shared/data)"},
+    [VIEW_MAX_MEMORY] =
+        {.name = "max-memory",
+         .kind = OPTION_BYTES,
+         .argument = "BYTES",
+         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [VIEW_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "no progress bar, no warnings, no hints"},
+};
+
+#ifdef HL_HAS_VIEWER
+
+extern char **environ;
+
+/* One run. */
+typedef struct view_job {
+  cli_host host;
+  const cli_value *values;
+  hl_scene *scene; /* owned */
+} view_job;
+
+/* ---- the scene ---- */
+
+/* The absolute path of a file, owned by the caller; of what is no file the same text. */
+static char *absolute_path(const char *file) {
+  char *path = strncmp(file, "/dev/", 5) == 0 ? NULL : realpath(file, NULL);
+  return path != NULL ? path : strdup(file);
+}
+
+enum { MOST_PATHS = 1024 };
+
+/* Absolute paths that a description borrows. */
+typedef struct path_list {
+  char *paths[MOST_PATHS];
+  size_t count;
+} path_list;
+
+static bool make_absolute(const char **file, path_list *list) {
+  if (*file == NULL) return true;
+  if (list->count == MOST_PATHS || (list->paths[list->count] = absolute_path(*file)) == NULL) return false;
+  *file = list->paths[list->count++];
+  return true;
+}
+
+/* The scene with absolute paths, so that the page's scene can be rendered from any folder. */
+static hl_status name_absolutely(view_job *job, hl_error *error) {
+  hl_scene_description d = *hl_scene_describe(job->scene);
+  hl_scene_volume *volumes = malloc(d.volume_count * sizeof *volumes + 1);
+  hl_light *lights = malloc(d.light_count * sizeof *lights + 1);
+  path_list *list = calloc(1, sizeof *list);
+  bool good = volumes != NULL && lights != NULL && list != NULL;
+  for (size_t v = 0; good && v < d.volume_count; v++) {
+    volumes[v] = d.volumes[v];
+    good = make_absolute(&volumes[v].file, list);
+  }
+  for (size_t l = 0; good && l < d.light_count; l++) {
+    lights[l] = d.lights[l];
+    good = make_absolute(&lights[l].texture.file, list) && make_absolute(&lights[l].emission.file, list);
+  }
+  d.volumes = volumes;
+  d.lights = lights;
+  hl_scene *named = NULL;
+  hl_status status = good ? hl_scene_create(job->host.context, &d, &named, error) : HL_ERROR_MEMORY;
+  if (!good) snprintf(error->message, sizeof error->message, "out of memory for the scene's paths");
+  if (status == HL_OK) {
+    hl_scene_release(job->scene);
+    job->scene = named;
+  }
+  for (size_t p = 0; list != NULL && p < list->count; p++) free(list->paths[p]);
+  free(list);
+  free(lights);
+  free(volumes);
+  return status;
+}
+
+static int load(view_job *job, char **inputs) {
+  cli_value values[RENDER_OPTION_COUNT] = {{0}};
+  for (int which = VIEW_ARRAY; which <= VIEW_SPACING; which++)
+    values[RENDER_ARRAY + which - VIEW_ARRAY] = job->values[which]; /* in the same order */
+  values[RENDER_MAX_MEMORY] = job->values[VIEW_MAX_MEMORY];
+  bool bare;
+  int exit_code = render_load_inputs(&job->host, values, inputs, &bare, &job->scene);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_error error = {0};
+  hl_status status = name_absolutely(job, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error);
+}
+
+/* ---- the browser ---- */
+
+static bool has_screen(void) {
+  const char *x11 = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
+  return (x11 != NULL && x11[0] != '\0') || (wayland != NULL && wayland[0] != '\0');
+}
+
+/* The browser's messages go nowhere; whether it opens is the user's to see, who has the URL. */
+static void open_browser(const char *url) {
+  char *arguments[] = {"xdg-open", (char *)url, NULL};
+  posix_spawn_file_actions_t actions;
+  pid_t child;
+  if (posix_spawn_file_actions_init(&actions) != 0) return;
+  for (int descriptor = 0; descriptor < 3; descriptor++)
+    posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_RDWR, 0);
+  if (posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ) != 0)
+    warn("xdg-open cannot be run: open the URL yourself");
+  posix_spawn_file_actions_destroy(&actions);
+}
+
+static void on_ready(void *user_data, const char *url) {
+  view_job *job = user_data;
+  host_clear_bar(&job->host);
+  puts(url);
+  fflush(stdout);
+  if (!job->values[VIEW_NO_BROWSER].given && has_screen()) open_browser(url);
+  int port = 0;
+  if (sscanf(url, "http://127.0.0.1:%d/", &port) == 1 && !job->host.quiet)
+    say("from another machine: ssh -L %d:127.0.0.1:%d THIS-MACHINE, then open the same URL; Ctrl-C ends the "
+        "viewer",
+        port, port);
+}
+
+/* ---- the command ---- */
+
+/* INPUT's name, and how many follow it. */
+static void make_title(char **inputs, char *title, size_t size) {
+  size_t count = 0;
+  while (inputs[count] != NULL) count++;
+  const char *name = strcmp(inputs[0], "-") == 0 ? "standard input" : base_name(inputs[0]);
+  if (count == 1) snprintf(title, size, "%s", name);
+  else snprintf(title, size, "%s and %zu more", name, count - 1);
+}
+
+static int run_view(const cli_value *values, char **inputs) {
+  view_job job = {.values = values};
+  char title[300], problem[300];
+  cli_host_options options = {.quiet = values[VIEW_QUIET].given,
+                              .progress = true,
+                              .subject = base_name(inputs[0]),
+                              .memory_limit = values[VIEW_MAX_MEMORY].bytes,
+                              .data_folder = values[VIEW_DATA].text,
+                              .cancelled = server_is_outdated};
+  int exit_code = host_open(&options, &job.host);
+  if (exit_code == EXIT_CODE_OK) exit_code = load(&job, inputs);
+  if (exit_code == EXIT_CODE_OK) {
+    host_clear_bar(&job.host);
+    job.host.bar = false; /* frames are rendered by several threads, which share no bar */
+    make_title(inputs, title, sizeof title);
+    server_options server = {.context = job.host.context,
+                             .scene = job.scene,
+                             .title = title,
+                             .port = values[VIEW_PORT].given ? (int)values[VIEW_PORT].number[0] : 0,
+                             .stopped = host_interrupted,
+                             .user_data = &job,
+                             .ready = on_ready};
+    if (!server_run(&server, problem, sizeof problem)) exit_code = fail(EXIT_CODE_FAILURE, "%s", problem);
+  }
+  hl_scene_release(job.scene);
+  host_close(&job.host);
+  return exit_code;
+}
+
+#else
+
+static int run_view(const cli_value *values, char **inputs) {
+  (void)values, (void)inputs;
+  return fail(EXIT_CODE_UNSUPPORTED,
+              "this build has no viewer: build it with libmicrohttpd and libjpeg (-Dviewer=enabled)");
+}
+
+#endif
+
+const cli_command view_command = {
+    .name = "view",
+    .operands = "INPUT ...",
+    .operand_count = 1,
+    .operand_most = MAXIMUM_OPERANDS,
+    .summary = "look at a scene or volumes in a browser: turn, light, colour",
+    .description =
+        "Opens INPUT, as for render, in a page of the browser, and prints the page's URL on stdout. Turn "
+        "the\n"
+        "volume, drag the light, edit the transfer function; save the picture, the scene, or the command\n"
+        "that renders it. The page is served to this machine alone; Ctrl-C ends the viewer.",
+    .options = view_options,
+    .option_count = VIEW_OPTION_COUNT,
+    .run = run_view,
+};

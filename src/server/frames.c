@@ -1,0 +1,217 @@
+/* server/frames.c - pages and their frames: which one renders, which ones are outdated.
+ *
+ * Each page has a renderer of its own, which keeps what does not change from frame to frame. A frame with a
+ * higher number makes those of the page before it outdated: the one that is being rendered stops at the
+ * library's next question, those that wait for it are not begun.
+ */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "parts.h"
+
+/* The frame that this thread works on. */
+static _Thread_local struct {
+  const server *server;
+  server_page *page; /* null: none */
+  unsigned long long number;
+} current;
+
+static double clock_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+bool server_is_outdated(void) {
+  if (current.server == NULL) return false;
+  if (current.server->options.stopped()) return true;
+  return current.page != NULL && atomic_load(&current.page->newest) > current.number;
+}
+
+bool pages_begin(server *s) {
+  bool good = pthread_mutex_init(&s->pages_lock, NULL) == 0;
+  for (int p = 0; p < MOST_PAGES; p++) good &= pthread_mutex_init(&s->pages[p].rendering, NULL) == 0;
+  return good;
+}
+
+void pages_end(server *s) {
+  for (int p = 0; p < MOST_PAGES; p++) {
+    hl_renderer_destroy(s->pages[p].renderer);
+    pthread_mutex_destroy(&s->pages[p].rendering);
+  }
+  pthread_mutex_destroy(&s->pages_lock);
+}
+
+/* ---- pages ---- */
+
+/* The page of this name, or the one that gives way to it; null: all are at work. */
+static server_page *find_page(server *s, const char *name) {
+  server_page *best = NULL;
+  for (int p = 0; p < MOST_PAGES; p++) {
+    server_page *page = &s->pages[p];
+    if (strcmp(page->name, name) == 0) return page;
+    if (page->users == 0 && (best == NULL || page->last_use < best->last_use)) best = page;
+  }
+  return best;
+}
+
+/* The page, held until leave_page(); null: all are at work. */
+static server_page *enter_page(server *s, const char *name, unsigned long long number) {
+  pthread_mutex_lock(&s->pages_lock);
+  server_page *page = find_page(s, name);
+  if (page != NULL && strcmp(page->name, name) != 0) {
+    hl_renderer_destroy(page->renderer);
+    page->renderer = NULL;
+    snprintf(page->name, sizeof page->name, "%s", name);
+    atomic_store(&page->newest, 0);
+  }
+  if (page != NULL) {
+    page->users++;
+    page->last_use = ++s->uses;
+    if (atomic_load(&page->newest) < number) atomic_store(&page->newest, number);
+  }
+  pthread_mutex_unlock(&s->pages_lock);
+  return page;
+}
+
+static void leave_page(server *s, server_page *page) {
+  pthread_mutex_lock(&s->pages_lock);
+  page->users--;
+  pthread_mutex_unlock(&s->pages_lock);
+}
+
+/* ---- answers ---- */
+
+static void refuse(server_answer *answer, unsigned status, const char *type, const hl_error *error) {
+  answer->status = status;
+  answer->type = type;
+  snprintf(answer->problem, sizeof answer->problem, "%s", error->message);
+}
+
+/* 204: nobody waits for this frame any more. */
+static void fail_frame(server_answer *answer, hl_status status, const hl_error *error) {
+  if (status == HL_ERROR_CANCELLED) answer->status = 204;
+  else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL)
+    refuse(answer, 500, "text/plain; charset=utf-8", error);
+  else refuse(answer, 400, "text/plain; charset=utf-8", error);
+}
+
+static hl_status read_scene(const server *s, const char *text, size_t length, hl_scene **scene,
+                            hl_error *error) {
+  hl_status status = hl_scene_from_json_like(s->options.context, text, length, NULL, "scene",
+                                             s->options.scene, scene, error);
+  if (status != HL_OK) return status;
+  const hl_scene_description *d = hl_scene_describe(*scene);
+  if ((long long)d->width * d->height <= MOST_PIXELS) return HL_OK;
+  snprintf(error->message, sizeof error->message, "/image: %d x %d pixels are more than the viewer's %d",
+           d->width, d->height, (int)MOST_PIXELS);
+  hl_scene_release(*scene);
+  *scene = NULL;
+  return HL_ERROR_INPUT;
+}
+
+void answer_scene(server *s, const char *text, size_t length, server_answer *answer) {
+  hl_scene *scene = NULL;
+  hl_error error = {0};
+  current.server = s;
+  current.page = NULL;
+  hl_status status = read_scene(s, text, length, &scene, &error);
+  if (status == HL_OK) status = hl_scene_to_json(s->options.context, scene, &answer->text, &error);
+  hl_scene_release(scene);
+  current.server = NULL;
+  if (status != HL_OK) {
+    fail_frame(answer, status, &error);
+    return;
+  }
+  answer->status = 200;
+  answer->type = "application/json";
+  answer->length = strlen(answer->text);
+}
+
+static hl_status write_jpeg(const hl_image *image, const hl_image_write_options *options, int quality,
+                            server_answer *answer, hl_error *error) {
+  int width = hl_image_width(image), height = hl_image_height(image);
+  hl_image_write_options opaque = *options;
+  opaque.background_transparent = 0;
+  uint8_t *rgba = malloc(4 * (size_t)width * (size_t)height);
+  hl_status status = rgba != NULL ? hl_image_to_srgb8(image, &opaque, rgba, 4 * (size_t)width, error)
+                                  : HL_ERROR_MEMORY;
+  if (status == HL_OK) {
+    answer->from_malloc = encode_jpeg(rgba, width, height, quality, &answer->length);
+    answer->type = "image/jpeg";
+    if (answer->from_malloc == NULL) status = HL_ERROR_MEMORY;
+  }
+  free(rgba);
+  if (status == HL_ERROR_MEMORY) snprintf(error->message, sizeof error->message, "no memory for a JPEG");
+  return status;
+}
+
+/* The same bytes as `halflight render` writes of the scene. */
+static hl_status write_exact(const server *s, const hl_scene *scene, const hl_image *image,
+                             hl_image_write_options *options, const frame_request *request,
+                             server_answer *answer, hl_error *error) {
+  char *json = NULL;
+  hl_status status = hl_scene_to_json(s->options.context, scene, &json, error);
+  options->scene_json = json;
+  options->png_depth = request->depth;
+  if (status == HL_OK)
+    status = hl_image_encode(s->options.context, image, request->format, options, &answer->bytes,
+                             &answer->length, error);
+  answer->type = strcmp(request->format, "png") == 0 ? "image/png" : "image/x-exr";
+  hl_text_release(s->options.context, json);
+  return status;
+}
+
+static hl_status render(server *s, server_page *page, const hl_scene *scene, const frame_request *request,
+                        server_answer *answer, hl_error *error) {
+  const hl_scene_description *d = hl_scene_describe(scene);
+  hl_image *image = NULL;
+  double began = clock_seconds();
+  hl_status status = page->renderer == NULL ? hl_renderer_create(s->options.context, &page->renderer, error)
+                                            : HL_OK;
+  if (status == HL_OK) status = hl_image_create(s->options.context, d->width, d->height, &image, error);
+  if (status == HL_OK)
+    status = hl_renderer_render(page->renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL,
+                                error);
+  double rendered = clock_seconds();
+  if (status == HL_OK) {
+    hl_image_write_options options;
+    hl_scene_write_options(scene, &options);
+    status = strcmp(request->format, "jpeg") == 0
+                 ? write_jpeg(image, &options, request->quality, answer, error)
+                 : write_exact(s, scene, image, &options, request, answer, error);
+  }
+  hl_image_destroy(image);
+  answer->seconds_render = rendered - began;
+  answer->seconds_encode = clock_seconds() - rendered;
+  return status;
+}
+
+void answer_frame(server *s, const frame_request *request, server_answer *answer) {
+  server_page *page = enter_page(s, request->page, request->number);
+  if (page == NULL) {
+    refuse(answer, 503, "text/plain; charset=utf-8",
+           &(hl_error){.message = "too many pages render at once: close one"});
+    return;
+  }
+  hl_scene *scene = NULL;
+  hl_error error = {0};
+  pthread_mutex_lock(&page->rendering);
+  current.server = s;
+  current.page = page;
+  current.number = request->number;
+  double began = clock_seconds();
+  hl_status status = server_is_outdated() ? HL_ERROR_CANCELLED
+                                          : read_scene(s, request->text, request->length, &scene, &error);
+  answer->seconds_read = clock_seconds() - began;
+  if (status == HL_OK) status = render(s, page, scene, request, answer, &error);
+  current.server = NULL;
+  pthread_mutex_unlock(&page->rendering);
+  hl_scene_release(scene);
+  leave_page(s, page);
+  if (status == HL_OK) answer->status = 200;
+  else fail_frame(answer, status, &error);
+}

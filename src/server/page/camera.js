@@ -1,0 +1,84 @@
+// The camera of a scene: how it turns, pans, zooms and rolls, and where it puts points of the world on the
+// screen. Every function takes the camera of the scene's JSON; those that move it return a new one.
+
+import { add, cross, dot, length, normalize, rotate, scale, subtract } from "./vector.js";
+
+const LARGEST_STEP = 1.5; // of one zoom, as a factor of the distance
+
+// Unit axes: right, up, and towards the viewer.
+export function axes(camera) {
+  const towards = normalize(subtract(camera.position, camera.target));
+  let right = cross(camera.up, towards);
+  if (length(right) < 1e-9) right = cross(Math.abs(towards[1]) < 0.9 ? [0, 1, 0] : [1, 0, 0], towards);
+  right = normalize(right);
+  return { right, up: cross(towards, right), towards };
+}
+
+export const distance = (camera) => length(subtract(camera.position, camera.target));
+
+// The world's height of the picture at the target.
+export function worldHeight(camera) {
+  if (camera.type === "orthographic") return camera.height;
+  return 2 * distance(camera) * Math.tan((camera.fovy_deg * Math.PI) / 360);
+}
+
+// VTK's trackball: the eye goes about the target, right and up as angles; up is carried along.
+export function turn(camera, azimuth, elevation) {
+  const { right, up } = axes(camera);
+  const arm = subtract(camera.position, camera.target);
+  const about = (a) => rotate(rotate(a, up, azimuth), rotate(right, up, azimuth), -elevation);
+  return { ...camera, position: add(camera.target, about(arm)), up: normalize(about(up)) };
+}
+
+export function roll(camera, angle) {
+  const { up, towards } = axes(camera);
+  return { ...camera, up: normalize(rotate(up, towards, angle)) };
+}
+
+// By fractions of the picture's height; what is seen moves right and up with positive ones.
+export function pan(camera, right, up) {
+  const frame = axes(camera), height = worldHeight(camera);
+  const move = add(scale(frame.right, -right * height), scale(frame.up, -up * height));
+  return { ...camera, position: add(camera.position, move), target: add(camera.target, move) };
+}
+
+// factor > 1 comes nearer. The point of the target's plane under the cursor stays there: `cursor` is [right, up]
+// from the middle, in fractions of the picture's height.
+export function zoom(camera, factor, cursor = [0, 0]) {
+  const step = Math.min(Math.max(factor, 1 / LARGEST_STEP), LARGEST_STEP);
+  const part = 1 - 1 / step;
+  const moved = pan(camera, -cursor[0] * part, -cursor[1] * part);
+  const arm = subtract(moved.position, moved.target);
+  if (camera.type === "orthographic") return { ...moved, height: camera.height / step };
+  return { ...moved, position: add(moved.target, scale(arm, 1 / step)) };
+}
+
+// Looks along the world's axis, from its positive or negative end, at the same target from the same distance.
+export function lookAlong(camera, axis, sign) {
+  const towards = [0, 0, 0];
+  towards[axis] = sign;
+  const up = axis === 2 ? [0, 1, 0] : [0, 0, 1];
+  return { ...camera, position: add(camera.target, scale(towards, distance(camera))), up };
+}
+
+// The other projection, with the same height at the target.
+export function withType(camera, type) {
+  const { position, target, up } = camera, height = worldHeight(camera);
+  if (type === camera.type) return camera;
+  if (type === "orthographic") return { type, position, target, up, height };
+  const fovy = 30, arm = height / (2 * Math.tan((fovy * Math.PI) / 360));
+  const { towards } = axes(camera);
+  return { type, position: add(target, scale(towards, arm)), target, up, fovy_deg: fovy };
+}
+
+// A function from points of the world to [x, y] in a picture of this size; null for points behind the eye.
+export function projector(camera, width, height) {
+  const frame = axes(camera), tall = worldHeight(camera), far = distance(camera);
+  return (point) => {
+    const from = subtract(point, camera.target);
+    const depth = far - dot(from, frame.towards);
+    if (camera.type !== "orthographic" && depth <= far * 1e-3) return null;
+    const size = camera.type === "orthographic" ? tall : (tall * depth) / far;
+    return [width / 2 + (dot(from, frame.right) / size) * height, height / 2 - (dot(from, frame.up) / size) * height];
+  };
+}

@@ -1,0 +1,102 @@
+// The small pieces that panels are made of: rows of a label and a control, which follow the scene.
+
+// An element with attributes; those that begin with "on" are listeners. Children are elements or texts.
+export function make(tag, attributes = {}, ...children) {
+  const element = tag.startsWith("svg:") ? document.createElementNS("http://www.w3.org/2000/svg", tag.slice(4))
+                                         : document.createElement(tag);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
+    else element.setAttribute(key, value === true ? "" : value);
+  }
+  element.append(...children);
+  return element;
+}
+
+let identifiers = 0;
+const newId = () => `control-${++identifiers}`;
+
+export const row = (label, ...controls) => make("div", { class: "row" }, label, ...controls);
+
+// Numbers as people read them: three or four digits that matter.
+export function shortNumber(value) {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e5 || size < 1e-3) return value.toExponential(2);
+  return String(+value.toPrecision(size >= 1000 ? 5 : 3));
+}
+
+// A slider with its number beside it. get() gives the value, set(value) takes it; exponential: the slider moves in
+// equal factors. Returns { element, update }.
+export function slider({ label, low, high, step = "any", unit = "", exponential = false, get, set, title }) {
+  const toSlider = exponential ? Math.log : (x) => x, fromSlider = exponential ? Math.exp : (x) => x;
+  const id = newId();
+  const range = make("input", {
+    type: "range", id, min: toSlider(low), max: toSlider(high), title,
+    step: exponential ? (toSlider(high) - toSlider(low)) / 200 : step === "any" ? (high - low) / 200 : step,
+    oninput: () => { set(fromSlider(+range.value)); update(); },
+  });
+  const number = make("input", {
+    type: "number", class: "number", "aria-label": `${label}${unit ? ` in ${unit}` : ""}`, min: low, max: high,
+    step: "any",
+    onchange: () => {
+      if (number.value !== "" && Number.isFinite(+number.value)) set(Math.min(Math.max(+number.value, low), high));
+      update();
+    },
+  });
+  function update() {
+    const value = get();
+    range.value = toSlider(Math.max(value, exponential ? low : -Infinity));
+    range.setAttribute("aria-valuetext", `${shortNumber(value)} ${unit}`.trim());
+    const filled = (range.value - range.min) / (range.max - range.min);
+    range.style.setProperty("--filled", `${100 * Math.min(Math.max(filled, 0), 1)}%`);
+    if (document.activeElement !== number) number.value = shortNumber(value);
+  }
+  const name = make("label", { for: id, title }, label);
+  return { element: row(name, range, make("span", { class: "measure" }, number, make("span", { class: "unit" }, unit))), update };
+}
+
+// One of some choices, as buttons side by side: [[value, text], ...].
+export function segments({ label, choices, get, set }) {
+  const name = newId();
+  const inputs = choices.map(([value, text]) => {
+    const input = make("input", { type: "radio", name, value, id: newId(), onchange: () => set(value) });
+    return [input, make("label", { for: input.id }, text)];
+  });
+  const update = () => { for (const [input] of inputs) input.checked = input.value === String(get()); };
+  const group = make("div", { class: "segments", role: "radiogroup", "aria-label": label }, ...inputs.flat());
+  return { element: row(make("span", { class: "name" }, label), group), update };
+}
+
+// A drop-down list: [[value, text], ...].
+export function select({ label, choices, get, set, title }) {
+  const id = newId();
+  const input = make("select", { id, title, onchange: () => set(input.value) },
+    ...choices.map(([value, text]) => make("option", { value }, text)));
+  const update = () => { input.value = get(); };
+  return { element: row(make("label", { for: id }, label), input), update };
+}
+
+// A switch.
+export function toggle({ label, get, set }) {
+  const id = newId();
+  const input = make("input", { type: "checkbox", id, role: "switch", onchange: () => set(input.checked) });
+  return { element: row(make("label", { for: id }, label), input), update: () => { input.checked = get(); } };
+}
+
+export function color({ label, get, set }) {
+  const id = newId();
+  const input = make("input", { type: "color", id, oninput: () => set(input.value) });
+  return { element: row(make("label", { for: id }, label), input), update: () => { input.value = get(); } };
+}
+
+export function button(text, action, attributes = {}) {
+  return make("button", { type: "button", onclick: action, ...attributes }, text);
+}
+
+// A part of the side bar that folds. Returns { element, body }.
+export function section(title, open = true) {
+  const body = make("div", { class: "section-body" });
+  const element = make("details", { class: "section", open }, make("summary", {}, title), body);
+  return { element, body };
+}

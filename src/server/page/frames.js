@@ -1,0 +1,152 @@
+// Frames: which picture is asked for next, and how good it is.
+//
+// While something moves, small pictures with wide sheets follow each other, each asked for when the last one has
+// come, as large as keeps FRAMES_PER_SECOND. At rest a picture of full size follows, as fine as fits into half a
+// second; then the exact one, which is what `halflight render` makes of the same scene.
+
+import { fetchFrame } from "./api.js";
+
+const BUDGET = 1000 / 20; // milliseconds of a frame while something moves
+const REST_AFTER = 120; // milliseconds without a change
+const SETTLED_WITHIN = 380; // milliseconds for the first picture of full size, so that it comes half a second after
+const LEAST_PIXELS = 160 * 160;
+const MOST_SPACING = 3; // voxels between sheets while something moves
+const ADAPTION = 0.6; // how much of an error in time one frame corrects, as an exponent
+
+// Sides that are multiples of 16 render without a copy.
+const rounded = (side) => Math.max(16, Math.round(side / 16) * 16);
+
+export class Frames {
+  #store;
+  #canvas;
+  #report;
+  #changed = false;
+  #busy = false;
+  #generation = 0;
+  #timer = 0;
+  #pixels = 300 * 300;
+  #spacing = 1.5;
+  #cost = 0; // milliseconds per pixel of a picture with sheets a voxel apart
+  statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
+
+  // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
+  constructor(store, canvas, report) {
+    this.#store = store;
+    this.#canvas = canvas;
+    this.#report = report;
+    store.listen(() => this.move());
+  }
+
+  // Something has changed.
+  move() {
+    this.#changed = true;
+    this.#generation++;
+    clearTimeout(this.#timer);
+    if (this.statistics.stage === "refining") this.statistics.cancelled++;
+    this.statistics.stage = "moving";
+    if (!this.#busy) this.#preview();
+  }
+
+  #full() {
+    const { width, height } = this.#store.scene.image;
+    return { width, height, pixels: width * height };
+  }
+
+  // The scene in a picture of about so many pixels with sheets this far apart, at least.
+  #scaled(pixels, spacing) {
+    const scene = this.#store.scene, full = this.#full();
+    const factor = Math.min(1, Math.sqrt(pixels / full.pixels));
+    const width = factor === 1 ? full.width : rounded(full.width * factor);
+    const height = factor === 1 ? full.height : rounded(full.height * factor);
+    const sheets = Math.max(spacing, scene.render.sheet_spacing);
+    return {
+      ...scene, image: { ...scene.image, width, height }, render: { ...scene.render, sheet_spacing: sheets },
+    };
+  }
+
+  async #preview() {
+    this.#busy = true;
+    while (this.#changed) {
+      this.#changed = false;
+      const scene = this.#scaled(this.#pixels, this.#spacing), began = performance.now();
+      try {
+        const frame = await fetchFrame(scene, { quality: 80 });
+        if (frame !== null) {
+          await this.#show(frame.blob, scene.image);
+          this.#learn(scene, performance.now() - began, frame.times.render ?? 0);
+          this.statistics.previews++;
+          this.#tell("moving", scene, began, frame.blob);
+        }
+      } catch (error) {
+        this.#report({ stage: "failed", error });
+        await new Promise((resolve) => setTimeout(resolve, 300));
+      }
+    }
+    this.#busy = false;
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
+  }
+
+  // Larger or smaller, and sheets closer or wider, by how long the last picture took.
+  #learn(scene, milliseconds, rendering) {
+    const { width, height } = scene.image, spacing = scene.render.sheet_spacing;
+    const cost = (rendering * spacing) / (width * height);
+    this.#cost = this.#cost === 0 ? cost : 0.7 * this.#cost + 0.3 * cost;
+    const factor = Math.min(Math.max(BUDGET / milliseconds, 0.25), 2) ** ADAPTION;
+    const pixels = width * height * factor, full = this.#full().pixels;
+    if (pixels < LEAST_PIXELS) this.#spacing = Math.min(this.#spacing / factor, MOST_SPACING);
+    else if (pixels > full / 2 || this.#spacing > 2) this.#spacing = Math.max(this.#spacing / factor, 1);
+    this.#pixels = Math.min(Math.max(pixels, LEAST_PIXELS), full);
+  }
+
+  // The picture at rest, in two steps, as long as nothing changes.
+  async #refine(generation) {
+    if (generation !== this.#generation) return;
+    this.statistics.stage = "refining";
+    const full = this.#full().pixels, scene = this.#store.scene;
+    const spacing = (this.#cost * full) / SETTLED_WITHIN; // that takes as long as there is time
+    try {
+      if (spacing > scene.render.sheet_spacing * 1.2) {
+        const coarser = Math.min(spacing, 2);
+        await this.#step(generation, this.#scaled(full * Math.min(1, coarser / spacing), coarser), "settled");
+      }
+      if (generation === this.#generation) await this.#step(generation, scene, "final");
+    } catch (error) {
+      if (generation === this.#generation) this.#report({ stage: "failed", error });
+    }
+  }
+
+  async #step(generation, scene, stage) {
+    const began = performance.now();
+    const options = stage === "final" ? { format: "png" } : { quality: 92 };
+    if (stage === "final") this.#tell("refining", scene, began, null);
+    const frame = await fetchFrame(scene, options);
+    if (frame === null || generation !== this.#generation) return;
+    await this.#show(frame.blob, scene.image);
+    if (generation !== this.#generation) return;
+    if (stage === "final") {
+      this.finalPicture = frame.blob;
+      this.statistics.finals++;
+      this.statistics.stage = "final";
+    }
+    this.#tell(stage, scene, began, frame.blob);
+  }
+
+  async #show(blob, { width, height }) {
+    const bitmap = await createImageBitmap(blob, { premultiplyAlpha: "none", colorSpaceConversion: "none" });
+    if (this.#canvas.width !== width) this.#canvas.width = width;
+    if (this.#canvas.height !== height) this.#canvas.height = height;
+    const context = this.#canvas.getContext("2d");
+    context.globalCompositeOperation = "copy";
+    context.drawImage(bitmap, 0, 0);
+    bitmap.close();
+  }
+
+  #tell(stage, scene, began, blob) {
+    const { width, height } = scene.image;
+    this.#report({
+      stage, width, height, spacing: scene.render.sheet_spacing,
+      milliseconds: performance.now() - began, bytes: blob?.size ?? 0,
+    });
+  }
+}

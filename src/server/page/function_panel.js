@@ -1,0 +1,117 @@
+// The panel of a volume's transfer function: the drawing, the chosen point's numbers, colormaps and presets.
+
+import { completeScene } from "./api.js";
+import { hexOf, linearOf } from "./color.js";
+import { button, color, make, row, section, select, slider } from "./controls.js";
+import { FunctionCanvas } from "./function_canvas.js";
+import { movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
+
+// The numbers of the point or colour that is chosen in the drawing.
+function chosenPoint(canvas, get, set, range) {
+  const number = (label, give, take) => make("input", {
+    type: "number", step: "any", "aria-label": label,
+    onchange: (event) => {
+      if (event.target.value !== "") take(+event.target.value);
+    },
+    give,
+  });
+  const at = () => {
+    const { kind, index } = canvas.selected, rows = kind === "point" ? get().opacity : get().color;
+    return { kind, index, row: rows[index] };
+  };
+  const value = number("Value", null, (x) => {
+    const { kind, index, row: chosen } = at();
+    set(kind === "point" ? movePoint(get(), index, x, chosen[1], range) : moveStop(get(), index, x), "value");
+  });
+  const opacity = number("Opacity", null, (o) => {
+    const { index, row: chosen } = at();
+    set(movePoint(get(), index, chosen[0], o, range), "opacity");
+  });
+  const shade = make("input", {
+    type: "color", "aria-label": "Colour", oninput: () => set(recolorStop(get(), at().index, linearOf(shade.value)), "color"),
+  });
+  const opacityLabel = make("label", { class: "inline" }, "opacity ", opacity);
+  const shadeLabel = make("label", { class: "inline" }, "colour ", shade);
+  function update() {
+    const { kind, row: chosen } = at();
+    if (!chosen) return;
+    if (document.activeElement !== value) value.value = +chosen[0].toPrecision(5);
+    if (kind === "point" && document.activeElement !== opacity) opacity.value = +chosen[1].toPrecision(3);
+    if (kind === "stop") shade.value = hexOf(chosen.slice(1));
+    opacityLabel.hidden = kind !== "point";
+    shadeLabel.hidden = kind === "point";
+  }
+  return { element: make("div", { class: "row chosen" }, make("label", { class: "inline" }, "value ", value), opacityLabel, shadeLabel), update };
+}
+
+// Two numbers between which colours and opacities lie.
+function rangeRow(get, set) {
+  const inputs = [0, 1].map((end) => make("input", {
+    type: "number", step: "any", "aria-label": end === 0 ? "Least value of the range" : "Greatest value of the range",
+    onchange: (event) => {
+      const before = rangeOf(get()), now = [...before];
+      now[end] = +event.target.value;
+      if (event.target.value !== "" && now[1] > now[0] && before[1] > before[0]) set(stretched(get(), before, now), "range");
+      update();
+    },
+  }));
+  function update() {
+    rangeOf(get()).forEach((value, end) => {
+      if (document.activeElement !== inputs[end]) inputs[end].value = +value.toPrecision(5);
+    });
+  }
+  return { element: row(make("span", { class: "name" }, "Range"), make("span", { class: "pair" }, inputs[0], "to", inputs[1])), update };
+}
+
+export function functionPanel(store, start, current, report) {
+  const { element, body } = section("Transfer function");
+  const volume = () => store.scene.volumes[current.volume];
+  const get = () => volume().transfer_function;
+  const set = (tf, name = "") =>
+    store.changeVolume(current.volume, `function ${name}`, (changed) => ({ ...changed, transfer_function: tf }));
+  let parts = [];
+
+  // A preset's points are the program's own: the scene with the preset is sent, and comes back with them.
+  async function applyPreset(name) {
+    const volumes = store.scene.volumes.map((v, n) => {
+      if (n !== current.volume) return v;
+      const { transfer_function: _, ...rest } = v;
+      return name === "automatic" ? rest : { ...rest, transfer_function: { preset: name } };
+    });
+    try {
+      const complete = await completeScene({ ...store.scene, volumes });
+      set(complete.volumes[current.volume].transfer_function, `preset ${name}`);
+    } catch (error) {
+      report(error.message);
+    }
+  }
+
+  function build() {
+    const about = start.volumes[current.volume], range = about.range;
+    const canvas = new FunctionCanvas({ get, set, histogram: about.histogram, range });
+    const chosen = chosenPoint(canvas, get, set, range), ends = rangeRow(get, set);
+    canvas.onSelect = () => chosen.update();
+    const unit = get().unit_distance;
+    const density = slider({
+      label: "Opacity", low: 0.02, high: 50, exponential: true, unit: "×", title: "How much a length of matter hides",
+      get: () => unit / get().unit_distance, set: (factor) => set({ ...get(), unit_distance: unit / factor }, "density"),
+    });
+    const maps = select({
+      label: "Colours", choices: [["", "own"], ...Object.keys(start.colormaps).map((name) => [name, name])],
+      get: () => "", set: (name) => name && set(withColormap(get(), start.colormaps[name], rangeOf(get())), `map ${name}`),
+    });
+    const presets = select({
+      label: "Preset", choices: [["", "choose …"], ["automatic", "automatic"], ...start.presets.map((name) => [name, name])],
+      get: () => "", set: (name) => name && applyPreset(name),
+    });
+    const zoomed = row(make("span", { class: "name" }, "Show"), make("span", { class: "buttons" },
+      button("all values", () => { canvas.shown = range; }),
+      button("range", () => { canvas.shown = rangeOf(get()); })));
+    body.replaceChildren(canvas.element, chosen.element, density.element, maps.element, presets.element, ends.element, zoomed);
+    parts = [{ update: () => canvas.draw() }, chosen, density, ends];
+    update();
+  }
+  const update = () => parts.forEach((part) => part.update());
+  build();
+  return { element, update, rebuild: build };
+}

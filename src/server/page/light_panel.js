@@ -1,0 +1,117 @@
+// The panels of lights and shadows.
+
+import { hexOf, linearOf } from "./color.js";
+import { button, color, make, section, segments, select, slider, toggle } from "./controls.js";
+import { LARGEST_SIZE, newLight, sizeOf, withOtherFrame, withSize } from "./light.js";
+
+// Where a light's colour has been made so that its brightest part is 1: its strength is the intensity.
+const shown = (light) => light.color.map((c) => c / Math.max(...light.color, 1e-9));
+
+function tabs(store, current, changed) {
+  const element = make("div", { class: "tabs", role: "tablist", "aria-label": "Lights" });
+  const add = () => {
+    store.change("add light", (scene) => ({ ...scene, lights: [...scene.lights, newLight()] }));
+    changed(store.scene.lights.length - 1);
+  };
+  const remove = () => {
+    const index = current.light;
+    store.change("remove light", (scene) => ({ ...scene, lights: scene.lights.filter((_, l) => l !== index) }));
+    changed(Math.max(0, index - 1));
+  };
+  function update() {
+    const { lights } = store.scene;
+    element.replaceChildren(
+      ...lights.map((light, l) => make("button", {
+        type: "button", role: "tab", "aria-selected": String(l === current.light), onclick: () => changed(l),
+        "aria-label": `Light ${l + 1}`,
+      }, `${l + 1}`)),
+      button("+", add, { title: "Add a light", "aria-label": "Add a light" }),
+      button("−", remove, { title: "Remove this light", "aria-label": "Remove this light", disabled: lights.length === 0 }));
+  }
+  return { element, update };
+}
+
+export function lightPanel(store, current, overlay) {
+  const { element, body } = section("Lights");
+  const light = () => store.scene.lights[current.light];
+  const change = (name, set) => store.changeLight(current.light, name, set);
+  const choose = (index) => {
+    current.light = index;
+    overlay.chosenLight = index;
+    update();
+    overlay.draw();
+  };
+  overlay.onChooseLight = choose;
+  const list = tabs(store, current, choose);
+  const handles = toggle({
+    label: "Handles in the picture", get: () => overlay.showsLights, set: (on) => { overlay.showsLights = on; },
+  });
+  const rows = [
+    slider({
+      label: "Intensity", low: 0, high: 4, get: () => light().intensity ?? 1,
+      set: (intensity) => change("intensity", (l) => ({ ...l, intensity })),
+    }),
+    slider({
+      label: "Size", low: 0, high: LARGEST_SIZE, unit: "°", title: "How wide the light is: wider lights cast softer shadows",
+      get: () => sizeOf(light(), store.scene.camera),
+      set: (degrees) => change("size", (l) => withSize(l, store.scene.camera, degrees)),
+    }),
+    color({
+      label: "Colour", get: () => hexOf(shown(light())),
+      set: (hex) => change("color", (l) => ({ ...l, color: linearOf(hex) })),
+    }),
+    toggle({
+      label: "Casts shadows", get: () => light().shadows !== "off",
+      set: (on) => change("shadows", ({ shadows, ...l }) => (on ? l : { ...l, shadows: "off" })),
+    }),
+    toggle({
+      label: "Goes with the camera", get: () => light().frame === "camera",
+      set: () => change("frame", (l) => withOtherFrame(l, store.scene.camera)),
+    }),
+  ];
+  const own = make("div", {}, ...rows.map((r) => r.element));
+  const ambient = slider({
+    label: "Ambient", low: 0, high: 1, get: () => Math.max(...(store.scene.ambient ?? [0.2, 0.2, 0.2])),
+    set: (level) => store.change("ambient", (scene) => ({ ...scene, ambient: [level, level, level] })),
+  });
+  body.append(list.element, handles.element, own, ambient.element);
+  function update() {
+    current.light = Math.min(current.light, Math.max(store.scene.lights.length - 1, 0));
+    list.update();
+    handles.update();
+    ambient.update();
+    own.hidden = light() === undefined;
+    if (light() !== undefined) rows.forEach((r) => r.update());
+  }
+  update();
+  return { element, update };
+}
+
+export function shadowPanel(store) {
+  const { element, body } = section("Shadows");
+  const render = () => store.scene.render;
+  const kind = segments({
+    label: "Shadows", choices: [["off", "Off"], ["hard", "Hard"], ["soft", "Soft"]],
+    get: () => render().shadows, set: (value) => store.changeRender("shadows", value),
+  });
+  const method = select({
+    label: "Method", choices: [["cascade", "cascade (default)"], ["sublights", "sub-lights (exact with many)"], ["paper", "as published"]],
+    get: () => render().soft_method, set: (value) => store.changeRender("soft_method", value),
+  });
+  const samples = slider({
+    label: "Sub-lights", low: 1, high: 16, step: 1, get: () => render().light_samples ?? 4, title: "So many along each side of a light",
+    set: (count) => store.changeRender("light_samples", Math.round(count)),
+  });
+  const spacing = slider({
+    label: "Sheets", low: 0.25, high: 4, exponential: true, unit: "voxels", title: "The distance of sheets in the final picture: closer is finer and slower",
+    get: () => render().sheet_spacing, set: (value) => store.changeRender("sheet_spacing", +value.toPrecision(3)),
+  });
+  body.append(kind.element, method.element, samples.element, spacing.element);
+  function update() {
+    for (const part of [kind, method, samples, spacing]) part.update();
+    method.element.hidden = render().shadows !== "soft";
+    samples.element.hidden = method.element.hidden || render().soft_method !== "sublights";
+  }
+  update();
+  return { element, update };
+}

@@ -1,0 +1,207 @@
+// What is drawn over the picture: orientation marker, scale bar, clip box, and the lights' handles.
+
+import { axes, projector, worldHeight } from "./camera.js";
+import { corners, edges, placed, worldBox } from "./boxes.js";
+import { hexOf } from "./color.js";
+import { make, shortNumber } from "./controls.js";
+import { directionOf, sizeOf, withDirection, withSize } from "./light.js";
+
+const MARKER = { size: 34, left: 56, bottom: 60 }; // pixels
+const BAR_WIDTH = 140; // pixels, at most
+const SPHERE_OF_HEIGHT = 0.42; // radius of the sphere on which lights are moved, of the picture's shorter side
+const RING_PER_DEGREE = 1.6; // pixels of a handle's ring for each degree of the light's size
+const RING_LEAST = 15;
+const KEY_STEP = 3; // degrees
+
+const AXIS_NAMES = { RAS: ["R", "A", "S"], LPS: ["L", "P", "S"], LAS: ["L", "A", "S"] };
+
+// A length that is short to say, 1, 2 or 5 times a power of ten, and at most `most`.
+export function roundLength(most) {
+  const power = 10 ** Math.floor(Math.log10(most));
+  return [5, 2, 1].map((n) => n * power).find((x) => x <= most * 1.0000001);
+}
+
+export class Overlay {
+  #svg;
+  #store;
+  #start;
+  #showLights = false;
+  #lights = make("svg:g");
+  #marker = make("svg:g", { class: "marker", "aria-hidden": "true" });
+  #bar = make("svg:g", { class: "scale", "aria-hidden": "true" });
+  #box = make("svg:path", { class: "clip-box", "aria-hidden": "true" });
+  #width = 1;
+  #height = 1;
+  chosenLight = 0;
+  onChooseLight = () => {};
+
+  constructor(svg, store, start) {
+    this.#svg = svg;
+    this.#store = store;
+    this.#start = start;
+    svg.append(this.#box, this.#marker, this.#bar, this.#lights);
+    store.listen(() => this.draw());
+    new ResizeObserver(() => this.draw()).observe(svg);
+  }
+
+  get showsLights() { return this.#showLights; }
+  set showsLights(shows) {
+    this.#showLights = shows;
+    this.draw();
+  }
+
+  draw() {
+    this.#width = this.#svg.clientWidth;
+    this.#height = this.#svg.clientHeight;
+    this.#drawMarker();
+    this.#drawBar();
+    this.#drawBox();
+    this.#drawLights();
+  }
+
+  #drawMarker() {
+    const frame = axes(this.#store.scene.camera);
+    const names = AXIS_NAMES[this.#start.volumes[0]?.space] ?? ["x", "y", "z"];
+    const middle = [MARKER.left, this.#height - MARKER.bottom];
+    const arrows = [0, 1, 2].map((k) => ({ k, right: frame.right[k], up: frame.up[k], depth: frame.towards[k] }));
+    arrows.sort((a, b) => a.depth - b.depth);
+    this.#marker.replaceChildren(...arrows.flatMap(({ k, right, up, depth }) => {
+      const tip = [middle[0] + MARKER.size * right, middle[1] - MARKER.size * up];
+      const name = [middle[0] + (MARKER.size + 12) * right, middle[1] - (MARKER.size + 12) * up];
+      const style = `axis axis-${k}${depth < -0.2 ? " far" : ""}`;
+      const text = make("svg:text", { x: name[0], y: name[1], class: style }, names[k]);
+      return [make("svg:line", { x1: middle[0], y1: middle[1], x2: tip[0], y2: tip[1], class: style }), text];
+    }));
+  }
+
+  #drawBar() {
+    const perPixel = worldHeight(this.#store.scene.camera) / this.#height;
+    const size = roundLength(BAR_WIDTH * perPixel), pixels = size / perPixel;
+    const right = this.#width - 24, y = this.#height - 26;
+    const path = `M${right - pixels} ${y - 5}v5h${pixels}v-5`;
+    this.#bar.replaceChildren(
+      make("svg:path", { d: path, class: "halo" }), make("svg:path", { d: path }),
+      make("svg:text", { x: right - pixels / 2, y: y - 8 }, shortNumber(size)));
+  }
+
+  #drawBox() {
+    const project = projector(this.#store.scene.camera, this.#width, this.#height);
+    const lines = this.#store.scene.volumes.flatMap((volume, v) => {
+      if (!volume.clip || !this.#start.volumes[v]) return [];
+      const whole = worldBox(this.#start.volumes[v]), { min, max } = volume.clip;
+      if (min.every((x, k) => x <= whole.min[k]) && max.every((x, k) => x >= whole.max[k])) return [];
+      const points = corners(volume.clip).map((point) => project(placed(point, volume.transform)));
+      return edges.filter(([a, b]) => points[a] && points[b]).map(([a, b]) => `M${points[a]}L${points[b]}`);
+    });
+    this.#box.setAttribute("d", lines.join(""));
+  }
+
+  // ---- lights ----
+
+  #sphere() {
+    return { x: this.#width / 2, y: this.#height / 2, radius: SPHERE_OF_HEIGHT * Math.min(this.#width, this.#height) };
+  }
+
+  #drawLights() {
+    const { lights, camera } = this.#store.scene, sphere = this.#sphere();
+    this.#svg.classList.toggle("with-lights", this.#showLights);
+    if (!this.#showLights) {
+      this.#lights.replaceChildren();
+      return;
+    }
+    const focused = this.#lights.contains(document.activeElement) ? document.activeElement.dataset.light : undefined;
+    if (this.#lights.childElementCount !== lights.length + 1) {
+      const rim = make("svg:circle", { class: "light-sphere" });
+      this.#lights.replaceChildren(rim, ...lights.map((_, l) => this.#makeHandle(l)));
+    }
+    const rim = this.#lights.firstElementChild;
+    for (const [key, value] of [["cx", sphere.x], ["cy", sphere.y], ["r", sphere.radius]]) rim.setAttribute(key, value);
+    lights.forEach((light, l) => this.#placeHandle(this.#lights.children[l + 1], light, l, camera, sphere));
+    if (focused !== undefined) this.#lights.children[+focused + 1]?.focus();
+  }
+
+  #placeHandle(handle, light, l, camera, sphere) {
+    const [right, up, towards] = directionOf(light, camera), size = sizeOf(light, camera);
+    const [ring, dot] = handle.children;
+    handle.setAttribute("transform", `translate(${sphere.x + right * sphere.radius} ${sphere.y - up * sphere.radius})`);
+    handle.setAttribute("class", `light${towards < 0 ? " behind" : ""}${l === this.chosenLight ? " chosen" : ""}`);
+    handle.setAttribute("aria-valuetext",
+      `${Math.round((Math.atan2(right, towards) * 180) / Math.PI)} degrees right, ` +
+      `${Math.round((Math.asin(Math.min(Math.max(up, -1), 1)) * 180) / Math.PI)} degrees up, ` +
+      `${Math.round(size)} degrees wide`);
+    ring.setAttribute("r", RING_LEAST + RING_PER_DEGREE * size);
+    dot.setAttribute("fill", hexOf(light.color.map((c) => c / Math.max(...light.color, 1e-9))));
+  }
+
+  #makeHandle(l) {
+    const ring = make("svg:circle", { class: "light-ring", onpointerdown: (event) => this.#grab(event, l, "size") });
+    const dot = make("svg:circle", { class: "light-dot", r: 9, onpointerdown: (event) => this.#grab(event, l, "place") });
+    return make("svg:g", {
+      class: "light", tabindex: 0, role: "slider", "aria-label": `Light ${l + 1}`, "aria-valuenow": l + 1, "data-light": l,
+      onfocus: () => this.#choose(l), onkeydown: (event) => this.#key(event, l),
+    }, ring, dot);
+  }
+
+  #choose(l) {
+    if (this.chosenLight === l) return;
+    this.chosenLight = l;
+    this.onChooseLight(l);
+    this.draw();
+  }
+
+  // Drags the dot over the sphere, beyond whose rim the light goes behind; or the ring, which is the light's size.
+  #grab(event, l, what) {
+    event.stopPropagation();
+    event.preventDefault();
+    this.#choose(l);
+    const handle = event.currentTarget.parentNode, target = event.currentTarget;
+    handle.focus({ preventScroll: true });
+    target.setPointerCapture(event.pointerId);
+    const box = this.#svg.getBoundingClientRect(), sphere = this.#sphere();
+    const began = { right: (event.clientX - box.left - sphere.x) / sphere.radius, up: (sphere.y - event.clientY + box.top) / sphere.radius };
+    const before = directionOf(this.#store.scene.lights[l], this.#store.scene.camera);
+    const offset = { right: before[0] - began.right, up: before[1] - began.up };
+    const move = (moved) => {
+      const right = (moved.clientX - box.left - sphere.x) / sphere.radius + (what === "place" ? offset.right : 0);
+      const up = (sphere.y - moved.clientY + box.top) / sphere.radius + (what === "place" ? offset.up : 0);
+      if (what === "place") this.moveLight(l, right, up, before[2]);
+      else {
+        const [x, y] = [right - before[0], up - before[1]];
+        this.resizeLight(l, (Math.hypot(x, y) * sphere.radius - RING_LEAST) / RING_PER_DEGREE);
+      }
+    };
+    const end = () => target.removeEventListener("pointermove", move);
+    target.addEventListener("pointermove", move);
+    target.addEventListener("pointerup", end, { once: true });
+    target.addEventListener("pointercancel", end, { once: true });
+  }
+
+  // right and up: on the sphere of radius 1; beyond it the light turns to the side away from where it began.
+  moveLight(l, right, up, side = 1) {
+    const far = Math.hypot(right, up), folded = far > 1 ? Math.max(2 - far, 0) / far : 1;
+    const [x, y] = [right * folded, up * folded];
+    const depth = Math.sqrt(Math.max(1 - x * x - y * y, 0)) * (far > 1 ? -1 : 1) * (side < 0 ? -1 : 1);
+    this.#store.changeLight(l, "place", (light) => withDirection(light, this.#store.scene.camera, [x, y, depth]));
+  }
+
+  resizeLight(l, degrees) {
+    this.#store.changeLight(l, "size", (light) => withSize(light, this.#store.scene.camera, degrees));
+  }
+
+  #key(event, l) {
+    const light = this.#store.scene.lights[l], camera = this.#store.scene.camera;
+    const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    if (arrows[event.key]) {
+      const [right, up, towards] = directionOf(light, camera), [dx, dy] = arrows[event.key];
+      const step = (KEY_STEP * Math.PI) / 180;
+      const azimuth = Math.atan2(right, towards) + dx * step;
+      const elevation = Math.min(Math.max(Math.asin(Math.min(Math.max(up, -1), 1)) + dy * step, -1.55), 1.55);
+      const direction = [Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth)];
+      this.#store.changeLight(l, "place", (changed) => withDirection(changed, camera, direction));
+    } else if (event.key === "+" || event.key === "-") {
+      this.resizeLight(l, sizeOf(light, camera) + (event.key === "+" ? 1 : -1));
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}

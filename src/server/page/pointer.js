@@ -1,0 +1,90 @@
+// The mouse and fingers on the picture, as in VTK and ParaView: the left button turns, with ctrl it rolls, with
+// shift or the middle button it pans; the right button and the wheel zoom. One finger turns, two pan, zoom and
+// roll.
+
+import { pan, roll, turn, zoom } from "./camera.js";
+
+const TURN_OF_HEIGHT = Math.PI; // radians that a drag over the picture's height turns
+const WHEEL_FACTOR = 1.0015; // of zooming, for each pixel of the wheel
+
+export class Pointer {
+  #area;
+  #store;
+  #points = new Map(); // of the pointers that are down, by their numbers: [x, y]
+  #action = null;
+
+  // area: the element that pointers move over.
+  constructor(area, store) {
+    this.#area = area;
+    this.#store = store;
+    area.addEventListener("pointerdown", (event) => this.#down(event));
+    area.addEventListener("pointermove", (event) => this.#move(event));
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"])
+      area.addEventListener(end, (event) => this.#points.delete(event.pointerId));
+    area.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
+    area.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+
+  static #actionOf(event) {
+    if (event.button === 1 || (event.button === 0 && event.shiftKey)) return "pan";
+    if (event.button === 2) return "zoom";
+    return event.ctrlKey || event.metaKey ? "roll" : "turn";
+  }
+
+  // From the middle, right and up, in fractions of the height.
+  #fromMiddle(x, y) {
+    const box = this.#area.getBoundingClientRect();
+    return [(x - box.left - box.width / 2) / box.height, (box.top + box.height / 2 - y) / box.height];
+  }
+
+  #down(event) {
+    this.#area.setPointerCapture(event.pointerId);
+    this.#area.focus({ preventScroll: true });
+    this.#points.set(event.pointerId, [event.clientX, event.clientY]);
+    this.#action = Pointer.#actionOf(event);
+    event.preventDefault();
+  }
+
+  #move(event) {
+    const before = this.#points.get(event.pointerId);
+    if (before === undefined) return;
+    const now = [event.clientX, event.clientY];
+    if (this.#points.size === 2) this.#pinch(event.pointerId, now);
+    else if (this.#points.size === 1) this.#drag(before, now);
+    this.#points.set(event.pointerId, now);
+  }
+
+  #drag(before, now) {
+    const height = this.#area.clientHeight, camera = this.#store.scene.camera;
+    const right = (now[0] - before[0]) / height, down = (now[1] - before[1]) / height;
+    if (right === 0 && down === 0) return;
+    let moved;
+    if (this.#action === "pan") moved = pan(camera, right, -down);
+    else if (this.#action === "zoom") moved = zoom(camera, Math.exp(-2.5 * down));
+    else if (this.#action === "roll") {
+      const from = this.#fromMiddle(...before), to = this.#fromMiddle(...now);
+      moved = roll(camera, Math.atan2(from[1], from[0]) - Math.atan2(to[1], to[0]));
+    } else moved = turn(camera, -right * TURN_OF_HEIGHT, down * TURN_OF_HEIGHT);
+    this.#store.setCamera(moved);
+  }
+
+  #pinch(moving, now) {
+    const other = [...this.#points].find(([number]) => number !== moving)[1];
+    const before = this.#points.get(moving), height = this.#area.clientHeight;
+    const span = (p) => [p[0] - other[0], p[1] - other[1]];
+    const [a, b] = [span(before), span(now)];
+    const factor = Math.hypot(...b) / Math.max(Math.hypot(...a), 1);
+    let camera = this.#store.scene.camera;
+    camera = pan(camera, (now[0] - before[0]) / 2 / height, (before[1] - now[1]) / 2 / height);
+    camera = roll(camera, Math.atan2(b[1], b[0]) - Math.atan2(a[1], a[0]));
+    const middle = this.#fromMiddle((now[0] + other[0]) / 2, (now[1] + other[1]) / 2);
+    this.#store.setCamera(zoom(camera, factor, middle));
+  }
+
+  #wheel(event) {
+    event.preventDefault();
+    const pixels = event.deltaMode === 1 ? 30 * event.deltaY : event.deltaY;
+    const cursor = this.#fromMiddle(event.clientX, event.clientY);
+    this.#store.setCamera(zoom(this.#store.scene.camera, WHEEL_FACTOR ** -pixels, cursor));
+  }
+}

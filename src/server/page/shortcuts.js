@@ -1,0 +1,69 @@
+// Keys, and the sheet that lists them together with what the mouse does.
+
+import { lookAlong, roll, turn, zoom } from "./camera.js";
+import { make } from "./controls.js";
+
+const STEP = Math.PI / 36;
+
+const MOUSE = [
+  ["left drag", "turn"], ["ctrl + left drag", "roll"], ["shift + left, or middle drag", "pan"],
+  ["wheel, or right drag", "zoom"], ["one finger", "turn"], ["two fingers", "pan, zoom and roll"],
+];
+
+// actions: what keys other than those of the camera do, by name.
+export function installShortcuts(store, area, actions) {
+  const move = (change) => () => store.setCamera(change(store.scene.camera));
+  const keys = [
+    ["ArrowLeft", "←", "turn left", move((c) => turn(c, -STEP, 0))],
+    ["ArrowRight", "→", "turn right", move((c) => turn(c, STEP, 0))],
+    ["ArrowUp", "↑", "turn up", move((c) => turn(c, 0, STEP))],
+    ["ArrowDown", "↓", "turn down", move((c) => turn(c, 0, -STEP))],
+    ["+", "+", "zoom in", move((c) => zoom(c, 1.1))],
+    ["-", "−", "zoom out", move((c) => zoom(c, 1 / 1.1))],
+    ["[", "[", "roll left", move((c) => roll(c, STEP))],
+    ["]", "]", "roll right", move((c) => roll(c, -STEP))],
+    ["x", "x", "look along x (X: from the other end)", move((c) => lookAlong(c, 0, 1))],
+    ["X", "", "", move((c) => lookAlong(c, 0, -1))],
+    ["y", "y", "look along y (Y: from the other end)", move((c) => lookAlong(c, 1, 1))],
+    ["Y", "", "", move((c) => lookAlong(c, 1, -1))],
+    ["z", "z", "look along z (Z: from the other end)", move((c) => lookAlong(c, 2, 1))],
+    ["Z", "", "", move((c) => lookAlong(c, 2, -1))],
+    ["r", "r", "frame everything", actions.reset],
+    ["l", "l", "show the lights' handles", actions.lights],
+    ["s", "s", "next kind of shadows: off, hard, soft", actions.shadows],
+    ["u", "u", "undo (ctrl + z)", () => store.undo()],
+    ["U", "U", "redo (ctrl + shift + z)", () => store.redo()],
+    ["i", "i", "times and sizes of frames", actions.statistics],
+    ["b", "b", "show or hide the side bar", actions.sidebar],
+    ["t", "t", "dark or light", actions.theme],
+    ["?", "?", "this sheet", actions.help],
+  ];
+  const byKey = new Map(keys.map(([key, , , action]) => [key, action]));
+  document.addEventListener("keydown", (event) => {
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
+      if (event.shiftKey) store.redo();
+      else store.undo();
+      event.preventDefault();
+      return;
+    }
+    const typing = event.target.closest?.("input, select, textarea, [role=slider], canvas.function, dialog");
+    if (typing || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    const arrows = event.key.startsWith("Arrow") && event.target !== area && event.target !== document.body;
+    const action = arrows ? undefined : byKey.get(event.key);
+    if (!action) return;
+    action();
+    event.preventDefault();
+  });
+  return keys.filter(([, shown]) => shown !== "").map(([, shown, text]) => [shown, text]);
+}
+
+export function helpSheet(dialog, keys) {
+  const rows = (list) => list.map(([key, text]) => make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, key)), make("td", {}, text)));
+  dialog.append(
+    make("h2", { id: "help-title" }, "Mouse, fingers and keys"),
+    make("div", { class: "sheet" },
+      make("table", {}, make("tbody", {}, ...rows(MOUSE))), make("table", {}, make("tbody", {}, ...rows(keys)))),
+    make("p", {}, "Of the light's handle the arrow keys move the light, + and − change its size. In the drawing of the " +
+      "transfer function they move the chosen point; Page Up and Page Down choose another."),
+    make("form", { method: "dialog" }, make("button", { class: "primary", autofocus: true }, "Close")));
+}

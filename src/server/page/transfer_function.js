@@ -1,0 +1,76 @@
+// A transfer function as the scene has it, { unit_distance, opacity: [[value, opacity], ...], color: [[value, r, g,
+// b], ...] }, and the changes that its editor makes. Every function returns a new one.
+
+const byValue = (a, b) => a[0] - b[0];
+const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+
+// Opacity points that may stand at one value, as at a step, keep their order.
+export function movePoint(tf, index, value, opacity, range) {
+  const low = index > 0 ? tf.opacity[index - 1][0] : range[0];
+  const high = index < tf.opacity.length - 1 ? tf.opacity[index + 1][0] : range[1];
+  const point = [clamp(value, Math.min(low, high), Math.max(low, high)), clamp(opacity, 0, 1)];
+  return { ...tf, opacity: tf.opacity.map((p, n) => (n === index ? point : p)) };
+}
+
+// { tf, index } with a new point.
+export function addPoint(tf, value, opacity) {
+  const point = [value, clamp(opacity, 0, 1)];
+  const points = [...tf.opacity, point].sort(byValue);
+  return { tf: { ...tf, opacity: points }, index: points.indexOf(point) };
+}
+
+export function removePoint(tf, index) {
+  return tf.opacity.length > 1 ? { ...tf, opacity: tf.opacity.filter((_, n) => n !== index) } : tf;
+}
+
+export function moveStop(tf, index, value) {
+  const low = index > 0 ? tf.color[index - 1][0] : -Infinity;
+  const high = index < tf.color.length - 1 ? tf.color[index + 1][0] : Infinity;
+  return { ...tf, color: tf.color.map((c, n) => (n === index ? [clamp(value, low, high), ...c.slice(1)] : c)) };
+}
+
+export function recolorStop(tf, index, color) {
+  return { ...tf, color: tf.color.map((c, n) => (n === index ? [c[0], ...color] : c)) };
+}
+
+export function addStop(tf, value) {
+  const stop = [value, ...colorAt(tf, value)];
+  const color = [...tf.color, stop].sort(byValue);
+  return { tf: { ...tf, color }, index: color.indexOf(stop) };
+}
+
+export function removeStop(tf, index) {
+  return tf.color.length > 1 ? { ...tf, color: tf.color.filter((_, n) => n !== index) } : tf;
+}
+
+// The named colormap's rows of values from 0 to 1, stretched over a range.
+export function withColormap(tf, rows, [low, high]) {
+  return { ...tf, color: rows.map(([at, ...rgb]) => [low + at * (high - low), ...rgb]) };
+}
+
+// The same colours and opacities over another range.
+export function stretched(tf, [from, to], [low, high]) {
+  const moved = ([value, ...rest]) => [low + ((value - from) / (to - from)) * (high - low), ...rest];
+  return { ...tf, opacity: tf.opacity.map(moved), color: tf.color.map(moved) };
+}
+
+// From the first value that points or colours stand at to the last.
+export function rangeOf(tf) {
+  const values = [...tf.opacity, ...tf.color].map((p) => p[0]);
+  return [Math.min(...values), Math.max(...values)];
+}
+
+// Of rows [value, number, ...], piecewise linear and constant beyond the ends.
+export function interpolate(rows, value) {
+  if (rows.length === 0) return [];
+  if (value <= rows[0][0]) return rows[0].slice(1);
+  for (let n = 1; n < rows.length; n++) {
+    if (value > rows[n][0]) continue;
+    const [a, b] = [rows[n - 1], rows[n]], t = b[0] > a[0] ? (value - a[0]) / (b[0] - a[0]) : 1;
+    return a.slice(1).map((x, k) => x + t * (b[k + 1] - x));
+  }
+  return rows[rows.length - 1].slice(1);
+}
+
+export const colorAt = (tf, value) => interpolate(tf.color, value);
+export const opacityAt = (tf, value) => interpolate(tf.opacity, value)[0] ?? 0;

@@ -1,0 +1,32 @@
+// Vectors of three numbers, and rotations.
+
+export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const scale = (a, factor) => [a[0] * factor, a[1] * factor, a[2] * factor];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const length = (a) => Math.hypot(a[0], a[1], a[2]);
+export const cross = (a, b) => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];
+
+export function normalize(a) {
+  const size = length(a);
+  return size > 0 ? scale(a, 1 / size) : [0, 0, 1];
+}
+
+// a turned about a unit axis, counter-clockwise seen from its tip (Rodrigues' formula).
+export function rotate(a, axis, angle) {
+  const cosine = Math.cos(angle), sine = Math.sin(angle);
+  return add(add(scale(a, cosine), scale(cross(axis, a), sine)), scale(axis, dot(axis, a) * (1 - cosine)));
+}
+
+// The turn that takes the unit vector `from` to `to` the shortest way, as a function of vectors.
+export function turnBetween(from, to) {
+  let axis = cross(from, to);
+  const angle = Math.atan2(length(axis), dot(from, to));
+  if (length(axis) < 1e-12) axis = Math.abs(from[0]) < 0.9 ? cross(from, [1, 0, 0]) : cross(from, [0, 1, 0]);
+  axis = normalize(axis);
+  return (a) => rotate(a, axis, angle);
+}

@@ -1,0 +1,71 @@
+// The panel of a volume: which one, its clip box, how it is shaded.
+
+import { worldBox } from "./boxes.js";
+import { button, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
+
+// Two sliders on one track: from where to where the volume is kept along an axis.
+function clipRow(axis, box, get, set) {
+  const name = "xyz"[axis], span = box.max[axis] - box.min[axis];
+  const input = (end) => make("input", {
+    type: "range", min: box.min[axis], max: box.max[axis], step: span / 400,
+    "aria-label": `Clip ${name}, ${end === "min" ? "least" : "greatest"}`,
+    oninput: (event) => {
+      const clip = { min: [...get().min], max: [...get().max] }, gap = span / 200, value = +event.target.value;
+      clip[end][axis] = end === "min" ? Math.min(value, clip.max[axis] - gap) : Math.max(value, clip.min[axis] + gap);
+      set(clip, axis);
+      update();
+    },
+  });
+  const inputs = { min: input("min"), max: input("max") };
+  const text = make("span", { class: "measure wide" });
+  const track = make("span", { class: "double" }, inputs.min, inputs.max);
+  function update() {
+    const ends = ["min", "max"].map((end) => get()[end][axis]);
+    ["min", "max"].forEach((end, n) => { inputs[end].value = ends[n]; });
+    text.textContent = ends.map(shortNumber).join(" … ");
+    ends.forEach((value, n) => track.style.setProperty(n === 0 ? "--from" : "--to", `${(100 * (value - box.min[axis])) / span}%`));
+  }
+  return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, text), update };
+}
+
+export function volumePanel(store, start, current, chooseVolume) {
+  const { element, body } = section("Volume", false);
+  const volume = () => store.scene.volumes[current.volume];
+  const change = (name, set) => store.changeVolume(current.volume, name, set);
+  let parts = [];
+
+  function materialSliders() {
+    const limits = [["ambient", "Ambient", 0, 2], ["diffuse", "Diffuse", 0, 2], ["specular", "Specular", 0, 2], ["shininess", "Shininess", 1, 200]];
+    return limits.map(([key, label, low, high]) => slider({
+      label, low, high, get: () => volume().material?.[key] ?? 0,
+      set: (value) => change(key, (v) => ({ ...v, material: { ...v.material, [key]: value } })),
+    }));
+  }
+
+  function build() {
+    const about = start.volumes[current.volume], box = worldBox(about);
+    const clip = () => volume().clip ?? box;
+    const rows = [0, 1, 2].map((axis) => clipRow(axis, box, clip, (changed, a) => change(`clip ${a}`, (v) => ({ ...v, clip: changed }))));
+    const reset = row("", button("whole volume", () => change("clip reset", ({ clip: _, ...v }) => v)));
+    const shading = segments({
+      label: "Shading", choices: [["phong", "Surface"], ["none", "Medium"], ["flat", "Flat"]],
+      get: () => volume().shading ?? "phong", set: (value) => change("shading", (v) => ({ ...v, shading: value })),
+    });
+    const visible = toggle({ label: "Visible", get: () => volume().visible !== false, set: (on) => change("visible", (v) => ({ ...v, visible: on })) });
+    const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
+    const material = materialSliders();
+    const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}`);
+    const chooser = select({
+      label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
+      get: () => String(current.volume), set: (n) => chooseVolume(+n),
+    });
+    parts = [...rows, shading, visible, casts, ...material, chooser];
+    const several = store.scene.volumes.length > 1 ? [chooser.element] : [];
+    body.replaceChildren(...several, facts, ...rows.map((r) => r.element), reset, shading.element,
+      ...material.map((m) => m.element), visible.element, casts.element);
+    update();
+  }
+  const update = () => parts.forEach((part) => part.update());
+  build();
+  return { element, update, rebuild: build };
+}

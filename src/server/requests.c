@@ -1,0 +1,251 @@
+/* server/requests.c - requests: checked, collected, answered. libmicrohttpd gives each connection a thread.
+ */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <microhttpd.h>
+
+#include "parts.h"
+
+/* A request whose body arrives. */
+typedef struct request {
+  bool refused; /* it was answered before its body was read */
+  const char *path;
+  char *body; /* owned; [length] */
+  size_t length, capacity;
+} request;
+
+static const char plain[] = "text/plain; charset=utf-8";
+
+/* What every answer says: it is for this page alone, and the page runs nothing but its own files. */
+static const char *const headers[][2] = {
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
+     "'self'; "
+     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Cache-Control", "no-store"},
+};
+
+static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned status, const char *type,
+                                     struct MHD_Response *response) {
+  if (response == NULL) return MHD_NO;
+  bool good = type == NULL || MHD_add_response_header(response, "Content-Type", type) == MHD_YES;
+  for (size_t h = 0; h < sizeof headers / sizeof *headers; h++)
+    good &= MHD_add_response_header(response, headers[h][0], headers[h][1]) == MHD_YES;
+  enum MHD_Result result = good ? MHD_queue_response(connection, status, response) : MHD_NO;
+  MHD_destroy_response(response);
+  return result;
+}
+
+static enum MHD_Result send_line(struct MHD_Connection *connection, unsigned status, const char *line) {
+  return send_response(connection, status, plain,
+                       MHD_create_response_from_buffer(strlen(line), (void *)line, MHD_RESPMEM_MUST_COPY));
+}
+
+static enum MHD_Result send_answer(server *s, struct MHD_Connection *connection, server_answer *answer) {
+  const void *bytes = answer->borrowed;
+  if (answer->bytes != NULL) bytes = answer->bytes;
+  if (answer->text != NULL) bytes = answer->text;
+  if (answer->from_malloc != NULL) bytes = answer->from_malloc;
+  if (bytes == NULL) bytes = answer->problem, answer->length = strlen(answer->problem);
+  struct MHD_Response *response;
+  if (answer->from_malloc != NULL) {
+    response = MHD_create_response_from_buffer(answer->length, answer->from_malloc, MHD_RESPMEM_MUST_FREE);
+  } else {
+    bool stays = bytes == answer->borrowed;
+    response = MHD_create_response_from_buffer(answer->length, (void *)bytes,
+                                               stays ? MHD_RESPMEM_PERSISTENT : MHD_RESPMEM_MUST_COPY);
+  }
+  hl_bytes_release(s->options.context, answer->bytes);
+  hl_text_release(s->options.context, answer->text);
+  if (response != NULL && answer->seconds_render > 0) {
+    char times[160];
+    snprintf(times, sizeof times, "read;dur=%.3f, render;dur=%.3f, encode;dur=%.3f",
+             1e3 * answer->seconds_read, 1e3 * answer->seconds_render, 1e3 * answer->seconds_encode);
+    if (MHD_add_response_header(response, "Server-Timing", times) != MHD_YES) {
+      MHD_destroy_response(response);
+      return MHD_NO;
+    }
+  }
+  return send_response(connection, answer->status, answer->type, response);
+}
+
+/* ---- checks ---- */
+
+static const char *header(struct MHD_Connection *connection, const char *name) {
+  return MHD_lookup_connection_value(connection, MHD_HEADER_KIND, name);
+}
+
+static const char *query(struct MHD_Connection *connection, const char *name) {
+  return MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
+}
+
+/* The status of a refusal with its line, or 0. */
+static unsigned check(const server *s, struct MHD_Connection *connection, const char *method, const char *url,
+                      request *r, const char **line) {
+  const char *host = header(connection, "Host"), *length = header(connection, "Content-Length");
+  *line = "this address is another machine's: open the viewer's own URL\n";
+  if (!host_is_local(host)) return 403;
+  *line = "requests of other pages are refused\n";
+  if (!origin_is_own(header(connection, "Origin"), host)) return 403;
+  *line = "the URL's token is wrong: open the URL that the viewer has printed\n";
+  r->path = path_after_token(url, s->token);
+  if (r->path == NULL) return 403;
+  *line = "only GET and POST are answered\n";
+  bool posts = strcmp(method, "POST") == 0;
+  if (!posts && strcmp(method, "GET") != 0) return 405;
+  *line = "the scene is too large for the viewer\n";
+  if (length != NULL && strtoull(length, NULL, 10) > MOST_BODY_BYTES) return 413;
+  return 0;
+}
+
+/* ---- bodies ---- */
+
+/* False: it is too large. Without memory the body counts as too large. */
+static bool collect(request *r, const char *bytes, size_t count) {
+  if (count > MOST_BODY_BYTES - r->length) return false;
+  if (r->length + count > r->capacity) {
+    size_t capacity = 2 * r->capacity + count + 4096;
+    char *larger = realloc(r->body, capacity);
+    if (larger == NULL) return false;
+    r->body = larger;
+    r->capacity = capacity;
+  }
+  memcpy(r->body + r->length, bytes, count);
+  r->length += count;
+  return true;
+}
+
+/* ---- answers ---- */
+
+static void answer_problem(server_answer *answer, unsigned status, const char *line) {
+  answer->status = status;
+  answer->type = plain;
+  snprintf(answer->problem, sizeof answer->problem, "%s", line);
+}
+
+static void answer_get(const server *s, const char *path, server_answer *answer) {
+  answer->status = 200;
+  if (strcmp(path, "start.json") == 0) {
+    answer->type = "application/json";
+    answer->borrowed = s->start;
+    answer->length = strlen(s->start);
+    return;
+  }
+  for (size_t a = 0; a < server_asset_count; a++)
+    if (strcmp(server_assets[a].name, path) == 0) {
+      answer->type = server_assets[a].type;
+      answer->borrowed = server_assets[a].bytes;
+      answer->length = server_assets[a].length;
+      return;
+    }
+  answer_problem(answer, 404, "there is nothing here\n");
+}
+
+/* A whole number of the query between low and high, or standard where it is absent; -1: it is something else.
+ */
+static long long query_number(struct MHD_Connection *connection, const char *name, long long low,
+                              long long high, long long standard) {
+  const char *text = query(connection, name);
+  if (text == NULL) return standard;
+  size_t digits = strspn(text, "0123456789");
+  if (digits < 1 || digits > 18 || text[digits] != '\0') return -1;
+  long long number = atoll(text);
+  return number >= low && number <= high ? number : -1;
+}
+
+static bool is_page_name(const char *name) {
+  static const char allowed[] = "abcdefghijklmnopqrstuvwxyz0123456789-";
+  size_t length = name != NULL ? strspn(name, allowed) : 0;
+  return length >= 1 && length <= PAGE_NAME_LENGTH && name[length] == '\0';
+}
+
+static bool is_format(const char *format) {
+  return format != NULL &&
+         (strcmp(format, "jpeg") == 0 || strcmp(format, "png") == 0 || strcmp(format, "exr") == 0);
+}
+
+static void post_frame(server *s, struct MHD_Connection *connection, const request *r,
+                       server_answer *answer) {
+  frame_request wanted = {.page = query(connection, "page"),
+                          .format = query(connection, "format"),
+                          .text = r->body,
+                          .length = r->length};
+  long long number = query_number(connection, "number", 1, 1000000000000, -1);
+  wanted.quality = (int)query_number(connection, "quality", LEAST_QUALITY, MOST_QUALITY, 85);
+  wanted.depth = (int)query_number(connection, "depth", 8, 16, 8);
+  wanted.number = (unsigned long long)number;
+  bool good = is_page_name(wanted.page) && is_format(wanted.format) && number > 0 && wanted.quality > 0 &&
+              (wanted.depth == 8 || wanted.depth == 16);
+  if (!good)
+    answer_problem(answer, 400,
+                   "a frame needs ?page=NAME&number=N&format=jpeg|png|exr (&quality=10..100, &depth=8|16)\n");
+  else answer_frame(s, &wanted, answer);
+}
+
+/* Answers a request that is complete. A connection is not idle while its picture is made. */
+static enum MHD_Result answer(server *s, struct MHD_Connection *connection, const char *method,
+                              const request *r) {
+  server_answer a = {0};
+  if (strcmp(method, "GET") == 0) {
+    answer_get(s, r->path, &a);
+    return send_answer(s, connection, &a);
+  }
+  bool frame = strcmp(r->path, "frame") == 0;
+  if (!frame && strcmp(r->path, "scene") != 0) answer_problem(&a, 404, "there is nothing here\n");
+  else if (r->body == NULL) answer_problem(&a, 400, "the scene is missing\n");
+  else {
+    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
+    if (frame) post_frame(s, connection, r, &a);
+    else answer_scene(s, r->body, r->length, &a);
+    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)IDLE_SECONDS);
+  }
+  return send_answer(s, connection, &a);
+}
+
+/* Called when the headers have come, for each piece of the body, and at its end. */
+static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connection, const char *url,
+                                  const char *method, const char *version, const char *upload,
+                                  size_t *upload_size, void **own) {
+  (void)version;
+  server *s = user_data;
+  request *r = *own;
+  if (r == NULL) {
+    const char *line = NULL;
+    if ((r = calloc(1, sizeof *r)) == NULL) return MHD_NO;
+    *own = r;
+    unsigned refusal = check(s, connection, method, url, r, &line);
+    r->refused = refusal != 0;
+    return refusal != 0 ? send_line(connection, refusal, line) : MHD_YES;
+  }
+  if (*upload_size > 0) {
+    bool taken = !r->refused && collect(r, upload, *upload_size);
+    *upload_size = 0;
+    return taken ? MHD_YES : MHD_NO; /* what was announced as small enough and is not: the connection ends */
+  }
+  r->path = path_after_token(url, s->token);
+  return r->refused || r->path == NULL ? MHD_NO : answer(s, connection, method, r);
+}
+
+static void on_end(void *user_data, struct MHD_Connection *connection, void **own,
+                   enum MHD_RequestTerminationCode code) {
+  (void)user_data, (void)connection, (void)code;
+  request *r = *own;
+  if (r != NULL) free(r->body);
+  free(r);
+  *own = NULL;
+}
+
+struct MHD_Daemon *listen_to_requests(server *s, int listening_socket) {
+  return MHD_start_daemon(MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_POLL, 0,
+                          NULL, NULL, on_request, s, MHD_OPTION_LISTEN_SOCKET, (MHD_socket)listening_socket,
+                          MHD_OPTION_CONNECTION_LIMIT, (unsigned)MOST_CONNECTIONS,
+                          MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_SECONDS, MHD_OPTION_NOTIFY_COMPLETED,
+                          on_end, NULL, MHD_OPTION_END);
+}

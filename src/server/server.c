@@ -1,0 +1,93 @@
+/* server/server.c - the server's life: a socket, a token, requests, the end. */
+#define _GNU_SOURCE
+#include "server.h"
+
+#include <errno.h>
+#include <netinet/in.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <microhttpd.h>
+
+#include "parts.h"
+
+/* A socket that listens on 127.0.0.1; -1, and a line in problem, where there is none to be had. */
+static int listen_on(int port, char *problem, size_t size) {
+  enum { WAITING_CONNECTIONS = 64 };
+  const int yes = 1;
+  struct sockaddr_in address = {
+      .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+  int listening = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  bool good = listening >= 0 && setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
+              bind(listening, (struct sockaddr *)&address, sizeof address) == 0 &&
+              listen(listening, WAITING_CONNECTIONS) == 0;
+  if (good) return listening;
+  if (errno == EADDRINUSE)
+    snprintf(problem, size, "port %d is taken by another program: give another --port, or none", port);
+  else snprintf(problem, size, "cannot listen on 127.0.0.1, port %d: %s", port, strerror(errno));
+  if (listening >= 0) close(listening);
+  return -1;
+}
+
+static int port_of(int listening) {
+  struct sockaddr_in address = {0};
+  socklen_t size = sizeof address;
+  return getsockname(listening, (struct sockaddr *)&address, &size) == 0 ? ntohs(address.sin_port) : 0;
+}
+
+static bool make_token(char token[TOKEN_DIGITS + 1]) {
+  unsigned char bytes[TOKEN_DIGITS / 2];
+  if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes) return false;
+  for (size_t b = 0; b < sizeof bytes; b++) snprintf(token + 2 * b, 3, "%02x", bytes[b]);
+  return true;
+}
+
+static void wait_for_stop(const server_options *options) {
+  const struct timespec moment = {.tv_nsec = 100000000};
+  while (!options->stopped()) nanosleep(&moment, NULL);
+}
+
+/* Owns listening. */
+static bool serve(server *s, int listening, char *problem, size_t size) {
+  struct MHD_Daemon *daemon = listen_to_requests(s, listening);
+  if (daemon == NULL) {
+    close(listening);
+    snprintf(problem, size, "the server cannot start its threads");
+    return false;
+  }
+  char url[100];
+  snprintf(url, sizeof url, "http://127.0.0.1:%d/%s/", port_of(listening), s->token);
+  s->options.ready(s->options.user_data, url);
+  wait_for_stop(&s->options);
+  MHD_stop_daemon(daemon); /* frames that are being rendered stop: they are outdated */
+  return true;
+}
+
+bool server_run(const server_options *options, char *problem, size_t problem_size) {
+  server *s = calloc(1, sizeof *s);
+  int listening = -1;
+  bool good = s != NULL && pages_begin(s);
+  if (good) {
+    s->options = *options;
+    s->start = describe_start(options);
+    good = s->start != NULL;
+  }
+  if (!good) snprintf(problem, problem_size, "out of memory for the viewer");
+  if (good && !make_token(s->token)) {
+    snprintf(problem, problem_size, "the system gives no random numbers");
+    good = false;
+  }
+  if (good) listening = listen_on(options->port, problem, problem_size);
+  good = listening >= 0 && serve(s, listening, problem, problem_size);
+  if (s != NULL) {
+    pages_end(s);
+    free(s->start);
+  }
+  free(s);
+  return good;
+}

@@ -1,0 +1,106 @@
+/* server/start.c - what a page is told first: the scene, its volumes, and what there is to choose from. */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "parts.h"
+#include "text/json_value.h"
+
+static void put_text(FILE *out, const char *text) {
+  char piece[HL_JSON_PIECE_BYTES];
+  fputc('"', out);
+  for (size_t length; (length = hl_json_piece(&text, piece)) > 0;) fwrite(piece, 1, length, out);
+  fputc('"', out);
+}
+
+static void put_numbers(FILE *out, const double *numbers, size_t count) {
+  fputc('[', out);
+  for (size_t n = 0; n < count; n++) {
+    char text[HL_JSON_NUMBER_BYTES];
+    hl_json_number_text(numbers[n], text);
+    fprintf(out, "%s%s", n > 0 ? "," : "", text);
+  }
+  fputc(']', out);
+}
+
+/* axes: the world steps of one voxel, so that the page can find the box of the voxels. */
+static void put_volume(FILE *out, const hl_scene_volume *volume) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume->volume, &info) != HL_OK) {
+    fputs("null", out);
+    return;
+  }
+  fprintf(out, "{\"type\":\"%s\",\"dimensions\":[%zu,%zu,%zu],\"origin\":", hl_voxel_type_name(info.type),
+          info.dimensions[0], info.dimensions[1], info.dimensions[2]);
+  put_numbers(out, info.origin, 3);
+  fputs(",\"axes\":[", out);
+  for (int axis = 0; axis < 3; axis++) {
+    double step[3];
+    for (int row = 0; row < 3; row++) step[row] = info.direction[row][axis] * info.spacing[axis];
+    if (axis > 0) fputc(',', out);
+    put_numbers(out, step, 3);
+  }
+  fputs("],\"range\":", out);
+  put_numbers(out, info.range, 2);
+  const char *space = hl_space_name(info.space);
+  fputs(",\"space\":", out);
+  if (space != NULL) put_text(out, space);
+  else fputs("null", out);
+  fputs(",\"histogram\":[", out);
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
+    fprintf(out, "%s%llu", bin > 0 ? "," : "", (unsigned long long)info.histogram[bin]);
+  fputs("]}", out);
+}
+
+/* Each as rows of value, r, g, b over values from 0 to 1. */
+static void put_colormaps(FILE *out, hl_context *context) {
+  fputs("\"colormaps\":{", out);
+  for (size_t c = 0; hl_colormap_name(c) != NULL; c++) {
+    hl_transfer_function function = {0};
+    if (c > 0) fputc(',', out);
+    put_text(out, hl_colormap_name(c));
+    fputs(":[", out);
+    if (hl_transfer_function_colormap(context, hl_colormap_name(c), 0, 1, &function, NULL) == HL_OK)
+      for (size_t p = 0; p < function.color_count; p++) {
+        const hl_color_point *point = &function.color[p];
+        if (p > 0) fputc(',', out);
+        put_numbers(out, (double[4]){point->value, point->color[0], point->color[1], point->color[2]}, 4);
+      }
+    hl_transfer_function_release(context, &function);
+    fputc(']', out);
+  }
+  fputc('}', out);
+}
+
+char *describe_start(const server_options *options) {
+  char *scene = NULL, *text = NULL;
+  size_t length = 0;
+  if (hl_scene_to_json(options->context, options->scene, &scene, NULL) != HL_OK) return NULL;
+  FILE *out = open_memstream(&text, &length);
+  if (out != NULL) {
+    const hl_scene_description *d = hl_scene_describe(options->scene);
+    fprintf(out, "{\"version\":\"%s\",\"title\":", hl_version());
+    put_text(out, options->title);
+    fprintf(out, ",\"scene\":%s,\"volumes\":[", scene);
+    for (size_t v = 0; v < d->volume_count; v++) {
+      if (v > 0) fputc(',', out);
+      put_volume(out, &d->volumes[v]);
+    }
+    fputs("],\"presets\":[", out);
+    for (size_t p = 0; hl_preset_name(p) != NULL; p++) {
+      if (p > 0) fputc(',', out);
+      put_text(out, hl_preset_name(p));
+    }
+    fputs("],", out);
+    put_colormaps(out, options->context);
+    fputs("}", out);
+    bool failed = ferror(out) != 0;
+    if (fclose(out) != 0 || failed) {
+      free(text);
+      text = NULL;
+    }
+  }
+  hl_text_release(options->context, scene);
+  return text;
+}

@@ -1,1 +1,0 @@
-halflight view x.nrrd

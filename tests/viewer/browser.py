@@ -1,0 +1,152 @@
+"""A headless Chromium, driven by the DevTools protocol over a pair of pipes: no package is needed."""
+import base64
+import json
+import os
+import select
+import shutil
+import subprocess
+import tempfile
+import time
+
+
+class BrowserError(Exception):
+    """The browser has answered with an error, or not at all."""
+
+
+class Browser:
+    """One browser with one page."""
+
+    def __init__(self, program="chromium", size=(1280, 720)):
+        self._folder = tempfile.mkdtemp(prefix="halflight-chromium-")
+        to_browser, self._to = os.pipe()
+        self._from, from_browser = os.pipe()
+
+        def place():
+            # The protocol's pipes are descriptors 3 and 4. Copies first: one may lie where the other goes.
+            read, write = os.dup(to_browser), os.dup(from_browser)
+            high_read, high_write = os.dup2(read, 100), os.dup2(write, 101)
+            os.dup2(high_read, 3)
+            os.dup2(high_write, 4)
+
+        self._process = subprocess.Popen(
+            [program, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+             "--disable-background-networking", "--disable-component-update", "--hide-scrollbars", "--remote-debugging-pipe",
+             f"--user-data-dir={self._folder}", f"--window-size={size[0]},{size[1]}", "about:blank"],
+            preexec_fn=place, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self._buffer = b""
+        self._number = 0
+        self._session = None
+        self.problems = []  # exceptions and errors of the page's console
+        target = self._wait_for_page()
+        self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
+        self.resize(*size)
+
+    def _wait_for_page(self):
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            for target in self.call("Target.getTargets")["targetInfos"]:
+                if target["type"] == "page":
+                    return target["targetId"]
+            time.sleep(0.05)
+        raise BrowserError("Chromium shows no page")
+
+    def close(self):
+        self._process.kill()
+        self._process.wait()
+        os.close(self._to)
+        os.close(self._from)
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def _receive(self, timeout):
+        """The next message."""
+        end = time.monotonic() + timeout
+        while b"\0" not in self._buffer:
+            left = end - time.monotonic()
+            if left <= 0 or not select.select([self._from], [], [], left)[0]:
+                raise BrowserError("Chromium does not answer")
+            piece = os.read(self._from, 1 << 20)
+            if not piece:
+                raise BrowserError("Chromium has ended")
+            self._buffer += piece
+        line, self._buffer = self._buffer.split(b"\0", 1)
+        return json.loads(line)
+
+    def _note(self, message):
+        method, parameters = message.get("method"), message.get("params", {})
+        if method == "Runtime.exceptionThrown":
+            details = parameters["exceptionDetails"]
+            self.problems.append(details.get("exception", {}).get("description", details["text"]))
+        elif method == "Runtime.consoleAPICalled" and parameters["type"] in ("error", "warning", "assert"):
+            self.problems.append(str(parameters["args"]))
+        elif method == "Log.entryAdded" and parameters["entry"]["level"] == "error":
+            self.problems.append(parameters["entry"]["text"] + " " + parameters["entry"].get("url", ""))
+
+    def call(self, method, timeout=30, **parameters):
+        """Calls a method of the protocol and returns its result."""
+        self._number += 1
+        message = {"id": self._number, "method": method, "params": parameters}
+        if self._session:
+            message["sessionId"] = self._session
+        os.write(self._to, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self._receive(timeout)
+            self._note(answer)
+            if answer.get("id") == self._number:
+                if "error" in answer:
+                    raise BrowserError(f"{method}: {answer['error']}")
+                return answer["result"]
+
+    def run(self, script, timeout=30):
+        """The value of a JavaScript expression; promises are awaited."""
+        answer = self.call("Runtime.evaluate", timeout=timeout, expression=script, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise BrowserError(f"{script}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    def wait(self, condition, timeout=20):
+        """Waits until a JavaScript expression is true."""
+        end = time.monotonic() + timeout
+        while not self.run(condition):
+            if time.monotonic() > end:
+                raise BrowserError(f"never true: {condition}; {self.problems}")
+            time.sleep(0.03)
+
+    def resize(self, width, height):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def open(self, url):
+        self.call("Page.navigate", url=url)
+
+    def mouse(self, kind, x, y, button="left", modifiers=0, **more):
+        buttons = {"left": 1, "right": 2, "middle": 4, "none": 0}[button] if kind != "mouseReleased" else 0
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=buttons, modifiers=modifiers,
+                  clickCount=1, **more)
+
+    def drag(self, start, end, steps=8, button="left", modifiers=0):
+        """Presses at start, moves to end and lets go."""
+        self.mouse("mousePressed", *start, button, modifiers)
+        for step in range(1, steps + 1):
+            place = [a + (b - a) * step / steps for a, b in zip(start, end)]
+            self.mouse("mouseMoved", *place, button, modifiers)
+        self.mouse("mouseReleased", *end, button, modifiers)
+
+    def wheel(self, x, y, pixels):
+        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=pixels)
+
+    def key(self, key, text=None):
+        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, text=text or (key if len(key) == 1 else ""))
+        self.call("Input.dispatchKeyEvent", type="keyUp", key=key)
+
+    def screenshot(self, path):
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))

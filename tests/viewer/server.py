@@ -1,0 +1,235 @@
+#!/usr/bin/env python3
+"""The viewer's server: what it answers, what it refuses, and that it outlives bad clients.
+
+usage: server.py PROGRAM
+"""
+import http.client
+import json
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+from viewer import Viewer
+
+PROGRAM = os.path.abspath(sys.argv[1])
+checks = 0
+
+
+def check(condition, what):
+    global checks
+    checks += 1
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+def request(viewer, method, path, body=None, **headers):
+    """(status, headers, body); path without its token where it begins with '/'."""
+    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
+    named = {name.replace("_", "-"): value for name, value in headers.items()}
+    connection.request(method, path if path.startswith("/") else f"/{viewer.token}/{path}", body, named)
+    answer = connection.getresponse()
+    result = answer.status, answer.headers, answer.read()
+    connection.close()
+    return result
+
+
+numbers = iter(range(1, 10**6))
+
+
+def frame(viewer, scene, page="test", format="png", number=None, **more):
+    query = f"frame?page={page}&number={number or next(numbers)}&format={format}"
+    query += "".join(f"&{key}={value}" for key, value in more.items())
+    return request(viewer, "POST", query, json.dumps(scene))
+
+
+def small(scene, side=96):
+    scene = json.loads(json.dumps(scene))
+    scene["image"].update(width=side, height=side)
+    return scene
+
+
+def exact_pictures(viewer, scene):
+    """A frame in PNG and EXR has the bytes that `halflight render` writes of the same scene, and the scene's bytes too."""
+    with open("scene.json", "w") as file:
+        json.dump(scene, file)
+    for format, depth in (("png", 8), ("png", 16), ("exr", 8)):
+        status, headers, body = frame(viewer, scene, format=format, depth=depth)
+        subprocess.run([PROGRAM, "render", "scene.json", "-o", f"rendered.{format}", "--quiet", *(["--depth", str(depth)] if format == "png" else [])],
+                       check=True)
+        with open(f"rendered.{format}", "rb") as file:
+            check(status == 200 and body == file.read(), f"{format} of depth {depth} differs from halflight render's")
+        check("render;dur=" in headers["Server-Timing"], "a frame tells its times")
+    status, headers, body = frame(viewer, scene, format="jpeg", quality=70)
+    check(status == 200 and body[:3] == b"\xff\xd8\xff" and headers["Content-Type"] == "image/jpeg", "a JPEG frame")
+
+
+def complete_scenes(viewer, scene):
+    """A scene without camera and transfer function comes back with both."""
+    bare = {"halflight": 1, "volumes": [{"file": scene["volumes"][0]["file"]}]}
+    status, _, body = request(viewer, "POST", "scene", json.dumps(bare))
+    check(status == 200, "a scene is completed")
+    complete = json.loads(body)
+    check("position" in complete["camera"] and complete["volumes"][0]["transfer_function"]["opacity"], "completely")
+    check(request(viewer, "POST", "scene", json.dumps(complete))[2] == body, "a complete scene stays the same")
+
+
+def refusals(viewer, scene):
+    """Foreign hosts and origins, wrong tokens, and what is malformed or too large."""
+    good, text = viewer.token, json.dumps(small(scene))
+    local = f"127.0.0.1:{viewer.port}"
+    for host, expected in ((local, 200), (f"localhost:{viewer.port}", 200), ("localhost:1", 200), ("[::1]:80", 200),
+                           ("example.com", 403), ("127.0.0.1.example.com", 403), ("localhost:80x", 403), ("", 403)):
+        check(request(viewer, "GET", "start.json", Host=host)[0] == expected, f"Host {host!r}: {expected}")
+    for origin, expected in ((f"http://{local}", 200), ("http://example.com", 403), ("null", 403), (f"https://{local}", 403),
+                             (f"http://127.0.0.1:{viewer.port + 1}", 403)):
+        answer = request(viewer, "POST", "scene", text, Host=local, Origin=origin)[0]
+        check(answer == expected, f"Origin {origin}: {expected}, not {answer}")
+    for path in ("/", "/start.json", f"/{good[:-1]}x/", f"/{good}", f"/{good}x/", f"/{good[:-1]}/", f"//{good}/", "/" + 200 * "a"):
+        check(request(viewer, "GET", path)[0] == 403, f"the path {path} is refused")
+    check(request(viewer, "GET", "../secret")[0] in (403, 404) and request(viewer, "GET", "nothing.js")[0] == 404, "unknown files")
+    check(request(viewer, "PUT", "scene", text)[0] == 405 and request(viewer, "DELETE", "")[0] == 405, "other methods")
+    check(request(viewer, "POST", "scene", b"", Content_Length=str(5 << 20))[0] == 413, "a body that is too large")
+    for body in ("", "{", "[]", "\0", '{"halflight": 2}', text.replace('"fovy_deg": 30', '"fovy_deg": 900'), "{" * 100000):
+        status, headers, line = request(viewer, "POST", "scene", body)
+        check(status == 400 and headers["Content-Type"].startswith("text/plain") and len(line) > 5, f"malformed: {body[:30]!r}")
+    for query in ("frame", "frame?page=a&number=1", "frame?page=A&number=1&format=png", "frame?page=a&number=-1&format=png",
+                  "frame?page=a&number=1&format=gif", "frame?page=a&number=1&format=jpeg&quality=1000",
+                  "frame?page=a&number=1&format=png&depth=9", f"frame?page={'a' * 33}&number=1&format=png"):
+        check(request(viewer, "POST", query, text)[0] == 400, query)
+    vast = small(scene, 16000)
+    check(frame(viewer, vast)[0] == 400, "a picture of 256 million pixels")
+
+
+def no_other_file(viewer, scene):
+    """A page cannot open what was not open at the start."""
+    for change in (lambda s: s["volumes"][0].update(file="/etc/passwd"),
+                   lambda s: s["volumes"][0].update(transfer_function={"file": "/etc/passwd"}),
+                   lambda s: s["lights"][0].update(texture={"file": "/etc/passwd", "screen": {"center": [0, 0, 9], "right": [1, 0, 0], "up": [0, 1, 0]}}),
+                   lambda s: s["volumes"].append({"shapes": [{"type": "sphere", "radius": 5}], "voxel_size": 1})):
+        other = small(scene)
+        change(other)
+        status, _, line = frame(viewer, other)
+        check(status == 400 and b"root" not in line, "another file is refused")
+
+
+def headers_protect(viewer):
+    for path in ("", "main.js", "style.css", "icon.svg", "start.json"):
+        status, headers, body = request(viewer, "GET", path)
+        check(status == 200 and body, f"{path or 'the page'} is served")
+        policy = headers["Content-Security-Policy"]
+        check("default-src 'none'" in policy and "unsafe" not in policy and "frame-ancestors 'none'" in policy, "a strict policy")
+        check(headers["X-Content-Type-Options"] == "nosniff" and headers["Cache-Control"] == "no-store", "headers")
+
+
+def newer_frames_cancel(viewer, scene):
+    """A slow frame is answered with 204 soon after a newer one of its page has come; other pages go on."""
+    slow = small(scene, 1024)
+    slow["render"].update(sheet_spacing=0.05)
+    answers = {}
+
+    def ask(name, page, number, what):
+        began = time.monotonic()
+        answers[name] = frame(viewer, what, page=page, number=number)[0], time.monotonic() - began
+
+    threads = [threading.Thread(target=ask, args=("slow", "one", 100, slow))]
+    threads[0].start()
+    time.sleep(0.4)
+    ask("other", "two", 1, small(scene))
+    ask("newer", "one", 101, small(scene))
+    threads[0].join()
+    ask("late", "one", 99, small(scene))
+    check(answers["other"][0] == 200 and answers["newer"][0] == 200, "newer frames and other pages are rendered")
+    check(answers["slow"][0] == 204 and answers["late"][0] == 204, f"outdated frames are cancelled: {answers}")
+
+
+def many_pages(viewer, scene):
+    """More pages than are kept: each gets its own camera's picture."""
+    pictures = {}
+    for number in range(10):
+        turned = small(scene, 48)
+        turned["camera"]["position"][0] += 10 * number
+        pictures[number] = frame(viewer, turned, page=f"many-{number}")[2]
+    check(len(set(pictures.values())) == 10, "ten cameras, ten pictures")
+    check(frame(viewer, small(scene, 48), page="many-9")[2] == pictures[0], "the same camera on another page: the same picture")
+
+
+def bad_clients(viewer, scene):
+    """Clients that hang, vanish or lie leave the server as it was."""
+    def raw(*pieces):
+        client = socket.create_connection(("127.0.0.1", viewer.port))
+        for piece in pieces:
+            client.sendall(piece)
+        return client
+
+    head = f"POST /{viewer.token}/frame?page=bad&number=1&format=png HTTP/1.1\r\nHost: localhost\r\n".encode()
+    body = json.dumps(small(scene, 512)).encode()
+    hanging = [raw(), raw(b"GET"), raw(head), raw(head + b"Content-Length: 1000\r\n\r\n{"), raw(b"\0\xff\r\n\r\n" * 100)]
+    for _ in range(5):
+        raw(head + b"Content-Length: %d\r\n\r\n" % len(body) + body).close()
+    raw(head + b"Content-Length: 10\r\n\r\n" + body).close()
+    raw(head + b"Content-Length: -5\r\n\r\n" + body).close()
+    raw(head + b"Transfer-Encoding: chunked\r\n\r\n" + b"ffffff\r\n" + b"x" * 5000).close()
+    raw(b"GET / HTTP/1.1\r\n" + b"A: " + b"b" * 100000).close()
+    check(frame(viewer, small(scene))[0] == 200, "it still answers")
+    for client in hanging:
+        client.close()
+
+
+def ends_cleanly(viewer, scene):
+    """Ctrl-C ends the program soon, also while a frame is rendered."""
+    slow = small(scene, 2048)
+    slow["render"].update(sheet_spacing=0.05)
+
+    def ask():
+        try:
+            frame(viewer, slow, page="last")
+        except (http.client.HTTPException, OSError):
+            pass
+
+    asking = threading.Thread(target=ask)
+    asking.start()
+    time.sleep(0.3)
+    began = time.monotonic()
+    check(viewer.interrupt() == 0, "Ctrl-C is the way to end it: status 0")
+    check(time.monotonic() - began < 10, "soon")
+    asking.join()
+    check(viewer.process.stderr.read() == "", "and in silence")
+
+
+def busy_port():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        run = subprocess.run([PROGRAM, "view", "torus.nrrd", "--no-browser", "--port", port], capture_output=True, text=True)
+        check(run.returncode == 1 and run.stdout == "" and f"port {port} is taken" in run.stderr, "a taken port is said")
+    with Viewer(PROGRAM, "torus.nrrd", "--port", port) as viewer:
+        check(viewer.port == int(port) and request(viewer, "GET", "")[0] == 200, "a free one is used")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
+        print("built without the viewer")
+        sys.exit(77)
+    subprocess.run([PROGRAM, "make", "torus", "--size", "32", "--quiet"], check=True)
+    with Viewer(PROGRAM, "torus.nrrd") as viewer:
+        check(len(viewer.token) == 32, "a token of 128 bits")
+        start = json.loads(request(viewer, "GET", "start.json")[2])
+        scene = start["scene"]
+        check(os.path.isabs(scene["volumes"][0]["file"]) and len(start["volumes"][0]["histogram"]) == 256, "start.json")
+        exact_pictures(viewer, small(scene))
+        complete_scenes(viewer, scene)
+        refusals(viewer, scene)
+        no_other_file(viewer, scene)
+        headers_protect(viewer)
+        newer_frames_cancel(viewer, scene)
+        many_pages(viewer, scene)
+        bad_clients(viewer, scene)
+        ends_cleanly(viewer, scene)
+    busy_port()
+print(f"{checks} checks passed")

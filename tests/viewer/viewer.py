@@ -1,0 +1,28 @@
+"""A running `halflight view`, for tests."""
+import signal
+import subprocess
+import urllib.parse
+
+
+class Viewer:
+    """The program with one INPUT; its requests can be made in Python."""
+
+    def __init__(self, program, *arguments):
+        self.process = subprocess.Popen([program, "view", "--no-browser", "--quiet", *arguments], stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True)
+        self.url = self.process.stdout.readline().strip()
+        parts = urllib.parse.urlsplit(self.url)
+        self.port, self.token = parts.port, parts.path.strip("/")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.communicate()
+
+    def interrupt(self, timeout=20):
+        """Ctrl-C; returns the exit status."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(timeout)
