@@ -3,6 +3,7 @@
 #include "output.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,7 +76,10 @@ int output_to_stdout(const unsigned char *bytes, size_t length) {
 }
 
 char *output_default_name(const char *input, const char *extension) {
+  char folder[PATH_MAX];
   const char *base = base_name(input);
+  bool unnamed = base[0] == 0 || strcmp(base, ".") == 0 || strcmp(base, "..") == 0; /* of a folder */
+  if (unnamed && realpath(input, folder) != NULL && folder[1] != 0) base = base_name(folder);
   size_t length = strlen(base);
   if (has_extension(base, ".gz")) length -= 3;
   size_t stem = length;

@@ -7,6 +7,7 @@
 #ifndef HL_VOLUME_FORMAT_H
 #define HL_VOLUME_FORMAT_H
 
+#include "volume/bundle.h"
 #include "volume/payload.h"
 
 enum { HL_ARRAYS_MOST = 256 }; /* most arrays that are listed for one file */
@@ -81,6 +82,11 @@ typedef struct hl_format {
 
   /* Reads *stream from its current position, may replace it or push decoders on it; the caller closes it. */
   hl_status (*load)(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+
+  /* Reads a folder or a zip archive. *claimed: false if it holds nothing of the format; then other formats
+   * are asked. */
+  hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
+                           hl_error *error);
 } hl_format;
 
 /* A format's name of a voxel type; name may list alternatives, as for hl_text_is_one_of. */

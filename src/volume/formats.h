@@ -13,4 +13,5 @@
   HL_FORMAT(legacy_vtk) \
   HL_FORMAT(npy)       \
   HL_FORMAT(mrc)       \
+  HL_FORMAT(dicom)     \
   HL_FORMAT(dat)

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "core/context.h"
 #include "volume/decoders.h"
@@ -65,7 +66,6 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
     size_t mark_length;
     const char *advice;
   } marks[] = {
-      {128, "DICM", 4, "a DICOM file: convert its series to NIfTI with dcm2niix"},
       {0, " BDV", 4, "an OpenVDB file: make it dense and save it as NRRD or NIfTI"},
       {0, "NanoVDB", 7, "a NanoVDB file: make it dense and save it as NRRD or NIfTI"},
       {0, "II*\0", 4, "a TIFF file: convert the stack to NRRD or MetaImage"},
@@ -73,7 +73,6 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
       {0, "\x89PNG", 4, "a picture, not a volume"},
       {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, ...): export the volume as NRRD or NIfTI"},
       {0, "BZh", 3, "compressed with bzip2: decompress it first"},
-      {0, "PK\3\4", 4, "a zip archive: unpack it first"},
       {0, "\3757zXZ", 5, "compressed with xz: decompress it first"},
       {0, "\x28\xb5\x2f\xfd", 4, "compressed with zstd: decompress it first"},
       {0, "11111\n", 6, "a VolVis SLC file: convert it to NRRD or raw"},
@@ -110,6 +109,49 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
                  path, known);
 }
 
+/* A folder, or a zip archive: asks every format. */
+static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, hl_volume **volume,
+                             hl_error *error) {
+  bool claimed = false;
+  hl_status status = HL_OK;
+  for (int n = 0; n < FORMAT_COUNT && status == HL_OK && !claimed; n++)
+    if (formats[n]->load_bundle != NULL)
+      status = formats[n]->load_bundle(bundle, request, &claimed, volume, error);
+  if (status == HL_OK && !claimed)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: a %s in which no volume was found: give a volume file",
+                   bundle->path, bundle->is_archive ? "zip archive" : "folder");
+  return status;
+}
+
+static hl_status load_folder(const char *path, hl_load_request *request, hl_volume **volume,
+                             hl_error *error) {
+  hl_bundle bundle;
+  hl_status status = hl_bundle_open_folder(request->context, path, &bundle, error);
+  if (status == HL_OK) status = load_bundle(&bundle, request, volume, error);
+  hl_bundle_close(&bundle);
+  return status;
+}
+
+static bool is_folder(const char *path) {
+  struct stat about;
+  return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+static hl_status load_archive(hl_stream *stream, hl_load_request *request, hl_volume **volume,
+                              hl_error *error) {
+  hl_bundle bundle = {.context = request->context};
+  const unsigned char *bytes = NULL;
+  size_t length = 0;
+  hl_status status = HL_OK;
+  if (!hl_stream_is_plain_file(stream) && !hl_stream_memory(stream, &bytes, &length))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a zip archive in a pipe: give it as a file",
+                   stream->path);
+  status = hl_bundle_open_zip(request->context, stream->path, bytes, length, &bundle, error);
+  if (status == HL_OK) status = load_bundle(&bundle, request, volume, error);
+  hl_bundle_close(&bundle);
+  return status;
+}
+
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_format *format = by_fit(*stream);
   if (format != NULL) return format->load(stream, request, volume, error);
@@ -120,6 +162,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   status = hl_stream_peek(*stream, HL_FORMAT_SNIFFED_BYTES, &bytes, &length, error);
   if (status == HL_OK) status = take_byte_order_mark(*stream, &bytes, &length, error);
   if (status != HL_OK) return status;
+  if (begins(bytes, length, "PK\3\4", 4)) return load_archive(*stream, request, volume, error);
   format = by_content(bytes, length);
   if (format == NULL) status = by_name(stream, &format, error);
   if (status != HL_OK) return status;
@@ -160,6 +203,25 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
   return HL_OK;
 }
 
+/* Gives the volume the list of arrays, and tells what was chosen by default. */
+static hl_status finish(hl_load_request *request, hl_status status, hl_volume **volume) {
+  if (status != HL_OK) {
+    hl_arrays_release(request->context, request->arrays, request->array_count);
+    return status;
+  }
+  if (request->array_told[0] != 0) hl_log(request->context, HL_LOG_WARNING, "%s", request->array_told);
+  if (request->component_told[0] != 0)
+    hl_log(request->context, HL_LOG_WARNING, "%s", request->component_told);
+  if (request->selection_told[0] != 0)
+    hl_log(request->context, HL_LOG_WARNING, "%s", request->selection_told);
+  (*volume)->selection = request->selection;
+  (*volume)->arrays = request->arrays;
+  (*volume)->array_count = request->array_count;
+  (*volume)->chosen_array = request->chosen;
+  (*volume)->component = request->chosen_component;
+  return HL_OK;
+}
+
 hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_volume_load_options *options,
                               hl_volume **volume, hl_error *error) {
   if (volume != NULL) *volume = NULL;
@@ -180,24 +242,16 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .selection = {1, 1, 1, 0, 0, 0}};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
+  if (options->bytes == NULL && is_folder(path)) {
+    status = load_folder(path, &request, volume, error);
+    return finish(&request, status, volume);
+  }
   status = options->bytes != NULL
                ? hl_stream_open_memory(context, path, options->bytes, options->byte_count, &stream, error)
                : hl_stream_open(context, path, false, &stream, error);
   if (status == HL_OK) status = load(&stream, &request, volume, error);
   hl_stream_close(stream);
-  if (status != HL_OK) {
-    hl_arrays_release(context, request.arrays, request.array_count);
-    return status;
-  }
-  if (request.array_told[0] != 0) hl_log(context, HL_LOG_WARNING, "%s", request.array_told);
-  if (request.component_told[0] != 0) hl_log(context, HL_LOG_WARNING, "%s", request.component_told);
-  if (request.selection_told[0] != 0) hl_log(context, HL_LOG_WARNING, "%s", request.selection_told);
-  (*volume)->selection = request.selection;
-  (*volume)->arrays = request.arrays;
-  (*volume)->array_count = request.array_count;
-  (*volume)->chosen_array = request.chosen;
-  (*volume)->component = request.chosen_component;
-  return HL_OK;
+  return finish(&request, status, volume);
 }
 
 hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume, hl_error *error) {

@@ -149,6 +149,18 @@ static const file_stream *file_of(const hl_stream *stream) {
 
 bool hl_stream_can_restart(const hl_stream *stream) { return file_of(stream)->regular; }
 
+bool hl_stream_is_plain_file(const hl_stream *stream) {
+  return stream->below == NULL && file_of(stream)->regular && file_of(stream)->memory == NULL;
+}
+
+bool hl_stream_memory(const hl_stream *stream, const unsigned char **bytes, size_t *length) {
+  const file_stream *file = file_of(stream);
+  if (stream->below != NULL || file->memory == NULL) return false;
+  *bytes = file->memory;
+  *length = (size_t)file->size;
+  return true;
+}
+
 hl_status hl_stream_restart(hl_stream **stream, hl_error *error) {
   const file_stream *file = file_of(*stream);
   hl_stream *opened;

@@ -42,6 +42,10 @@ hl_status hl_stream_open_memory(hl_context *context, const char *path, const voi
 hl_status hl_stream_switch(hl_stream **stream, const char *name, hl_error *error);
 /* Whether *stream's file can be read a second time: a regular file, or memory. */
 bool hl_stream_can_restart(const hl_stream *stream);
+/* Whether the stream is a regular file itself, without decoders, pipes or memory. */
+bool hl_stream_is_plain_file(const hl_stream *stream);
+/* Whether the stream is the caller's memory itself, and all of it. */
+bool hl_stream_memory(const hl_stream *stream, const unsigned char **bytes, size_t *length);
 /* Opens *stream's file again from the start. hl_stream_can_restart() must be true. */
 hl_status hl_stream_restart(hl_stream **stream, hl_error *error);
 void hl_stream_close(hl_stream *stream); /* closes the whole chain; null is allowed */

@@ -306,7 +306,11 @@ static void test_absent_files_and_null_arguments(void **unused) {
   assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
   assert_int_equal(hl_volume_load(context, "/no/such/file.nrrd", &volume, &error), HL_ERROR_IO);
   assert_non_null(strstr(error.message, "/no/such/file.nrrd: cannot open"));
-  assert_int_equal(hl_volume_load(context, "/", &volume, &error), HL_ERROR_IO);
+  char folder[FOLDER_BYTES];
+  make_folder(folder);
+  assert_int_equal(hl_volume_load(context, folder, &volume, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "a folder in which no volume was found"));
+  remove_folder(folder);
   assert_int_equal(hl_volume_load(context, NULL, &volume, &error), HL_ERROR_ARGUMENT);
   assert_int_equal(hl_volume_load(NULL, "a", &volume, &error), HL_ERROR_ARGUMENT);
   assert_int_equal(hl_volume_load(context, "a", NULL, &error), HL_ERROR_ARGUMENT);

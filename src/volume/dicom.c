@@ -1,0 +1,153 @@
+/* volume/dicom.c - DICOM: folders, archives and discs of slices, single files, series of frames.
+ *
+ * The parts are in dicom/: elements and header read a file, set finds the series of all files, stack orders
+ * the frames of one, frame decodes a frame, voxels makes the volume. */
+#define _GNU_SOURCE
+#include <string.h>
+
+#include "core/context.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "volume/dicom/directory.h"
+#include "volume/dicom/voxels.h"
+#include "volume/format.h"
+#include "volume/text.h"
+
+static bool has_content(const unsigned char *bytes, size_t length) {
+  return hl_dicom_has_mark(bytes, length);
+}
+
+/* Old files have no mark. */
+static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
+  static const char *const endings[] = {".dcm", ".dicom", ".ima"};
+  const unsigned char *bytes;
+  size_t length;
+  bool named = false;
+  for (size_t n = 0; n < sizeof endings / sizeof *endings; n++)
+    named = named || hl_text_ends((*stream)->path, endings[n]);
+  if (!named) return HL_OK;
+  hl_status status = hl_stream_peek(*stream, HL_FORMAT_SNIFFED_BYTES, &bytes, &length, error);
+  *claimed = status == HL_OK && hl_dicom_may_begin(bytes, length);
+  return status;
+}
+
+static void tell_damage(const hl_dicom_set *set) {
+  const char *path = set->bundle->path;
+  if (set->damaged > 0)
+    hl_log(set->context, HL_LOG_WARNING, "%s: %zu DICOM files cannot be read and are left out; the first: %s",
+           path, set->damaged, set->first_damage);
+  if (set->bundle->links_passed > 0)
+    hl_log(set->context, HL_LOG_WARNING,
+           "%s: %zu links or names that lead elsewhere, or to nothing, are left out", path,
+           set->bundle->links_passed);
+}
+
+static hl_status load_series(hl_dicom_set *set, hl_load_request *request, hl_volume **volume,
+                             hl_error *error) {
+  size_t series;
+  hl_dicom_stack stack;
+  hl_status status = hl_dicom_series_choose(set, request->series, &series, error);
+  if (status != HL_OK) return status;
+  status = hl_dicom_stack_make(set, series, &stack, error);
+  if (status == HL_OK) status = hl_dicom_voxels_read(set, &stack, request, volume, error);
+  hl_dicom_stack_release(&stack);
+  return status;
+}
+
+/* strict: the bundle is one file, which must be read. */
+static hl_status load_files(hl_bundle *bundle, bool strict, hl_load_request *request, bool *claimed,
+                            hl_volume **volume, hl_error *error) {
+  hl_dicom_set set;
+  hl_status status = hl_dicom_set_read(request->context, bundle, strict, &set, error);
+  *claimed = status != HL_OK || set.file_count > 0;
+  if (status == HL_OK && set.file_count > 0) {
+    tell_damage(&set);
+    status = load_series(&set, request, volume, error);
+  } else if (status == HL_OK && set.damaged > 0) {
+    *claimed = true;
+    status = hl_fail(error, HL_ERROR_INPUT, "%s: none of its %zu DICOM files can be read; the first: %s",
+                     bundle->path, set.damaged, set.first_damage);
+  }
+  hl_dicom_set_release(&set);
+  return status;
+}
+
+static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
+                             hl_error *error) {
+  hl_status status = hl_bundle_list(bundle, error);
+  return status == HL_OK ? load_files(bundle, false, request, claimed, volume, error) : status;
+}
+
+/* A file without pixels of its own may be a DICOMDIR. */
+static hl_status load_directory(hl_bundle *one, hl_load_request *request, hl_volume **volume,
+                                hl_error *error) {
+  hl_bundle listed = {.context = request->context};
+  hl_source *source = NULL;
+  bool claimed;
+  hl_status status = hl_bundle_entry_open(one, &one->entries[0], true, &source, error);
+  if (status == HL_OK) {
+    listed.path = hl_path_folder(request->context, one->path);
+    if (listed.path == NULL) status = hl_fail_memory(error, strlen(one->path), one->path);
+  }
+  if (status == HL_OK) status = hl_dicom_directory_read(&source, &listed, error);
+  if (status == HL_OK && (listed.count > 0 || listed.links_passed > 0)) {
+    if (listed.path[0] == 0) { /* the current folder */
+      hl_release(request->context, listed.path);
+      listed.path = hl_copy_text(request->context, ".");
+    }
+    status = listed.path == NULL ? hl_fail_memory(error, 2, one->path)
+                                 : load_files(&listed, false, request, &claimed, volume, error);
+    if (status == HL_OK && *volume == NULL)
+      status = hl_fail(error, HL_ERROR_INPUT,
+                       "%s: none of the files that it lists is a picture that is there", one->path);
+  } else if (status == HL_OK) {
+    status = hl_fail(error, HL_ERROR_INPUT, "%s: a DICOM file without a picture in it", one->path);
+  }
+  hl_source_close(source);
+  hl_bundle_close(&listed);
+  return status;
+}
+
+/* The rest of a stream that is no plain file, in one block. */
+static hl_status read_whole(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error) {
+  size_t capacity = 0, got = 1;
+  for (*length = 0; got > 0; *length += got) {
+    if (capacity - *length < HL_STREAM_BUFFER_BYTES) {
+      size_t wanted = 2 * capacity + 2 * (size_t)HL_STREAM_BUFFER_BYTES;
+      unsigned char *larger = hl_reallocate(stream->context, *bytes, wanted, 1);
+      if (larger == NULL) return hl_fail_memory(error, wanted, stream->path);
+      *bytes = larger;
+      capacity = wanted;
+    }
+    hl_status status = hl_stream_read(stream, *bytes + *length, HL_STREAM_BUFFER_BYTES, &got, error);
+    if (status != HL_OK) return status;
+  }
+  return HL_OK;
+}
+
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  hl_context *context = request->context;
+  unsigned char *whole = NULL;
+  hl_bundle one = {.context = context};
+  hl_status status = hl_bundle_of_file(context, (*stream)->path, &one, error);
+  if (status == HL_OK && !hl_stream_is_plain_file(*stream)) {
+    status = read_whole(*stream, &whole, &one.memory_size, error);
+    one.memory = whole;
+  }
+  bool claimed = false;
+  if (status == HL_OK) status = load_files(&one, true, request, &claimed, volume, error);
+  if (status == HL_OK && !claimed) status = load_directory(&one, request, volume, error);
+  hl_bundle_close(&one);
+  hl_release(context, whole);
+  return status;
+}
+
+const hl_format hl_format_dicom = {
+    .name = "DICOM",
+    .endings = {".dcm", ".dicom", ".ima"},
+    .beginning = "128 bytes and \"DICM\"",
+    .has_content = has_content,
+    .claim_name = claim_name,
+    .load = load,
+    .load_bundle = load_bundle,
+};

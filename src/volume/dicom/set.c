@@ -1,0 +1,262 @@
+/* volume/dicom/set.c - from files to series. */
+#include "volume/dicom/set.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "core/vector.h"
+#include "volume/text.h"
+
+/* Makes room for one more item of a list. */
+static hl_status make_room(hl_context *context, void **items, size_t count, size_t *capacity, size_t size,
+                           hl_error *error) {
+  if (count < *capacity) return HL_OK;
+  size_t wanted = *capacity > 0 ? 2 * *capacity : 32;
+  void *larger = hl_reallocate(context, *items, wanted, size);
+  if (larger == NULL) return hl_fail_memory(error, wanted * size, "a list of DICOM files");
+  *items = larger;
+  *capacity = wanted;
+  return HL_OK;
+}
+
+/* ---- series ---- */
+
+static hl_status find_series(hl_dicom_set *set, const hl_dicom_header *header, uint32_t *index,
+                             hl_error *error) {
+  for (size_t n = set->series_count; n > 0; n--)
+    if (strcmp(set->series[n - 1].uid, header->series_uid) == 0) {
+      *index = (uint32_t)(n - 1);
+      return HL_OK;
+    }
+  hl_status status = make_room(set->context, (void **)&set->series, set->series_count, &set->series_capacity,
+                               sizeof *set->series, error);
+  if (status != HL_OK) return status;
+  hl_dicom_series *series = &set->series[set->series_count];
+  *series = (hl_dicom_series){
+      .number = header->series_number, .rows = header->pixels.rows, .columns = header->pixels.columns};
+  memcpy(series->uid, header->series_uid, sizeof series->uid);
+  memcpy(series->modality, header->modality, sizeof series->modality);
+  memcpy(series->description, header->description, sizeof series->description);
+  *index = (uint32_t)set->series_count++;
+  return HL_OK;
+}
+
+const char *hl_dicom_series_text(const hl_dicom_series *series, char *text, size_t size) {
+  char number[32] = "no number", description[HL_PRINTABLE_BYTES], modality[HL_PRINTABLE_BYTES];
+  if (!isnan(series->number)) snprintf(number, sizeof number, "%.0f", series->number);
+  snprintf(text, size, "%s: %s \"%s\", %zu x %zu x %zu", number,
+           hl_text_printable(modality, series->modality), hl_text_printable(description, series->description),
+           series->columns, series->rows, series->frames);
+  return text;
+}
+
+static void list_series(const hl_dicom_set *set, char *text, size_t size) {
+  enum { NAMED = 12 };
+  size_t used = 0;
+  text[0] = 0;
+  for (size_t n = 0; n < set->series_count && n < NAMED && used < size; n++) {
+    char one[200];
+    used += (size_t)snprintf(text + used, size - used, "%s%s", n > 0 ? "; " : "",
+                             hl_dicom_series_text(&set->series[n], one, sizeof one));
+  }
+  if (set->series_count > NAMED && used < size) snprintf(text + used, size - used, "; ...");
+}
+
+/* How well the wanted text names a series: 3 by its UID, 2 by its number, 1 by its description. */
+static int match(const hl_dicom_series *series, const char *wanted) {
+  double number;
+  if (strcmp(series->uid, wanted) == 0) return 3;
+  if (hl_text_number(wanted, strlen(wanted), &number) && number == series->number) return 2;
+  return hl_text_equal(series->description, wanted) ? 1 : 0;
+}
+
+static size_t largest(const hl_dicom_set *set) {
+  size_t chosen = 0;
+  double most = 0;
+  for (size_t n = 0; n < set->series_count; n++) {
+    const hl_dicom_series *series = &set->series[n];
+    double size = (double)series->rows * (double)series->columns * (double)series->frames;
+    if (series->frames == 1) size *= 1e-6; /* a single picture is no volume */
+    if (size > most) {
+      most = size;
+      chosen = n;
+    }
+  }
+  return chosen;
+}
+
+hl_status hl_dicom_series_choose(const hl_dicom_set *set, const char *wanted, size_t *chosen,
+                                 hl_error *error) {
+  char list[600], shown[HL_PRINTABLE_BYTES];
+  if (wanted == NULL) {
+    *chosen = largest(set);
+    if (set->series_count == 1) return HL_OK;
+    char one[200];
+    list_series(set, list, sizeof list);
+    hl_log(set->context, HL_LOG_WARNING,
+           "%s: of %zu series, %s is taken: choose by \"series\" (--series): %s", set->bundle->path,
+           set->series_count, hl_dicom_series_text(&set->series[*chosen], one, sizeof one), list);
+    return HL_OK;
+  }
+  int best = 0, equal = 0;
+  for (size_t n = 0; n < set->series_count; n++) {
+    int how = match(&set->series[n], wanted);
+    if (how > best) equal = 0;
+    if (how == 0 || how < best) continue;
+    if (equal++ == 0) *chosen = n;
+    best = how;
+  }
+  if (equal == 1) return HL_OK;
+  if (equal > 1)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: %d series are called \"%s\": give a UID: %s is the first, %s the last",
+                   set->bundle->path, equal, hl_text_printable(shown, wanted), set->series[*chosen].uid,
+                   set->series[set->series_count - 1].uid);
+  list_series(set, list, sizeof list);
+  return hl_fail(error, HL_ERROR_INPUT, "%s: there is no series \"%s\": there is %s", set->bundle->path,
+                 hl_text_printable(shown, wanted), list);
+}
+
+/* ---- files ---- */
+
+/* Where a file says nothing of each frame, its frames follow each other along the normal. */
+static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_frame *frame) {
+  *frame = index < header->frames_told ? header->frames[index] : header->base;
+  frame->index = (uint32_t)index;
+  if (header->frames_told > 0 || header->frame_count < 2) return;
+  double distance = (double)index * (header->slice_spacing > 0 ? header->slice_spacing
+                                     : header->thickness > 0   ? header->thickness
+                                                               : 1);
+  /* PS3.3, C.8.8.3.2: offsets that begin with 0 are from the first frame's position. */
+  if (index < header->offset_count) distance = header->offsets[index] - header->offsets[0];
+  vec3 normal = vec3_cross(vec3_of(frame->orientation), vec3_of(frame->orientation + 3));
+  frame->position[0] += distance * normal.x;
+  frame->position[1] += distance * normal.y;
+  frame->position[2] += distance * normal.z;
+}
+
+/* Holds what the header promises against the file's length, before anything is allocated for it. */
+static hl_status check_length(const hl_source *source, const hl_dicom_header *header, hl_error *error) {
+  const hl_dicom_pixels *p = &header->pixels;
+  uint64_t size = hl_source_size(source), frames = (uint64_t)header->frame_count, needed;
+  uint64_t left = p->offset < size ? size - p->offset : 0;
+  uint64_t bits = (uint64_t)p->rows * p->columns * (p->is_halved && !p->encapsulated ? 2 : p->samples) *
+                  (uint64_t)p->allocated;
+  if (p->encapsulated) needed = frames * 8; /* each frame has a fragment at least */
+  else if (__builtin_mul_overflow(bits, frames, &needed)) needed = UINT64_MAX;
+  else needed = needed / 8 + (needed % 8 != 0);
+  if (needed <= left) return HL_OK;
+  return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)p->offset,
+                        "%s: %llu frames of %zu x %zu pixels need %llu bytes, the file has only %llu",
+                        hl_source_path(source), (unsigned long long)frames, p->columns, p->rows,
+                        (unsigned long long)needed, (unsigned long long)left);
+}
+
+static hl_status add_frames(hl_dicom_set *set, const hl_dicom_header *header, size_t file, hl_error *error) {
+  size_t count = (size_t)header->frame_count;
+  for (size_t n = 0; n < count; n++) {
+    hl_status status = make_room(set->context, (void **)&set->frames, set->frame_count, &set->frame_capacity,
+                                 sizeof *set->frames, error);
+    if (status != HL_OK) return status;
+    hl_dicom_frame *frame = &set->frames[set->frame_count++];
+    place_frame(header, n, frame);
+    frame->file = (uint32_t)file;
+  }
+  return HL_OK;
+}
+
+/* The padding value as the pixels' own type has it (PS3.3, C.7.5.1.1.2), and the range's other end. */
+static void take_padding(const hl_dicom_header *header, double padding[2]) {
+  for (int n = 0; n < 2; n++) {
+    double value = header->padding[n];
+    if (header->representation == 1 && value >= 32768) value -= 65536;
+    if (header->pixels.inverted)
+      value = header->representation == 1 ? -1 - value : ldexp(1, header->pixels.stored) - 1 - value;
+    padding[n] = value;
+  }
+  if (isnan(padding[1])) padding[1] = padding[0];
+  if (padding[0] > padding[1]) {
+    double other = padding[0];
+    padding[0] = padding[1];
+    padding[1] = other;
+  }
+}
+
+static hl_status add_file(hl_dicom_set *set, const hl_dicom_header *header, size_t entry, hl_error *error) {
+  hl_status status = make_room(set->context, (void **)&set->files, set->file_count, &set->file_capacity,
+                               sizeof *set->files, error);
+  if (status != HL_OK) return status;
+  hl_dicom_file *file = &set->files[set->file_count];
+  *file = (hl_dicom_file){.entry = (uint32_t)entry,
+                          .pixels = header->pixels,
+                          .slice_spacing = header->slice_spacing,
+                          .thickness = header->thickness,
+                          .window = {header->window[0], header->window[1]},
+                          .is_localizer = strstr(header->image_type, "LOCALIZER") != NULL,
+                          .is_deflated = header->deflated,
+                          .frame_count = (size_t)header->frame_count};
+  take_padding(header, file->padding);
+  status = find_series(set, header, &file->series, error);
+  if (status == HL_OK) status = add_frames(set, header, set->file_count, error);
+  if (status != HL_OK) return status;
+  set->series[file->series].frames += file->frame_count;
+  set->file_count++;
+  return HL_OK;
+}
+
+static hl_status read_file(hl_dicom_set *set, size_t entry, bool strict, hl_error *error) {
+  hl_source *source = NULL;
+  hl_dicom_header header = {.frames = NULL};
+  const unsigned char *bytes;
+  size_t available;
+  hl_status status = hl_bundle_entry_open(set->bundle, &set->bundle->entries[entry], false, &source, error);
+  if (status == HL_OK) status = hl_source_peek(source, 0, 132, &bytes, &available, error);
+  bool is_dicom = status == HL_OK && hl_dicom_may_begin(bytes, available);
+  bool has_mark = is_dicom && hl_dicom_has_mark(bytes, available);
+  if (is_dicom || (status == HL_OK && strict)) status = hl_dicom_header_read(&source, &header, error);
+  if (status == HL_OK && header.has_pixels) status = check_length(source, &header, error);
+  if (status == HL_OK && header.has_pixels) status = add_file(set, &header, entry, error);
+  hl_dicom_header_release(set->context, &header);
+  hl_source_close(source);
+  if (status == HL_OK || status == HL_ERROR_MEMORY || status == HL_ERROR_CANCELLED || strict) return status;
+  if (has_mark && set->damaged++ == 0)
+    snprintf(set->first_damage, sizeof set->first_damage, "%.299s", error != NULL ? error->message : "");
+  return HL_OK;
+}
+
+hl_status hl_dicom_set_read(hl_context *context, const hl_bundle *bundle, bool strict, hl_dicom_set *set,
+                            hl_error *error) {
+  *set = (hl_dicom_set){.context = context, .bundle = bundle};
+  hl_error own = {0};
+  hl_status status = HL_OK;
+  for (size_t n = 0; n < bundle->count && status == HL_OK; n++) {
+    status = read_file(set, n, strict, &own);
+    if (status == HL_OK && hl_cancelled(context))
+      status = hl_fail(&own, HL_ERROR_CANCELLED, "%s: cancelled", bundle->path);
+  }
+  if (status != HL_OK && error != NULL) *error = own;
+  return status;
+}
+
+void hl_dicom_set_release(hl_dicom_set *set) {
+  for (size_t n = 0; n < set->file_count; n++) hl_release(set->context, set->files[n].frame_begins);
+  hl_release(set->context, set->files);
+  hl_release(set->context, set->series);
+  hl_release(set->context, set->frames);
+}
+
+hl_status hl_dicom_file_open(const hl_dicom_set *set, const hl_dicom_file *file, hl_source **source,
+                             hl_error *error) {
+  hl_status status = hl_bundle_entry_open(set->bundle, &set->bundle->entries[file->entry], true, source,
+                                          error);
+  if (status != HL_OK || !file->is_deflated) return status;
+  hl_dicom_header header = {.syntax = ""};
+  hl_dicom_reader reader;
+  status = hl_dicom_begin(source, &header, &reader, error);
+  if (status != HL_OK) hl_source_close(*source);
+  return status;
+}

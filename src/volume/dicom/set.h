@@ -1,0 +1,53 @@
+/* volume/dicom/set.h - all DICOM pictures of an input, their frames and the series that they belong to. */
+#ifndef HL_VOLUME_DICOM_SET_H
+#define HL_VOLUME_DICOM_SET_H
+
+#include "volume/bundle.h"
+#include "volume/dicom/header.h"
+
+typedef struct hl_dicom_file {
+  uint32_t entry, series; /* in the bundle; in the set */
+  hl_dicom_pixels pixels;
+  double padding[2]; /* the range of values that stand for nothing; NAN: none */
+  double slice_spacing, thickness, window[2];
+  bool is_localizer, is_deflated;
+  size_t frame_count;
+  uint64_t *frame_begins; /* owned; [frame_count + 1], positions of fragments; of encapsulated files of
+                             several frames, once found; else null */
+} hl_dicom_file;
+
+typedef struct hl_dicom_series {
+  char uid[HL_DICOM_UID_BYTES], modality[HL_DICOM_TEXT_BYTES], description[HL_DICOM_TEXT_BYTES];
+  double number; /* NAN: none */
+  size_t frames;
+  size_t rows, columns; /* of its first frame */
+} hl_dicom_series;
+
+typedef struct hl_dicom_set {
+  hl_context *context;
+  const hl_bundle *bundle;
+  hl_dicom_file *files;    /* owned; [file_count] */
+  hl_dicom_series *series; /* owned; [series_count] */
+  hl_dicom_frame *frames;  /* owned; [frame_count] */
+  size_t file_count, file_capacity, series_count, series_capacity, frame_count, frame_capacity;
+  size_t damaged;         /* DICOM files that could not be read */
+  char first_damage[300]; /* why the first of them could not */
+} hl_dicom_set;
+
+/* Reads the headers of all DICOM files in the bundle. strict: a file that cannot be read ends it. */
+hl_status hl_dicom_set_read(hl_context *context, const hl_bundle *bundle, bool strict, hl_dicom_set *set,
+                            hl_error *error);
+void hl_dicom_set_release(hl_dicom_set *set);
+
+/* Finds the wanted series by its UID, number or description; null: the one with most voxels. */
+hl_status hl_dicom_series_choose(const hl_dicom_set *set, const char *wanted, size_t *chosen,
+                                 hl_error *error);
+
+/* "3 CT \"Thorax\" 512 x 512 x 200": for a list. */
+const char *hl_dicom_series_text(const hl_dicom_series *series, char *text, size_t size);
+
+/* Opens a file where its elements lie: inflated, where they are deflated. */
+hl_status hl_dicom_file_open(const hl_dicom_set *set, const hl_dicom_file *file, hl_source **source,
+                             hl_error *error);
+
+#endif

@@ -1,0 +1,29 @@
+/* volume/dicom/stack.h - from the frames of a series to evenly spaced slices of a grid.
+ *
+ * The grid's axes are those of the rows, the columns, and the way from the first slice to the last: not the
+ * normal, so that a tilted gantry's sheared grid stays what it is. */
+#ifndef HL_VOLUME_DICOM_STACK_H
+#define HL_VOLUME_DICOM_STACK_H
+
+#include "volume/dicom/set.h"
+#include "volume/volume.h"
+
+/* A slice of the grid lies between two places where frames are, or at one. */
+typedef struct hl_dicom_slice {
+  size_t place;  /* the one before, or at it */
+  double weight; /* of the place after; 0: the slice is at `place` */
+} hl_dicom_slice;
+
+typedef struct hl_dicom_stack {
+  hl_context *context;
+  const hl_dicom_frame **frames; /* owned; [place_count][times] */
+  size_t place_count, times;
+  hl_dicom_slice *slices;     /* owned; [grid.dimensions[2]] */
+  hl_volume_description grid; /* dimensions, origin, axes, space */
+} hl_dicom_stack;
+
+/* Release it in any case. */
+hl_status hl_dicom_stack_make(const hl_dicom_set *set, size_t series, hl_dicom_stack *stack, hl_error *error);
+void hl_dicom_stack_release(hl_dicom_stack *stack);
+
+#endif

@@ -1,0 +1,301 @@
+/* volume/dicom/voxels.c - decodes slices on all processors, applies each one's rescaling, fills gaps.
+ *
+ * Where all slices have one rescaling, voxels stay integers, and it becomes the volume's value_scale and
+ * value_offset. Where it differs, as in PET, values are computed and kept as floats. Voxels of the padding
+ * value become NAN: if a slice has any, all integers become floats in the end. */
+#include "volume/dicom/voxels.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "core/pool.h"
+#include "volume/convert.h"
+#include "volume/dicom/frame.h"
+
+typedef struct reading {
+  const hl_dicom_set *set;
+  const hl_dicom_stack *stack;
+  size_t time;   /* the frame to take at each place */
+  int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
+  hl_voxel_type type;
+  bool as_floats;                      /* values are computed; else they are stored as they are */
+  bool swaps_floats;                   /* (unused by integers) */
+  double slope, intercept, padding[2]; /* of all slices, where as_floats is false */
+  size_t slice_voxels, voxel_bytes;
+  unsigned char *voxels; /* [slices][slice_voxels] of voxel_bytes */
+  hl_pool *pool;
+  hl_dicom_workspace *spaces; /* owned; one for each worker */
+  unsigned char **others;     /* owned; one slice for each worker, to fill gaps with; made when needed */
+  atomic_size_t done;
+  atomic_bool padded, failed;
+  pthread_mutex_t lock; /* guards error and failed_slice */
+  size_t failed_slice;
+  hl_error error;
+  hl_status status;
+} reading;
+
+/* ---- which type ---- */
+
+static const hl_dicom_frame *frame_at(const reading *r, size_t place) {
+  return r->stack->frames[place * r->stack->times + r->time];
+}
+
+static bool same_number(double a, double b) { return a == b || (isnan(a) && isnan(b)); }
+
+static hl_voxel_type type_of(const hl_dicom_pixels *p) {
+  if (p->is_float) return p->allocated == 32 ? HL_VOXEL_F32 : HL_VOXEL_F64;
+  if (p->allocated <= 8) return p->is_signed && p->allocated == 8 ? HL_VOXEL_I8 : HL_VOXEL_U8;
+  if (p->allocated == 16) return p->is_signed ? HL_VOXEL_I16 : HL_VOXEL_U16;
+  return p->is_signed ? HL_VOXEL_I32 : HL_VOXEL_U32;
+}
+
+static void choose_type(reading *r) {
+  const hl_dicom_frame *first = frame_at(r, 0);
+  const hl_dicom_file *file = &r->set->files[first->file];
+  r->type = type_of(&file->pixels);
+  r->slope = first->slope;
+  r->intercept = first->intercept;
+  memcpy(r->padding, file->padding, sizeof r->padding);
+  r->as_floats = hl_voxel_type_storage(r->type) == HL_STORAGE_F32;
+  for (size_t n = 1; n < r->stack->place_count && !r->as_floats; n++) {
+    const hl_dicom_frame *frame = frame_at(r, n);
+    const hl_dicom_file *other = &r->set->files[frame->file];
+    r->as_floats = frame->slope != r->slope || frame->intercept != r->intercept ||
+                   type_of(&other->pixels) != r->type || !same_number(other->padding[0], r->padding[0]) ||
+                   !same_number(other->padding[1], r->padding[1]);
+  }
+  if (r->component == HL_COMPONENT_MAGNITUDE) r->as_floats = true;
+  r->voxel_bytes = r->as_floats ? sizeof(float) : hl_storage_bytes(hl_voxel_type_storage(r->type));
+}
+
+/* ---- one slice ---- */
+
+static double value_at(const hl_dicom_workspace *space, hl_voxel_type type, size_t index) {
+  const void *values = space->values;
+  switch (type) {
+    case HL_VOXEL_U8: return ((const uint8_t *)values)[index];
+    case HL_VOXEL_I8: return ((const int8_t *)values)[index];
+    case HL_VOXEL_U16: return ((const uint16_t *)values)[index];
+    case HL_VOXEL_I16: return ((const int16_t *)values)[index];
+    case HL_VOXEL_U32: return ((const uint32_t *)values)[index];
+    case HL_VOXEL_I32: return ((const int32_t *)values)[index];
+    case HL_VOXEL_F32: return (double)((const float *)values)[index];
+    default: return ((const double *)values)[index];
+  }
+}
+
+static void store_floats(const reading *r, const hl_dicom_frame *frame, const hl_dicom_workspace *space,
+                         float *slice) {
+  const hl_dicom_file *file = &r->set->files[frame->file];
+  size_t samples = file->pixels.samples;
+  hl_voxel_type type = type_of(&file->pixels);
+  for (size_t n = 0; n < r->slice_voxels; n++) {
+    size_t at = n * samples;
+    double value = 0;
+    if (r->component == HL_COMPONENT_MAGNITUDE) {
+      for (size_t s = 0; s < samples; s++) {
+        double sample = value_at(space, type, at + s);
+        value += sample * sample;
+      }
+      slice[n] = (float)sqrt(value);
+      continue;
+    }
+    value = value_at(space, type, at + (samples > 1 ? (size_t)r->component : 0));
+    bool padded = value >= file->padding[0] && value <= file->padding[1];
+    slice[n] = padded ? NAN : (float)(frame->slope * value + frame->intercept);
+  }
+}
+
+static void store_integers(reading *r, hl_dicom_workspace *space, size_t samples, unsigned char *slice) {
+  size_t bytes = r->voxel_bytes;
+  if (samples > 1)
+    for (size_t n = 0; n < r->slice_voxels; n++)
+      memmove(space->values + n * bytes, space->values + (n * samples + (size_t)r->component) * bytes, bytes);
+  if (!isnan(r->padding[0]) && !r->padded)
+    for (size_t n = 0; n < r->slice_voxels; n++) {
+      double value = value_at(space, r->type, n);
+      if (value < r->padding[0] || value > r->padding[1]) continue;
+      r->padded = true;
+      break;
+    }
+  hl_voxels_store(r->type, false, space->values, r->slice_voxels, slice);
+}
+
+static hl_status read_slice(reading *r, size_t place, int worker, unsigned char *slice, hl_error *error) {
+  hl_dicom_workspace *space = &r->spaces[worker];
+  const hl_dicom_frame *frame = frame_at(r, place);
+  space->context = r->set->context;
+  hl_status status = hl_dicom_read_frame(r->set, frame, space, error);
+  if (status != HL_OK) return status;
+  if (r->as_floats) store_floats(r, frame, space, (float *)(void *)slice);
+  else store_integers(r, space, r->set->files[frame->file].pixels.samples, slice);
+  return HL_OK;
+}
+
+/* ---- gaps: linear between the slices around them ---- */
+
+static void blend(const reading *r, double weight, unsigned char *slice, const unsigned char *other) {
+  float *floats = (float *)(void *)slice;
+  uint16_t *words = (uint16_t *)(void *)slice;
+  for (size_t n = 0; n < r->slice_voxels; n++) {
+    if (r->as_floats) {
+      float after = ((const float *)(const void *)other)[n];
+      if (isnan(floats[n])) floats[n] = after;
+      else if (!isnan(after)) floats[n] = (float)((1 - weight) * (double)floats[n] + weight * (double)after);
+    } else if (r->voxel_bytes == 2) {
+      double after = ((const uint16_t *)(const void *)other)[n];
+      words[n] = (uint16_t)floor((1 - weight) * words[n] + weight * after + 0.5);
+    } else slice[n] = (unsigned char)floor((1 - weight) * slice[n] + weight * other[n] + 0.5);
+  }
+}
+
+static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, unsigned char *voxels,
+                          hl_error *error) {
+  size_t bytes = r->slice_voxels * r->voxel_bytes;
+  if (r->others[worker] == NULL) r->others[worker] = hl_allocate(r->set->context, bytes, 1);
+  if (r->others[worker] == NULL) return hl_fail_memory(error, bytes, "a slice");
+  hl_status status = read_slice(r, slice->place + 1, worker, r->others[worker], error);
+  if (status == HL_OK) blend(r, slice->weight, voxels, r->others[worker]);
+  return status;
+}
+
+/* ---- all slices ---- */
+
+static void keep_error(reading *r, size_t index, hl_status status, const hl_error *error) {
+  pthread_mutex_lock(&r->lock);
+  if (!r->failed || index < r->failed_slice) {
+    r->failed = true;
+    r->failed_slice = index;
+    r->status = status;
+    r->error = *error;
+  }
+  pthread_mutex_unlock(&r->lock);
+}
+
+static void read_one(void *data, size_t index, int worker) {
+  reading *r = data;
+  const hl_dicom_slice *slice = &r->stack->slices[index];
+  unsigned char *voxels = r->voxels + index * r->slice_voxels * r->voxel_bytes;
+  hl_error error = {0};
+  if (r->failed && index > r->failed_slice) return;
+  hl_status status = read_slice(r, slice->place, worker, voxels, &error);
+  if (status == HL_OK && slice->weight > 0) status = fill_gap(r, slice, worker, voxels, &error);
+  if (status != HL_OK) keep_error(r, index, status, &error);
+  size_t done = atomic_fetch_add(&r->done, 1) + 1;
+  if (worker == 0) hl_progress(r->set->context, "load", (double)done / (double)r->stack->grid.dimensions[2]);
+}
+
+/* Integers to floats in the same block, from the last to the first, with padding as NAN. */
+static void widen(const reading *r, size_t count, void *voxels) {
+  double bias = hl_voxel_type_bias(r->type);
+  float *floats = voxels;
+  for (size_t n = count; n > 0; n--) {
+    double stored = r->voxel_bytes == 1 ? ((const uint8_t *)voxels)[n - 1]
+                                        : ((const uint16_t *)voxels)[n - 1];
+    double value = stored - bias;
+    bool padded = value >= r->padding[0] && value <= r->padding[1];
+    float wide = padded ? NAN : (float)(r->slope * value + r->intercept);
+    memcpy(floats + n - 1, &wide, sizeof wide);
+  }
+}
+
+static hl_status widen_padded(reading *r, size_t count, hl_error *error) {
+  if (!r->padded) return HL_OK;
+  void *larger = hl_reallocate(r->set->context, r->voxels, count, sizeof(float));
+  if (larger == NULL) return hl_fail_memory(error, count * sizeof(float), r->set->bundle->path);
+  r->voxels = larger;
+  widen(r, count, larger);
+  r->as_floats = true;
+  return HL_OK;
+}
+
+static hl_status read_all(reading *r, hl_error *error) {
+  int threads = hl_pool_threads(r->pool);
+  r->spaces = hl_allocate_zeroed(r->set->context, (size_t)threads, sizeof *r->spaces);
+  r->others = hl_allocate_zeroed(r->set->context, (size_t)threads, sizeof *r->others);
+  if (r->spaces == NULL || r->others == NULL) return hl_fail_memory(error, 1000, "threads");
+  hl_pool_run(r->pool, r->stack->grid.dimensions[2], read_one, r);
+  if (hl_pool_cancelled(r->pool))
+    return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->set->bundle->path);
+  if (r->failed && error != NULL) *error = r->error;
+  return r->failed ? r->status : HL_OK;
+}
+
+static hl_status make_volume(reading *r, const hl_load_request *request, hl_volume **volume,
+                             hl_error *error) {
+  hl_volume_description grid = r->stack->grid;
+  grid.type = r->as_floats && hl_voxel_type_storage(r->type) != HL_STORAGE_F32 ? HL_VOXEL_F32 : r->type;
+  if (!r->as_floats) {
+    grid.value_scale = r->slope;
+    grid.value_offset = r->intercept;
+  }
+  for (int axis = 0; axis < 3 && request->spacing[0] > 0; axis++) {
+    double length = vec3_length(vec3_of(grid.axis[axis]));
+    for (int row = 0; row < 3; row++) grid.axis[axis][row] *= request->spacing[axis] / length;
+  }
+  void *voxels = r->voxels;
+  r->voxels = NULL;
+  return hl_volume_adopt(r->set->context, &grid, r->set->bundle->path, voxels, volume, error);
+}
+
+static hl_status read_volume(reading *r, const hl_load_request *request, hl_volume **volume,
+                             hl_error *error) {
+  const size_t *n = r->stack->grid.dimensions;
+  size_t count = n[0] * n[1] * n[2];
+  r->slice_voxels = n[0] * n[1];
+  r->voxels = hl_allocate(r->set->context, count, r->voxel_bytes);
+  if (r->voxels == NULL) return hl_fail_memory(error, count * r->voxel_bytes, r->set->bundle->path);
+  enum { WORTH_THREADS = 1 << 20 }; /* voxels */
+  hl_status status = hl_pool_create(r->set->context, count < WORTH_THREADS ? 1 : 0, &r->pool, error);
+  if (status == HL_OK) status = read_all(r, error);
+  for (int w = 0; r->pool != NULL && w < hl_pool_threads(r->pool); w++) {
+    if (r->spaces != NULL) hl_dicom_workspace_release(&r->spaces[w]);
+    if (r->others != NULL) hl_release(r->set->context, r->others[w]);
+  }
+  hl_release(r->set->context, r->spaces);
+  hl_release(r->set->context, r->others);
+  hl_pool_destroy(r->pool);
+  if (status == HL_OK) status = widen_padded(r, count, error);
+  if (status == HL_OK) status = make_volume(r, request, volume, error);
+  hl_release(r->set->context, r->voxels);
+  return status;
+}
+
+static hl_status choose(reading *r, hl_load_request *request, hl_error *error) {
+  const hl_dicom_pixels *p = &r->set->files[r->stack->frames[0]->file].pixels;
+  const char *path = r->set->bundle->path;
+  hl_payload payload;
+  hl_payload_defaults(&payload);
+  payload.grid.type = type_of(p);
+  payload.components = p->samples;
+  hl_status status = hl_steps_choose(request, path, r->stack->times, 1, error);
+  if (status == HL_OK) status = hl_component_only(request, path, false, &payload, error);
+  r->time = (size_t)request->selection.time;
+  r->component = payload.component;
+  return status;
+}
+
+hl_status hl_dicom_voxels_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
+                               hl_volume **volume, hl_error *error) {
+  reading *r = hl_allocate_zeroed(set->context, 1, sizeof *r);
+  if (r == NULL) return hl_fail_memory(error, sizeof *r, set->bundle->path);
+  r->set = set;
+  r->stack = stack;
+  pthread_mutex_init(&r->lock, NULL);
+  hl_status status = choose(r, request, error);
+  if (status == HL_OK) {
+    choose_type(r);
+    stack->grid.type = r->type;
+    status = hl_volume_check_grid(&stack->grid, set->bundle->path, error);
+  }
+  for (size_t n = 0; n < stack->place_count && status == HL_OK; n++)
+    status = hl_dicom_find_frames(set, &set->files[frame_at(r, n)->file], error);
+  if (status == HL_OK) status = read_volume(r, request, volume, error);
+  pthread_mutex_destroy(&r->lock);
+  hl_release(set->context, r);
+  return status;
+}

@@ -1,0 +1,12 @@
+/* volume/dicom/voxels.h - the voxels of a stack of slices. */
+#ifndef HL_VOLUME_DICOM_VOXELS_H
+#define HL_VOLUME_DICOM_VOXELS_H
+
+#include "volume/dicom/stack.h"
+#include "volume/format.h"
+
+/* Decodes all slices of the wanted component or time, several at a time. */
+hl_status hl_dicom_voxels_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
+                               hl_volume **volume, hl_error *error);
+
+#endif
