@@ -1,4 +1,4 @@
-/* light/light_cone.h - how bright a spot light is in a direction. */
+/* light/light_cone.h - the brightness of a spot light by direction. */
 #ifndef HL_LIGHT_LIGHT_CONE_H
 #define HL_LIGHT_LIGHT_CONE_H
 
@@ -12,7 +12,8 @@ typedef struct light_cone {
   float scale;   /* 1 / (cosine where it is full - outer); 0: the light has no cone */
 } light_cone;
 
-/* pixel: edge of a picture's pixel at content, the middle of what is lit: no edge is sharper; frame units. */
+/* content: the middle of the lit content; pixel: edge of a picture's pixel there, which the cone's edge is at
+ * least as wide as; frame units. */
 light_cone hl_light_cone(const light_source *source, vec3 content, double pixel);
 
 #endif

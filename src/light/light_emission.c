@@ -1,4 +1,5 @@
-/* light/light_emission.c - a light's own image cut into cells, and cells into the taps of a penumbra. */
+/* light/light_emission.c - cuts an emission image into cells, and makes the taps of a penumbra of the cells.
+ */
 #include "light/light_emission.h"
 
 #include "core/memory.h"
@@ -27,8 +28,8 @@ static void add_color(const hl_light_emission *emission, double s, double t, dou
   }
 }
 
-/* Mean over cell (i, j) of side x side. A parallel light's offset is of its way, opposite to where it is
- * seen. */
+/* Mean colour of cell (i, j) of side x side. A parallel light's offset belongs to the direction of travel,
+ * opposite to the one in which the light is seen. */
 static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j,
                          double mean[HL_CHANNELS]) {
   const hl_light_emission *emission = &source->light->emission;
@@ -95,10 +96,11 @@ static vec3 middle_of_cell(const light_source *source, int i) {
                         (i % EMISSION_SIDE + 0.5) / EMISSION_SIDE);
 }
 
-/* At which a tilted light is still seen cell by cell; it is drawn together for receivers further aside. */
+/* The greatest slope of receivers at which every cell of a tilted light has taps of its own; beyond it the
+ * outermost cells share taps. */
 static const double GREATEST_SLOPE = 0.5;
 
-/* Leaves dark cells out and finds how far the others lie apart. */
+/* Leaves dark cells out and bounds the others. */
 static void finish(light_emission *emission) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   int count = 0;
@@ -122,7 +124,7 @@ static void finish(light_emission *emission) {
   }
 }
 
-/* Parallel light that comes from further along u casts its shadows back along u. */
+/* For parallel light the unit is negative: light that travels further along u comes from further back. */
 void hl_light_emission_see(const light_source *source, const sheet_light *seen, vec3 normal,
                            light_emission *emission) {
   double unit = fmax(seen->width_u, seen->width_v) * (source->parallel ? -1 : 1);
@@ -163,7 +165,7 @@ void hl_light_emission_steps(const light_emission *emission, double width, int s
                            EMISSION_GREATEST_STEP);
 }
 
-/* Each cell falls on the four taps around it, by its distances to them. */
+/* Distributes each cell to the four taps around it, by its distances from them. */
 void hl_light_emission_taps(const light_emission *emission, double width, const int step[2],
                             const double slope[2], emission_taps *taps) {
   enum { GRID = EMISSION_SIDE + 3 };

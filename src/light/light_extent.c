@@ -1,4 +1,5 @@
-/* light/light_extent.c - the unit square onto each shape of light; moments of what the sheets see. */
+/* light/light_extent.c - maps the unit square onto each shape of light; moments of the light as seen from the
+ * sheets. */
 #include "light/light_extent.h"
 
 #include "scene/check.h"
@@ -6,8 +7,8 @@
 
 /* ---- points on lights ---- */
 
-/* The unit square onto the disk of radius 1, squares around the middle onto circles (Shirley and Chiu, "A low
- * distortion map between disk and square", 1997). */
+/* Maps the unit square onto the disk of radius 1, squares around the middle onto circles (Shirley and Chiu,
+ * "A low distortion map between disk and square", 1997). */
 static void square_to_disk(double a, double b, double *x, double *y) {
   a = 2 * a - 1;
   b = 2 * b - 1;
@@ -55,9 +56,9 @@ static flat_polygon flatten(const hl_light *light) {
   return polygon;
 }
 
-/* Area left of x: the integral of y dx along the outline, as far as it lies there (derived: Green; the cut
- * adds nothing, being along y). The outline runs against the clock as seen along the normal, so the sign
- * turns. */
+/* The polygon's area left of x: the integral of y dx along the part of the outline left of x (derived:
+ * Green's theorem; the cut runs along y and adds nothing). The outline runs counterclockwise about the
+ * normal, so the sign is reversed. */
 static double area_left_of(const flat_polygon *polygon, double x) {
   double area = 0;
   for (size_t i = 0; i < polygon->light->vertex_count; i++) {
@@ -71,7 +72,7 @@ static double area_left_of(const flat_polygon *polygon, double x) {
   return area;
 }
 
-/* Where on the line at x the part b of what is inside lies below. */
+/* The y on the line at x below which the fraction b of the line's length inside the polygon lies. */
 static double height_of_part(const flat_polygon *polygon, double x, double b) {
   double crossing[HL_LIMIT_VERTICES], length = 0;
   size_t count = 0;
@@ -95,7 +96,7 @@ static double height_of_part(const flat_polygon *polygon, double x, double b) {
   return count > 0 ? crossing[count - 1] : 0;
 }
 
-/* x: as much of the area as a lies left of it; y: as much of the line there as b lies below. */
+/* The point with the fraction a of the area left of it and the fraction b of the line at its x below it. */
 static vec3 point_of_polygon(const hl_light *light, double a, double b) {
   flat_polygon polygon = flatten(light);
   double low = INFINITY, high = -INFINITY;
@@ -130,7 +131,7 @@ vec3 hl_light_point(const light_source *source, double a, double b) {
   return point_of_disk(source->direction, light->radius, a, b);
 }
 
-/* ---- what the sheets see ---- */
+/* ---- the light as seen from the sheets ---- */
 
 /* A symmetric 2x2 matrix along u and v. */
 typedef struct covariance {
@@ -152,8 +153,8 @@ static vec3 onto_plane(vec3 x, vec3 normal) {
   return vec3_subtract(x, vec3_scale(normal, vec3_dot(x, normal)));
 }
 
-/* Where a direction in the sheets starts from that no shape asks to turn: a rect's edge, or the light's
- * tilt. */
+/* The u axis in the sheets before it is turned to the principal axis: a rect's edge, else the light's tilt.
+ */
 static vec3 first_axis(const light_source *source, vec3 normal) {
   vec3 axis = onto_plane(source->direction, normal);
   if (source->light->type == HL_LIGHT_RECT) axis = onto_plane(vec3_of(source->light->edge1), normal);
@@ -164,8 +165,9 @@ static vec3 first_axis(const light_source *source, vec3 normal) {
              : vec3_perpendicular(normal);
 }
 
-/* A point of the light on the plane, on its way to the content's middle. Points that lie as low as the
- * content are held within four times their distance; a light among the content is seen from afar. */
+/* Projects a point of the light onto the plane, along its ray to the content's middle. Points nearly as low
+ * as the content are moved by at most a factor of four; a light beside or below the content's middle is
+ * projected along the sheets' normal. */
 static vec3 seen_on_plane(const light_source *source, vec3 normal, vec3 offset) {
   if (source->parallel) {
     vec3 way = vec3_add(source->direction, offset);
@@ -236,7 +238,7 @@ double hl_sheet_light_squared_width(const sheet_light *light, int axis, double s
   return 12 * fmax(xx - 2 * slope * xz + slope * slope * zz, 0);
 }
 
-/* Extents of what has this standard deviation along them: 4 of a disk, sqrt(12) of a rect. */
+/* The mean of both extents. An extent is 4 standard deviations for disks, sqrt(12) for rects and polygons. */
 double hl_light_average_size(const light_source *source, vec3 normal) {
   bool square = source->light->type == HL_LIGHT_RECT || source->light->type == HL_LIGHT_POLYGON;
   vec3 u = vec3_perpendicular(normal), v = vec3_cross(normal, u);

@@ -1,9 +1,9 @@
 /* light/light_sector.h - a light within or beside what it lights, cut by direction into sectors.
  *
- * Sheets serve rays that cross them in one sense and not too flatly. Around a light within the content there
- * are rays in all directions: six slicing axes share them, three that the eye looks along and three against
- * it, each crossed well by the eye's rays and by the light of its own sector. Shares fade into each other and
- * sum to one, so that no seam shows. */
+ * All rays must cross the sheets in the same sense and not too flatly. A light within the content sends rays
+ * in all directions, so they are divided among six slicing axes: three roughly along the eye's direction and
+ * three roughly against it, each crossed well by the eye's rays and by the light of its own sector. The
+ * sectors' fractions fade into each other and sum to one, so that no seam shows. */
 #ifndef HL_LIGHT_LIGHT_SECTOR_H
 #define HL_LIGHT_LIGHT_SECTOR_H
 
@@ -19,8 +19,8 @@ typedef struct light_sectors {
 /* eye_direction: unit; widest: the angle of the eye's outermost ray to it, radians. */
 light_sectors hl_light_sectors(vec3 eye_direction, double widest);
 
-/* The share of a sector: max(0, cos_i - least)^2 over the sum of that for all sectors, cos_i between a ray
- * and axis i. */
+/* The fraction of a ray's light that sector i takes: max(0, cos_i - least)^2 over the sum of this for all
+ * sectors, cos_i the cosine between the ray and axis i. */
 typedef struct sector_fraction {
   int count; /* 0: the light is whole */
   int sector;

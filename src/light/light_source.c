@@ -1,9 +1,10 @@
-/* light/light_source.c - lights as the sheets need them. */
+/* light/light_source.c - makes light sources of a scene's lights. */
 #include "light/light_source.h"
 
 #include "scene/light_shape.h"
 
-/* Lights smaller than a millionth of their distance are points: no pixel shows their penumbrae. Squared. */
+/* Square of the size, as a fraction of its distance, up to which a light is a point: no pixel shows its
+ * penumbrae. */
 static const double POINT_LIKE = 1e-12;
 
 static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }

@@ -1,4 +1,4 @@
-/* light/light_source.h - a scene's light in frame space, as the sheets need it. */
+/* light/light_source.h - a scene's light in frame space. */
 #ifndef HL_LIGHT_LIGHT_SOURCE_H
 #define HL_LIGHT_LIGHT_SOURCE_H
 
@@ -13,7 +13,7 @@ typedef struct light_source {
   vec3 direction; /* unit, the way light travels: parallel, a spot light's axis, or from the
                      light's centre to its screen's or the content's */
   vec3 position;  /* of the light's centre, unless parallel; frame space */
-  vec3 content;   /* the middle of what is lit; frame space */
+  vec3 content;   /* the content's middle; frame space */
   mat3
       spread; /* mean of x x' over the light, from its centre; parallel: over the directions, at distance 1 */
   hl_shadows shadows; /* off, hard or soft */
@@ -25,10 +25,10 @@ typedef struct light_source {
   vec3 screen_center, screen_right, screen_up; /* of a light with a texture: the light screen; frame space */
 } light_source;
 
-/* light: in frame space. content: the middle of what is lit. */
+/* light: in frame space. content: the content's middle. */
 light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 content);
 
-/* One sector of a light that is no parallel one. */
+/* One sector of a light, which must not be parallel. */
 light_source hl_light_in_sector(const light_source *whole, const light_sectors *sectors, int sector);
 
 #endif

@@ -1,12 +1,12 @@
-/* light/light_texture_lanes.h - what a light's image gives at sixteen samples. */
+/* light/light_texture_lanes.h - looks up a light texture at sixteen samples. */
 #ifndef HL_LIGHT_LIGHT_TEXTURE_LANES_H
 #define HL_LIGHT_LIGHT_TEXTURE_LANES_H
 
 #include "light/light_texture.h"
 #include "view/rays_lanes.h"
 
-/* How far within the screen's two edges of one axis a place is: 0 to 1 over one pixel of the picture, or over
- * more. */
+/* Coverage by the screen along one axis: rises from 0 to 1 across each edge, over a width of 1 / sharpness.
+ */
 LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
   lanes half = lanes_set(0.5f);
   return lanes_clamp(lanes_fma(u, sharpness, half), 0, 1) *
@@ -42,7 +42,7 @@ LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u
   }
 }
 
-/* The image itself, its screen's edges as wide as a box of the blur. */
+/* Adds the unblurred image, times weight, with the screen's edges blurred by a box. */
 LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes weight,
                                 lanes pattern[3]) {
   lanes sharp_u = lanes_set(texture->sharpness[0]), sharp_v = lanes_set(texture->sharpness[1]);
@@ -56,9 +56,9 @@ LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes 
   for (int c = 0; c < 3; c++) pattern[c] = lanes_fma(color[c], inside, pattern[c]);
 }
 
-/* The mean of the two levels whose variances are around the sample's, variance being linear in their weights.
- * Below the first level the image itself, whose edges are then the sharpest thing in it and made wide by
- * themselves, stays as long as it can: by the square. */
+/* Interpolates between the two levels whose variances enclose the sample's; the mean's variance is linear in
+ * the weights. Below the first level it fades from the image itself, whose screen edges are blurred
+ * separately, by the square of the variance, so that the image stays sharp as long as it can. */
 LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes ahead,
                                lanes pattern[3]) {
   lanes variance = lanes_min(blur * blur * texture->first, lanes_set(1e30f));

@@ -1,10 +1,11 @@
-/* light/sublight_points.c - where the parts of a light stand. */
+/* light/sublight_points.c - the points that stand for a light as sub-lights. */
 #include "light/light_extent.h"
 
-/* Points of which every half-plane holds as nearly as can be the share that it covers: found by
- * scripts/light_points, which says how. A disk's are where the square's map takes them. Of sixteen on a disk
- * the root mean square error of penumbrae under straight edges is 0.0326 of the light, 0.028 to 0.036 by the
- * edge's direction, where the turned grid has 0.0362. */
+/* Sets of points chosen so that every half-plane holds, as nearly as possible, the fraction of the points
+ * that it covers of the light's area; found by scripts/light_points, which says how. Points of disks are
+ * given in the unit square, before its map to the disk. With sixteen points on a disk, penumbrae of straight
+ * edges have a root mean square error of 0.0326 of the light, 0.028 to 0.036 depending on the edge's
+ * direction; with the turned grid it is 0.0362. */
 enum { SEARCHED_SIDES = 3, MOST_SEARCHED = 16 };
 typedef double square_points[MOST_SEARCHED][2];
 

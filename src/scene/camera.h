@@ -1,4 +1,4 @@
-/* scene/camera.h - the camera's axes, and hl_view: which way a scene is looked at. */
+/* scene/camera.h - the camera's axes, and directions of view (hl_view). */
 #ifndef HL_SCENE_CAMERA_H
 #define HL_SCENE_CAMERA_H
 
@@ -8,8 +8,8 @@
 #include "core/vector.h"
 
 /* The camera's unit axes: forward from position to target, up as near to the camera's up as a right angle
- * allows. False if up was useless (along the line of sight): then z, or y where the sight is along z, stands
- * in. */
+ * allows. False if the camera's up lies along the line of sight: z is used then, or y where the line of sight
+ * is along z. */
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
 
 #define HL_VIEW_AZIMUTH   30 /* of the three-quarter view, degrees */
@@ -21,11 +21,11 @@ void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward);
 /* False where up and front are not unit vectors at a right angle, or an angle is not finite. */
 bool hl_view_is_possible(const hl_view *view);
 
-/* A camera so far from the target, looking as the view says. */
+/* Places the camera at this distance from the target, in the view's direction. */
 void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera);
 
-/* The three-quarter view with this direction (of no set length) up: the front is the body's where a volume
- * has anatomy. */
+/* The three-quarter view with this direction, of any length, up. Where a volume has anatomy, its front is the
+ * patient's. */
 void hl_view_about(const hl_scene_description *description, vec3 up, hl_view *view);
 
 /* The anatomy of the first volume that has one and is not turned in the scene. */

@@ -1,5 +1,4 @@
-/* scene/check_light.c - is a light possible by itself? Its shape, the image that it projects and the one it
- * shows. */
+/* scene/check_light.c - checks a light by itself: its shape, its texture and its emission image. */
 #include <math.h>
 #include <stdio.h>
 
@@ -35,7 +34,7 @@ static hl_status check_polygon(const hl_checker *check, const hl_light *light) {
   return HL_OK;
 }
 
-/* The keys of the light's type are in their ranges: is it possible as a whole? */
+/* Checks the light's shape as a whole; its settings are in their ranges already. */
 static hl_status check_shape(const hl_checker *check, const hl_light *light) {
   if (light->type == HL_LIGHT_POLYGON) return check_polygon(check, light);
   if (light->type == HL_LIGHT_SPOT)
@@ -69,7 +68,7 @@ static hl_status check_pixels(const hl_checker *check, const float *pixels, int 
   return HL_OK;
 }
 
-/* The light's rays must cross the screen. */
+/* Checks the texture; the light's rays must cross its screen. */
 static hl_status check_texture(const hl_checker *parent, const hl_light *light) {
   const hl_light_texture *texture = &light->texture;
   hl_checker check = {parent->error, ""};
@@ -94,7 +93,7 @@ static hl_status check_texture(const hl_checker *parent, const hl_light *light) 
   return HL_OK;
 }
 
-/* There must be a surface for the image to be on. */
+/* Checks the emission image; the light must have a surface that it can be on. */
 static hl_status check_emission(const hl_checker *parent, const hl_light *light) {
   const hl_light_emission *emission = &light->emission;
   hl_checker check = {parent->error, ""};

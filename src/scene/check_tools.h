@@ -1,4 +1,4 @@
-/* scene/check_tools.h - what the checks of cameras, lights and volumes share: errors that begin with a JSON
+/* scene/check_tools.h - tools for the checks of cameras, lights and volumes: errors that begin with a JSON
  * pointer. */
 #ifndef HL_SCENE_CHECK_TOOLS_H
 #define HL_SCENE_CHECK_TOOLS_H
@@ -13,26 +13,26 @@ typedef struct hl_checker {
   char place[80];
 } hl_checker;
 
-/* "PLACE/KEY: PROBLEM" */
+/* Fails with "PLACE/KEY: PROBLEM". */
 hl_status hl_check_refuse(const hl_checker *check, const char *key, const char *problem);
 
-/* Settings of one row, and of all rows that an object of this type has (of kinds without types 0). */
+/* Check one setting, and all settings that an object of this type has (type 0 for kinds without types). */
 hl_status hl_check_key(const hl_checker *check, hl_setting_kind kind, const char *key, const void *object);
 hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const void *object, int type);
 
-/* A number from low to high that is in no table. */
+/* Checks a number that is in no table of settings: from low to high. */
 hl_status hl_check_range(const hl_checker *check, const char *key, double value, double low, double high,
                          const char *mend);
 
-/* Coordinates within HL_LIMIT_LENGTH, and those that are a direction too. */
+/* Check that coordinates are within HL_LIMIT_LENGTH, and that a direction is not zero. */
 hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]);
 hl_status hl_check_direction(const hl_checker *check, const char *key, const double v[3]);
 
-/* An array that is there, of at most `limit` entries. */
+/* Checks that an array exists and has at most `limit` entries. */
 hl_status hl_check_count(const hl_checker *check, const char *key, const void *points, size_t count,
                          size_t limit);
 
-/* Number `index` of a scene's lights by itself (check_light.c). */
+/* Checks light number `index` of a scene by itself (check_light.c). */
 hl_status hl_light_check(const hl_light *light, size_t index, hl_error *error);
 
 #endif

@@ -1,5 +1,4 @@
-/* scene/check_volume.c - is a volume of a scene possible: its transfer function, where it stands, its values?
- */
+/* scene/check_volume.c - checks a volume of a scene: its transfer function, placement and values. */
 #include <math.h>
 #include <stdio.h>
 
@@ -7,7 +6,7 @@
 #include "scene/check_tools.h"
 #include "scene/scene.h"
 
-/* Sorted, and at most two points at one value: two make a step. */
+/* Checks that points are sorted by value, with at most two at one value, which make a step. */
 static hl_status check_order(const hl_checker *check, const char *key, size_t index, double before2,
                              double before, double value) {
   if (value < before)
@@ -70,7 +69,8 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   return status == HL_OK ? check_color_points(&check, function) : status;
 }
 
-/* Three factors, the products of the common one and each axis's own, of which each is told. */
+/* Checks the three scale factors, each the product of the common one and the axis's own; errors name the
+ * product. */
 static hl_status check_axis_scales(const hl_checker *check, const hl_scene_volume *volume) {
   const double *axis = volume->axis_scale;
   if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) return HL_OK;
@@ -119,7 +119,7 @@ static double farthest_corner(const hl_scene_volume *volume, affine3 placement) 
   return farthest;
 }
 
-/* The whole placement, since factors that are fine alone may vanish or overflow together. */
+/* Checks the placement as a whole: factors that are possible one by one may together vanish or overflow. */
 static hl_status check_placement(const hl_checker *check, const hl_scene_volume *volume) {
   affine3 placement = hl_scene_volume_index_to_world(volume), inverse;
   for (int a = 0; a < 3; a++) {
@@ -152,7 +152,7 @@ static hl_status check_placement(const hl_checker *check, const hl_scene_volume 
   return HL_OK;
 }
 
-/* Data values and, where they are kept as floats, stored ones. */
+/* Checks data values and, where they are stored as floats, stored values. */
 static hl_status check_values(const hl_checker *check, const hl_volume *volume) {
   double greatest = fmax(fabs(volume->minimum), fabs(volume->maximum)), stored = 0;
   if (volume->storage == HL_STORAGE_F32)

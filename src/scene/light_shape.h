@@ -31,8 +31,8 @@ vec3 hl_light_centre(const hl_light *light);
  * `facing` (unit). */
 mat3 hl_light_spread(const hl_light *light, vec3 facing);
 
-/* Where a light's own image lies: offsets from the light's centre, or for parallel light from its direction
- * towards the light, at distance 1. */
+/* The plane of a light's emission image: offsets from the light's centre, or for parallel light from the
+ * direction towards it, at distance 1. */
 typedef struct emission_plane {
   vec3 middle;    /* of the image */
   vec3 right, up; /* from there to the middles of its right and top edges */
@@ -41,7 +41,8 @@ typedef struct emission_plane {
 /* facing: unit, the way light leaves a sphere or comes from a directional light. */
 emission_plane hl_emission_plane(const hl_light *light, vec3 facing);
 
-/* Where an offset of the plane lies in the image: s along right and t along up, each from -1 to 1. */
+/* The image coordinates of an offset in the plane: s along right and t along up, each from -1 to 1 within the
+ * image. */
 void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t);
 
 #endif

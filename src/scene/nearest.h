@@ -1,4 +1,4 @@
-/* scene/nearest.h - the known name that a mistyped one is nearest to, for error lines. */
+/* scene/nearest.h - the known name that is spelled most like an unknown one, for errors. */
 #ifndef HL_SCENE_NEAREST_H
 #define HL_SCENE_NEAREST_H
 
@@ -7,7 +7,7 @@
 /* The nearest of the null-terminated names; null if none is near enough to be meant. */
 const char *hl_nearest_name(const char *name, const char *const *names);
 
-/* The end of an error line about an unknown name: the nearest one as a question, or all that there are. */
+/* The end of an error about an unknown name: the nearest known name as a question, or all known names. */
 void hl_suggest_name(const char *name, const char *const *names, char *text, size_t size);
 
 #endif

@@ -112,10 +112,9 @@ hl_frame_space hl_scene_frame_space(const hl_scene_description *scene) {
   return (hl_frame_space){middle_of_volumes(scene), ldexp(1, exponent - 1)};
 }
 
-/* ---- lights that are fixed to the camera, placed in the world.
+/* ---- lights that move with the camera, converted to the world.
  *
- * In: a description whose lights may be in camera axes (right, up, towards the viewer; origin at the target).
- * Out: the same with every light in the world, which is what is rendered. */
+ * Their axes are right, up and towards the viewer, with the origin at the camera's target. */
 
 typedef struct camera_axes {
   vec3 right, up, towards, origin;

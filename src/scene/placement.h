@@ -1,5 +1,4 @@
-/* scene/placement.h - where a scene's volumes and lights are in the world, and the space that it is rendered
- * in. */
+/* scene/placement.h - the positions of a scene's volumes and lights in the world, and frame space. */
 #ifndef HL_SCENE_PLACEMENT_H
 #define HL_SCENE_PLACEMENT_H
 
@@ -7,7 +6,7 @@
 
 #include "volume/volume.h"
 
-/* Along x, y or z (0 to 2) of the world of the volume's own file. */
+/* The volume's scale along x, y or z (axis 0 to 2) of the world of its file. */
 double hl_scene_volume_scale(const hl_scene_volume *volume, int axis);
 
 /* Index space of scene volume -> world: the volume's own placement, then scale, rotate, translate. */
@@ -24,21 +23,21 @@ typedef struct hl_frame_space {
   double unit;
 } hl_frame_space;
 
-/* In frame space: closer to its centre no light gets brighter, though it fall with the square of the
- * distance. */
+/* The distance, in frame units, below which a light with falloff gets no brighter. */
 #define HL_LEAST_LIGHT_DISTANCE 1e-3
 
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene); /* of one volume at least */
 
-/* A value with opacity zero that the volume's surroundings and missing voxels take: the most frequent
- * transparent value; if no value is transparent, one below the volume's range, treated as transparent. */
+/* The empty value, of the volume's surroundings and of voxels that are not finite: the most frequent
+ * transparent value; if no value is transparent, a value below the volume's range, which is then treated as
+ * transparent. */
 double hl_scene_volume_empty_value(const hl_scene_volume *volume);
 
-/* The way the light travels, in the world: its direction. */
+/* The direction in which a directional or spot light travels, in the world. */
 vec3 hl_light_way(const hl_camera *camera, const hl_light *light);
 
-/* Makes *to the same lights with all of them in the world. Images are shared with from; the array and the
- * vertices of its polygons are owned by *to: hl_placed_lights_release(). */
+/* Copies a description with all lights converted to the world. Images are shared with `from`; the array of
+ * lights and the vertices of polygons are owned by *to (hl_placed_lights_release). */
 hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, hl_scene_description *to,
                           hl_error *error);
 void hl_placed_lights_release(hl_context *context, hl_scene_description *placed);

@@ -1,4 +1,4 @@
-/* scene/scene.h - the inside of hl_scene: a checked deep copy of its description. */
+/* scene/scene.h - struct hl_scene: a checked deep copy of a description. */
 #ifndef HL_SCENE_SCENE_H
 #define HL_SCENE_SCENE_H
 
@@ -16,7 +16,7 @@ struct hl_scene {
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
   hl_scene_description
-      placed; /* the same with all lights in the world: what is rendered; owns its lights' array */
+      placed; /* the same with all lights in the world, for rendering; owns its array of lights */
 };
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */

@@ -1,8 +1,4 @@
-/* scene/settings.c - defaults and checks of settings, by the rows of their tables.
- *
- * In: a struct that holds settings. Out: its defaults, or the first field out of its range as one line of
- * error.
- */
+/* scene/settings.c - sets defaults and checks values by the rows of the tables of settings. */
 #include "scene/settings.h"
 
 #include <math.h>
@@ -75,7 +71,7 @@ const char *hl_setting_choice_name(const hl_setting *setting, int value) {
   return NULL;
 }
 
-/* As a person writes it: 16384, 0.01, 1e6, 1e15. */
+/* Writes a limit as a person would: 16384, 0.01, 1e6, 1e15. */
 static int write_limit(char *text, size_t size, double limit) {
   const double exponent = round(log10(fabs(limit)));
   if (fabs(limit) >= 1e5 && fabs(limit) == pow(10, exponent))
@@ -98,7 +94,7 @@ void hl_setting_mend(const hl_setting *setting, char *text, size_t size) {
   }
 }
 
-/* key: of the number in errors, "position/2". */
+/* key: the number's key in errors ("position/2"). */
 static hl_status check_number(const hl_setting *setting, double value, const char *place, const char *key,
                               hl_error *error) {
   if (value <= setting->high && (setting->open_low ? value > setting->low : value >= setting->low))

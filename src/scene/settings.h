@@ -1,4 +1,4 @@
-/* scene/settings.h - the tables of settings inside the library: defaults and checks by their rows. */
+/* scene/settings.h - defaults and checks by the rows of the tables of settings. */
 #ifndef HL_SCENE_SETTINGS_H
 #define HL_SCENE_SETTINGS_H
 
@@ -12,13 +12,13 @@
 void *hl_setting_field(const hl_setting *setting, void *object);
 const void *hl_setting_field_const(const hl_setting *setting, const void *object);
 
-/* A field of type FLAG, WHOLE or CHOICE. */
+/* The value of a field of type FLAG, WHOLE or CHOICE. */
 int hl_setting_whole(const hl_setting *setting, const void *object);
 
-/* Lights and cameras of this type have the row's key; of other kinds type is 0. */
+/* True if lights or cameras of this type have the row's key. For other kinds type is 0. */
 bool hl_setting_is_for(const hl_setting *setting, int type);
 
-/* The field equals the row's default. */
+/* True if the field equals the row's default. */
 bool hl_setting_is_standard(const hl_setting *setting, const void *object);
 
 /* Sets the fields of all rows to their defaults. */
@@ -27,17 +27,17 @@ void hl_settings_defaults(hl_setting_kind kind, void *object);
 /* The name of one of the row's choices; null: none has this value. */
 const char *hl_setting_choice_name(const hl_setting *setting, int value);
 
-/* The row's mend with its range written out. */
+/* The row's `mend` with its range written out. */
 void hl_setting_mend(const hl_setting *setting, char *text, size_t size);
 
-/* The field's value is possible; place: the JSON pointer of the object ("/render"). */
+/* Checks a field's value; place: the JSON pointer of the object ("/render"). */
 hl_status hl_setting_check(const hl_setting *setting, const void *object, const char *place, hl_error *error);
 
 /* The same for one key of a table. */
 hl_status hl_settings_check_key(hl_setting_kind kind, const char *key, const void *object, const char *place,
                                 hl_error *error);
 
-/* The same for all rows that objects of this type have, in their order. */
+/* Checks all settings that objects of this type have, in their order. */
 hl_status hl_settings_check(hl_setting_kind kind, const void *object, int type, const char *place,
                             hl_error *error);
 

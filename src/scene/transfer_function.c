@@ -1,4 +1,4 @@
-/* scene/transfer_function.c - what a transfer function says about one value, and about a range of values.
+/* scene/transfer_function.c - evaluates a transfer function at a value and over a range of values.
  *
  * Piecewise linear in data values, constant beyond the end points. Two points at one value make a step,
  * which is continuous from above: at the value itself the second point holds.

@@ -1,4 +1,4 @@
-/* scene/transfer_function.h - what a transfer function says about values, and the named colormaps. */
+/* scene/transfer_function.h - evaluating transfer functions, and the named colormaps. */
 #ifndef HL_SCENE_TRANSFER_FUNCTION_H
 #define HL_SCENE_TRANSFER_FUNCTION_H
 
@@ -18,11 +18,11 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
 bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
                                       double target, double *nearest);
 
-/* *to gets arrays of its own. */
+/* Copies a function; *to owns its points. */
 hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
                                     hl_transfer_function *to, hl_error *error);
 
-#define HL_COLORMAP_POINTS 65 /* colour points that stand for a whole map */
+#define HL_COLORMAP_POINTS 65 /* colour points that a colormap is made of */
 
 double hl_srgb_to_linear(double srgb);
 

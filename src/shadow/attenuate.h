@@ -1,5 +1,5 @@
-/* shadow/attenuate.h - step 17: the extinction from one sheet to the next, seen from the light, composited
- * into the shadow buffer. */
+/* shadow/attenuate.h - step 17: composites a slab's extinction, seen from the light, into the shadow buffer.
+ */
 #ifndef HL_SHADOW_ATTENUATE_H
 #define HL_SHADOW_ATTENUATE_H
 
@@ -7,7 +7,8 @@
 #include "grid/classifier.h"
 #include "light/light_source.h"
 
-/* One volume's part in a tile. On lines of the cache of its own: threads write theirs side by side. */
+/* One volume's densities in a tile, on cache lines of its own: each thread writes its own beside another's.
+ */
 typedef struct attenuate_volume {
   _Alignas(64) const classifier *classifier;
   const float *density;       /* [256], block-major; on this sheet */
@@ -28,16 +29,16 @@ typedef struct attenuate_job {
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
   float *older[HL_CHANNELS];         /* as transmittance, multiplied alike; null: none */
   size_t stride;
-  float *moment[HL_CHANNELS]; /* the tile's first pixel; rows moment_stride apart; null: none. Raised by what
-                                 the slab takes of the light, times `position` */
+  float *moment[HL_CHANNELS]; /* the tile's first pixel; rows moment_stride apart; null: none. Raised by the
+                                 light that the slab absorbs, times `position` */
   size_t moment_stride;
   float position;
 } attenuate_job;
 
-/* Blocks of a tile, a bit each. */
+/* Blocks of a tile, one bit each. */
 typedef struct attenuated_blocks {
-  uint32_t lit;   /* of those where volumes have density, the ones that light still reaches */
-  uint32_t taken; /* where some light was taken */
+  uint32_t lit;   /* of the blocks with density: those that light still reaches */
+  uint32_t taken; /* blocks in which some light was absorbed */
 } attenuated_blocks;
 
 /* Multiplies the tile's transmittance by exp(-sum of extinction * path) where volumes have density. */

@@ -6,10 +6,10 @@
 #include "shadow/attenuate.h"
 #include "view/rays_lanes.h"
 
-/* Pixels of the shadow buffer that get less than this of the light are done: 1/4 of a step of 8 bits. */
+/* Transmittance below which a pixel of the shadow buffer counts as dark: a quarter of a step of 8 bits. */
 static const float DARK = 1.0f / 1024;
 
-/* Lanes whose sheet does not lie behind the view's origin by more than `reach`, a height. */
+/* Lanes whose sheet lies at most `reach` behind the view's origin; reach: a height. */
 LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach) {
   return lanes_add_scaled(climb * rays->step, lanes_abs(climb), reach) > 0.0f;
 }
@@ -24,8 +24,7 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
   return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
-/* The part of the slab before the sheet that lies in the volume's box, block by block. uncut: all of it
- * does. */
+/* The part of the slab in the volume's box, for one block. uncut: all of the slab lies in the box. */
 LANES_INLINE covered_span covered_block(const float *enter, const float *leave, int uncut, int block,
                                         float height, float spacing) {
   if (enter == NULL) return (covered_span){lanes_set(0), lanes_set(1.0f)};
@@ -48,7 +47,8 @@ static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], i
   return lit;
 }
 
-/* Density runs linearly through the slab: the ends of its covered part in the tables. */
+/* Moves a and b, the densities on the slab's two sheets, to the ends of its covered part; density runs
+ * linearly between them. */
 LANES_INLINE void cut_way(covered_span span, table_coordinate *a, table_coordinate *b) {
   lanes from = a->x, way = b->x - a->x;
   *a = split_coordinate(lanes_fma(way, span.begin, from));
@@ -59,7 +59,7 @@ typedef struct attenuated_block {
   int taken, lit;
 } attenuated_block;
 
-/* Whether it took any light, and whether it left enough. */
+/* Attenuates one block. taken: whether it absorbed any light; lit: whether enough is left. */
 LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
                                               int tile_x, int tile_y, int block) {
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -118,7 +118,7 @@ LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int v
   return blocks;
 }
 
-/* Most often there is one volume, and its shadows are grey: no loops over volumes and colours. */
+/* Compiled once more for one volume with grey shadows, the usual case, which needs no loops. */
 static attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
   if (job->volume_count == 1 && job->channels == 1) return attenuate_volumes(job, 1, 1, tile_x, tile_y);
   return attenuate_volumes(job, job->volume_count, job->channels, tile_x, tile_y);

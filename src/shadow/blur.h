@@ -6,8 +6,8 @@
 
 #include "shadow/attenuate.h"
 
-/* A box of width 2 reach + 1 + 2 edge pixels: whole weights out to reach, weight edge (0 to 1) one
- * further. */
+/* A box of width 2 reach + 1 + 2 edge pixels: weight 1 out to reach, weight edge (0 to 1) one pixel further.
+ */
 typedef struct blur_box {
   int reach;
   float edge;
@@ -25,7 +25,7 @@ typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
 
 enum { BLUR_GREATEST_REACH = 46 };
 
-/* As far as BLUR_GREATEST_REACH allows. */
+/* The box of a variance, as far as BLUR_GREATEST_REACH allows. */
 blur_box hl_blur_box_of_variance(double variance);
 
 /* Weighted sums of a field's pixels around each pixel: a penumbra by its taps (light_emission.h). */
@@ -39,7 +39,7 @@ typedef struct emission_job {
 } emission_job;
 typedef void emission_tile_function(const emission_job *job, int tile_x, int tile_y);
 
-/* What a soft method needs of the instruction set. */
+/* The blurs that are compiled for each instruction set. */
 typedef struct blur_functions {
   blur_tile_function *rows, *columns;
   lit_blocks_function *lit_blocks;

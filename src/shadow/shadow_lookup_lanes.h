@@ -1,13 +1,13 @@
-/* shadow/shadow_lookup_lanes.h - a shadow buffer read at sixteen places: between its pixels, or at the
- * nearest. */
+/* shadow/shadow_lookup_lanes.h - looks up a shadow buffer at sixteen samples: bilinear, cubic or the nearest
+ * pixel. */
 #ifndef HL_SHADOW_SHADOW_LOOKUP_LANES_H
 #define HL_SHADOW_SHADOW_LOOKUP_LANES_H
 
 #include "shadow/shadow_lookup.h"
 #include "simd/lanes.h"
 
-/* Where samples are in a shadow buffer: the first of two by two pixels, and how far they are on the way to
- * the others. */
+/* The samples' positions in a shadow buffer: the first of the two by two pixels around each, and the
+ * fractions of a pixel from there. */
 typedef struct shadow_taps {
   lanes_int inside;
   lanes_squares first;
@@ -44,9 +44,9 @@ LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const
   return between_taps(taps, a, b, c, d, 1);
 }
 
-/* Cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image processing",
- * 1981, eq. 15), which keeps second moments: it blurs by nothing. weight: of the four pixels from the one
- * before the first. */
+/* Weights of cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image
+ * processing", 1981, eq. 15) for the four pixels from the one before the first on. It keeps second moments:
+ * it does not blur. */
 LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   lanes rest = 1.0f - way, both = way * rest * -0.5f;
   weight[0] = both * rest;
@@ -55,9 +55,9 @@ LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   weight[3] = both * way;
 }
 
-/* Between four by four pixels, within what the nearest four hold: beside an edge it would overshoot, and
- * inside a box's face take more light than was taken. Called: shadows that are read otherwise keep their
- * registers. */
+/* Interpolates between four by four pixels, clamped to the range of the nearest four: beside an edge it would
+ * overshoot, and just inside a box's face it would darken too much. Not inlined, so that it does not cost the
+ * bilinear look-up registers. */
 static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps,
                                                              const float *buffer) {
   lanes across[4], down[4], pixel[4], sum = lanes_set(0);

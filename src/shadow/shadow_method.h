@@ -1,18 +1,18 @@
-/* shadow/shadow_method.h - what a sweep asks of a method of shadows.
+/* shadow/shadow_method.h - the interface of a shadow method.
  *
- * A method keeps the shadow buffer of one light in lock-step with the picture. It is a table of functions in
- * a folder of its own, src/shadow_NAME/; scene/soft_methods.h lists those of soft shadows. The sweep calls,
- * for each light that casts shadows:
+ * A method advances the shadow buffer of one light in lock-step with the picture. It is a table of functions
+ * in a folder of its own, src/shadow_NAME/; scene/soft_methods.h lists the methods of soft shadows. The sweep
+ * calls, for each light that casts shadows:
  *
- *     plan                once: where the buffer lies, how fine it is, how it is read
- *     lay_out             its memory: counted for the estimate, then handed out
- *     begin               once: what memory holds at first; the buffer holds full light
- *     for each sheet, of the slab between it and the sheet before
- *       before_shading      what the picture looks up in this slab
- *       before_slab
- *       for each tile       find_lit, before_tile, after_tile around the composite of the slab's matter
- *       advance             the buffer goes on to the sheet
- *     end                 once, after a failure too
+ *     plan                once: chooses where the buffer lies, how fine it is, how it is read
+ *     check               once: refuses buffers that are too large
+ *     lay_out             twice: counts the memory for the estimate, then hands it out
+ *     begin               once: initialises the memory; the buffer holds full light
+ *     for each sheet k, for the slab between sheets k - 1 and k:
+ *       before_shading      prepares the look-ups of the picture's slab
+ *       before_slab         prepares the slab's compositing into the buffer
+ *       for each tile       find_lit and before_tile before the tile is composited, after_tile if it absorbed
+ * light advance             brings the buffer to sheet k end                 once, after a failure too
  *
  * Functions that a method has no use for are null. */
 #ifndef HL_SHADOW_SHADOW_METHOD_H
@@ -36,7 +36,7 @@ typedef struct shadow_functions {
   const struct sublight_functions *sublights; /* shadow_sublights/sublight_field.h */
 } shadow_functions;
 
-/* What all methods are given: one light of one sweep. Borrowed; it must outlive the method. */
+/* The input of a method: one light of one sweep. Borrowed; it must outlive the method. */
 typedef struct shadow_setup {
   hl_context *context;
   hl_pool *pool;
@@ -44,8 +44,8 @@ typedef struct shadow_setup {
   const shadow_functions *functions;
   const hl_render_settings *settings;
   const light_source *source;
-  light_emission
-      *emission; /* on the light itself; null where the light is even. The method places its cells */
+  light_emission *emission; /* the light's emission image; null where the light is even. The method sets its
+                               cells' positions */
   const sheet_stack *sheets;
   const view *eye;
   int channels;          /* of attenuation: 1 or 3 */
@@ -53,35 +53,36 @@ typedef struct shadow_setup {
   double pixel;          /* edge of a picture's pixel where the content is nearest, frame units */
   double middle_pixel;   /* the same at the content's middle */
   size_t picture_pixels; /* how many the frame has */
-  const vec3 *seen; /* [seen_count]; corners of what the eye sees, frame space; for plan and begin only */
+  const vec3 *
+      seen; /* [seen_count]; corners of the content that the eye sees, frame space; valid in plan and begin */
   int seen_count;
   const vec3 *content; /* [content_count]; corners of all content, frame space */
   int content_count;
 } shadow_setup;
 
-/* What a method decides about its buffer. */
+/* A method's decisions about its buffer. */
 typedef struct shadow_plan {
-  shadow_extent extent; /* what the buffer covers */
-  sheet_light seen;     /* of soft methods: the light as the sheets see it */
-  view view;            /* of the buffer */
+  shadow_extent extent; /* the region that the buffer covers */
+  sheet_light seen;     /* soft methods: the light as the sheets see it */
+  view view;            /* the buffer's view */
   bool cubic;           /* the buffer is read by cubic convolution */
   bool second;          /* the buffer has second planes */
   int reach;            /* pixels beyond a tile that the method reads */
-  double spare;         /* pixels around what bricks touch that the picture may look up */
+  double spare;         /* pixels beyond a brick's projection that the picture's look-ups may read */
 } shadow_plan;
 
 /* Planes that a method may keep from frame to frame. The renderer owns them. */
 typedef struct shadow_memory {
   void *planes;    /* owned; [capacity] */
   size_t capacity; /* bytes */
-  bool zeros;      /* all of them; not while a method has them, nor after one that was cancelled */
+  bool zeros;      /* all bytes are zeros; false while a method uses them and after one that was cancelled */
 } shadow_memory;
 
 typedef struct shadow_method shadow_method;
 
 /* One light's shadows in one sweep. */
 typedef struct light_shadow {
-  const shadow_method *method; /* null: the light casts no shadows, or lights nothing that is seen */
+  const shadow_method *method; /* null: the light casts no shadows, or the eye sees nothing */
   shadow_setup setup;
   shadow_plan plan;
   shadow_buffer *buffer;            /* the renderer's */
@@ -93,7 +94,7 @@ typedef struct light_shadow {
   void *passing;       /* lent by the reserve */
 } light_shadow;
 
-/* What a method holds besides the buffer. */
+/* A method's memory besides the buffer. */
 typedef struct shadow_layouts {
   hl_layout kept;    /* stays from frame to frame, see shadow_memory */
   hl_layout passing; /* until the sweep ends; uninitialised */
@@ -102,19 +103,17 @@ typedef struct shadow_layouts {
 struct shadow_method {
   const char *name;
   size_t state_bytes; /* of light_shadow.state, zeros before plan */
-  int first_slab; /* 0: of the slab that a point light lies in, the part beyond it counts; 1: from the next
-                     slab on */
+  int first_slab;     /* for a near light within a slab: 0: the slab's part beyond the light casts shadows; 1:
+                         shadows begin     with the next slab */
   void (*plan)(light_shadow *shadow);
-  /* Refuses what is too large. */
   hl_status (*check)(const light_shadow *shadow, hl_error *error);
   void (*lay_out)(light_shadow *shadow, shadow_layouts *layouts);
   hl_status (*begin)(light_shadow *shadow, hl_error *error);
   void (*before_shading)(light_shadow *shadow, int sheet);
   void (*before_slab)(light_shadow *shadow, int sheet);
-  /* Finds buffer->tile_lit of a tile; null: the sweep keeps it. One task has a tile. */
+  /* Finds buffer->tile_lit of a tile; null: the sweep does. One task has a tile. */
   void (*find_lit)(light_shadow *shadow, size_t tile);
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
-  /* The slab took some of the tile's light. */
   void (*after_tile)(light_shadow *shadow, size_t tile);
   void (*advance)(light_shadow *shadow, const occupancy *occupancy, int sheet);
   void (*end)(light_shadow *shadow);
@@ -125,21 +124,20 @@ const shadow_method *hl_shadow_method(const light_source *source);
 
 /* ---- for the sweep (light_shadow.c) ---- */
 
-/* Chooses and plans. shadow->method is null afterwards where there is nothing to do. */
+/* Chooses the method and plans. shadow->method is null afterwards where there are no shadows to make. */
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
-/* After plan: the bytes of the buffer, which stays, and of what the method holds. */
+/* After plan: the bytes of the buffer, which the renderer keeps, and of the method's memory. */
 uint64_t hl_light_shadow_buffer_bytes(const light_shadow *shadow);
 shadow_layouts hl_light_shadow_count(light_shadow *shadow);
 /* After plan: buffer and memory are the renderer's. */
 hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, shadow_memory *memory,
                                 hl_error *error);
-/* After plan or begin, failed ones too, or of zeros. */
+/* After plan or begin, even if they failed; allowed for a struct of zeros. */
 void hl_light_shadow_end(light_shadow *shadow);
 
 /* ---- for methods (shadow_plan.c) ---- */
 
-/* Edge of a buffer's pixel that the sheets' distance allows, frame units; cubic convolution allows a larger
- * one. */
+/* The edge of a buffer's pixel for the sheets' distance, frame units; larger for cubic convolution. */
 double hl_shadow_pixel(const shadow_setup *setup, bool cubic);
 /* Whether hard shadows, or soft ones of an even light, are best read by cubic convolution. */
 bool hl_cubic_is_better(const shadow_setup *setup);

@@ -1,4 +1,5 @@
-/* shadow/shadow_plan.c - how fine a shadow buffer is and what it covers: what methods have in common. */
+/* shadow/shadow_plan.c - the size of a shadow buffer's pixels and the region that it covers, for all methods.
+ */
 #include "shadow/shadow_method.h"
 
 /* Pixels of shadow buffers are as large as possible without visibly adding to the sheets' error (measured
@@ -48,8 +49,8 @@ shadow_extent hl_extent_of_seen(const shadow_setup *setup, double pixel) {
                          .content_count = setup->content_count};
 }
 
-/* Penumbrae reach beyond what casts them by half their width, blurs in several steps further: the widest
- * penumbra of this sweep, in the buffer's units. */
+/* The buffer's margin for penumbrae: the whole width of this sweep's widest penumbra, in the buffer's units.
+ * A penumbra reaches half its width beyond its occluder; blurs in several steps reach further. */
 static double penumbra_margin(const shadow_setup *setup, const sheet_light *seen) {
   const sheet_stack *sheets = setup->sheets;
   double width = fmax(seen->width_u, seen->width_v), depth = sheets->spacing * sheets->count;

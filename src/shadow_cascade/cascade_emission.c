@@ -1,11 +1,11 @@
-/* shadow_cascade/cascade_emission.c - a cascade's groups through a light with an image: each by its own
- * kernel.
+/* shadow_cascade/cascade_emission.c - a cascade for lights with an emission image: each group has a kernel of
+ * its own.
  *
- * Boxes may be blurred step by step, since of them variances alone matter. An image must be whole in every
- * penumbra: what group o absorbed is weighed at once by the taps of the image, scaled to w(o -> r)
- * (light_emission.h), far groups first: s becomes K(G + F) + (1 - K(F)) s, K being the group's kernel
- * (derived as in cascade.h; without thin matter it is the sum over groups of K(G), which is the light's mean
- * of what its cells see). Nothing is kept from one receiver to the next; far groups are coarse. */
+ * Boxes can be blurred step by step, as only their variance matters. An emission image must appear complete
+ * in every penumbra: the absorbed light of group o is weighted at once by the image's taps, scaled to w(o ->
+ * r) (light_emission.h). Far groups come first: the sum s becomes K(G + F) + (1 - K(F)) s, with the group's
+ * kernel K (derived as in cascade.h; without thin matter it is the sum over groups of K(G), the mean of what
+ * the light's cells see). Nothing is kept from one receiver to the next; far groups are coarse. */
 #include "shadow_cascade/cascade_passes.h"
 
 #include <string.h>
@@ -18,17 +18,17 @@ typedef struct emission_pass {
   const cascade_group *group;
   double width; /* of the group's penumbra, pixels of the level */
   int step[2];
-  bool averaged; /* pre holds the group's means over step pixels */
-  int reach;     /* of the taps and the means, tiles */
+  bool averaged; /* the level's mean holds the group's means over step pixels */
+  int reach;     /* reach of the taps and the means, tiles */
   const cascade_functions *functions;
 } emission_pass;
 
-/* What a level adds its groups to. */
+/* The field that a level's groups are added to. */
 static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_level *level, int channel) {
   return level == &cascade->level[0] ? &cascade->absorbed[channel] : &level->sum[0][channel];
 }
 
-/* What is read of a row of tiles: by the next slabs, or for the next finer level, which weighs neighbouring
+/* The tiles of a row that are read: by the next slabs, or by the next finer level, which interpolates between
  * pixels. */
 static read_row row_read(const soft_cascade *cascade, const cascade_level *level, size_t y) {
   return hl_cascade_read_row(&cascade->reads, level->scale, (int)y,
@@ -83,7 +83,7 @@ static void start_row(void *data, size_t index, int worker) {
 
 /* ---- a group ---- */
 
-/* Means over step pixels, of what was absorbed and of what thin matter took of it. */
+/* Averages a group's absorbed light and thin matter over step pixels. */
 static void average_row(void *data, size_t index, int worker) {
   (void)worker;
   const emission_pass *pass = data;
@@ -110,7 +110,8 @@ static void average_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Taps that look beyond the level's zeros see nothing. Returns how many are left. */
+/* Leaves out taps that lie outside the level for this tile, where there are only zeros. Returns how many are
+ * left. */
 static int offsets_of(const cascade_level *level, const emission_taps *taps, int x, int y, ptrdiff_t *offset,
                       int *kept) {
   int count = 0;

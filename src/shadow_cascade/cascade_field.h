@@ -6,31 +6,31 @@
 
 #include "shadow/blur.h"
 
-/* Light that is lacking, in FIELD_ONEths: of groups and sums up to all of it, of sums of several groups'
- * penumbrae somewhat more. Half as much memory to go through as floats. */
+/* Absorbed light in units of 1 / FIELD_ONE, to halve the memory traffic of floats. At most FIELD_ONE,
+ * somewhat more in sums of several groups' penumbrae. */
 typedef uint16_t field_pixel;
 enum { FIELD_ONE = 32768 };
 
-/* Of a tile, those that a pass is to find. */
+/* The rows of a tile that a pass must compute. */
 typedef struct tile_rows {
   int first, end;
 } tile_rows;
 static const tile_rows ALL_ROWS = {0, TILE};
 
-/* A field's pixels: pixel (0,0); rows stride apart; zeros all around it. */
+/* An operation on fields, given by their pixel (0,0); rows are stride apart, with zeros all around. */
 typedef struct field_job {
-  const field_pixel *a, *b; /* inputs; b may be coarser or finer, as the function says; null for zeros where
-                               it is not coarser; so may a where b is */
+  const field_pixel *a, *b; /* inputs; the function says their resolutions. Null for zeros: b unless it is
+                               coarser than the output, a if b is coarser */
   field_pixel *to;
-  size_t stride_in, stride; /* of b and of the rest where they differ */
-  const field_pixel *thin;  /* beside a: the part of b that a's matter takes; null: none */
+  size_t stride_in, stride; /* stride_in: of inputs of another resolution */
+  const field_pixel *thin;  /* the fraction of b that a's thin matter absorbs; null: none */
   tile_rows rows;
 } field_job;
 
 /* Returns whether any pixel of the tile's rows is more than zero. */
 typedef int field_tile_function(const field_job *job, int tile_x, int tile_y);
 
-/* to = a + (1 - thin) (from blurred along rows, then along columns), in one pass over memory; a and thin
+/* to = a + (1 - thin) * (from, blurred along rows and columns), in one pass over memory; a and thin may be
  * null: 0. */
 typedef struct field_blur_job {
   const field_pixel *from, *a; /* pixel (0,0); rows stride apart */
@@ -40,21 +40,21 @@ typedef struct field_blur_job {
   blur_box u, v; /* reach below BLUR_GREATEST_REACH */
   tile_rows rows;
 } field_blur_job;
-/* Returns as field_tile_function does. */
+/* Returns whether any pixel of the tile is more than zero. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
-/* A chunk's end: the light that is left, 1 - lacking, from 0 to 1, times what the slabs of the chunk left of
- * what it began with. */
+/* Refills the buffer at a chunk's end: 1 - absorbed, from 0 to 1, times the transmittance of the chunk's own
+ * slabs. */
 typedef struct refill_job {
   const field_pixel *absorbed; /* rows stride apart */
-  float
-      *absorbed_at_start; /* rows stride apart; 1 - the light at the chunk's start; becomes that at its end */
-  float *to;              /* rows stride_to apart; the light that was left; becomes what is left now */
-  float *older; /* rows stride_to apart; becomes what `to` was, or is now if it was not found at the chunk's
-                   start */
+  float *
+      absorbed_at_start; /* rows stride apart; 1 - the light at the chunk's start; becomes 1 - the new `to` */
+  float *to;             /* rows stride_to apart; the buffer */
+  float *
+      older; /* rows stride_to apart; the second planes: become the old `to`, or the new one unless `again` */
   size_t stride, stride_to;
-  int kept;  /* the chunk's slabs took some of `to` */
-  int again; /* `to` was found at the chunk's start as well */
+  int kept;  /* the chunk's slabs absorbed some light */
+  int again; /* `to` was refilled at the chunk's start as well */
 } refill_job;
 typedef void refill_tile_function(const refill_job *job, int tile_x, int tile_y);
 
@@ -67,32 +67,33 @@ typedef struct field_emission_job {
   const ptrdiff_t *offset; /* [count]; from a pixel to the one that is weighed */
   const float *weight;     /* [count] */
 } field_emission_job;
-/* Returns as field_tile_function does. */
+/* Returns whether any pixel of the tile is more than zero. */
 typedef int field_emission_tile_function(const field_emission_job *job, int tile_x, int tile_y);
 
-/* What a chunk's slabs took of the light before it: (1 - lacked) - now, and the part of it that thin matter
- * took. Of either the part moment / (length taken) goes to the group at the chunk's end, the rest to the one
- * at its start. */
+/* Adds the light that a chunk's slabs have absorbed, (1 - absorbed_at_start) - now, and the fraction that
+ * thin matter absorbed, to two groups: the fraction moment / (length * absorbed light) of both goes to the
+ * group at the chunk's end, the rest to the one at its start. */
 typedef struct absorbed_job {
   const float *absorbed_at_start; /* rows stride apart */
   const float *now;               /* rows stride_now apart */
-  float *moment; /* sum over the slabs of what each took, times its place in the chunk; is cleared */
+  float *moment; /* sum of each slab's absorbed light times its position in the chunk; is cleared */
   float length;  /* of the chunk */
-  field_pixel *start_absorbed, *start_thin, *end_absorbed, *end_thin; /* rows stride apart; raised; written */
+  field_pixel *start_absorbed, *start_thin; /* rows stride apart; raised */
+  field_pixel *end_absorbed, *end_thin;     /* rows stride apart; written */
   size_t stride, stride_now;
 } absorbed_job;
-/* Returns which of the four were given more than zero: a bit each, in their order. */
+/* Returns which of the four fields got more than zero, one bit each in their order. */
 typedef uint32_t absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
 
-/* Matter parted in two; the first may take its place. */
+/* Splits matter between two groups. The first output may be the input. */
 typedef struct split_job {
   const field_pixel *absorbed, *thin; /* pixel (0,0); rows stride apart */
   field_pixel *to_absorbed[2], *to_thin[2];
   size_t stride;
-  float late; /* the part of it that is the second's */
+  float late; /* the fraction that goes to the second */
 } split_job;
-/* Returns which of the four have any pixel of more than zero: absorbed and thin of the first, then of the
- * second, a bit each. */
+/* Returns which of the four outputs have a pixel above zero: absorbed and thin of the first, then of the
+ * second, one bit each. */
 typedef uint32_t split_tile_function(const split_job *job, int tile_x, int tile_y);
 
 typedef struct cascade_functions {

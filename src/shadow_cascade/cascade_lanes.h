@@ -1,14 +1,14 @@
-/* shadow_cascade/cascade_lanes.h - tile operations on cascade fields, as plain loops over rows. */
+/* shadow_cascade/cascade_lanes.h - operations on one tile of a cascade's fields. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_LANES_H
 #define HL_SHADOW_CASCADE_CASCADE_LANES_H
 
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_field.h"
 
-/* Blurred sums leave a little light in umbrae: where less than this is left, none is. */
+/* Blurred sums leave a little light in umbrae: a transmittance below this becomes 0. */
 static const float UMBRA = 1.0f / 160;
 
-/* Asks for a tile's rows, which lie on as many lines of the cache, before they are needed. Null: none. */
+/* Prefetches a tile's rows, each on a cache line of its own. field null: does nothing. */
 LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x, int tile_y, tile_rows rows,
                              const int to_write) {
   if (field == NULL) return;
@@ -19,7 +19,7 @@ LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x
   }
 }
 
-/* The same of a tile of floats, a line of the cache each if they are aligned so. */
+/* The same for a tile of floats. */
 LANES_INLINE void fetch_float_tile(const float *field, size_t stride, int tile_x, int tile_y) {
   const float *row = field + (size_t)tile_y * TILE * stride + (size_t)tile_x * TILE;
   for (int i = 0; i < TILE; i++, row += stride) __builtin_prefetch(row, 0);
@@ -32,18 +32,19 @@ LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
 }
 LANES_INLINE int is_above_zero(lanes greatest) { return lanes_bits(greatest + 0.5f >= 1.0f) != 0; }
 
-/* What thin matter leaves. */
+/* 1 - thin. */
 LANES_INLINE lanes transmittance_of(const field_pixel *thin) {
   return lanes_line(lanes_load_short(thin), -1.0f / FIELD_ONE, 1.0f);
 }
 
-/* What is left of the light where so much is lacking: from twice UMBRA on all of it. */
+/* 1 - absorbed, made 0 below UMBRA; between UMBRA and twice UMBRA it rises twice as steeply, from there on it
+ * is unchanged. */
 LANES_INLINE lanes transmittance_outside_umbra(const field_pixel *absorbed) {
   lanes left = transmittance_of(absorbed);
   return lanes_clamp(lanes_min(left, 2.0f * (left - UMBRA)), 0, 1.0f);
 }
 
-/* As blur_sixteen along a row, of fields: their whole numbers are summed as such. */
+/* blur_sixteen() along a row of a field, whose pixels are summed as integers. */
 LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) {
   lanes_int ends = lanes_load_short_int(from - (box->reach + 1)) +
                    lanes_load_short_int(from + (box->reach + 1));
@@ -155,7 +156,7 @@ static int double_tile(const field_job *job, int tile_x, int tile_y) {
 
 enum { EMISSION_ROWS = 4 };
 
-/* Some neighbouring rows of sixteen pixels, which hide each other's latency. */
+/* Weighs a few neighbouring rows of sixteen pixels at once, which hide each other's latency. */
 LANES_INLINE void weigh_rows(const emission_job *job, const float *from, lanes sum[EMISSION_ROWS]) {
   for (int row = 0; row < EMISSION_ROWS; row++) sum[row] = lanes_set(0);
   for (int tap = 0; tap < job->count; tap++) {
@@ -201,8 +202,8 @@ static void emission_tile(const emission_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* The part of a chunk's light that its slabs left. Where it began with next to none, they were not asked: all
- * of it. */
+/* The transmittance of a chunk's own slabs. 1 where the chunk began with hardly any light: such blocks are
+ * not composited. */
 LANES_INLINE lanes chunk_transmittance(lanes end, lanes start) {
   lanes least = lanes_set(1.0f / 256);
   return lanes_select(start < least, lanes_set(1.0f),
@@ -221,9 +222,9 @@ static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* Matter at one place as matter at two, the part `late` of it at the second (derived): of a ray thin matter
- * leaves 1 - F, which is the product of (1 - F)^(1 - late) and (1 - F)^late; and what the two take of the
- * same light one after the other, A2 + (1 - F2) A1, is the A of both. */
+/* Splits matter at one position into matter at two, with the fraction `late` at the second (derived): thin
+ * matter's transmittance 1 - F is the product of (1 - F)^(1 - late) and (1 - F)^late; the light that both
+ * absorb one after the other, A2 + (1 - F2) A1, equals the A of the whole. */
 typedef struct matter_pair {
   lanes absorbed[2], thin[2];
 } matter_pair;
@@ -264,8 +265,8 @@ static uint32_t split_tile(const split_job *job, int tile_x, int tile_y) {
   return above_zero;
 }
 
-/* Where a chunk takes less than the first part of its light it counts as thin, from the second on as
- * solid. */
+/* Matter that absorbs less than the first fraction of the light in a chunk counts as thin, more than the
+ * second as solid. */
 static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 
 static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {

@@ -1,18 +1,19 @@
-/* shadow_cascade/cascade_levels.c - where a cascade's buffer lies, its chunks, and the levels' memory. */
+/* shadow_cascade/cascade_levels.c - plans a cascade's buffer, chunks and levels, and lays out their memory.
+ */
 #include <string.h>
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* Chunks that a sweep is cut into at most; where they need not be thin, pixels of omega; the least of one,
- * pixels. */
+/* The most chunks of a sweep, and the number that is enough; the thickness up to which chunks may grow to be
+ * no more than enough, and the least thickness, pixels of omega. */
 static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.15;
 
-/* Chunks between a receiver and a level's groups at least: level 0 keeps three groups, level 1 two, every
- * other five. */
+/* The least number of chunks between a receiver and a level's groups: level 0 keeps three groups, level 1
+ * two, every other level five. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
 
-/* Levels keep at least one and a half pixels of their own to the narrowest penumbra that they give. What
- * resampling blurs is taken off the penumbra (resampled_by), but for an image, which keeps four. */
+/* The scale of a level: its narrowest penumbra is at least one and a half of its pixels wide, as resampling's
+ * blur is taken off the penumbra (resampled_by), and four with an emission image, where it is not. */
 static int level_scale(const soft_cascade *cascade, int level) {
   double penumbra = cascade->chunk * chunks_before(level) * cascade->least_fraction,
          own = cascade->emission == NULL ? 1.5 : 4;
@@ -33,7 +34,7 @@ static cascade_field next_field(const cascade_level *level, size_t *used) {
   return field_of_plane(level, (*used)++);
 }
 
-/* How wide each column or row of tiles sees the light. */
+/* Sets the light's squared width as seen from each column or row of tiles. */
 static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
                       cascade_box *boxes) {
   for (int tile = 0; tile < count; tile++) {
@@ -136,7 +137,7 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
     cascade->slope_step[axis] = vec3_dot(axis == 0 ? view->du : view->dv, along[axis]);
   }
   double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
-  /* a light close to the sheets: penumbrae twice as wide as the buffer are as good as wider ones */
+  /* near a light, omega grows without bound; penumbrae wider than twice the buffer make no difference */
   start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
   double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
   cascade->chunk_start = start;
@@ -169,10 +170,10 @@ static double steepest_tangent(const view *view, vec3 normal) {
   return greatest;
 }
 
-/* A cascade keeps its buffer where it is looked up. What is seen of a brick is looked up in the middle of the
- * slab, up to half a slab further along the eye's ray: derived, in a buffer parallel to the sheets that is
- * half their distance times the difference of the two rays' tangents away. Near a light within the content a
- * tile must do. */
+/* Pixels around the bricks' projections in which the cascade keeps its buffer up to date. A brick's sample
+ * may be looked up in the middle of the slab, half a slab away from the brick along the eye's ray: in a
+ * buffer parallel to the sheets this is at most half their distance times the sum of the two rays' tangents
+ * (derived). At most a tile, for lights within the content. */
 static double look_up_spare(const shadow_setup *setup, const shadow_plan *plan) {
   const sheet_stack *sheets = setup->sheets;
   const view *view = &plan->view;
@@ -188,7 +189,7 @@ void hl_cascade_plan(light_shadow *shadow) {
   shadow_plan *plan = &shadow->plan;
   light_source middle = *setup->source;
   plan->cubic = is_read_cubic(setup);
-  plan->second = true; /* the light that receivers fade from */
+  plan->second = true; /* the light that samples fade from */
   hl_plan_soft(shadow, hl_blurred_pixel(setup, plan->cubic));
   plan->extent.u = plan->seen.u;
   if (middle.parallel) middle.direction = vec3_normalise(plan->seen.middle);
@@ -243,7 +244,7 @@ static void clear_plane(void *data, size_t index, int worker) {
     for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
 }
 
-/* What the last, unfinished chunk's slabs took, and what light they found. */
+/* Clears the moments and the light at the start of the last, unfinished chunk. */
 static void clear_moments(const soft_cascade *cascade) {
   const cascade_level *level = &cascade->level[0];
   for (size_t tile = 0; tile < (size_t)level->tiles_x * (size_t)level->tiles_y; tile++) {
@@ -256,7 +257,7 @@ static void clear_moments(const soft_cascade *cascade) {
     memset(cascade->absorbed_at_start[c], 0, (size_t)level->tiles_y * TILE * level->stride * sizeof(float));
 }
 
-/* Gives the memory back as zeros. */
+/* Returns the memory filled with zeros, for the next frame. */
 void hl_cascade_end(light_shadow *shadow) {
   const soft_cascade *cascade = shadow->state;
   hl_pool *pool = shadow->setup.pool;

@@ -1,9 +1,9 @@
-/* shadow_cascade/cascade_reads.c - which tiles the sheets to come read, and what is near them. */
+/* shadow_cascade/cascade_reads.c - finds the tiles that the next sheets read. */
 #include "shadow_cascade/cascade_reads.h"
 
 #include <string.h>
 
-/* Ones where tiles are read, a row and a column on. */
+/* Writes 1 for each tile that is read, one row and one column further on. */
 static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, int first_sheet, int last_sheet) {
   size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;
   memset(reads->before, 0, (width + 1) * ((size_t)reads->tiles_y + 1) * sizeof *reads->before);
@@ -32,7 +32,7 @@ void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int
   }
 }
 
-/* Around rows `top` to `bottom` of the buffer's pixels, both included. */
+/* The band around the rows `top` to `bottom` of the buffer's pixels, both included. */
 static read_band band_of(const cascade_reads *reads, int top, int bottom) {
   int y0 = top < 0 ? 0 : top / TILE, y1 = bottom < reads->tiles_y * TILE ? bottom / TILE + 1 : reads->tiles_y;
   if (y0 > y1) y0 = y1;

@@ -1,5 +1,5 @@
 /* shadow_hard/hard.c - hard shadows (section 3): one buffer perpendicular to the light, attenuated by each
- * slab as the light's centre sees it. */
+ * slab as seen from the light's centre. */
 #include "shadow/shadow_method.h"
 
 static bool is_read_cubic(const shadow_setup *setup) {

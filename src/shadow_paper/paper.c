@@ -1,9 +1,9 @@
-/* shadow_paper/paper.c - the paper's soft shadows (sections 5.1 and 5.2), kept faithful as the baseline.
+/* shadow_paper/paper.c - the paper's soft shadows (sections 5.1 and 5.2), unchanged, as the baseline.
  *
- * One accumulated buffer, convolved again and again with a box of the width that eq. (5) gives for the step
- * from the last convolved sheet to the next one, or with the light's own image at that width. Under
- * convolution variances add, not widths: the penumbra grows as the square root of distance. This is the
- * paper's method, and the error that other methods improve on. */
+ * One buffer is convolved again and again with a box, or with the light's emission image, of the width that
+ * eq. (5) gives for the step from the last convolved sheet to the next one. Convolution adds variances, not
+ * widths, so penumbrae grow with the square root of the distance: this is the error that the other methods
+ * avoid. */
 #include <string.h>
 
 #include "light/light_extent.h"
@@ -18,7 +18,7 @@ typedef struct soft_paper {
   double pixel;        /* buffer pixel: frame units; not parallel: at distance 1 */
   double last;         /* height of the last convolved sheet */
   double remainder;    /* accumulated width not yet convolved, pixels */
-  int reach;           /* pixels beyond a tile that the buffer's margin lets blurs read */
+  int reach;           /* pixels beyond a tile that blurs may read: the buffer's margin is as wide */
 } soft_paper;
 
 /* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets
@@ -59,14 +59,14 @@ static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
   return (int)fmin(soft->emission != NULL ? soft->emission->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
 }
 
-/* One convolution: from the buffer to the scratch and back, tile by tile, all channels of a tile in one
- * go. */
+/* One convolution: from the buffer to its second planes and back, tile by tile, all channels of a tile at
+ * once. */
 typedef struct convolution {
   shadow_buffer *buffer;
   const unsigned char *wanted; /* [tiles] */
   const blur_functions *blur;
   blur_box box;
-  /* the taps of an image in place of a box's rows and columns */
+  /* with an emission image, instead of the box: */
   int count;
   const ptrdiff_t *offset; /* [count] */
   const emission_taps *taps;
@@ -144,7 +144,7 @@ static void convolve_with_emission(const soft_paper *soft, convolution *task, in
   hl_pool_run(pool, (size_t)task->buffer->tiles_y, copy_back, task);
 }
 
-/* Tiles within reach of one that light was taken from. */
+/* Marks the tiles within reach of a touched one. */
 static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const unsigned char *from,
                            unsigned char *to) {
   for (int y = 0; y < buffer->tiles_y; y++)
@@ -158,7 +158,7 @@ static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const u
     }
 }
 
-/* Only the tiles that can change. Tiles outside hold 1 in the buffer and in the scratch. */
+/* Convolves the tiles that can change. All others hold 1 in the buffer and in its second planes. */
 static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, hl_pool *pool,
                      const blur_functions *blur) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
@@ -176,8 +176,9 @@ static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, h
   memcpy(touched, spread, tiles);
 }
 
-/* Section 5.2, (2): accumulate dx until it exceeds two pixels, convolve by its integer part, carry the rest.
- * An image has one tap a pixel and no more of them than cells: wider steps are several. */
+/* Section 5.2, (2): accumulates dx until it exceeds two pixels, convolves by its integer part and carries the
+ * rest. An emission image has one tap per pixel and no more taps than cells: wider steps take several
+ * convolutions. */
 static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int sheet) {
   (void)occupancy;
   soft_paper *soft = shadow->state;

@@ -5,20 +5,20 @@
 
 #include "shadow/shadow_lookup.h"
 
-/* A slab and its copies half a pixel further along u, along v, and along both: bit 0 and bit 1 of their
- * index. Pixel (0,0); rows slab_stride apart; ones around. */
+/* Copies of a slab's transmittance: bit 0 of a copy's index shifts it by half a pixel along u, bit 1 along v.
+ * Given by pixel (0,0); rows slab_stride apart; ones all around. */
 enum { SLAB_COPIES = 4 };
 
 typedef struct half_pixel_job {
   const float *slab;
-  float *moved[SLAB_COPIES]; /* written but for the first, which is not used */
+  float *moved[SLAB_COPIES]; /* outputs; the first is not used */
   size_t slab_stride;
 } half_pixel_job;
 
 /* Rows of a tile in which pixels of the slab or of its moved copies are below 1: bit TILE * copy + row. */
 typedef uint64_t slab_rows;
 
-/* A tile's pixels of all that are moved, in rows where some are below 1; in others they are ones already. */
+/* Fills a tile of the shifted copies, in rows where some pixels are below 1; the others are ones already. */
 typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
 
 typedef struct sublight_job {
@@ -26,29 +26,29 @@ typedef struct sublight_job {
   size_t slab_stride;
   const slab_rows *rows; /* [slab_tiles_y][slab_tiles_x] */
   int slab_tiles_x, slab_tiles_y;
-  float slab_width, slab_height; /* with ones further out, up to 32 pixels */
+  float slab_width, slab_height; /* pixels; around them are up to 32 pixels of ones */
   float scale[2],
       shift[2]; /* continuous pixel coordinates u and v of the slab: scale * the sub-light's + shift */
-  int half[2];  /* the nearest half of shift, in halves */
+  int half[2];  /* shift in half pixels, rounded */
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows stride apart */
   size_t stride;                              /* a tile's margin on either side */
   int tiles_x;
-  float carry; /* above 0 and below 1: added before the fraction of a pixel's new value is cut off.
-                  Where it takes all values in turn from slab to slab, haze of which each takes
-                  less than 1/SUBLIGHT_ONE is counted in the end */
+  float
+      carry; /* above 0 and below 1: added before a pixel's new value is truncated. It varies from slab to
+                slab, so that haze of which each slab absorbs less than 1 / SUBLIGHT_ONE counts on average */
   int channels;
 } sublight_job;
 
-/* Multiplies a tile by the slab. Returns whether that took any light. */
+/* Multiplies a tile by the slab. Returns whether that absorbed any light. */
 typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile_y);
 
-/* Multiplies a row of tiles by those of the slab's from first to last, where scale is 1. lit: [tiles_x], of
- * each tile its blocks with light, one bit each; tiles that have none need nothing. touched: [tiles_x],
- * becomes 1 where light may have been taken. */
+/* Multiplies a row of the sub-light's tiles by the slab's tiles from first to last, where scale is 1. lit:
+ * [tiles_x], each tile's blocks with light, one bit each; tiles without any are skipped. touched: [tiles_x],
+ * becomes 1 where light may have been absorbed. */
 typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last,
                                    const uint16_t *lit, unsigned char *touched);
 
-/* Of a tile's blocks with light left, those that still have some. */
+/* The blocks of `lit` that still have light. */
 typedef uint32_t sublight_lit_function(const sublight_job *job, int tile_x, int tile_y, uint32_t lit);
 
 /* The functions of this room that are compiled for each instruction set. */

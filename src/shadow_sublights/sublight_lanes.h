@@ -1,10 +1,11 @@
 /* shadow_sublights/sublight_lanes.h - one tile of one sub-light's buffer times the slab, scaled and shifted,
  * a row of sixteen pixels at a time.
  *
- * What a sub-light's pixel gets is the slab's value at the nearest half pixel. Values between pixels are
- * those of cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image
- * processing", 1981): weights -1/8, 5/8, 5/8, -1/8. They are sharper than the samples, by what the bilinear
- * look-up of a buffer blurs (variances: -1/4 at half pixels and 0 at whole ones, against 1/6). */
+ * A sub-light's pixel is multiplied by the slab's transmittance at the nearest half pixel. Values between
+ * pixels come from cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image
+ * processing", 1981), with weights -1/8, 5/8, 5/8, -1/8. They are sharper than the samples by about as much
+ * as the bilinear look-up of the buffer blurs (variances: -1/4 at half pixels and 0 at whole ones, against
+ * 1/6). */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 
@@ -13,7 +14,7 @@
 
 enum { EVERY_ROW = (1 << TILE) - 1 };
 
-/* In the middle of the two inner ones, within what a transmittance can be. */
+/* The value in the middle between b and c, clamped to [0, 1]. */
 LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
   return lanes_clamp(lanes_add_scaled((a + d) * -0.125f, b + c, 0.625f), 0, 1);
 }
@@ -25,8 +26,8 @@ LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
 
 LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
 
-/* The rows of a tile and the next one in which it or its right neighbour's first pixel is below 1. Pixels
- * further out, weighed by less than nothing, bring none in the middle below 1. */
+/* The rows of a tile, and the first one below it, with a pixel below 1, the right neighbour's first pixel
+ * included. Pixels further away have negative weights and bring no value in the middle below 1. */
 LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
   uint32_t rows = 0;
   for (int row = 0; row <= TILE; row++) {
@@ -59,17 +60,16 @@ static slab_rows half_pixel_tile(const half_pixel_job *job, int tile_x, int tile
 
 static const float LANE_INDICES[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* The nearest halves of sixteen coordinates scale * i + start, counted in halves; held between -2 and size
- * + 1. */
+/* Sixteen coordinates scale * i + start, clamped to [-2, size + 1], in half pixels, rounded. */
 LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
   return lanes_floor(lanes_clamp(lanes_load(LANE_INDICES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
 }
 
 enum { SUBLIGHT_TAPS = 8 };
 
-/* How a row of sixteen pixels reads a row of the slab's copies: pixel i is 2 i halves beyond its first
- * pixel's, give or take as many as the two pixels' edges drift apart along the row. Steps are nearly 1, so
- * that those are a few; weight[i] is 1 where pixels lie first + i halves from there, else 0. */
+/* How a row of sixteen pixels reads a row of the slab's copies. Pixel i lies near 2 i half pixels from the
+ * first one; as the two pixels' edges differ a little, it deviates by first to first + count - 1 halves.
+ * weight[k] is 1 for pixels that deviate by first + k halves, else 0. */
 typedef struct row_taps {
   int first, count; /* count 0: too many */
   lanes_int half;   /* of each pixel, held inside the slab */
@@ -106,7 +106,7 @@ LANES_INLINE lanes slab_row(const row_taps *taps, const float *const copies[2]) 
   return sum;
 }
 
-/* Tiles of the slab under a row. */
+/* The slab's tiles under a row of pixels. */
 LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, int *first, int *last) {
   *first = taps->half[0] >> 5;
   *last = taps->half[LANES - 1] >> 5;
@@ -114,13 +114,14 @@ LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, in
   if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
 }
 
-/* Where any of the copies in the same rows is below 1. */
+/* The rows in which either copy at this vertical half pixel is below 1. */
 LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
   rows >>= 2 * TILE * between;
   return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;
 }
 
-/* The rows of a tile, one bit each, in which some of the slab's pixels are below 1. half: of each row. */
+/* The rows of a tile, one bit each, over which some of the slab's pixels are below 1. half: each row's
+ * position in the slab, half pixels. */
 LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[TILE], int first, int last) {
   int y0 = half[0] < 0 ? 0 : half[0] / (2 * TILE), y1 = half[TILE - 1] < 0 ? -1 : half[TILE - 1] / (2 * TILE);
   uint32_t present = 0;
@@ -140,7 +141,7 @@ LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[T
 
 static const float DARK_SUBLIGHT = DARK * SUBLIGHT_ONE;
 
-/* The blocks that have any of these columns. */
+/* The blocks, of a row of four, that hold any of these columns. */
 LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
   uint32_t any = columns | columns >> 1;
   any |= any >> 2;
@@ -166,7 +167,7 @@ static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, ui
   return lit & left;
 }
 
-/* Sixteen of a sub-light's pixels times the slab's. */
+/* Multiplies sixteen of a sub-light's pixels by the slab's. */
 LANES_INLINE void composite_sublight(const sublight_job *job, sublight_pixel *at, lanes slab_transmittance) {
   lanes_store_short_int(at, lanes_truncate(lanes_load_short(at) * slab_transmittance + job->carry));
 }

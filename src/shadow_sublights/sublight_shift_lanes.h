@@ -1,8 +1,9 @@
-/* shadow_sublights/sublight_shift_lanes.h - a row of tiles of one sub-light's buffer times a slab that is
- * only shifted: that of a parallel light, or of a sub-light as high over the sheets as the middle.
+/* shadow_sublights/sublight_shift_lanes.h - multiplies a row of tiles of one sub-light's buffer by a slab
+ * that is only shifted, not scaled: for a parallel light, or a sub-light as high above the sheets as the
+ * light's centre.
  *
- * Here the slab's rows of sixteen pixels are gone through, which are known to hold something or not, and each
- * lies over sixteen of the sub-light's pixels wherever those begin. */
+ * It goes through the slab's tiles, whose rows that are below 1 somewhere are known; each such row multiplies
+ * sixteen of the sub-light's pixels, wherever these begin. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_SHIFT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_SHIFT_LANES_H
 
@@ -11,13 +12,13 @@
 /* Tiles of the slab whose pixels are fetched before the first is used. */
 enum { SHIFTED_TILES = 16 };
 
-/* The copy of the slab that is read. */
+/* The index of the copy of the slab that is read. */
 LANES_INLINE int copy_of_shift(const sublight_job *job) {
   return (job->half[0] & 1) + 2 * (job->half[1] & 1);
 }
 
-/* The slab's rows of a tile's columns that lie over a row of the sub-light's tiles, one bit each; the first
- * is row `top`. */
+/* Of the slab's sixteen rows from `top` on, in the columns of a tile: those below 1 somewhere, one bit each.
+ */
 LANES_INLINE uint32_t rows_from(const sublight_job *job, int tile_x, int top, int copy) {
   const slab_rows *tile = job->rows + tile_x;
   int y = top >> 4, down = top & (TILE - 1);
@@ -38,8 +39,8 @@ LANES_INLINE sublight_pixel *pixels_under(const sublight_job *job, int channel, 
          (job->half[0] >> 1);
 }
 
-/* The sub-light's rows that take light from a tile of the slab, and their pixels on their way from memory:
- * they come many at a time, not one after another. The sub-light's tiles under it are touched. */
+/* Finds the sub-light's rows that a tile of the slab darkens, marks the sub-light's tiles as touched and
+ * prefetches their pixels, many at a time. */
 LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int tile_y, const uint16_t *lit,
                                     unsigned char *touched) {
   int top = tile_y * TILE + (job->half[1] >> 1), column = tile_x * TILE - (job->half[0] >> 1);

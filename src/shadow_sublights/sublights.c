@@ -1,6 +1,4 @@
-/* shadow_sublights/sublights.c - the sub-lights of a light: their buffers, and the slabs composited into
- * them.
- */
+/* shadow_sublights/sublights.c - the sub-lights of a light: their buffers, and the compositing of slabs. */
 #include "shadow_sublights/sublights.h"
 
 #include <string.h>
@@ -9,12 +7,12 @@
 #include "light/light_extent.h"
 #include "shadow/shadow_method.h"
 
-/* More than this is refused beforehand. */
+/* The most memory for the sub-lights' buffers; more is refused. */
 static const double GREATEST_BYTES = 4294967296.0;
 
 enum { MOVED_COPIES = SLAB_COPIES - 1 };
 
-/* What sub-light i sees; raises the greatest numbers of tiles. */
+/* The view of sub-light i; raises *tiles_x and *tiles_y to its numbers of tiles. */
 static void view_of_sublight(const light_shadow *shadow, int i, view *view, int *tiles_x, int *tiles_y) {
   const shadow_setup *setup = &shadow->setup;
   const light_source *source = setup->source;
@@ -31,8 +29,8 @@ static void view_of_sublight(const light_shadow *shadow, int i, view *view, int 
   if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
 }
 
-/* A margin of a tile on either side, where tiles of the slab reach across the edges; look-ups may read rows
- * beyond the last. */
+/* Buffers have a margin of a tile on either side, where the slab's tiles reach across the edges, and
+ * ROWS_BEYOND rows that look-ups may read after the last. */
 enum { ROWS_BEYOND = 7 };
 static void lay_out_planes(sublights *sublights) {
   sublights->stride = (size_t)(sublights->tiles_x + 3) / 2 * 2 * TILE; /* whole lines of the cache */
@@ -57,7 +55,7 @@ static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
   all->found = hl_layout_take(layout, slab_tiles, sizeof *all->found);
 }
 
-/* Full light everywhere. */
+/* Fills all buffers with full light. */
 static void fill_sublights(const light_shadow *shadow, sublights *all) {
   hl_pool *pool = shadow->setup.pool;
   size_t count = (size_t)all->count, pixels = count * (size_t)all->channels * all->plane;
@@ -71,7 +69,7 @@ static void fill_sublights(const light_shadow *shadow, sublights *all) {
   memset(all->found, 0, slab_tiles * sizeof *all->found);
 }
 
-/* The sub-lights of a light with an emission image send its colours. */
+/* Weighs the sub-lights by the light's emission image. */
 static hl_status weigh_sublights(hl_context *context, sublights *sublights, const light_source *source,
                                  int side, hl_error *error) {
   size_t count = (size_t)sublights->count;
@@ -111,12 +109,13 @@ static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
 
 /* ---- compositing ---- */
 
-/* Pixel (0,0) of one of the slab's copies but the first. */
+/* Pixel (0,0) of one of the slab's shifted copies; copy: from 1. */
 static float *moved_copy(const sublights *sublights, const shadow_buffer *slab, int channel, int copy) {
   return sublights->moved + ((size_t)channel * MOVED_COPIES + (size_t)copy - 1) * slab->plane + slab->origin;
 }
 
-/* Where the ray of a sub-light's pixel coordinates meets the sheet, in the slab's; false behind either. */
+/* Where the sub-light's ray through its pixel (at, at) meets a height, in the slab's pixels; false if that
+ * lies behind the sub-light or the light's centre. */
 static bool slab_position(const sublight *sublight, const view *slab, vec3 normal, double height, double at,
                           double uv[2]) {
   vec3 start, way;
@@ -126,20 +125,21 @@ static bool slab_position(const sublight *sublight, const view *slab, vec3 norma
   return hl_view_project(slab, vec3_add(start, vec3_scale(way, distance)), uv);
 }
 
-/* Multiples of the golden ratio, less their whole part, are spread evenly however many there are. */
+/* The carry for the current slab. The fractional parts of multiples of the golden ratio are spread evenly,
+ * however many there are. */
 static float carry_of_slab(const sublights *sublights, const sublight *sublight) {
   double turn = sublights->slabs * 0.6180339887498949 +
                 (double)(sublight - sublights->sublight) / sublights->count;
   return (float)(1.0 / 128 +
-                 (turn - floor(turn)) * 63 / 64); /* so far from 0 and 1 that whole numbers stay */
+                 (turn - floor(turn)) * 63 / 64); /* far enough from 0 and 1 that integers stay the same */
 }
 
-/* In pixels. Light that grazes the sheets shifts them further; it is clamped where pixels are scaled as
- * well. */
+/* The greatest shift, in pixels, for the functions that only shift; grazing light shifts further, and the
+ * general functions clamp it. */
 static const double FARTHEST_SHIFT = 1 << 20;
 
-/* Both views lie parallel to the sheets with the same axes: from one to the other pixels are scaled and
- * shifted. */
+/* Prepares a sub-light's job for a slab. Both views are parallel to the sheets and have the same axes, so
+ * pixels are only scaled and shifted. */
 static void map_sublight(const sublights *sublights, sublight *sublight, const shadow_buffer *slab,
                          vec3 normal, double height) {
   const double far = 1024;
@@ -177,12 +177,12 @@ typedef struct sublight_task {
   sublights *sublights;
   shadow_buffer *slab;
   const sublight_functions *functions;
-  int x0, x1, y0, y1; /* tiles of the slab that are present lie between these */
-  bool ends_run;      /* lit blocks are found after it */
+  int x0, x1, y0, y1; /* bounds of the slab's tiles with any pixel below 1 */
+  bool ends_run;      /* the slab is the last of its run: lit blocks are found after it */
 } sublight_task;
 
-/* First and last tile of `to` under pixels from x to x + TILE of one axis, scaled and shifted; a pixel to
- * spare. */
+/* The first and last tile that pixels x to x + TILE fall on along one axis, scaled and shifted, with a pixel
+ * to spare. */
 static void tiles_under(double x, double scale, double shift, int tiles, int *first, int *last) {
   double low = (scale * x + shift - 1) / TILE, high = (scale * (x + TILE) + shift + 1) / TILE;
   *first = low < 0 ? 0 : low > tiles ? tiles : (int)low;
@@ -196,7 +196,7 @@ static bool any_touched(const shadow_buffer *slab, int x0, int x1, int y0, int y
   return false;
 }
 
-/* Whether anything of the slab is in these of its tiles. */
+/* Whether the slab has a pixel below 1 in these tiles. */
 static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1) {
   for (int y = y0; y <= y1; y++)
     for (int x = x0; x <= x1; x++)
@@ -204,7 +204,7 @@ static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1)
   return false;
 }
 
-/* What is present of the slab; x1 < 0: nothing. */
+/* Bounds the slab's tiles with any pixel below 1; x1 < 0: there are none. */
 static void bound_present(sublight_task *task) {
   const shadow_buffer *slab = task->slab;
   task->x0 = slab->tiles_x;
@@ -222,7 +222,7 @@ static void bound_present(sublight_task *task) {
   }
 }
 
-/* The tiles of a sub-light under these of the slab, along an axis. */
+/* The tiles of a sub-light under the slab's tiles low to high, along one axis. */
 static void sublight_tiles(const sublight *sublight, int axis, int low, int high, int tiles, int *first,
                            int *last) {
   double scale = 1 / (double)sublight->job.scale[axis], shift = -(double)sublight->job.shift[axis] * scale;
@@ -231,7 +231,7 @@ static void sublight_tiles(const sublight *sublight, int axis, int low, int high
   tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
 }
 
-/* A row of tiles of one sub-light times the slab. */
+/* Multiplies a row of tiles of one sub-light by the slab. */
 static void composite_row(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
   const shadow_buffer *slab = task->slab;
@@ -258,7 +258,7 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
   }
 }
 
-/* Where light is left in a row of tiles, of those where some was taken. */
+/* Finds the lit blocks again, in the tiles of a row where light was absorbed. */
 static void find_sublight_lit(const sublight_task *task, sublight *sublight, int y) {
   int tiles_x = task->sublights->tiles_x;
   size_t row = (size_t)y * (size_t)tiles_x;
@@ -274,8 +274,9 @@ static void advance_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
   const sublights *all = task->sublights;
-  sublight *sublight = &all->sublight[index % (size_t)all->count]; /* sub-lights in turn: what the slab holds
-                                                                      under a row stays near */
+  sublight *sublight =
+      &all->sublight[index % (size_t)all->count]; /* row by row, all sub-lights in turn: the slab's
+                                                     pixels under a row stay in the cache */
   int y = (int)(index / (size_t)all->count);
   if (!sublight->reaches) return;
   if (task->x1 >= 0) composite_row(task, sublight, y);
@@ -284,13 +285,13 @@ static void advance_row(void *data, size_t index, int worker) {
 
 /* ---- the slab ---- */
 
-/* Rows of a tile, bits 0 to 15. */
+/* Fills the rows of a tile that have a bit, 0 to 15, with ones. */
 static void fill_ones(float *pixels, size_t stride, slab_rows of_copies) {
   for (uint32_t rows = of_copies & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
 }
 
-/* The copies of one row of tiles. Those of a tile hold pixels of the next ones too. */
+/* Fills the shifted copies of one row of tiles. A tile's copies depend on pixels of the next tiles too. */
 static void move_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -308,7 +309,7 @@ static void move_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Tiles of the slab become ones again. */
+/* Fills a row of the slab's tiles with ones again. */
 static void clear_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -326,7 +327,8 @@ static void clear_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Lit blocks are found for a few slabs at once: the first one alone, then LIT_SLABS after another. */
+/* Lit blocks are found once for a run of slabs: the first slab is a run of its own, then each LIT_SLABS are
+ * one. */
 enum { LIT_SLABS = 4 };
 static int run_of_slab(int slab) { return (slab + LIT_SLABS - 1) / LIT_SLABS + 1; }
 
@@ -335,7 +337,7 @@ static sublight_map map_of_job(const sublight_job *job) {
                         {(double)job->shift[0], (double)job->shift[1]}};
 }
 
-/* Where the sub-lights are over the first and the last of the next slabs, from a height on. */
+/* Sets the sub-lights' maps for the first and the last slab of the next run, which begins at a height. */
 static void map_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height,
                     double spacing) {
   for (int i = 0; i < sublights->count; i++) {
@@ -370,18 +372,19 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   if (task.ends_run) map_run(sublights, slab, sheets->normal, to, to - from);
 }
 
-/* ---- what light reaches ---- */
+/* ---- lit blocks of the slab ---- */
 
-/* Pixels of the slab around a block that lie over the same pixels of a sub-light: half pixels are made of two
- * on either side. */
+/* Pixels around a block of the slab that affect the same pixels of a sub-light: values at half pixels depend
+ * on two pixels on either side. */
 enum { BLOCK_SPARE = 2 };
 
-/* Rows or columns of a sub-light's blocks under each of the four of a tile of the slab. */
+/* The rows, or columns, of a sub-light's blocks under each of the four rows, or columns, of blocks of a
+ * slab's tile. */
 typedef struct blocks_under {
   int first[TILE / BLOCK], last[TILE / BLOCK];
 } blocks_under;
 
-/* Which of `count` lengths of pixels a place lies in; -1 or count beyond the ends. */
+/* The number of the segment, `length` pixels long, that a position lies in; -1 or count beyond the ends. */
 static int segment_of(double position, int length, int count) {
   return position < 0 ? -1 : position >= (double)length * count ? count : (int)position / length;
 }
@@ -404,7 +407,7 @@ static blocks_under find_under(const sublight *sublight, int axis, int tile, int
   return under;
 }
 
-/* The sub-light's lit blocks in a row of them, from block `first` on: a bit each, as far as a word goes. */
+/* A sub-light's lit blocks in a row of blocks, from block `first` on, one bit each; at most 64. */
 static uint64_t lit_in_row(const sublights *all, const sublight *sublight, int row, int first, int last) {
   const uint16_t *tiles = sublight->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
   uint64_t bits = 0;
@@ -433,7 +436,8 @@ static uint32_t lit_by_blocks(const sublights *all, const sublight *sublight, co
   return lit;
 }
 
-/* Most tiles are lit everywhere or nowhere. */
+/* The blocks of a slab's tile that one sub-light reaches. Most tiles are lit everywhere or nowhere, which is
+ * tested first. */
 static uint32_t lit_by_sublight(const sublights *all, const sublight *sublight, int tile_x, int tile_y) {
   blocks_under columns = find_under(sublight, 0, tile_x, all->tiles_x),
                rows = find_under(sublight, 1, tile_y, all->tiles_y);

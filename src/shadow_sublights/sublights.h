@@ -1,20 +1,19 @@
 /* shadow_sublights/sublights.h - soft shadows as the mean of many sharp ones (beyond the paper).
  *
- * The light is cut into M x M sub-lights; each sub-light is a point (or a direction) with a buffer of its
- * own, seen from it on a plane parallel to the sheets. A slab is classified once, in the view of the light's
- * centre; seen from a sub-light its picture is only scaled and shifted, so for the sub-lights the composite
- * alone repeats: each reads the slab's transmittance at the nearest half pixel, and what a buffer has
- * gathered, in 16 bits, is never resampled. A sample takes the mean over all buffers, each through its own
- * map. The sub-lights are a turned grid: along either side of the light they are M^2 even steps. */
+ * M x M sub-lights stand for the light; each is a point (or a direction) with a buffer of its own, parallel
+ * to the sheets. A slab is classified once, in the view of the light's centre. Seen from a sub-light the slab
+ * is only scaled and shifted, so only the compositing is repeated: each sub-light multiplies its buffer, in
+ * 16 bits, by the slab's transmittance at the nearest half pixel. The buffers are never resampled. A sample
+ * takes the mean over all buffers, each through its own map. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
 #include "shadow/shadow_lookup.h"
 #include "shadow_sublights/sublight_field.h"
 
-enum { SUBLIGHT_REACH = 31 /* of the slab's buffer, beyond a tile */ };
+enum { SUBLIGHT_REACH = 31 /* pixels beyond a tile that are read of the slab's buffer */ };
 
-/* From pixels of the slab to those of a sub-light, along u and v: scale * (pixel - shift). */
+/* Maps pixels of the slab to those of a sub-light, along u and v: scale * (pixel - shift). */
 typedef struct sublight_map {
   double scale[2], shift[2];
 } sublight_map;
@@ -23,13 +22,13 @@ typedef struct sublight_map {
 typedef struct sublight {
   view view;
   sublight_pixel *pixels; /* pixel (0,0) of the first channel; the others a plane apart; in memory */
-  uint16_t *lit; /* [tiles]; blocks in which light is left, or was before the last few slabs; in flags */
-  unsigned char *touched; /* [tiles]; 1 where those took some; in marks */
-  sublight_job job;       /* of the slab now composited */
+  uint16_t *lit;          /* [tiles]; blocks with light at the end of the last run of slabs; in flags */
+  unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since; in marks */
+  sublight_job job;       /* the current slab's */
   bool reaches;           /* the sub-light lies before the slab */
   bool shifted;           /* the job's scale is 1 */
-  sublight_map near, far; /* of the next slab, and of the last one that shares its lit blocks */
-  bool comes;             /* the sub-light does not reach the next one, but the last */
+  sublight_map near, far; /* for the first and the last slab of the next run */
+  bool comes;             /* the sub-light lies within the next run: it reaches its last slab only */
 } sublight;
 
 typedef struct sublights {
@@ -42,14 +41,15 @@ typedef struct sublights {
   sublight_pixel *memory;   /* [count][channels] planes */
   uint16_t *flags;          /* [count][tiles] */
   unsigned char *marks;     /* [count][tiles] */
-  float *moved; /* [channels][SLAB_COPIES - 1] planes of the slab, half a pixel further along u, v and both */
+  float *moved; /* [channels][SLAB_COPIES - 1] planes: the slab's copies shifted by half a pixel */
   size_t moved_floats;
   slab_rows *rows; /* [tiles of the slab] */
-  uint32_t *found; /* [tiles of the slab]; the run of slabs for which its lit blocks were found; 0: none */
+  uint32_t
+      *found; /* [tiles of the slab]; the run of slabs that the tile's lit blocks were found for; 0: none */
 } sublights;
 
-/* Finds the blocks of a tile of the next slab that some sub-light's light still reaches: slab's tile_lit. One
- * task has a tile. */
+/* Sets slab->tile_lit of a tile: the blocks of the next slab that some sub-light still reaches. One task has
+ * a tile. */
 void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile);
 
 #endif
