@@ -59,19 +59,25 @@ static double disk_below(double x) {
   return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
 }
 
-/* Result pixel i is the kernel's mean around start + (i + 1/2) step, in pixels of the image, which has length
- * of them. */
-static hl_status weigh_axis(hl_context *context, kernel_fraction *below, double half_width, double start,
-                            double step, int count, int length, axis_weights *axis, hl_error *error) {
-  axis->count = count;
+/* Along one axis of a convolution: result pixel i is the kernel's mean around start + (i + 1/2) step. */
+typedef struct axis_plan {
+  int count;                      /* of result pixels */
+  double start, step, half_width; /* pixels of the image that is convolved */
+} axis_plan;
+
+/* length: the image's pixels along the axis. */
+static hl_status weigh_axis(hl_context *context, kernel_fraction *below, const axis_plan *plan, int length,
+                            axis_weights *axis, hl_error *error) {
+  double half_width = plan->half_width;
+  axis->count = plan->count;
   axis->taps = (int)fmin(ceil(2 * half_width) + 2, length);
-  size_t taps = (size_t)axis->taps;
-  axis->first = hl_allocate(context, (size_t)count, sizeof *axis->first);
-  axis->weights = hl_allocate(context, (size_t)count, taps * sizeof *axis->weights);
+  size_t taps = (size_t)axis->taps, count = (size_t)axis->count;
+  axis->first = hl_allocate(context, count, sizeof *axis->first);
+  axis->weights = hl_allocate(context, count, taps * sizeof *axis->weights);
   if (axis->first == NULL || axis->weights == NULL)
-    return hl_fail_memory(error, (size_t)count * taps * sizeof(float), "a light's texture");
-  for (int i = 0; i < count; i++) {
-    double middle = start + (i + 0.5) * step;
+    return hl_fail_memory(error, count * taps * sizeof(float), "a light's texture");
+  for (int i = 0; i < axis->count; i++) {
+    double middle = plan->start + (i + 0.5) * plan->step;
     int first = (int)fmin(fmax(floor(middle - half_width), 0), length - axis->taps);
     axis->first[i] = first;
     for (int tap = 0; tap < axis->taps; tap++)
@@ -101,16 +107,23 @@ static void convolve_line(const float *from, size_t from_step, const axis_weight
 
 enum { LINES_BETWEEN_QUESTIONS = 16 };
 
+typedef struct texture_image {
+  const float *pixels; /* [height][width][3] */
+  int width, height;
+} texture_image;
+
 /* Rows, then columns. */
-static hl_status convolve(hl_context *context, const float *from, int width, int height,
-                          const axis_weights *u, const axis_weights *v, float *to, hl_error *error) {
+static hl_status convolve(hl_context *context, const texture_image *from, const axis_weights *u,
+                          const axis_weights *v, float *to, hl_error *error) {
+  size_t width = (size_t)from->width;
+  int height = from->height;
   size_t narrow_width = (size_t)u->count * 3;
   float *narrow = hl_allocate(context, narrow_width, (size_t)height * sizeof *narrow);
   if (narrow == NULL)
     return hl_fail_memory(error, narrow_width * (size_t)height * sizeof *narrow, "a light's texture");
   bool cancelled = false;
   for (int y = 0; y < height && !cancelled; y++) {
-    convolve_line(from + 3 * (size_t)y * (size_t)width, 3, u, narrow + (size_t)y * narrow_width, 3);
+    convolve_line(from->pixels + 3 * (size_t)y * width, 3, u, narrow + (size_t)y * narrow_width, 3);
     cancelled = y % LINES_BETWEEN_QUESTIONS == 0 && hl_cancelled(context);
   }
   for (int x = 0; x < u->count && !cancelled; x++) {
@@ -121,21 +134,17 @@ static hl_status convolve(hl_context *context, const float *from, int width, int
   return cancelled ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
-/* One level's two passes. */
+/* One level's two passes: along u and v. */
 typedef struct level_plan {
-  int width, height;
-  double start[2], step[2], half_width[2]; /* pixels of the image that is convolved */
+  axis_plan axis[2];
 } level_plan;
 
-static hl_status make_level(hl_context *context, kernel_fraction *below, const float *from, int width,
-                            int height, const level_plan *plan, float *to, hl_error *error) {
+static hl_status make_level(hl_context *context, kernel_fraction *below, const texture_image *from,
+                            const level_plan *plan, float *to, hl_error *error) {
   axis_weights u = {0}, v = {0};
-  hl_status status = weigh_axis(context, below, plan->half_width[0], plan->start[0], plan->step[0],
-                                plan->width, width, &u, error);
-  if (status == HL_OK)
-    status = weigh_axis(context, below, plan->half_width[1], plan->start[1], plan->step[1], plan->height,
-                        height, &v, error);
-  if (status == HL_OK) status = convolve(context, from, width, height, &u, &v, to, error);
+  hl_status status = weigh_axis(context, below, &plan->axis[0], from->width, &u, error);
+  if (status == HL_OK) status = weigh_axis(context, below, &plan->axis[1], from->height, &v, error);
+  if (status == HL_OK) status = convolve(context, from, &u, &v, to, error);
   release_axis(context, &u);
   release_axis(context, &v);
   return status;
@@ -179,40 +188,39 @@ enum { GREATEST_LEVEL_SIDE = 8192 };
 static level_plan plan_level(const light_texture *texture, const double deviation[2], double half_widths,
                              double blur) {
   level_plan plan;
-  int size[2];
   const int image[2] = {texture->width, texture->height};
   for (int axis = 0; axis < 2; axis++) {
     double sigma = deviation[axis] * blur, least = LEAST_PIXEL / (double)texture->sharpness[axis];
-    plan.half_width[axis] = fmax(half_widths * sigma, 0.5 / (double)texture->sharpness[axis]);
-    double extent = image[axis] + 2 * plan.half_width[axis];
-    plan.step[axis] = fmax(fmax(sigma * LEVEL_PIXEL, least), extent / (GREATEST_LEVEL_SIDE - 4));
-    size[axis] = (int)fmin(ceil(extent / plan.step[axis] + 4),
-                           GREATEST_LEVEL_SIDE); /* two more on either side */
-    plan.start[axis] = (image[axis] - size[axis] * plan.step[axis]) / 2;
+    axis_plan *along = &plan.axis[axis];
+    along->half_width = fmax(half_widths * sigma, 0.5 / (double)texture->sharpness[axis]);
+    double extent = image[axis] + 2 * along->half_width;
+    along->step = fmax(fmax(sigma * LEVEL_PIXEL, least), extent / (GREATEST_LEVEL_SIDE - 4));
+    along->count = (int)fmin(ceil(extent / along->step + 4),
+                             GREATEST_LEVEL_SIDE); /* two more on either side */
+    along->start = (image[axis] - along->count * along->step) / 2;
   }
-  plan.width = size[0];
-  plan.height = size[1];
   return plan;
 }
 
+/* averaged: floats of the averaged image, which the texture's memory begins with. */
 static hl_status make_levels(hl_context *context, const light_source *source, const view *view,
-                             const vec3 *points, int point_count, vec3 content, light_texture *texture,
-                             size_t averaged, hl_error *error) {
+                             const texture_use *use, light_texture *texture, size_t averaged,
+                             hl_error *error) {
   double deviation[2], widest = 0, reach = 0;
   level_plan plans[TEXTURE_LEVELS];
   kernel_fraction *below = source->light->type == HL_LIGHT_RECT ? box_below : disk_below;
   double half_widths = source->light->type == HL_LIGHT_RECT ? sqrt(3) : 2; /* in standard deviations */
-  spread_on_screen(source, view, content, deviation);
+  spread_on_screen(source, view, use->content, deviation);
   for (int axis = 0; axis < 2; axis++)
     widest = fmax(widest, deviation[axis] * (double)texture->sharpness[axis]);
-  for (int i = 0; i < point_count; i++) reach = fmax(reach, blur_at(source, view, points[i]));
+  for (int i = 0; i < use->point_count; i++) reach = fmax(reach, blur_at(source, view, use->points[i]));
   if (!(widest * reach > 0.25)) return HL_OK; /* a quarter of the picture's pixel */
   double first = FIRST_BLUR / widest;
   size_t floats = 0;
   while (texture->level_count < TEXTURE_LEVELS) {
     int l = texture->level_count++;
     plans[l] = plan_level(texture, deviation, half_widths, first * pow(2, 0.5 * l));
-    floats += (size_t)plans[l].width * (size_t)plans[l].height * 3;
+    floats += (size_t)plans[l].axis[0].count * (size_t)plans[l].axis[1].count * 3;
     if (first * pow(2, 0.5 * l) >= reach) break;
   }
   texture->first = (float)(1 / (first * first));
@@ -221,16 +229,17 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
   if (memory == NULL) return hl_fail_memory(error, floats * sizeof *memory, "a light's texture");
   texture->memory = memory;
   if (averaged > 0) texture->pixels = memory;
+  const texture_image image = {texture->pixels, texture->width, texture->height};
   float *to = memory + averaged;
   for (int l = 0; l < texture->level_count; l++) {
     texture_level *level = &texture->level[l];
-    *level = (texture_level){.pixels = to, .width = plans[l].width, .height = plans[l].height};
+    const axis_plan *along = plans[l].axis;
+    *level = (texture_level){.pixels = to, .width = along[0].count, .height = along[1].count};
     for (int axis = 0; axis < 2; axis++) {
-      level->scale[axis] = (float)(1 / plans[l].step[axis]);
-      level->shift[axis] = (float)(-plans[l].start[axis] / plans[l].step[axis]);
+      level->scale[axis] = (float)(1 / along[axis].step);
+      level->shift[axis] = (float)(-along[axis].start / along[axis].step);
     }
-    hl_status status = make_level(context, below, texture->pixels, texture->width, texture->height, &plans[l],
-                                  to, error);
+    hl_status status = make_level(context, below, &image, &plans[l], to, error);
     if (status != HL_OK) return status;
     to += (size_t)level->width * (size_t)level->height * 3;
   }
@@ -249,34 +258,33 @@ static int resolution(double length, int count, double pixel, float *sharpness) 
 
 static hl_status average_image(hl_context *context, const hl_light_texture *described, light_texture *texture,
                                hl_error *error) {
-  level_plan plan = {texture->width, texture->height, {0, 0}, {0, 0}, {0, 0}};
-  plan.step[0] = (double)described->width / texture->width;
-  plan.step[1] = (double)described->height / texture->height;
-  for (int axis = 0; axis < 2; axis++) plan.half_width[axis] = plan.step[axis] / 2;
+  const texture_image image = {described->pixels, described->width, described->height};
+  double step_u = (double)described->width / texture->width,
+         step_v = (double)described->height / texture->height;
+  const level_plan plan = {
+      {{texture->width, 0, step_u, step_u / 2}, {texture->height, 0, step_v, step_v / 2}}};
   texture->memory = hl_allocate(context, (size_t)texture->width * (size_t)texture->height,
                                 3 * sizeof *texture->memory);
   if (texture->memory == NULL)
     return hl_fail_memory(error, (size_t)texture->width * (size_t)texture->height * 12, "a light's texture");
   texture->pixels = texture->memory;
-  return make_level(context, box_below, described->pixels, described->width, described->height, &plan,
-                    texture->memory, error);
+  return make_level(context, box_below, &image, &plan, texture->memory, error);
 }
 
 static void store_row(float to[4], const double from[4]) {
   for (int column = 0; column < 4; column++) to[column] = (float)from[column];
 }
 
-hl_status hl_light_texture_create(hl_context *context, const light_source *source, const vec3 *points,
-                                  int point_count, vec3 content, double pixel, light_texture *texture,
-                                  hl_error *error) {
+hl_status hl_light_texture_create(hl_context *context, const light_source *source, const texture_use *use,
+                                  light_texture *texture, hl_error *error) {
   const hl_light_texture *described = &source->light->texture;
   *texture = (light_texture){.pixels = described->pixels, .parallel = source->parallel};
   if (described->pixels == NULL) return HL_OK;
   view whole = view_of_screen(source, 1, 1);
-  double right = 2 * length_at_content(source, &whole, source->screen_right, content);
-  double up = 2 * length_at_content(source, &whole, source->screen_up, content);
-  texture->width = resolution(right, described->width, pixel, &texture->sharpness[0]);
-  texture->height = resolution(up, described->height, pixel, &texture->sharpness[1]);
+  double right = 2 * length_at_content(source, &whole, source->screen_right, use->content);
+  double up = 2 * length_at_content(source, &whole, source->screen_up, use->content);
+  texture->width = resolution(right, described->width, use->pixel, &texture->sharpness[0]);
+  texture->height = resolution(up, described->height, use->pixel, &texture->sharpness[1]);
   view view = view_of_screen(source, texture->width, texture->height);
   double rows[3][4];
   hl_view_homogeneous(&view, affine3_identity(), rows);
@@ -289,9 +297,7 @@ hl_status hl_light_texture_create(hl_context *context, const light_source *sourc
     status = average_image(context, described, texture, error);
     averaged = (size_t)texture->width * (size_t)texture->height * 3;
   }
-  return status == HL_OK
-             ? make_levels(context, source, &view, points, point_count, content, texture, averaged, error)
-             : status;
+  return status == HL_OK ? make_levels(context, source, &view, use, texture, averaged, error) : status;
 }
 
 void hl_light_texture_release(hl_context *context, light_texture *texture) {

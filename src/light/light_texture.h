@@ -42,11 +42,17 @@ typedef struct light_texture {
   float *memory; /* owned; the image averaged and its levels; null where neither is needed */
 } light_texture;
 
-/* points: corners of what is lit, content: their middle; pixel: edge of a picture's pixel there; frame units.
- * Release with hl_light_texture_release(), after a failure too. */
-hl_status hl_light_texture_create(hl_context *context, const light_source *source, const vec3 *points,
-                                  int point_count, vec3 content, double pixel, light_texture *texture,
-                                  hl_error *error);
+/* What a light's texture falls on; frame space. */
+typedef struct texture_use {
+  const vec3 *points; /* [point_count]; corners of what is lit */
+  int point_count;
+  vec3 content; /* the middle of what is lit */
+  double pixel; /* the edge of a picture's pixel there */
+} texture_use;
+
+/* Release with hl_light_texture_release(), after a failure too. */
+hl_status hl_light_texture_create(hl_context *context, const light_source *source, const texture_use *use,
+                                  light_texture *texture, hl_error *error);
 void hl_light_texture_release(hl_context *context, light_texture *texture);
 
 #endif

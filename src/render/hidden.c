@@ -41,10 +41,10 @@ static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   uint32_t seen = slab->blocks & uncovered_blocks(shown_from);
   counts->pixels_covered += hl_pixels_of_blocks(slab->blocks & ~seen);
   counts->pixels_seen += hl_pixels_of_blocks(seen);
+  tile_slab uncovered = *slab;
+  uncovered.blocks = seen;
   uint32_t open = sweep->content.hot->render.cover(
-      &sweep->shade, slab->patches, slab->patch_count, hl_tile_x(sweep, slab->tile),
-      hl_tile_y(sweep, slab->tile), seen, slab->scratch, sweep->pixels + slab->tile * 4 * TILE_PIXELS,
-      &counts->samples);
+      &sweep->shade, &uncovered, sweep->pixels + slab->tile * 4 * TILE_PIXELS, &counts->samples);
   for (uint32_t closed = seen & ~open; closed != 0; closed &= closed - 1)
     shown_from[__builtin_ctz(closed)] = first_shown(sweep, sweep->sheet);
   return search->trying ? slab->blocks : open;

@@ -179,13 +179,13 @@ static const shade_patch *white_patches(const sweep *sweep, const tile_slab *sla
 
 void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
   if (sweep->layers.pass_count == 0) return;
-  const shade_patch *white = white_patches(sweep, slab);
+  tile_slab white = *slab;
+  white.patches = white_patches(sweep, slab);
   for (int i = 0; i < sweep->layers.pass_count; i++) {
     const layer_pass *pass = &sweep->layers.passes[i];
     uint64_t samples = 0; /* statistics count the picture's own samples alone */
-    (void)pass->shade(&pass->job, pass->white ? white : slab->patches, slab->patch_count,
-                      hl_tile_x(sweep, slab->tile), hl_tile_y(sweep, slab->tile), slab->blocks, slab->scratch,
-                      pass->pixels + slab->tile * pass->tile_floats, &samples);
+    (void)pass->shade(&pass->job, pass->white ? &white : slab, pass->pixels + slab->tile * pass->tile_floats,
+                      &samples);
   }
 }
 

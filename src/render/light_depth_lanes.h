@@ -189,9 +189,10 @@ typedef struct light_ways {
 
 /* Adds a plane's depths: from a box's face on where one cuts the way, else from the slab's first sheet on.
  * share: the fraction of the way that lies in this volume. */
-LANES_INLINE void add_plane(const block_density *d, const plane_matter *plane, const light_ways *ways,
-                            int back_to_front, lanes share, const near_pixels *near, int channels,
+LANES_INLINE void add_plane(const shade_job *job, const block_density *d, const plane_matter *plane,
+                            const light_ways *ways, lanes share, const near_pixels *near,
                             light_depths *depths) {
+  const int back_to_front = job->back_to_front, channels = job->channels;
   const shade_volume *volume = d->patch->volume;
   const classifier *classifier = volume->classifier;
   lanes depth = plane->inverse * plane->likely * share;
@@ -244,17 +245,24 @@ static const float DEEPEST = 80;
  * buffer is read as if there were no face; where they differ by twice as much, the face counts fully. */
 static const float EVEN_LIGHT = 0.1f;
 
+/* A light as a slab's samples see it. */
+typedef struct seen_light {
+  lanes3 towards;          /* unit direction to the light */
+  lanes path;              /* of the light through the slab */
+  const near_pixels *near; /* of its buffer; null where that is read at its nearest pixel */
+} seen_light;
+
 /* Adds the depths of a volume's matter between the face of its box and the slab, near the face; to before
  * those at the near pixels. share: the fraction of the volume's matter that counts. */
 LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const block_density *d,
-                           lanes3 towards, lanes path, const near_pixels *near, lanes share,
-                           lanes before[HL_CHANNELS][NEAR_PIXELS], light_depths *depths) {
+                           const seen_light *light, lanes share, lanes before[HL_CHANNELS][NEAR_PIXELS],
+                           light_depths *depths) {
   const shade_volume *volume = d->patch->volume;
   faces_of_axis faces[3];
-  lanes likely = find_faces(volume, &slab->geometry, towards, near, faces) * share;
+  lanes likely = find_faces(volume, &slab->geometry, light->towards, light->near, faces) * share;
   lanes_int there = (likely > 0.0f) & slab->seen & (d->sums.extinction > 0.0f);
   if (lanes_bits(there) == 0) return;
-  ways_before ways = find_ways_before(faces, slab, path, near);
+  ways_before ways = find_ways_before(faces, slab, light->path, light->near);
   depths->face |= there;
   depths->beside = lanes_max(depths->beside, lanes_keep(there, likely));
   /* of several boxes that meet in the slab, each has matter in its part */
@@ -296,10 +304,11 @@ LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS
   }
 }
 
-/* near: null where a buffer is read at its nearest pixel. */
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab,
-                                          block_density *densities, int count, lanes3 towards, lanes path,
-                                          const near_pixels *near) {
+                                          block_density *densities, int count, const seen_light *light) {
+  const lanes3 towards = light->towards;
+  const lanes path = light->path;
+  const near_pixels *near = light->near;
   light_depths depths = {.plane = lanes_set_int(0), .face = lanes_set_int(0), .beside = lanes_set(0)};
   light_ways ways = find_light_ways(slab, densities, count, towards, path);
   lanes length = lanes_max(ways.all.last, ways.all.first) - ways.all.first;
@@ -320,13 +329,12 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab
       lanes share = count == 1 ? lanes_set(1.0f)
                                : (d->light_first + d->light_last) /
                                      lanes_max(ways.all.first + ways.all.last, lanes_set(1e-30f));
-      add_plane(d, &plane, &ways, job->back_to_front, lanes_min(share, lanes_set(1.0f)), near, job->channels,
-                &depths);
+      add_plane(job, d, &plane, &ways, lanes_min(share, lanes_set(1.0f)), near, &depths);
       depths.plane |= likely;
       extinction = extinction * (1.0f - plane.likely);
     }
     if (near != NULL && d->patch->enter != NULL)
-      add_face(job, slab, d, towards, path, near, 1.0f - plane.likely, before, &depths);
+      add_face(job, slab, d, light, 1.0f - plane.likely, before, &depths);
     for (int c = 0; c < job->channels; c++) {
       lanes cast = extinction * d->patch->volume->cast[c];
       first[c] = lanes_fma(cast, d->light_first, first[c]);

@@ -186,9 +186,7 @@ void hl_maximum_color(const maximum_values *maximum, const hl_scene_description 
 
 uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab) {
   const maximum_values *maximum = sweep->maximum;
-  return sweep->content.hot->render.maximum(
-      &sweep->shade, slab->patches, slab->patch_count, hl_tile_x(sweep, slab->tile),
-      hl_tile_y(sweep, slab->tile), slab->blocks, NULL,
-      maximum->values + slab->tile * maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS,
-      &sweep->counts[slab->worker].samples);
+  float *values = maximum->values + slab->tile * maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS;
+  return sweep->content.hot->render.maximum(&sweep->shade, slab, values,
+                                            &sweep->counts[slab->worker].samples);
 }

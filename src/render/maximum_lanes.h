@@ -46,15 +46,13 @@ LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *pat
 }
 
 /* Nothing is hidden in a maximum projection: all blocks stay open. */
-static uint32_t maximum_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
-                             int tile_y, uint32_t blocks, void *scratch, float *values, uint64_t *samples) {
-  (void)scratch;
-  for (uint32_t left = blocks; left != 0; left &= left - 1) {
+static uint32_t maximum_tile(const shade_job *job, const tile_slab *tile, float *values, uint64_t *samples) {
+  for (uint32_t left = tile->blocks; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
-    lanes u = block_u(tile_x * TILE + block % 4 * BLOCK), v = block_v(tile_y * TILE + block / 4 * BLOCK);
+    lanes u = block_u(tile->x * TILE + block % 4 * BLOCK), v = block_v(tile->y * TILE + block / 4 * BLOCK);
     lanes path = geometry_of_block(job, u, v).path;
-    for (int i = 0; i < patch_count; i++) {
-      const shade_patch *patch = &patches[i];
+    for (int i = 0; i < tile->patch_count; i++) {
+      const shade_patch *patch = &tile->patches[i];
       if ((patch->blocks >> block & 1) == 0 || !patch->volume->visible ||
           lanes_bits(visible_in_patch(patch, block)) == 0)
         continue;
@@ -62,7 +60,7 @@ static uint32_t maximum_tile(const shade_job *job, const shade_patch *patches, i
       *samples += (uint64_t)__builtin_popcount(maximum_block(job, patch, block, path, of_volume));
     }
   }
-  return blocks;
+  return tile->blocks;
 }
 
 #endif

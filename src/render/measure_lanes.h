@@ -38,13 +38,14 @@ LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block
   lanes_store(first, lanes_select(crossed, depth_of(job, slab, position), lanes_load(first)));
 }
 
-static void measure_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
-                          int tile_y, int block, block_density *densities, float *pixels) {
+static void measure_block(const shade_job *job, const tile_slab *tile, int block, float *pixels) {
+  const int patch_count = tile->patch_count;
+  block_density *densities = tile->scratch;
   block_slab slab;
   float *alpha = pixels + MEASURE_ALPHA * BLOCK_PIXELS;
-  uint32_t bits = visible_in_block(job, patches, patch_count, block, alpha);
+  uint32_t bits = visible_in_block(job, tile->patches, patch_count, block, alpha);
   if (bits == 0) return;
-  slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits, densities, &slab);
+  slab_of_block(job, tile, patch_count, block, bits, densities, &slab);
   if (find_slab(job, densities, patch_count, &slab) == 0) return;
   lanes before = lanes_load(alpha), weight = slab.opacity * (1.0f - before), after = before + weight;
   lanes3 normal = normal_of_block(&slab, densities, patch_count);
@@ -57,15 +58,13 @@ static void measure_block(const shade_job *job, const shade_patch *patches, int 
   mark_first(job, &slab, densities, patch_count, before, after, pixels + MEASURE_DEPTH_FIRST * BLOCK_PIXELS);
 }
 
-static uint32_t measure_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
-                             int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
+static uint32_t measure_tile(const shade_job *job, const tile_slab *tile, float *pixels, uint64_t *samples) {
   (void)samples;
-  for (uint32_t left = blocks; left != 0; left &= left - 1) {
+  for (uint32_t left = tile->blocks; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);
-    measure_block(job, patches, patch_count, tile_x, tile_y, block, scratch,
-                  pixels + block * MEASURES * BLOCK_PIXELS);
+    measure_block(job, tile, block, pixels + block * MEASURES * BLOCK_PIXELS);
   }
-  return blocks;
+  return tile->blocks;
 }
 
 #endif

@@ -80,9 +80,20 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   memset(prepared, 0, sizeof *prepared);
 }
 
-static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_functions *hot,
-                                const hl_scene_volume *scene, hl_kernel kernel, affine3 index_to_frame,
+/* Who prepares volumes, and for which kernel. */
+typedef struct preparation {
+  hl_context *context;
+  hl_pool *pool;
+  const grid_functions *functions;
+  hl_kernel kernel;
+} preparation;
+
+static hl_status prepare_volume(const preparation *with, const hl_scene_volume *scene,
                                 prepared_volume *prepared, hl_error *error) {
+  hl_context *context = with->context;
+  hl_pool *pool = with->pool;
+  const hl_kernel kernel = with->kernel;
+  const affine3 index_to_frame = hl_scene_volume_index_to_world(scene);
   hl_status status = HL_OK;
   double empty = hl_scene_volume_empty_value(scene);
   bool same_voxels = prepared->volume == scene->volume && prepared->kernel == kernel &&
@@ -91,7 +102,7 @@ static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_fu
   if (!same_voxels) {
     hl_prepared_release(context, prepared);
     const grid_source source = {scene, hl_kernel_get(kernel), index_to_frame, empty};
-    status = hl_grid_create(context, pool, &hot->grid, &source, &prepared->grid, error);
+    status = hl_grid_create(context, pool, with->functions, &source, &prepared->grid, error);
     if (status == HL_OK && hl_pool_cancelled(pool))
       status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
     if (status != HL_OK) return status;
@@ -109,16 +120,15 @@ static hl_status prepare_volume(hl_context *context, hl_pool *pool, const hot_fu
   status = hl_classifier_create(context, scene, &prepared->grid, &prepared->classifier, error);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   if (status != HL_OK) return status;
-  hl_grid_mark_relevant(&prepared->grid, &hot->grid, &prepared->classifier, pool);
+  hl_grid_mark_relevant(&prepared->grid, with->functions, &prepared->classifier, pool);
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, prepared_volume *prepared, hl_error *error) {
+  const preparation with = {context, pool, &hot->grid, scene->render.kernel};
   for (size_t i = 0; i < scene->volume_count; i++) {
-    affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
-    hl_status status = prepare_volume(context, pool, hot, &scene->volumes[i], scene->render.kernel, placement,
-                                      &prepared[i], error);
+    hl_status status = prepare_volume(&with, &scene->volumes[i], &prepared[i], error);
     if (status != HL_OK) {
       hl_prepared_release(context, &prepared[i]);
       return status;

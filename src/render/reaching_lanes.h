@@ -141,8 +141,8 @@ LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *
   shadow_taps taps = taps_of_position(light, map, position);
   near_pixels near = light->sublight_count > 0 ? pixels_of_sublights() : pixels_around(&taps);
   find_steps(map, light->parallel, set3(job->normal), position, &near);
-  light_depths depths = depths_of_light(job, slab, densities, count, towards, path,
-                                        light->nearest ? NULL : &near);
+  const seen_light seen = {towards, path, light->nearest ? NULL : &near};
+  light_depths depths = depths_of_light(job, slab, densities, count, &seen);
   color_lanes passing = reaching(light, &taps, position, &depths, lanes_bits(slab->seen));
   for (int c = 0; c < light->channels; c++) {
     lanes own = own_transmittance(slab->depth, slab->left, depths.enter[c], depths.more[c]);

@@ -167,17 +167,24 @@ static void choose_measuring_sweep(frame_work *work) {
 
 /* Chooses the memory that sweeps composite into: the caller's pixels where one sweep fills them exactly, in
  * whole tiles; else a block of the reserve. */
+/* What the caller wants: a picture of a scene, and its layers. */
+typedef struct frame_request {
+  const hl_scene_description *world;
+  const hl_layers *layers; /* null: none */
+  float *pixels;           /* the caller's */
+  size_t row_stride;       /* floats */
+} frame_request;
+
 static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description *scene,
-                              const hl_layers *layers, float *pixels, size_t row_stride, frame_work *work,
-                              hl_error *error) {
+                              const frame_request *request, frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   size_t threads = (size_t)hl_pool_threads(renderer->pool), tile_row = work->tiles_x * TILE_PIXELS * 4;
   size_t floats = (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4;
   bool whole = scene->width % TILE == 0 && scene->height % TILE == 0 &&
-               row_stride == 4 * (size_t)scene->width;
+               request->row_stride == 4 * (size_t)scene->width;
   work->in_place = whole && work->sweep_count == 1 && work->frame.oversampling == 1 &&
-                   (uintptr_t)pixels % 64 == 0;
-  uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, layers);
+                   (uintptr_t)request->pixels % 64 == 0;
+  uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, request->layers);
   bytes += hl_maximum_bytes(scene, work->tiles);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
   /* the blocks that one of several sweeps returns rarely fit the next one */
@@ -186,7 +193,7 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
   hl_status status = check_room(renderer, bytes, error);
   if (status != HL_OK) return status;
   if (work->in_place) {
-    work->pixels = pixels;
+    work->pixels = request->pixels;
     work->tile_rows = hl_allocate(context, threads * tile_row, sizeof *work->tile_rows);
   } else {
     work->pixels = hl_reserve_take(&renderer->reserve, floats, sizeof *work->pixels);
@@ -194,8 +201,8 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
   if (work->pixels == NULL || (work->in_place && work->tile_rows == NULL))
     return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
   hl_pool_clear(renderer->pool, work->pixels, floats * sizeof *work->pixels);
-  return hl_layer_pixels_create(context, renderer->pool, layers, &work->frame, work->tiles, &work->layers,
-                                error);
+  return hl_layer_pixels_create(context, renderer->pool, request->layers, &work->frame, work->tiles,
+                                &work->layers, error);
 }
 
 /* Opens faces where volumes touch, in the frame's copies of the grids only (hl_open_faces). */
@@ -206,8 +213,7 @@ static void open_faces(const hl_scene_description *scene, grid *grids) {
 }
 
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
-                              const hl_layers *layers, float *pixels, size_t row_stride, frame_work *work,
-                              hl_error *error) {
+                              const frame_request *request, frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   frame *frame = &work->frame;
   frame->points = hl_allocate(context, scene->volume_count * 8 + 1, sizeof(vec3));
@@ -232,12 +238,12 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   for (size_t i = 0; i < scene->volume_count; i++)
     if (rays_start_inside(frame, &work->grids[i])) work->grids[i].cut = true;
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);
-  if (hl_layers_measure(layers)) choose_measuring_sweep(work);
+  if (hl_layers_measure(request->layers)) choose_measuring_sweep(work);
   status = hl_frame_check_sweeps(frame, work->sweeps, work->sweep_count, error);
   if (status != HL_OK) return status;
   work->tiles_x = (size_t)hl_tiles(frame->eye.width);
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
-  status = place_pixels(renderer, scene, layers, pixels, row_stride, work, error);
+  status = place_pixels(renderer, scene, request, work, error);
   if (status != HL_OK) return status;
   return hl_maximum_create(context, renderer->pool, scene, renderer->prepared, work->tiles, &work->maximum,
                            error);
@@ -381,12 +387,11 @@ static void write_layers(const frame_work *work, const hl_scene_description *sce
   hl_layer_pixels_write(&work->layers, &grid, pool);
 }
 
-static hl_status render_frame(hl_renderer *renderer, const hl_scene_description *world,
-                              const hl_layers *layers, frame_work *work, float *pixels, size_t row_stride,
+static hl_status render_frame(hl_renderer *renderer, const frame_request *request, frame_work *work,
                               hl_render_statistics *statistics, hl_error *error) {
   double start = hl_clock_seconds();
   const hl_scene_description *scene = &work->framed.scene;
-  hl_status status = hl_framed_scene_create(renderer->context, world, &work->framed, error);
+  hl_status status = hl_framed_scene_create(renderer->context, request->world, &work->framed, error);
   if (status == HL_OK) status = make_room(renderer, scene, error);
   if (status == HL_OK) hl_pool_resume(renderer->pool);
   renderer->estimate = 0;
@@ -397,7 +402,7 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
         error);
   if (status == HL_OK)
     status = hl_prepare_volumes(renderer->context, renderer->pool, hot, scene, renderer->prepared, error);
-  if (status == HL_OK) status = set_up_frame(renderer, scene, layers, pixels, row_stride, work, error);
+  if (status == HL_OK) status = set_up_frame(renderer, scene, request, work, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();
@@ -406,7 +411,7 @@ static hl_status render_frame(hl_renderer *renderer, const hl_scene_description 
   if (status != HL_OK) return status;
   if (work->maximum.values != NULL)
     hl_maximum_color(&work->maximum, scene, renderer->prepared, renderer->pool, work->pixels);
-  write_job job = {work, pixels, row_stride, scene->width};
+  write_job job = {work, request->pixels, request->row_stride, scene->width};
   if (work->in_place) hl_pool_run(renderer->pool, (size_t)scene->height / TILE, write_in_place, &job);
   else hl_pool_run(renderer->pool, (size_t)scene->height, write_row, &job);
   write_layers(work, scene, renderer->pool);
@@ -448,7 +453,8 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   if (status != HL_OK) return status;
   hl_render_statistics counted = {.struct_size = sizeof counted};
   frame_work work = {0};
-  status = render_frame(renderer, &scene->placed, layers, &work, pixels, row_stride, &counted, error);
+  const frame_request request = {&scene->placed, layers, pixels, row_stride};
+  status = render_frame(renderer, &request, &work, &counted, error);
   release_work(renderer, &work);
   hl_reserve_end_frame(&renderer->reserve);
   if (status == HL_OK && statistics != NULL) *statistics = counted;

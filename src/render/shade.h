@@ -74,13 +74,24 @@ typedef struct shade_job {
   int channels;     /* of light attenuation: 1 or 3 */
 } shade_job;
 
-/* Shades blocks of a tile. blocks: the open blocks with density. patches: of the volumes with density in the
- * tile. pixels: [16 blocks][R G B A][16]. Returns the blocks that are still open: some pixel is not opaque
- * yet. *samples is raised by the number of pixels composited. scratch: SHADE_SCRATCH_BYTES a patch, aligned
- * to 64: for one block and for the up to sixteen slabs that the samples are packed into (pack_lanes.h). */
+/* Bytes of scratch memory for a patch: for one block and for the up to sixteen slabs that the samples are
+ * packed into (pack_lanes.h). */
 enum { SHADE_SCRATCH_BYTES = 17 * 1472 };
-typedef uint32_t shade_tile_function(const shade_job *job, const shade_patch *patches, int patch_count,
-                                     int tile_x, int tile_y, uint32_t blocks, void *scratch, float *pixels,
+
+/* The slab before the current sheet, in one tile. */
+typedef struct tile_slab {
+  size_t tile;                /* its index */
+  int x, y;                   /* its column and row */
+  const shade_patch *patches; /* [patch_count]; of the volumes with density */
+  int patch_count;
+  uint32_t blocks; /* those that are open and have density, one bit each */
+  int worker;      /* the thread */
+  void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES], aligned to 64; the thread owns it */
+} tile_slab;
+
+/* Shades the tile's blocks. pixels: [16 blocks][R G B A][16]. Returns the blocks that are still open: some
+ * pixel is not opaque yet. *samples is raised by the number of pixels composited. */
+typedef uint32_t shade_tile_function(const shade_job *job, const tile_slab *tile, float *pixels,
                                      uint64_t *samples);
 
 /* Measures of the layers depth and normal, for sheets that go front to back: alpha; the depth where alpha

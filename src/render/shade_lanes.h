@@ -217,32 +217,33 @@ LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *pa
   return ranks;
 }
 
-LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *patches, int patch_count,
-                                    int tile_x, int tile_y, uint32_t blocks, void *scratch, float *pixels,
-                                    uint64_t *samples) {
-  block_density *ways = scratch, *densities = ways + patch_count;
-  packed_tile tile;
+LANES_INLINE uint32_t shade_patches(const shade_job *job, const tile_slab *tile, int patch_count,
+                                    float *pixels, uint64_t *samples) {
+  block_density *ways = tile->scratch, *densities = ways + patch_count;
+  const uint32_t blocks = tile->blocks;
+  packed_tile packed;
   color_lanes lit[TILE_BLOCKS];
   uint16_t bits[TILE_BLOCKS];
   uint32_t seen = 0;
-  tile.slab_count = 0;
-  for (uint32_t left = visible_blocks(job, patches, patch_count, blocks, pixels, bits); left != 0;
+  packed.slab_count = 0;
+  for (uint32_t left = visible_blocks(job, tile->patches, patch_count, blocks, pixels, bits); left != 0;
        left &= left - 1) {
     int block = NEAR_EACH_OTHER[__builtin_ctz(left)];
     block_slab slab;
-    slab_of_block(job, patches, patch_count, tile_x, tile_y, block, bits[block], ways, &slab);
+    slab_of_block(job, tile, patch_count, block, bits[block], ways, &slab);
     seen |= 1u << block;
     for (int c = 0; c < 3; c++)
       __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
-    if (bits[block] == 0xffff) keep_block(&tile, &slab, ways, patch_count, densities, &tile.blocks[block]);
-    else pack_block(&tile, &slab, ways, patch_count, bits[block], densities, &tile.blocks[block]);
+    if (bits[block] == 0xffff)
+      keep_block(&packed, &slab, ways, patch_count, densities, &packed.blocks[block]);
+    else pack_block(&packed, &slab, ways, patch_count, bits[block], densities, &packed.blocks[block]);
   }
-  light_slabs(job, &tile, densities, patch_count, lit, samples);
+  light_slabs(job, &packed, densities, patch_count, lit, samples);
   uint32_t open = blocks & ~seen;
   for (; seen != 0; seen &= seen - 1) {
     int block = __builtin_ctz(seen);
-    const packed_block *packed = &tile.blocks[block];
-    if (composite_packed(job, packed, &tile.slabs[packed->slab], &lit[packed->slab],
+    const packed_block *of_block = &packed.blocks[block];
+    if (composite_packed(job, of_block, &packed.slabs[of_block->slab], &lit[of_block->slab],
                          pixels + block * 4 * BLOCK_PIXELS))
       open |= 1u << block;
   }
@@ -250,11 +251,9 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const shade_patch *pat
 }
 
 /* Compiled once more for one volume, the usual case, which needs no loops over volumes. */
-static uint32_t shade_tile(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
-                           int tile_y, uint32_t blocks, void *scratch, float *pixels, uint64_t *samples) {
-  if (patch_count == 1)
-    return shade_patches(job, patches, 1, tile_x, tile_y, blocks, scratch, pixels, samples);
-  return shade_patches(job, patches, patch_count, tile_x, tile_y, blocks, scratch, pixels, samples);
+static uint32_t shade_tile(const shade_job *job, const tile_slab *tile, float *pixels, uint64_t *samples) {
+  if (tile->patch_count == 1) return shade_patches(job, tile, 1, pixels, samples);
+  return shade_patches(job, tile, tile->patch_count, pixels, samples);
 }
 
 #endif

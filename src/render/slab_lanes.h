@@ -248,10 +248,10 @@ LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *
 }
 
 /* Sets up a slab for a block of pixels: its volumes and their ways. bits: the pixels in which something may
- * be seen, at least one. */
-LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches, int patch_count, int tile_x,
-                                int tile_y, int block, uint32_t bits, block_density *densities,
-                                block_slab *slab) {
+ * be seen, at least one. patch_count: the tile's, which the compiler may know to be 1. */
+LANES_INLINE void slab_of_block(const shade_job *job, const tile_slab *tile, int patch_count, int block,
+                                uint32_t bits, block_density *densities, block_slab *slab) {
+  const shade_patch *patches = tile->patches;
   for (int i = 0; i < patch_count; i++) {
     block_density *d = &densities[i];
     d->patch = &patches[i];
@@ -259,8 +259,8 @@ LANES_INLINE void slab_of_block(const shade_job *job, const shade_patch *patches
     if (patch_count > 1 && d->there) d->there = lanes_bits(visible_in_patch(&patches[i], block)) != 0;
     if (d->there) d->way = way_of_block(job, &patches[i], block);
   }
-  slab->u = block_u(tile_x * TILE + block % 4 * BLOCK);
-  slab->v = block_v(tile_y * TILE + block / 4 * BLOCK);
+  slab->u = block_u(tile->x * TILE + block % 4 * BLOCK);
+  slab->v = block_v(tile->y * TILE + block / 4 * BLOCK);
   slab->open = lanes_from_bits(bits);
   slab->starts = 1;
 }

@@ -23,16 +23,6 @@ typedef struct sweep_light {
 
 typedef struct sweep sweep;
 
-/* The slab before the current sheet, in one tile. */
-typedef struct tile_slab {
-  size_t tile;
-  const shade_patch *patches; /* [patch_count] */
-  int patch_count;
-  uint32_t blocks; /* blocks with density, one bit each */
-  int worker;      /* the thread */
-  void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES]; the thread owns it */
-} tile_slab;
-
 /* What a sweep does with each tile of a slab. Returns the blocks that stay open: in them, later sheets may
  * still change the picture. */
 typedef uint32_t tile_action(const sweep *sweep, const tile_slab *slab);

@@ -107,9 +107,9 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, const light_sourc
   const frame *frame = sweep->frame;
   light->source = source;
   hl_status status = hl_light_emission_create(sweep->content.context, source, &light->emission, error);
+  const texture_use use = {frame->points, frame->point_count, frame->middle, frame->middle_pixel};
   if (status == HL_OK)
-    status = hl_light_texture_create(sweep->content.context, source, frame->points, frame->point_count,
-                                     frame->middle, frame->middle_pixel, &light->texture, error);
+    status = hl_light_texture_create(sweep->content.context, source, &use, &light->texture, error);
   if (status != HL_OK) return status;
   light_shadow *shadow = &light->shadow;
   shadow_setup setup = setup_of_light(sweep, source, light->emission, points,

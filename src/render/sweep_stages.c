@@ -63,10 +63,9 @@ static int fill_image_tile(sweep *sweep, size_t tile, uint32_t need, int worker,
 }
 
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab) {
-  uint32_t open = sweep->content.hot->render.shade(
-      &sweep->shade, slab->patches, slab->patch_count, hl_tile_x(sweep, slab->tile),
-      hl_tile_y(sweep, slab->tile), slab->blocks, slab->scratch, sweep->pixels + slab->tile * 4 * TILE_PIXELS,
-      &sweep->counts[slab->worker].samples);
+  uint32_t open = sweep->content.hot->render.shade(&sweep->shade, slab,
+                                                   sweep->pixels + slab->tile * 4 * TILE_PIXELS,
+                                                   &sweep->counts[slab->worker].samples);
   hl_sweep_layers_tile(sweep, slab);
   return open;
 }
@@ -90,7 +89,8 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   blocks &= shown_blocks(sweep, tile, sweep->sheet);
   if (blocks == 0) return;
   void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->content.volume_count * SHADE_SCRATCH_BYTES;
-  const tile_slab slab = {tile, patches, count, blocks, worker, scratch};
+  const tile_slab slab = {
+      tile, hl_tile_x(sweep, tile), hl_tile_y(sweep, tile), patches, count, blocks, worker, scratch};
   uint32_t open = sweep->act(sweep, &slab);
   sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);
   counts->seconds_shade += read_clock(timed) - filled;

@@ -140,26 +140,34 @@ void hl_light_images_release(hl_context *context, hl_light *light) {
   forget_images(light);
 }
 
-/* An image of width x height pixels and the name of its file; null for none. */
-static hl_status copy_light_image(hl_context *context, const float *from, int width, int height,
-                                  const char *file, const float **pixels, const char **name,
-                                  hl_error *error) {
-  if (from == NULL) return HL_OK;
+/* A light's texture or emission. */
+typedef struct light_picture {
+  const float *pixels; /* [height][width][3]; null: none */
+  int width, height;
+  const char *file; /* its name; null: none */
+} light_picture;
+
+static hl_status copy_picture(hl_context *context, light_picture from, const float **pixels,
+                              const char **file, hl_error *error) {
+  if (from.pixels == NULL) return HL_OK;
   void *copy = NULL;
-  hl_status status = copy_array(context, from, (size_t)width * (size_t)height, 3 * sizeof(float),
-                                "a light's image", &copy, error);
+  hl_status status = copy_array(context, from.pixels, (size_t)from.width * (size_t)from.height,
+                                3 * sizeof(float), "a light's image", &copy, error);
   *pixels = copy;
-  return status == HL_OK ? copy_text(context, file, name, error) : status;
+  return status == HL_OK ? copy_text(context, from.file, file, error) : status;
 }
 
 /* to: its images' pointers are null until they are its own. */
 static hl_status copy_images(hl_context *context, const hl_light *from, hl_light *to, hl_error *error) {
-  hl_status status = copy_light_image(context, from->texture.pixels, from->texture.width,
-                                      from->texture.height, from->texture.file, &to->texture.pixels,
-                                      &to->texture.file, error);
+  const hl_light_texture *texture = &from->texture;
+  const hl_light_emission *emission = &from->emission;
+  hl_status status = copy_picture(
+      context, (light_picture){texture->pixels, texture->width, texture->height, texture->file},
+      &to->texture.pixels, &to->texture.file, error);
   if (status != HL_OK) return status;
-  return copy_light_image(context, from->emission.pixels, from->emission.width, from->emission.height,
-                          from->emission.file, &to->emission.pixels, &to->emission.file, error);
+  return copy_picture(context,
+                      (light_picture){emission->pixels, emission->width, emission->height, emission->file},
+                      &to->emission.pixels, &to->emission.file, error);
 }
 
 static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, hl_error *error) {

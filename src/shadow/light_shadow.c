@@ -15,9 +15,14 @@ hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, 
   return HL_OK;
 }
 
-uint64_t hl_light_shadow_buffer_bytes(const light_shadow *shadow) {
+static shadow_buffer_size size_of_buffer(const light_shadow *shadow) {
   const shadow_plan *plan = &shadow->plan;
-  return hl_shadow_buffer_bytes(&plan->view, shadow->setup.channels, plan->second, plan->reach);
+  return (shadow_buffer_size){&plan->view, shadow->setup.channels, plan->second, plan->reach};
+}
+
+uint64_t hl_light_shadow_buffer_bytes(const light_shadow *shadow) {
+  const shadow_buffer_size size = size_of_buffer(shadow);
+  return hl_shadow_buffer_bytes(&size);
 }
 
 shadow_layouts hl_light_shadow_count(light_shadow *shadow) {
@@ -52,11 +57,10 @@ static hl_status hand_out(light_shadow *shadow, shadow_memory *kept, hl_error *e
 hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, shadow_memory *memory,
                                 hl_error *error) {
   const shadow_setup *setup = &shadow->setup;
-  const shadow_plan *plan = &shadow->plan;
+  const shadow_buffer_size size = size_of_buffer(shadow);
   shadow->buffer = buffer;
-  hl_status status = hl_shadow_buffer_reset(setup->context, setup->pool, buffer, &plan->view, setup->channels,
-                                            plan->second, plan->reach, error);
-  shadow->lookup.map = hl_map_of_view(&plan->view);
+  hl_status status = hl_shadow_buffer_reset(setup->context, setup->pool, buffer, &size, error);
+  shadow->lookup.map = hl_map_of_view(&shadow->plan.view);
   shadow->lookup.map.stride = buffer->stride;
   for (int c = 0; c < setup->channels; c++) shadow->lookup.transmittance[c] = buffer->transmittance[c];
   if (status == HL_OK && shadow->method->check != NULL) status = shadow->method->check(shadow, error);

@@ -166,28 +166,28 @@ size_t hl_shadow_plane(const view *view, int reach) {
   return buffer.plane;
 }
 
-uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach) {
+uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size) {
   shadow_buffer buffer = {0};
   hl_layout counted = {0};
-  set_size(view, reach, &buffer);
-  lay_out(&buffer, count_planes(channels, second), &counted);
+  set_size(size->view, size->reach, &buffer);
+  lay_out(&buffer, count_planes(size->channels, size->second), &counted);
   return counted.bytes;
 }
 
-hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view,
-                                 int channels, bool second, int reach, hl_error *error) {
-  size_t plane_count = count_planes(channels, second);
-  set_size(view, reach, buffer);
-  buffer->channels = channels;
+hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
+                                 const shadow_buffer_size *size, hl_error *error) {
+  size_t channels = (size_t)size->channels, plane_count = count_planes(size->channels, size->second);
+  set_size(size->view, size->reach, buffer);
+  buffer->channels = size->channels;
   hl_status status = reserve(context, buffer, plane_count, error);
   if (status != HL_OK) return status;
   hl_pool_fill(pool, buffer->planes, plane_count * buffer->plane, 1);
   for (size_t tile = 0; tile < tiles_of(buffer); tile++) buffer->tile_lit[tile] = ALL_BLOCKS;
   memset(buffer->tile_touched, 0, 2 * tiles_of(buffer));
-  for (int c = 0; c < HL_CHANNELS; c++) {
+  for (size_t c = 0; c < HL_CHANNELS; c++) {
     bool used = c < channels;
-    buffer->transmittance[c] = used ? buffer->planes + (size_t)c * buffer->plane + buffer->origin : NULL;
-    buffer->second[c] = used && second ? buffer->transmittance[c] + (size_t)channels * buffer->plane : NULL;
+    buffer->transmittance[c] = used ? buffer->planes + c * buffer->plane + buffer->origin : NULL;
+    buffer->second[c] = used && size->second ? buffer->transmittance[c] + channels * buffer->plane : NULL;
   }
   return HL_OK;
 }

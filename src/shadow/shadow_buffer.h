@@ -44,14 +44,21 @@ typedef struct shadow_extent {
 /* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
 void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view);
 
-/* (Re)allocates for the view and sets all transmittances to 1. second: whether a second set of planes is
- * needed. reach: pixels that blurs read beyond a tile. */
-hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer, const view *view,
-                                 int channels, bool second, int reach, hl_error *error);
+/* What a buffer has room for. */
+typedef struct shadow_buffer_size {
+  const view *view;
+  int channels; /* 1 or 3 */
+  bool second;  /* a second set of planes, too */
+  int reach;    /* pixels that blurs read beyond a tile */
+} shadow_buffer_size;
+
+/* (Re)allocates and sets all transmittances to 1. */
+hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
+                                 const shadow_buffer_size *size, hl_error *error);
 /* Floats of one channel of a buffer for a view, its margins included. */
 size_t hl_shadow_plane(const view *view, int reach);
 /* The bytes that hl_shadow_buffer_reset() needs. */
-uint64_t hl_shadow_buffer_bytes(const view *view, int channels, bool second, int reach);
+uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size);
 /* Finds a tile's tile_lit anew after a blur. both: what the second planes hold is light, too. */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
                                lit_blocks_function *lit_blocks);

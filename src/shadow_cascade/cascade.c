@@ -42,15 +42,22 @@ static void forget_oldest(cascade_level *level, int gone) {
   level->renewed = true;
 }
 
+/* A field is copied to another level. */
+static void copy_field(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
+                       const cascade_level *to_level, const cascade_field *to) {
+  const cascade_sum sum = {
+      .level_a = level, .a = from, .level = to_level, .to = to, .reach = READ_EVERYWHERE};
+  hl_cascade_add(crew, &sum);
+}
+
 /* The oldest group of level 0 goes to level 1 as it is, on that level's pixels. */
 static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0], *next = &cascade->level[1];
   const cascade_group *from = &level->group[0];
   cascade_group *to = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++) {
-    hl_cascade_add(crew, level, &from->absorbed[c], NULL, NULL, NULL, next, &to->absorbed[c],
-                   READ_EVERYWHERE);
-    hl_cascade_add(crew, level, &from->thin[c], NULL, NULL, NULL, next, &to->thin[c], READ_EVERYWHERE);
+    copy_field(crew, level, &from->absorbed[c], next, &to->absorbed[c]);
+    copy_field(crew, level, &from->thin[c], next, &to->thin[c]);
   }
   to->omega = from->omega;
   to->filled = from->filled;
@@ -69,11 +76,15 @@ static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew)
   if (next->count == 0) next->group[next->count++].omega = a.omega;
   cascade_group *first = &next->group[next->count - 1], *second = &next->group[next->count++];
   for (int c = 0; c < cascade->channels; c++) {
-    const cascade_matter spare = {&level->scratch, &level->sum[!level->newest][c]};
-    hl_cascade_merge(crew, level, &(cascade_matter){&a.absorbed[c], &a.thin[c]},
-                     &(cascade_matter){&b.absorbed[c], &b.thin[c]}, late, &spare, next,
-                     &(cascade_matter){&first->absorbed[c], &first->thin[c]},
-                     &(cascade_matter){&second->absorbed[c], &second->thin[c]});
+    const cascade_merger merger = {.level = level,
+                                   .a = {&a.absorbed[c], &a.thin[c]},
+                                   .b = {&b.absorbed[c], &b.thin[c]},
+                                   .spare = {&level->scratch, &level->sum[!level->newest][c]},
+                                   .late = late,
+                                   .next = next,
+                                   .first = {&first->absorbed[c], &first->thin[c]},
+                                   .second = {&second->absorbed[c], &second->thin[c]}};
+    hl_cascade_merge(crew, &merger);
   }
   first->filled = first->filled || a.filled || b.filled;
   second->filled = b.filled;
@@ -150,34 +161,47 @@ static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets,
   return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
 
-/* Reaches add up, but for what is read everywhere. */
-static int reach_beyond(int reach, int more) { return reach == READ_EVERYWHERE ? reach : reach + more; }
+/* The reach of a sum whose field `b` is still to be doubled, from `scale` on. */
+static int reach_at(const cascade_sum *sum, int scale) {
+  int doubling = hl_cascade_doubling_reach(scale, sum->level->scale);
+  return sum->reach == READ_EVERYWHERE ? sum->reach : sum->reach + doubling;
+}
 
-/* One channel of what the groups up to a level absorbed, blurred, brought to a nearer level, thinned by own's
- * thin matter and added to own there (null: zeros), as far as it is read. Blurs are done at the farther
- * level, where they are cheap. */
-static void bring(cascade_level *from, const cascade_field *sum, cascade_blur blur, cascade_level *to_level,
-                  const cascade_field *own, const cascade_field *thin, const cascade_field *to, int reach,
-                  const cascade_crew *crew) {
-  if (from->scale == to_level->scale) {
-    hl_cascade_blur_add(crew, from, sum, own, thin, to, blur, reach);
+/* Finds a sum whose b, one channel of what the groups up to a level absorbed, may lie on a level much farther
+ * than a does: b is blurred, and brought nearer level by level. Blurs are done at the farther level, where
+ * they are cheap. */
+static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) {
+  const cascade_level *from = sum.level_b;
+  if (from->scale == sum.level->scale) {
+    const cascade_blurred_sum blurred = {from, sum.b, sum.a, sum.thin, sum.to, blur, sum.reach};
+    hl_cascade_blur_add(crew, &blurred);
     return;
   }
   if (blur.variance * from->greatest_fraction > fmin(blur.resampled[0], blur.resampled[1])) {
-    hl_cascade_blur_add(crew, from, sum, NULL, NULL, &from->scratch, blur,
-                        reach_beyond(reach, hl_cascade_doubling_reach(from->scale, to_level->scale)));
-    sum = &from->scratch;
+    const cascade_blurred_sum blurred = {.level = from,
+                                         .from = sum.b,
+                                         .to = &from->scratch,
+                                         .blur = blur,
+                                         .reach = reach_at(&sum, from->scale)};
+    hl_cascade_blur_add(crew, &blurred);
+    sum.b = &from->scratch;
   }
-  while (from->scale > 2 * to_level->scale) {
-    cascade_level *next = from - 1;
+  while (from->scale > 2 * sum.level->scale) {
+    const cascade_level *next = from - 1;
     if (next->scale < from->scale) {
-      hl_cascade_add(crew, next, NULL, NULL, from, sum, next, &next->scratch,
-                     reach_beyond(reach, hl_cascade_doubling_reach(next->scale, to_level->scale)));
-      sum = &next->scratch;
+      const cascade_sum doubled = {.level_a = next,
+                                   .level_b = from,
+                                   .b = sum.b,
+                                   .level = next,
+                                   .to = &next->scratch,
+                                   .reach = reach_at(&sum, next->scale)};
+      hl_cascade_add(crew, &doubled);
+      sum.b = &next->scratch;
     }
     from = next;
   }
-  hl_cascade_add(crew, to_level, own, thin, from, sum, to_level, to, reach);
+  sum.level_b = from;
+  hl_cascade_add(crew, &sum);
 }
 
 /* What the groups before absorbed, blurred for this group, and what this group did. */
@@ -187,8 +211,9 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
   const cascade_field *sum = from->sum[from->newest];
   level->newest = !level->newest;
   for (int c = 0; c < channels; c++)
-    bring(from, &sum[c], blur, level, &group->absorbed[c], &group->thin[c], &level->sum[level->newest][c],
-          reach, crew);
+    bring((cascade_sum){level, &group->absorbed[c], &group->thin[c], from, &sum[c], level,
+                        &level->sum[level->newest][c], reach},
+          blur, crew);
 }
 
 /* Nothing lies before the farthest group, whose penumbra pays for the look-up. */
@@ -196,8 +221,7 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
                        const cascade_crew *crew) {
   level->owed[0] = level->owed[1] = cascade->lookup_variance;
   for (int c = 0; c < cascade->channels; c++)
-    hl_cascade_add(crew, level, &group->absorbed[c], NULL, NULL, NULL, level, &level->sum[level->newest][c],
-                   READ_EVERYWHERE);
+    copy_field(crew, level, &group->absorbed[c], level, &level->sum[level->newest][c]);
 }
 
 /* ---- where the next slabs read ---- */
@@ -324,7 +348,12 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   bool sharp = level == finest && blur.variance < LEAST_VARIANCE;
   memcpy(cascade->absorbed, finest->sum[sharp ? finest->newest : !finest->newest], sizeof cascade->absorbed);
   for (int c = 0; c < cascade->channels && !sharp; c++)
-    bring(level, &level->sum[level->newest][c], blur, finest, NULL, NULL, &cascade->absorbed[c], 0, crew);
+    bring((cascade_sum){.level_a = finest,
+                        .level_b = level,
+                        .b = &level->sum[level->newest][c],
+                        .level = finest,
+                        .to = &cascade->absorbed[c]},
+          blur, crew);
   return true;
 }
 

@@ -45,9 +45,7 @@ static void note_zeros(const cascade_level *level, const cascade_field *field, i
 
 typedef struct add_task {
   const cascade_reads *reads;
-  int reach;
-  const cascade_level *level, *level_a, *level_b; /* of to, a and b */
-  const cascade_field *a, *b, *to;
+  cascade_sum sum;
   field_job job;
   field_tile_function *function;
   bool doubled; /* b is coarser: a of zeros may be left out */
@@ -55,13 +53,14 @@ typedef struct add_task {
 
 /* In a row of tiles from x0 to x1, both included. */
 static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
-  const cascade_level *levels[2] = {task->level_a, task->level_b};
-  const cascade_field *fields[2] = {task->a, task->b};
+  const cascade_sum *sum = &task->sum;
+  const cascade_level *levels[2] = {sum->level_a, sum->level_b};
+  const cascade_field *fields[2] = {sum->a, sum->b};
   for (int i = 0; i < 2; i++) {
     if (fields[i] == NULL) continue;
-    int scale = levels[i]->scale, own = task->level->scale, first = x0, last = x1, top = y, bottom = y;
+    int scale = levels[i]->scale, own = sum->level->scale, first = x0, last = x1, top = y, bottom = y;
     if (scale == own && x0 == x1) { /* most often: without a call */
-      if (!fields[i]->zeros[y * task->level->tiles_x + x0]) return false;
+      if (!fields[i]->zeros[y * sum->level->tiles_x + x0]) return false;
       continue;
     }
     if (scale < own) first = 2 * x0, last = 2 * x1 + 1, top = 2 * y, bottom = 2 * y + 1;
@@ -77,68 +76,62 @@ static bool row_is_zeros(const cascade_level *level, const cascade_field *field,
 
 /* Most rows of a pass hold nothing, and are zeros already. */
 static void add_tiles(const add_task *task, row_piece piece) {
-  if (row_is_zeros(task->level, task->to, piece) && sum_is_zeros(task, piece.first, piece.end - 1, piece.y))
-    return;
-  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, piece.y, task->reach);
+  const cascade_level *level = task->sum.level;
+  const cascade_field *a = task->sum.a, *to = task->sum.to;
+  if (row_is_zeros(level, to, piece) && sum_is_zeros(task, piece.first, piece.end - 1, piece.y)) return;
+  const read_row read = hl_cascade_read_row(task->reads, level->scale, piece.y, task->sum.reach);
   if (!read.any) return;
   for (int x = piece.first; x < piece.end; x++) {
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
     if (sum_is_zeros(task, x, x, piece.y)) {
-      hl_cascade_clear_tile(task->level, task->to, x, piece.y);
+      hl_cascade_clear_tile(level, to, x, piece.y);
       continue;
     }
     field_job job = task->job;
     job.rows = hl_cascade_rows_read(&read, x);
-    if (task->doubled && task->a != NULL && task->a->zeros[piece.y * task->level->tiles_x + x])
-      job.a = job.thin = NULL;
-    note_zeros(task->level, task->to, x, piece.y, job.rows, task->function(&job, x, piece.y));
+    if (task->doubled && a != NULL && a->zeros[piece.y * level->tiles_x + x]) job.a = job.thin = NULL;
+    note_zeros(level, to, x, piece.y, job.rows, task->function(&job, x, piece.y));
   }
 }
 
 static void add_piece(void *data, size_t index, int worker) {
   (void)worker;
   const add_task *task = data;
-  add_tiles(task, hl_cascade_row_piece(task->level, index));
+  add_tiles(task, hl_cascade_row_piece(task->sum.level, index));
 }
 
-static add_task task_of_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
-                            const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
-                            const cascade_level *level, const cascade_field *to, int reach) {
+static const field_pixel *pixels_of(const cascade_field *field) {
+  return field == NULL ? NULL : field->pixels;
+}
+
+static add_task task_of_add(const cascade_crew *crew, const cascade_sum *sum) {
   const cascade_functions *functions = crew->functions;
-  field_tile_function *function = level_a->scale < level->scale                ? functions->add_half
-                                  : b != NULL && level_b->scale > level->scale ? functions->add_double
-                                                                               : functions->add;
-  add_task task = {.reads = crew->reads,
-                   .reach = reach,
-                   .level = level,
-                   .level_a = level_a,
-                   .level_b = level_b,
-                   .a = a,
-                   .b = b,
-                   .to = to,
-                   .function = function,
-                   .doubled = function == functions->add_double};
-  task.job = (field_job){.a = a == NULL ? NULL : a->pixels,
-                         .b = b == NULL ? NULL : b->pixels,
-                         .to = to->pixels,
-                         .stride_in = b == NULL ? level_a->stride : level_b->stride,
-                         .stride = level->stride,
-                         .thin = thin == NULL ? NULL : thin->pixels};
-  return task;
+  int scale = sum->level->scale;
+  field_tile_function *function = sum->level_a->scale < scale                     ? functions->add_half
+                                  : sum->b != NULL && sum->level_b->scale > scale ? functions->add_double
+                                                                                  : functions->add;
+  return (add_task){
+      .reads = crew->reads,
+      .sum = *sum,
+      .job = {.a = pixels_of(sum->a),
+              .b = pixels_of(sum->b),
+              .to = sum->to->pixels,
+              .stride_in = sum->b == NULL ? sum->level_a->stride : sum->level_b->stride,
+              .stride = sum->level->stride,
+              .thin = pixels_of(sum->thin)},
+      .function = function,
+      .doubled = function == functions->add_double,
+  };
 }
 
-void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
-                    const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
-                    const cascade_level *level, const cascade_field *to, int reach) {
-  add_task task = task_of_add(crew, level_a, a, thin, level_b, b, level, to, reach);
-  hl_pool_run(crew->pool, hl_cascade_row_pieces(level), add_piece, &task);
+void hl_cascade_add(const cascade_crew *crew, const cascade_sum *sum) {
+  add_task task = task_of_add(crew, sum);
+  hl_pool_run(crew->pool, hl_cascade_row_pieces(sum->level), add_piece, &task);
 }
 
 typedef struct blur_task {
   const cascade_reads *reads;
-  int reach;
-  const cascade_level *level;
-  const cascade_field *from, *a, *thin, *to; /* a and thin may be null */
+  cascade_blurred_sum sum;
   field_blur_job job;
   field_blur_tile_function *function;
   int reach_x, reach_y; /* of the blur; tiles */
@@ -147,33 +140,34 @@ typedef struct blur_task {
 static void blur_piece(void *data, size_t index, int worker) {
   (void)worker;
   const blur_task *task = data;
-  const row_piece piece = hl_cascade_row_piece(task->level, index);
+  const cascade_blurred_sum *sum = &task->sum;
+  const cascade_level *level = sum->level;
+  const row_piece piece = hl_cascade_row_piece(level, index);
   int y = piece.y, around = task->reach_x;
-  if (row_is_zeros(task->level, task->to, piece) &&
-      (task->a == NULL || row_is_zeros(task->level, task->a, piece)) &&
-      hl_cascade_all_zeros(task->level, task->from, piece.first - around, piece.end - 1 + around,
-                           y - task->reach_y, y + task->reach_y))
+  if (row_is_zeros(level, sum->to, piece) && (sum->a == NULL || row_is_zeros(level, sum->a, piece)) &&
+      hl_cascade_all_zeros(level, sum->from, piece.first - around, piece.end - 1 + around, y - task->reach_y,
+                           y + task->reach_y))
     return;
-  const read_row read = hl_cascade_read_row(task->reads, task->level->scale, y, task->reach);
+  const read_row read = hl_cascade_read_row(task->reads, level->scale, y, sum->reach);
   if (!read.any) return;
   for (int x = piece.first; x < piece.end; x++) {
-    size_t tile = (size_t)y * (size_t)task->level->tiles_x + (size_t)x;
+    size_t tile = (size_t)y * (size_t)level->tiles_x + (size_t)x;
     if (!hl_cascade_is_read(&read, &read.all, x)) continue;
-    bool skip = (task->a == NULL || task->a->zeros[tile]) &&
-                hl_cascade_all_zeros(task->level, task->from, x - task->reach_x, x + task->reach_x,
+    bool skip = (sum->a == NULL || sum->a->zeros[tile]) &&
+                hl_cascade_all_zeros(level, sum->from, x - task->reach_x, x + task->reach_x,
                                      y - task->reach_y, y + task->reach_y);
     if (skip) {
-      hl_cascade_clear_tile(task->level, task->to, x, y);
+      hl_cascade_clear_tile(level, sum->to, x, y);
       continue;
     }
     field_blur_job job = task->job;
     job.rows = hl_cascade_rows_read(&read, x);
-    job.u = task->level->boxes[x].box;
-    job.v = task->level->boxes[task->level->tiles_x + y].box;
-    if (task->a != NULL && task->a->zeros[tile])
+    job.u = level->boxes[x].box;
+    job.v = level->boxes[level->tiles_x + y].box;
+    if (sum->a != NULL && sum->a->zeros[tile])
       job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
-    if (task->thin != NULL && task->thin->zeros[tile]) job.thin = NULL;
-    note_zeros(task->level, task->to, x, y, job.rows, task->function(&job, x, y));
+    if (sum->thin != NULL && sum->thin->zeros[tile]) job.thin = NULL;
+    note_zeros(level, sum->to, x, y, job.rows, task->function(&job, x, y));
   }
 }
 
@@ -187,24 +181,18 @@ static int fill_boxes(cascade_box *boxes, int count, double variance, double res
   return (reach + TILE) / TILE;
 }
 
-void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
-                         const cascade_field *a, const cascade_field *thin, const cascade_field *to,
-                         cascade_blur blur, int reach) {
-  blur_task task = {.reads = crew->reads,
-                    .reach = reach,
-                    .level = level,
-                    .from = from,
-                    .a = a,
-                    .thin = thin,
-                    .to = to,
-                    .function = crew->functions->blur_add};
-  task.job = (field_blur_job){.from = from->pixels,
-                              .a = a == NULL ? NULL : a->pixels,
-                              .to = to->pixels,
-                              .thin = thin == NULL ? NULL : thin->pixels,
+void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *sum) {
+  const cascade_level *level = sum->level;
+  const cascade_blur *blur = &sum->blur;
+  blur_task task = {.reads = crew->reads, .sum = *sum, .function = crew->functions->blur_add};
+  task.job = (field_blur_job){.from = sum->from->pixels,
+                              .a = pixels_of(sum->a),
+                              .to = sum->to->pixels,
+                              .thin = pixels_of(sum->thin),
                               .stride = level->stride};
-  task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur.variance, blur.resampled[0]);
-  task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur.variance, blur.resampled[1]);
+  task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur->variance, blur->resampled[0]);
+  task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur->variance,
+                            blur->resampled[1]);
   hl_pool_run(crew->pool, hl_cascade_row_pieces(level), blur_piece, &task);
 }
 
@@ -245,12 +233,13 @@ static void merge_row(void *data, size_t index, int worker) {
   for (size_t row = first; row < end && row < (size_t)task->level->tiles_y; row++)
     split_row(&task->split, row, worker);
   for (int i = 0; i < MERGE_SUMS; i++)
-    add_tiles(&task->sums[i], (row_piece){(int)index, 0, task->sums[i].level->tiles_x});
+    add_tiles(&task->sums[i], (row_piece){(int)index, 0, task->sums[i].sum.level->tiles_x});
 }
 
-void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a,
-                      const cascade_matter *b, double late, const cascade_matter *spare,
-                      const cascade_level *next, const cascade_matter *first, const cascade_matter *second) {
+void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger) {
+  const cascade_level *level = merger->level, *next = merger->next;
+  const cascade_matter *a = &merger->a, *b = &merger->b, *spare = &merger->spare, *first = &merger->first,
+                       *second = &merger->second;
   merge_task task = {.level = level, .ratio = next->scale / level->scale};
   task.split = (split_task){level,
                             {b->absorbed, b->thin, spare->absorbed, spare->thin},
@@ -259,16 +248,19 @@ void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, cons
                              {b->absorbed->pixels, spare->absorbed->pixels},
                              {b->thin->pixels, spare->thin->pixels},
                              level->stride,
-                             (float)late},
+                             (float)merger->late},
                             crew->functions->split};
   const cascade_field *of_a[2] = {a->absorbed, a->thin}, *of_b[2] = {b->absorbed, b->thin},
                       *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
   for (int i = 0; i < 2; i++) {
     /* what goes to the first, by way of the second's fields */
-    task.sums[i] = task_of_add(crew, level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE);
-    task.sums[2 + i] = task_of_add(crew, next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE);
-    task.sums[4 + i] = task_of_add(crew, level, of_spare[i], NULL, NULL, NULL, next, to[i], READ_EVERYWHERE);
+    const cascade_sum sums[3] = {
+        {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},
+        {next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE},
+        {level, of_spare[i], NULL, NULL, NULL, next, to[i], READ_EVERYWHERE},
+    };
+    for (int s = 0; s < 3; s++) task.sums[2 * s + i] = task_of_add(crew, &sums[s]);
   }
   hl_pool_run(crew->pool, (size_t)next->tiles_y, merge_row, &task);
 }

@@ -27,29 +27,46 @@ typedef struct cascade_blur {
   double resampled[2]; /* along rows and columns: what resampling blurs by itself, and is taken off */
 } cascade_blur;
 
-/* to = a + (1 - thin) b, each on its level, which may be twice as fine (both) or, for b, twice as coarse;
- * thin, on a's level, may be null; so may b where a is not coarser, and a where b is. Found where it lies
- * within `reach` pixels of the buffer of what is read; READ_EVERYWHERE: in all tiles. */
-void hl_cascade_add(const cascade_crew *crew, const cascade_level *level_a, const cascade_field *a,
-                    const cascade_field *thin, const cascade_level *level_b, const cascade_field *b,
-                    const cascade_level *level, const cascade_field *to, int reach);
+/* The sum to = a + (1 - thin) b. Each field lies on a level: a's and b's may be twice as fine as to's, b's
+ * twice as coarse, too. */
+typedef struct cascade_sum {
+  const cascade_level *level_a;  /* of a and thin */
+  const cascade_field *a, *thin; /* a: null for zeros where b is coarser than to; thin: null for zeros */
+  const cascade_level *level_b;  /* null where b is */
+  const cascade_field *b;        /* null for zeros where a is not coarser than to */
+  const cascade_level *level;    /* of to */
+  const cascade_field *to;
+  int reach; /* to is found within so many pixels of the buffer around what is read; READ_EVERYWHERE: in all
+                tiles */
+} cascade_sum;
+void hl_cascade_add(const cascade_crew *crew, const cascade_sum *sum);
 
-/* to = a + (1 - thin) blurred from, all on one level; a and thin may be null. reach: as above. */
-void hl_cascade_blur_add(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
-                         const cascade_field *a, const cascade_field *thin, const cascade_field *to,
-                         cascade_blur blur, int reach);
+/* The sum to = a + (1 - thin) blurred from, all on one level. */
+typedef struct cascade_blurred_sum {
+  const cascade_level *level;
+  const cascade_field *from, *a, *thin, *to; /* a and thin: null for zeros */
+  cascade_blur blur;
+  int reach; /* as in cascade_sum */
+} cascade_blurred_sum;
+void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *sum);
 
 /* One channel of what a group holds. */
 typedef struct cascade_matter {
   const cascade_field *absorbed, *thin;
 } cascade_matter;
 
-/* Two groups' matter to the next level, which may be twice as coarse: a's and b's, but for the part `late` of
- * b's, are added to the first there, that part becomes the second; b is changed, spare fields of its level
- * are used. One row of tiles after the other goes all the way. */
-void hl_cascade_merge(const cascade_crew *crew, const cascade_level *level, const cascade_matter *a,
-                      const cascade_matter *b, double late, const cascade_matter *spare,
-                      const cascade_level *next, const cascade_matter *first, const cascade_matter *second);
+/* Two groups' matter to the next level, which may be twice as coarse: a's and b's, but for a fraction of
+ * b's, are added to the first group there; this fraction becomes the second. */
+typedef struct cascade_merger {
+  const cascade_level *level;
+  cascade_matter a, b;  /* on level; b is changed */
+  cascade_matter spare; /* on level; overwritten */
+  double late;          /* the fraction of b's matter that the second gets */
+  const cascade_level *next;
+  cascade_matter first, second; /* on next */
+} cascade_merger;
+/* One row of tiles after the other goes all the way. */
+void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
 /* Pixels of the buffer that doubling reads beyond those that it finds, from pixels of one scale down to
  * another's. */

@@ -664,13 +664,19 @@ typedef struct shade_state {
   } out;
 } shade_state;
 
+/* The state's only tile. */
+static tile_slab tile_of(const shade_state *s, void *scratch) {
+  return (tile_slab){
+      .patches = s->patches, .patch_count = s->patch_count, .blocks = s->blocks, .scratch = scratch};
+}
+
 static void call_shade(const hot_functions *hot, void *state) {
   shade_state *s = state;
   s->out.samples = 0;
   _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
   shade_tile_function *function = s->covers ? hot->render.cover : hot->render.shade;
-  s->out.open = function(&s->job, s->patches, s->patch_count, 0, 0, s->blocks, scratch, s->out.pixels,
-                         &s->out.samples);
+  const tile_slab tile = tile_of(s, scratch);
+  s->out.open = function(&s->job, &tile, s->out.pixels, &s->out.samples);
 }
 
 /* steepest: pixels that places lie apart at most, for each unit. */
@@ -802,8 +808,8 @@ static void call_measure(const hot_functions *hot, void *state) {
   measure_state *s = state;
   uint64_t samples = 0;
   _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
-  s->out.open = hot->render.measure(&s->shade.job, s->shade.patches, s->shade.patch_count, 0, 0,
-                                    s->shade.blocks, scratch, s->out.pixels, &samples);
+  const tile_slab tile = tile_of(&s->shade, scratch);
+  s->out.open = hot->render.measure(&s->shade.job, &tile, s->out.pixels, &samples);
 }
 
 static void test_measure(void **unused) {
@@ -855,8 +861,8 @@ typedef struct maximum_state {
 static void call_maximum(const hot_functions *hot, void *state) {
   maximum_state *s = state;
   s->out.samples = 0;
-  s->out.open = hot->render.maximum(&s->shade.job, s->shade.patches, s->shade.patch_count, 0, 0,
-                                    s->shade.blocks, NULL, s->out.values, &s->out.samples);
+  const tile_slab tile = tile_of(&s->shade, NULL);
+  s->out.open = hot->render.maximum(&s->shade.job, &tile, s->out.values, &s->out.samples);
 }
 
 static void test_maximum(void **unused) {
