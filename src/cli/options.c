@@ -190,7 +190,7 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   size_t length = argument[1] == '-' ? strcspn(argument + 2, "=") : 0;
   snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), argument + 2);
   const char *meant = length > 0 ? nearest_name(name, option_name, command) : NULL;
-  const char *does = synonym_of(name, command);
+  const char *does = synonym_of(name, option_name, command);
   if (does != NULL && meant != NULL && strcmp(does, meant) != 0)
     return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s, or --%s?", name,
                 command->name, does, meant);

@@ -2,6 +2,7 @@
  * here for words of ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba and plotting libraries. */
 #include "suggest.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "text/edit_distance.h"
@@ -93,16 +94,19 @@ static bool has_word(const char *words, const char *word) {
   return false;
 }
 
-static bool takes(const cli_command *command, const char *name) {
-  for (size_t i = 0; i < command->option_count; i++)
-    if (!command->options[i].reserved && strcmp(command->options[i].name, name) == 0) return true;
+static bool takes(const char *(*option)(const void *data, size_t index), const void *data, const char *name) {
+  const char *known;
+  for (size_t i = 0; (known = option(data, i)) != NULL; i++)
+    if (strcmp(known, name) == 0) return true;
   return false;
 }
 
-const char *synonym_of(const char *word, const cli_command *command) {
+const char *synonym_of(const char *word, const char *(*option)(const void *data, size_t index),
+                       const void *data) {
   if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
   for (size_t n = 0; n < sizeof meanings / sizeof *meanings; n++)
-    if (has_word(meanings[n].words, word) && takes(command, meanings[n].option)) return meanings[n].option;
+    if (has_word(meanings[n].words, word) && takes(option, data, meanings[n].option))
+      return meanings[n].option;
   return NULL;
 }
 

@@ -2,15 +2,17 @@
 #ifndef HL_CLI_SUGGEST_H
 #define HL_CLI_SUGGEST_H
 
-#include "options.h"
+#include <stddef.h>
 
 /* The candidate spelled most like text, or null if none is spelled like it. candidate(data, i) is null past
  * the last. */
 const char *nearest_name(const char *text, const char *(*candidate)(const void *data, size_t index),
                          const void *data);
 
-/* The subcommand's option for a word of other programs ("rotate" -> "azimuth"); null: none is known. */
-const char *synonym_of(const char *word, const cli_command *command);
+/* The option for a word of other programs ("rotate" -> "azimuth"), of those that option(data, i) lists; null:
+ * none is known. */
+const char *synonym_of(const char *word, const char *(*option)(const void *data, size_t index),
+                       const void *data);
 
 /* For the name of a setting that only scene files have, the JSON that sets it ("diffuse" -> "\"material\": {
  * \"diffuse\": 0.7 } in a volume"); null: none is known. */

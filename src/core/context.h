@@ -17,4 +17,14 @@ void hl_log(const hl_context *context, hl_log_level level, const char *format, .
 void hl_progress(const hl_context *context, const char *stage, double fraction);
 bool hl_cancelled(const hl_context *context);
 
+/* ---- What the processor and this build can do ---- */
+
+hl_instruction_set hl_cpu_best_instruction_set(void);
+
+/* Whether this build has the set's functions and this processor can run them. */
+int hl_cpu_has_instruction_set(hl_instruction_set set);
+
+/* Processors this process may run on; at least 1. */
+int hl_cpu_count(void);
+
 #endif

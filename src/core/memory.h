@@ -4,6 +4,8 @@
 #define HL_CORE_MEMORY_H
 
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "core/error.h"
 
@@ -58,5 +60,28 @@ void hl_reserve_drop_idle(hl_reserve *reserve);
 void hl_reserve_end_frame(hl_reserve *reserve);
 /* Releases all blocks; none may be lent at the time. */
 void hl_reserve_release(hl_reserve *reserve);
+
+/* ---- Memory that is planned once ----
+ *
+ * One description both counts the bytes and assigns them: a function that takes each of its arrays from a
+ * layout. The first run, with a layout of zeros, counts bytes and gets null pointers. The second run, with
+ * `base` set to a block of the counted size, gets the arrays. */
+
+typedef struct hl_layout {
+  unsigned char *base; /* aligned to 64 bytes; null: counts only */
+  size_t bytes;        /* bytes taken so far; SIZE_MAX: overflow */
+} hl_layout;
+
+/* Takes count * size bytes, aligned to 64; returns null while counting. */
+static inline void *hl_layout_take(hl_layout *layout, size_t count, size_t size) {
+  size_t bytes;
+  if (!hl_multiply(count, size, &bytes) || bytes > SIZE_MAX - 63 - layout->bytes) {
+    layout->bytes = SIZE_MAX; /* allocating SIZE_MAX bytes always fails */
+    return NULL;
+  }
+  void *taken = layout->base == NULL ? NULL : layout->base + layout->bytes;
+  layout->bytes += (bytes + 63) / 64 * 64;
+  return taken;
+}
 
 #endif

@@ -22,7 +22,6 @@
 #include <unistd.h>
 
 #include "core/context.h"
-#include "core/cpu.h"
 #include "core/memory.h"
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };

@@ -10,7 +10,7 @@
 #ifndef HL_GRID_BOUNDS_H
 #define HL_GRID_BOUNDS_H
 
-#include "core/layout.h"
+#include "core/memory.h"
 #include "grid/grid.h"
 
 /* ---- bricks ---- */

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "core/layout.h"
 #include "core/memory.h"
 
 /* sigma = -ln(1 - alpha) / u, alpha clamped to 0.9999 (algorithm, optical model). */

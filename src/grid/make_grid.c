@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/layout.h"
 #include "core/memory.h"
 #include "grid/bounds.h"
 #include "grid/relevant.h"

@@ -9,7 +9,7 @@
 #ifndef HL_GRID_RELEVANT_H
 #define HL_GRID_RELEVANT_H
 
-#include "core/layout.h"
+#include "core/memory.h"
 #include "grid/classifier.h"
 
 /* Finds which bricks are relevant, the look-ups of visible cells, and the cells' bits. */

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "guess/analysis.h"
-#include "guess/looks.h"
 #include "scene/scene.h"
 #include "scene/transfer_function.h"
 

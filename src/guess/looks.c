@@ -11,9 +11,9 @@
 
 #include "core/error.h"
 #include "guess/function_writer.h"
-#include "scene/nearest.h"
 #include "scene/scene.h"
 #include "scene/transfer_function.h"
+#include "text/edit_distance.h"
 
 typedef enum subject { BODY, BRAIN, MATTER, LABELS, FIELD, FLOW, SIGNED, MEDIUM, CONSTANT } subject;
 

@@ -6,14 +6,12 @@
 #include "fill/splat_lanes.h"
 #include "grid/bounds_lanes.h"
 #include "grid/cell_bits_lanes.h"
-#include "render/cover_lanes.h"
 #include "render/maximum_lanes.h"
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_lanes.h"
 #include "shadow_sublights/sublight_lanes.h"
-#include "shadow_sublights/sublight_shift_lanes.h"
 #include "view/brick_ranges_lanes.h"
 
 #ifdef HL_WINDOWS

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/nearest.h"
+#include "text/edit_distance.h"
 
 json_t *hl_json_copy(const json_t *value) {
   json_t *copy = json_copy((json_t *)value);

@@ -10,8 +10,8 @@
 
 #include "core/memory.h"
 #include "scene/check.h"
-#include "scene/nearest.h"
 #include "shape/shape.h"
+#include "text/edit_distance.h"
 
 enum { DEFAULT_SIZE = 128, MOST_OCTAVES = 16, HIGHEST_N = 8 };
 

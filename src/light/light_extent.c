@@ -2,8 +2,8 @@
  * sheets. */
 #include "light/light_extent.h"
 
-#include "scene/check.h"
 #include "scene/light_shape.h"
+#include "scene/limits.h"
 
 /* ---- points on lights ---- */
 

@@ -1,4 +1,4 @@
-/* light/light_source.c - makes light sources of a scene's lights. */
+/* light/light_source.c - see light_source.h. */
 #include "light/light_source.h"
 
 #include "scene/light_shape.h"
@@ -40,4 +40,107 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
   source.content = vec3_add(whole->position, vec3_scale(source.direction, distance > 0 ? distance : 1));
   source.spread = hl_light_spread(whole->light, source.direction);
   return source;
+}
+
+/* ---- sectors ---- */
+
+/* Three axes at the angle phi to the eye's direction, and three to its opposite turned by 60 degrees: of an
+ * octahedron seen along a face for phi = 54.7 degrees. With 45 degrees every direction lies within 59 degrees
+ * of an axis. Wide pictures need axes closer to the eye's direction, so that their corners' rays still cross
+ * the sheets. */
+light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
+  const double usual = 45 * HL_PI / 180, flattest = 75 * HL_PI / 180, closest = 15 * HL_PI / 180;
+  double phi = fmax(fmin(usual, flattest - widest), closest);
+  vec3 u = vec3_perpendicular(eye_direction), v = vec3_cross(eye_direction, u);
+  light_sectors sectors;
+  for (int i = 0; i < LIGHT_SECTORS; i++) {
+    double turn = i * HL_PI / 3, along = i % 2 == 0 ? cos(phi) : -cos(phi);
+    vec3 across = vec3_add(vec3_scale(u, cos(turn)), vec3_scale(v, sin(turn)));
+    sectors.axis[i] = vec3_add(vec3_scale(eye_direction, along), vec3_scale(across, sin(phi)));
+  }
+  /* Derived: half the cosine of a direction across the eye's that lies midway between two axes. */
+  sectors.least = fmax(0.5 * cos(HL_PI / 6) * sin(phi), 0.1);
+  return sectors;
+}
+
+sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector) {
+  sector_fraction fraction = {.count = sectors == 0 ? 0 : LIGHT_SECTORS, .sector = sector};
+  for (int i = 0; i < fraction.count; i++) vec3_store(fraction.axis[i], sectors->axis[i]);
+  fraction.least = fraction.count == 0 ? 0 : (float)sectors->least;
+  return fraction;
+}
+
+/* ---- the cone of a spot light ---- */
+
+light_cone hl_light_cone(const light_source *source, vec3 content, double pixel) {
+  const hl_light *light = source->light;
+  light_cone cone = {.scale = 0};
+  if (light->type != HL_LIGHT_SPOT) return cone;
+  double distance = vec3_length(vec3_subtract(content, source->position));
+  double edge = light->falloff_angle_deg * HL_PI / 180, opening = light->opening_angle_deg * HL_PI / 360;
+  double sharpest = distance > pixel ? pixel / distance : 1, middle = opening - edge / 2;
+  edge = fmax(edge, sharpest);
+  double outer = cos(fmin(middle + edge / 2, HL_PI)), full = cos(fmax(middle - edge / 2, 0));
+  vec3_store(cone.axis, vec3_normalise(vec3_of(light->direction)));
+  cone.outer = (float)outer;
+  cone.scale = (float)(1 / (full - outer));
+  return cone;
+}
+
+/* ---- bounds of what is lit, seen from the light ---- */
+
+static bool bound_screen(const view *view, const light_source *source, double low[2], double high[2]) {
+  low[0] = low[1] = INFINITY;
+  high[0] = high[1] = -INFINITY;
+  for (int corner = 0; corner < 4; corner++) {
+    vec3 at = vec3_add(source->screen_center, vec3_scale(source->screen_right, corner & 1 ? 1 : -1));
+    double uv[2];
+    if (!hl_view_project(view, vec3_add(at, vec3_scale(source->screen_up, corner & 2 ? 1 : -1)), uv))
+      return false;
+    for (int axis = 0; axis < 2; axis++) {
+      low[axis] = fmin(low[axis], uv[axis]);
+      high[axis] = fmax(high[axis], uv[axis]);
+    }
+  }
+  return true;
+}
+
+/* Derived: planes through the light that contain the view's other axis touch the cone of half angle a where
+ * their angle phi from the view's normal n has r sin(psi - phi) = +- sin a, r and psi being the length and
+ * angle of the cone's axis in the plane of n and this axis. corner, du and dv of the view are n and its axes,
+ * unit and perpendicular. */
+static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
+  const vec3 axes[2] = {view->du, view->dv};
+  vec3 cone = vec3_normalise(vec3_of(source->light->direction));
+  double sine = sin(source->light->opening_angle_deg * HL_PI / 360);
+  for (int i = 0; i < 2; i++) {
+    double along = vec3_dot(cone, axes[i]), ahead = vec3_dot(cone, view->corner);
+    double r = hypot(along, ahead), psi = atan2(along, ahead);
+    if (!(r > sine)) return false;
+    double reach = asin(sine / r);
+    if (psi - reach <= -HL_PI / 2 || psi + reach >= HL_PI / 2) return false;
+    low[i] = tan(psi - reach);
+    high[i] = tan(psi + reach);
+  }
+  return true;
+}
+
+static void cut(const double by_low[2], const double by_high[2], double low[2], double high[2]) {
+  for (int axis = 0; axis < 2; axis++) {
+    low[axis] = fmin(fmax(low[axis], by_low[axis]), high[axis]);
+    high[axis] = fmax(fmin(high[axis], by_high[axis]), low[axis]);
+  }
+}
+
+void hl_lit_region(const view *view, const light_source *source, double low[2], double high[2]) {
+  double lit_low[2], lit_high[2];
+  if (source->sectors != NULL) {
+    double reach = tan(acos(source->sectors->least));
+    cut((double[2]){-reach, -reach}, (double[2]){reach, reach}, low, high);
+  }
+  if (source->shadows != HL_SHADOWS_HARD) return; /* penumbrae come from beside what is lit */
+  if (source->light->texture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
+    cut(lit_low, lit_high, low, high);
+  if (source->light->type == HL_LIGHT_SPOT && bound_cone(view, source, lit_low, lit_high))
+    cut(lit_low, lit_high, low, high);
 }

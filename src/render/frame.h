@@ -1,12 +1,14 @@
 /* render/frame.h - the geometry of one frame: where the eye, the lights and the sheets are.
  *
  * Frame space is the world moved to the middle of the volumes and measured in units of about their smallest
- * voxel edge (framed_scene.h). */
+ * voxel edge (framed_scene). */
 #ifndef HL_RENDER_FRAME_H
 #define HL_RENDER_FRAME_H
 
+#include "core/error.h"
 #include "light/light_source.h"
-#include "render/shade.h"
+#include "render/slab.h"
+#include "scene/scene.h"
 #include "view/occupancy.h"
 
 enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
@@ -74,5 +76,20 @@ hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, i
 /* Corners of the part of the content that the eye sees: what a shadow buffer must cover. points: room for
  * CONTENT_POINTS a grid. */
 int hl_frame_visible_points(const frame *frame, vec3 *points);
+
+/* ---- A scene in frame space: moved to the middle of its volumes, measured in its smallest voxels ---- */
+
+typedef struct framed_scene {
+  hl_scene_description
+      scene; /* in frame space; voxels, images and texts are borrowed from the scene in the world */
+  hl_scene_volume *volumes; /* owned; [volume_count] */
+  hl_light *lights;         /* owned; [light_count] */
+  double (*vertices)[3];    /* owned; of all polygons */
+  double unit;              /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
+} framed_scene;
+
+hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene, framed_scene *framed,
+                                 hl_error *error);
+void hl_framed_scene_release(hl_context *context, framed_scene *framed);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include "fill/fill.h"
 #include "grid/grid.h"
-#include "render/shade.h"
+#include "render/slab.h"
 #include "shadow/shadow_method.h"
 #include "view/occupancy.h"
 

@@ -20,6 +20,8 @@ typedef struct light_pixels {
   size_t light_index;      /* the light's index in the scene; a light in sectors has several entries */
 } light_pixels;
 
+enum { COLORS = 4 }; /* R G B A */
+
 typedef struct layer_pixels {
   const hl_layers *wanted;   /* the caller's; null: none */
   float *ambient, *emission; /* R G B A */
@@ -27,25 +29,6 @@ typedef struct layer_pixels {
   light_pixels *lights;      /* owned; [light_count] */
   size_t light_count;        /* of the frame */
 } layer_pixels;
-
-/* One more shading of the sweep's tiles. */
-typedef struct layer_pass {
-  shade_tile_function *shade;
-  shade_job job; /* the sweep's shading with its own lights, ambient light and emission */
-  bool white;    /* of white volumes */
-  float *pixels;
-  size_t tile_floats;
-} layer_pass;
-
-typedef struct sweep_layers {
-  layer_pass *passes; /* owned; [pass_count] */
-  int pass_count;
-  shade_light *white_lights;   /* owned; [light_count of the sweep] */
-  shade_volume *white_volumes; /* owned; [volume_count] */
-  shade_patch *white_patches;  /* owned; [threads][volume_count] */
-  classifier *white;           /* owned; [volume_count]; the volumes' tables, borrowed, with white colours */
-  float (*ones)[4];            /* owned; a colour table */
-} sweep_layers;
 
 /* Allocates the wanted layers of a frame. tiles: how many the frame has. */
 hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted,

@@ -5,7 +5,6 @@
 #include <float.h>
 #include <math.h>
 
-#include "core/layout.h"
 #include "core/memory.h"
 #include "scene/scene.h"
 

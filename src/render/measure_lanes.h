@@ -3,6 +3,7 @@
 #define HL_RENDER_MEASURE_LANES_H
 
 #include "render/shade_lanes.h"
+#include "render/slab_lanes.h"
 
 /* The alpha at which depth_first is measured (halflight/layers.h). */
 static const float FIRST_OPACITY = 0.01f;
@@ -65,6 +66,35 @@ static uint32_t measure_tile(const shade_job *job, const tile_slab *tile, float 
     measure_block(job, tile, block, pixels + block * MEASURES * BLOCK_PIXELS);
   }
   return tile->blocks;
+}
+
+/* ---- opacity alone of what the eye sees, to know what lies hidden behind it ---- */
+
+/* Returns true while some pixel of the block is not opaque. bits: the pixels in which something may be
+ * seen. */
+LANES_INLINE int cover_block(const shade_job *job, const tile_slab *tile, int block, uint32_t bits,
+                             float *alpha) {
+  block_density *densities = tile->scratch;
+  block_slab slab;
+  slab_of_block(job, tile, tile->patch_count, block, bits, densities, &slab);
+  classify_slab(densities, tile->patch_count, &slab);
+  lanes before = lanes_load(alpha), path = geometry_of_block(job, slab.u, slab.v).path;
+  lanes opacity = lanes_keep(slab.seen, 1.0f - lanes_exp_negative(lanes_keep(slab.seen, slab.total * path)));
+  lanes after = lanes_fma(opacity, 1.0f - before, before);
+  lanes_store(alpha, after);
+  return lanes_bits(after < OPAQUE) != 0;
+}
+
+static uint32_t cover_tile(const shade_job *job, const tile_slab *tile, float *pixels, uint64_t *samples) {
+  uint32_t open = tile->blocks;
+  (void)samples;
+  for (uint32_t left = tile->blocks; left != 0; left &= left - 1) {
+    int block = __builtin_ctz(left);
+    float *alpha = pixels + (block * 4 + 3) * BLOCK_PIXELS;
+    uint32_t bits = visible_in_block(job, tile->patches, tile->patch_count, block, alpha);
+    if (bits != 0 && !cover_block(job, tile, block, bits, alpha)) open &= ~(1u << block);
+  }
+  return open;
 }
 
 #endif

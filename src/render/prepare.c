@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "core/layout.h"
 #include "core/memory.h"
 #include "grid/make_grid.h"
 #include "grid/relevant.h"

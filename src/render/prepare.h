@@ -22,7 +22,7 @@ typedef struct prepared_volume {
 } prepared_volume;
 
 /* Brings prepared[0 .. count) up to date with the scene's volumes; reuses what has not changed. scene: in
- * frame space (framed_scene.h). */
+ * frame space (frame.h). */
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, prepared_volume *prepared, hl_error *error);
 /* The most bytes that preparing one volume takes; kernel: the scene's. */

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "grid/relevant.h"
 #include "render/estimate.h"
-#include "render/framed_scene.h"
+#include "render/frame.h"
 #include "render/maximum.h"
 #include "render/prepare.h"
 #include "scene/check.h"
@@ -464,4 +464,15 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
 hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float *pixels, size_t row_stride,
                              hl_render_statistics *statistics, hl_error *error) {
   return hl_renderer_render_layers(renderer, scene, pixels, row_stride, NULL, statistics, error);
+}
+
+/* ---- how a scene wants its pictures written ---- */
+
+void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *options) {
+  const hl_scene_description *description = hl_scene_describe(scene);
+  hl_image_write_options_defaults(options);
+  if (options == NULL || description == NULL) return;
+  memcpy(options->background, description->background, sizeof options->background);
+  options->background_transparent = description->background_transparent;
+  options->exposure = description->exposure;
 }

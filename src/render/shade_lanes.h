@@ -21,7 +21,7 @@ LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
   return x * x * lanes_line(x, -2.0f, 3.0f);
 }
 
-/* The fraction that a light's sector takes (light_sector.h). */
+/* The fraction that a light's sector takes (light_source.h). */
 LANES_INLINE lanes fraction_of_sector(const sector_fraction *sector, lanes3 towards) {
   lanes own = lanes_set(0), sum = lanes_set(1e-30f);
   for (int i = 0; i < sector->count; i++) {

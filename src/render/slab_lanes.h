@@ -6,7 +6,7 @@
 #define HL_RENDER_SLAB_LANES_H
 
 #include "fill/gradient_lanes.h"
-#include "render/shade.h"
+#include "render/slab.h"
 #include "shadow/attenuate_lanes.h"
 
 /* The alpha from which a pixel counts as opaque: matter behind adds less than half a step of 10 bits. */

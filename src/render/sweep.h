@@ -8,7 +8,6 @@
 #include <halflight/render.h>
 
 #include "render/layers.h"
-#include "render/sweep_counts.h"
 #include "render/view_sheets.h"
 #include "shadow/shadow_method.h"
 
@@ -20,6 +19,36 @@ typedef struct sweep_light {
   light_texture texture;    /* the picture that the light projects */
   light_emission *emission; /* owned; the picture on the light itself; null: none */
 } sweep_light;
+
+/* One thread's counts, on cache lines of its own. */
+typedef struct sweep_counts {
+  _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image,
+      skipped_light; /* pixels shaded; tiles */
+  uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
+  uint64_t pixels_seen, pixels_covered; /* counted only by the sweep of hidden.c */
+  double seconds_fill, seconds_shade;   /* of the image stage */
+  double seconds_light;                 /* the light stage */
+  double seconds_composite;             /* the compositing in it */
+} sweep_counts;
+
+/* One more shading of the sweep's tiles. */
+typedef struct layer_pass {
+  shade_tile_function *shade;
+  shade_job job; /* the sweep's shading with its own lights, ambient light and emission */
+  bool white;    /* of white volumes */
+  float *pixels;
+  size_t tile_floats;
+} layer_pass;
+
+typedef struct sweep_layers {
+  layer_pass *passes; /* owned; [pass_count] */
+  int pass_count;
+  shade_light *white_lights;   /* owned; [light_count of the sweep] */
+  shade_volume *white_volumes; /* owned; [volume_count] */
+  shade_patch *white_patches;  /* owned; [threads][volume_count] */
+  classifier *white;           /* owned; [volume_count]; the volumes' tables, borrowed, with white colours */
+  float (*ones)[4];            /* owned; a colour table */
+} sweep_layers;
 
 typedef struct sweep sweep;
 
@@ -77,6 +106,9 @@ uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
 /* Steps 1 to 4, and memory. The caller keeps both arrays from frame to frame: buffers holds one buffer per
  * light of the frame, memory [FRAME_LIGHTS] blocks that the frame's sweeps use in turn. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
+/* Seconds of a clock that never runs backwards. */
+double hl_clock_seconds(void);
+
 /* Opens all blocks of the picture. */
 void hl_sweep_open(sweep *sweep);
 /* Adds the sweep's counts and seconds to the statistics. */
@@ -94,20 +126,13 @@ typedef struct sweep_bytes {
  * that hl_frame_visible_points() gives. threads: of the pool. */
 hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error);
 
-/* The sheet loop: steps 3 to 18. */
+/* The sheet loop: steps 3 to 18 (sweep_stages.c). */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
 /* Stages (sweep_stages.c), each for the slab before the sheet. */
 void hl_sweep_shade(sweep *sweep, int sheet);     /* steps 6, 8 to 16: the image */
 void hl_sweep_attenuate(sweep *sweep, int sheet); /* steps 7 to 11 and 17: the lights */
 void hl_sweep_soften(sweep *sweep, int sheet);    /* section 5 */
-
-/* Layers (layers.c). Begin is called after hl_sweep_begin; sheet gives all layers the sheet of the sweep's
- * own shading; tile shades one tile of every layer. */
-hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
-void hl_sweep_layers_end(sweep *sweep);
-void hl_sweep_layers_sheet(sweep *sweep);
-void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab);
 
 /* A tile's column and row. */
 static inline int hl_tile_x(const sweep *sweep, size_t tile) { return (int)(tile % (size_t)sweep->tiles_x); }

@@ -3,7 +3,7 @@
 #ifndef HL_RENDER_VIEW_SHEETS_H
 #define HL_RENDER_VIEW_SHEETS_H
 
-#include "core/layout.h"
+#include "core/memory.h"
 #include "fill/voxel_lists.h"
 #include "render/frame.h"
 #include "render/hot.h"

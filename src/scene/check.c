@@ -4,14 +4,14 @@
  * pointer of the field, the bad value and the mend. hl_scene_create() asks before it copies anything, so
  * the renderers downstream never meet a NaN, a zero direction or an unknown enumerator.
  */
-#include "scene/check_tools.h"
+#include "scene/check.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "core/vector.h"
-#include "scene/scene.h"
+#include "scene/placement.h"
 
 hl_status hl_check_refuse(const hl_checker *check, const char *key, const char *problem) {
   return hl_fail(check->error, HL_ERROR_INPUT, "%s/%s: %s", check->place, key, problem);

@@ -1,34 +1,13 @@
-/* scene/check.h - checks of descriptions, and the limits that several checks share. The range of each setting
- * is in settings_table.c. */
+/* scene/check.h - is a description possible? And what the checks share. */
 #ifndef HL_SCENE_CHECK_H
 #define HL_SCENE_CHECK_H
 
 #include <halflight/layers.h>
 #include <halflight/scene.h>
 
-#define HL_LIMIT_PIXELS         32768 /* image width and height */
-#define HL_LIMIT_LIGHTS         256
-#define HL_LIMIT_VOLUMES        256
-#define HL_LIMIT_VERTICES       1024  /* of one polygon */
-#define HL_LIMIT_TEXTURE_SIDE   32768 /* pixels of a light's texture */
-#define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
-#define HL_LIMIT_POINTS         65536 /* of one transfer function */
-#define HL_LIMIT_LENGTH         1e15  /* any coordinate or length: squares and cubes stay finite */
-#define HL_LIMIT_CORNER \
-  1e14 /* of a volume from the origin: a camera that frames it stands within HL_LIMIT_LENGTH */
-#define HL_LIMIT_INTENSITY \
-  1e35 /* large, for light that falls off with the square of distances in nanometres */
-#define HL_LIMIT_BRIGHTNESS                                                                                 \
-  1e20 /* of a light at the distance of the smallest voxel edge; products with materials and sums still fit \
-          floats */
-#define HL_LIMIT_REACH         1e12 /* distances and lengths, in smallest voxel edges */
-#define HL_LIMIT_TEXTURE_VALUE 1e6
-#define HL_LIMIT_VOXEL_VALUE   1e36 /* differences and sums of such values still fit floats */
-#define HL_LIMIT_LIGHT_SAMPLES 64
-#define HL_LIMIT_THREADS       1024
-#define HL_LIMIT_SHININESS     10000
-#define HL_LIMIT_EMISSION      1e6
-#define HL_LIMIT_EXPOSURE      32 /* stops, either way */
+#include "core/error.h"
+#include "scene/limits.h"
+#include "scene/settings.h"
 
 /* Checks every field of a description; reports the first fault as "JSON pointer: what is wrong: how to mend
  * it". */
@@ -43,5 +22,35 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
 
 /* Checks the layers that are wanted of a frame of this scene; null: none. */
 hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *scene, hl_error *error);
+
+/* ---- Tools for the checks of cameras, lights and volumes: errors that begin with a JSON pointer ---- */
+
+/* The object that is checked: "/lights/3". */
+typedef struct hl_checker {
+  hl_error *error;
+  char place[80];
+} hl_checker;
+
+/* Fails with "PLACE/KEY: PROBLEM". */
+hl_status hl_check_refuse(const hl_checker *check, const char *key, const char *problem);
+
+/* Check one setting, and all settings that an object of this type has (type 0 for kinds without types). */
+hl_status hl_check_key(const hl_checker *check, hl_setting_kind kind, const char *key, const void *object);
+hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const void *object, int type);
+
+/* Checks a number that is in no table of settings: from low to high. */
+hl_status hl_check_range(const hl_checker *check, const char *key, double value, double low, double high,
+                         const char *mend);
+
+/* Check that coordinates are within HL_LIMIT_LENGTH, and that a direction is not zero. */
+hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]);
+hl_status hl_check_direction(const hl_checker *check, const char *key, const double v[3]);
+
+/* Checks that an array exists and has at most `limit` entries. */
+hl_status hl_check_count(const hl_checker *check, const char *key, const void *points, size_t count,
+                         size_t limit);
+
+/* Checks light number `index` of a scene by itself (check_light.c). */
+hl_status hl_light_check(const hl_light *light, size_t index, hl_error *error);
 
 #endif

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "core/vector.h"
-#include "scene/check_tools.h"
+#include "scene/check.h"
 #include "scene/light_shape.h"
 
 /* Fractions of the polygon's diameter: how far its vertices may leave its plane, and the least width. */

@@ -3,8 +3,8 @@
 #include <stdio.h>
 
 #include "core/vector.h"
-#include "scene/check_tools.h"
-#include "scene/scene.h"
+#include "scene/check.h"
+#include "scene/placement.h"
 
 /* Checks that points are sorted by value, with at most two at one value, which make a step. */
 static hl_status check_order(const hl_checker *check, const char *key, size_t index, double before2,

@@ -1,9 +1,12 @@
 /* scene/placement.c - where a scene's volume is in the world, which part of it is there, and what surrounds
  * it. */
 #include "scene/placement.h"
+
 #include <string.h>
+
 #include "core/memory.h"
-#include "scene/scene.h"
+#include "scene/camera.h"
+#include "scene/transfer_function.h"
 
 double hl_scene_volume_scale(const hl_scene_volume *volume, int axis) {
   return volume->scale * volume->axis_scale[axis];

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "core/vector.h"
-#include "scene/check.h"
 
 _Static_assert(sizeof(hl_shadows) == sizeof(int), "fields of enumerators are read as int");
 

@@ -7,7 +7,7 @@
 
 #include <halflight/settings.h>
 
-#include "scene/check.h"
+#include "scene/limits.h"
 #include "scene/settings.h"
 #include "scene/soft_methods.h"
 

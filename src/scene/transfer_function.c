@@ -7,8 +7,7 @@
 #include <math.h>
 #include <string.h>
 #include "core/memory.h"
-#include "scene/nearest.h"
-#include "scene/scene.h"
+#include "text/edit_distance.h"
 
 /* The number of points whose value is <= value; points are spaced by stride bytes and begin with their
  * value. */

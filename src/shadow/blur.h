@@ -2,6 +2,7 @@
 #ifndef HL_SHADOW_BLUR_H
 #define HL_SHADOW_BLUR_H
 
+#include <math.h>
 #include <stddef.h>
 
 #include "shadow/attenuate.h"
@@ -25,9 +26,6 @@ typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
 
 enum { BLUR_GREATEST_REACH = 46 };
 
-/* The box of a variance, as far as BLUR_GREATEST_REACH allows. */
-blur_box hl_blur_box_of_variance(double variance);
-
 /* Weighted sums of a field's pixels around each pixel: a penumbra by its taps (light_emission.h). */
 typedef struct emission_job {
   const float *from; /* pixel (0,0); rows stride apart */
@@ -50,6 +48,17 @@ typedef struct blur_functions {
 static inline blur_box hl_blur_box(float width) {
   int reach = (int)((width - 1) / 2);
   return (blur_box){reach, (width - 1) / 2 - (float)reach, 1 / width};
+}
+
+/* The box of the given variance, as far as BLUR_GREATEST_REACH allows. Weights of 1 out to r have the
+ * variance r (r + 1) / 3. With weight e at r + 1 on both sides, n = 2 r + 1 and variance v:
+ * v (n + 2 e) = n r (r + 1) / 3 + 2 e (r + 1)^2, which gives e (derived). */
+static inline blur_box hl_blur_box_of_variance(double variance) {
+  int most = BLUR_GREATEST_REACH - 2, reach = (int)fmin(sqrt(3 * variance + 0.25) - 0.5, most);
+  double whole = reach * (reach + 1) / 3.0, width = 2 * reach + 1;
+  double edge = 0.5 * width * (variance - whole) / ((reach + 1.0) * (reach + 1) - variance);
+  if (reach == most || !(edge < 1)) edge = reach == most ? 0 : 1;
+  return (blur_box){reach, (float)edge, (float)(1 / (width + 2 * edge))};
 }
 
 #endif

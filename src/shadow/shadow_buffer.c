@@ -3,10 +3,8 @@
 
 #include <string.h>
 
-#include "core/layout.h"
 #include "core/memory.h"
-#include "light/lit_region.h"
-#include "shadow/shadow_lookup.h"
+#include "light/light_source.h"
 
 /* Tangent of the widest angle that a point light's buffer covers. */
 static const double WIDEST = 6;

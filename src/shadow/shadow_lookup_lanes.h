@@ -3,7 +3,7 @@
 #ifndef HL_SHADOW_SHADOW_LOOKUP_LANES_H
 #define HL_SHADOW_SHADOW_LOOKUP_LANES_H
 
-#include "shadow/shadow_lookup.h"
+#include "shadow/shadow_buffer.h"
 #include "simd/lanes.h"
 
 /* The samples' positions in a shadow buffer: the first of the two by two pixels around each, and the

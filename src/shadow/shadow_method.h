@@ -18,13 +18,12 @@
 #ifndef HL_SHADOW_SHADOW_METHOD_H
 #define HL_SHADOW_SHADOW_METHOD_H
 
-#include "core/layout.h"
 #include "core/memory.h"
 #include "light/light_emission.h"
 #include "light/light_extent.h"
 #include "scene/soft_methods.h"
 #include "shadow/blur.h"
-#include "shadow/shadow_lookup.h"
+#include "shadow/shadow_buffer.h"
 
 /* The functions of shadows that are compiled for each instruction set. A method that has such functions
  * defines their table in its own folder. */
@@ -122,7 +121,7 @@ struct shadow_method {
 /* The method for a light: by its shadows and soft method; null where it casts none. */
 const shadow_method *hl_shadow_method(const light_source *source);
 
-/* ---- for the sweep (light_shadow.c) ---- */
+/* ---- for the sweep ---- */
 
 /* Chooses the method and plans. shadow->method is null afterwards where there are no shadows to make. */
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
@@ -135,7 +134,7 @@ hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, sha
 /* After plan or begin, even if they failed; allowed for a struct of zeros. */
 void hl_light_shadow_end(light_shadow *shadow);
 
-/* ---- for methods (shadow_plan.c) ---- */
+/* ---- for methods ---- */
 
 /* The edge of a buffer's pixel for the sheets' distance, frame units; larger for cubic convolution. */
 double hl_shadow_pixel(const shadow_setup *setup, bool cubic);

@@ -3,7 +3,7 @@
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_FIELD_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_FIELD_H
 
-#include "shadow/shadow_lookup.h"
+#include "shadow/shadow_buffer.h"
 
 /* Copies of a slab's transmittance: bit 0 of a copy's index shifts it by half a pixel along u, bit 1 along v.
  * Given by pixel (0,0); rows slab_stride apart; ones all around. */

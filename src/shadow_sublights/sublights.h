@@ -8,7 +8,7 @@
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
-#include "shadow/shadow_lookup.h"
+#include "shadow/shadow_buffer.h"
 #include "shadow_sublights/sublight_field.h"
 
 enum { SUBLIGHT_REACH = 31 /* pixels beyond a tile that are read of the slab's buffer */ };

@@ -2,9 +2,19 @@
 #ifndef HL_TEXT_EDIT_DISTANCE_H
 #define HL_TEXT_EDIT_DISTANCE_H
 
+#include <stddef.h>
+
 enum { HL_EDIT_LONGEST = 63 }; /* longest compared beginning of a name, characters */
 
 /* The number of edits that turn a into b: insert, delete or replace a character, or swap two neighbours. */
 int hl_edit_distance(const char *a, const char *b);
+
+/* ---- The known name that is spelled most like an unknown one, for errors ---- */
+
+/* The nearest of the null-terminated names; null if none is near enough to be meant. */
+const char *hl_nearest_name(const char *name, const char *const *names);
+
+/* The end of an error about an unknown name: the nearest known name as a question, or all known names. */
+void hl_suggest_name(const char *name, const char *const *names, char *text, size_t size);
 
 #endif

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "core/cpu.h"
+#include "core/context.h"
 #include "reference_stage.h"
 
 enum { SIDE = 28, PIXELS = SIDE * SIDE };

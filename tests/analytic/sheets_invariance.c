@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "core/cpu.h"
+#include "core/context.h"
 #include "reference_stage.h"
 
 enum { MOST_SIDE = 96, MOST_FLOATS = MOST_SIDE * MOST_SIDE * 4 };

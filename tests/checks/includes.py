@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Dependencies between rooms point one way, and programs see the public headers alone.
+"""Dependencies between rooms and between the files of a room point one way; programs see the public headers alone.
 
 usage: includes.py SOURCE_FOLDER
 The rooms and what each may use are the table in docs/architecture.md: the rooms named there, and the rooms that those may use.
@@ -20,19 +20,26 @@ def allowed_rooms(page):
             for room in (root / "src").glob(pattern)}
 
 
+def closure(uses, start):
+    """All that `start` uses, by way of others too. uses: {name: names that it uses}."""
+    reached, waiting = set(), [start]
+    while waiting:
+        for use in uses.get(waiting.pop(), set()) - reached:
+            reached.add(use)
+            waiting.append(use)
+    return reached
+
+
 def find_circles(allowed):
     """A room that may use another one may not be used by it."""
     for room in sorted(allowed):
-        reached, waiting = set(), [room]
-        while waiting:
-            for use in allowed.get(waiting.pop(), set()) - reached:
-                reached.add(use)
-                waiting.append(use)
-        if room in reached:
+        if room in closure(allowed, room):
             problems.append(f"docs/architecture.md: src/{room}/ may use itself by way of other rooms")
 
 
 PUBLIC_HEADERS = "the public headers"
+# Files that still include each other: none may be added.
+CIRCLES_TO_MEND = {"server/parts", "server/server", "volume/bundle", "volume/bundle_zip"}
 ALLOWED = allowed_rooms((root / "docs" / "architecture.md").read_text())
 PUBLIC_ONLY = {room for room, uses in ALLOWED.items() if PUBLIC_HEADERS in uses}
 for room, uses in ALLOWED.items():
@@ -65,6 +72,26 @@ def check_source(path, room):
             problems.append(f"{place}: {name} does not exist")
 
 
+def subject(path):
+    """What a file in src/ is about: its name without its ending; NAME.c, NAME.h and NAME_lanes.h are one subject."""
+    return re.sub(r"(_lanes)?\.[ch]$", "", str(path))
+
+
+def find_circles_within(room):
+    """Of two subjects of a room only one may include the other, be it by way of others."""
+    uses = {}
+    for source in sorted((root / "src" / room).glob("**/*.[ch]")):
+        path = source.relative_to(root / "src")
+        for _, quoted, name in includes(source):
+            name = name if "/" in name else path.parent / name
+            if quoted and subject(name) != subject(path):
+                uses.setdefault(subject(path), set()).add(subject(name))
+    for start in sorted(uses):
+        also = sorted(use for use in uses[start] if start in closure(uses, use))
+        if also and start not in CIRCLES_TO_MEND:
+            problems.append(f"src/{start}: includes itself by way of {', '.join(also)}")
+
+
 sources = sorted((root / "src").glob("*/**/*.[ch]"))
 for source in sources:
     room = source.relative_to(root / "src").parts[0]
@@ -72,6 +99,9 @@ for source in sources:
         problems.append(f"src/{room}: unknown room: add it to the table in docs/architecture.md")
     else:
         check_source(source, room)
+
+for room in sorted(ALLOWED):
+    find_circles_within(room)
 
 headers = sorted((root / "include" / "halflight").glob("*.h"))
 for header in headers:

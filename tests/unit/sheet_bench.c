@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "core/cpu.h"
+#include "core/context.h"
 
 enum { BENCH_SIDE = 48, BENCH_SHEETS = 5 };
 

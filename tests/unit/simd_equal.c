@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-#include "core/cpu.h"
+#include "core/context.h"
 #include "shadow_cascade/cascade_field.h"
 #include "shadow_sublights/sublight_field.h"
 #include "sheet_bench.h"

@@ -1,4 +1,4 @@
-/* shadow_cascade/cascade.c - the groups of a cascade, and the light that they leave. */
+/* shadow_cascade/cascade_method.c - the groups of a cascade, and the light that they leave. */
 #include <string.h>
 
 #include "shadow_cascade/cascade_passes.h"

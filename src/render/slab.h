@@ -1,16 +1,15 @@
-/* render/shade.h - steps 12 to 16: gradient, classification, shadow look-up, illumination, compositing.
+/* render/slab.h - steps 12 to 16: gradient, classification, shadow look-up, illumination, compositing.
  *
  * The slab between two sheets is shaded. Along each ray the density runs linearly from one sheet to the
  * other; the gradient is the kernel's, at the position where the slab's matter is seen; the shadow buffer
  * holds the light that reaches the first sheet. */
-#ifndef HL_RENDER_SHADE_H
-#define HL_RENDER_SHADE_H
+#ifndef HL_RENDER_SLAB_H
+#define HL_RENDER_SLAB_H
 
-#include "light/light_cone.h"
-#include "light/light_sector.h"
+#include "light/light_source.h"
 #include "light/light_texture.h"
 #include "shadow/attenuate.h"
-#include "shadow/shadow_lookup.h"
+#include "shadow/shadow_buffer.h"
 
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 

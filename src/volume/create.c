@@ -1,4 +1,4 @@
-/* volume/volume.c - volumes from memory, their life and their queries.
+/* volume/create.c - volumes from memory, their life and their queries.
  *
  * In: a description by the caller, or decoded voxels by the file formats. Out: an immutable, counted
  * hl_volume with its statistics. Everything that renders starts from here.

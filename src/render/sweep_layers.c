@@ -1,0 +1,121 @@
+/* render/sweep_layers.c - the layers of a sweep: its tiles shaded once more for each of them. */
+#include "render/sweep_layers.h"
+
+#include "core/memory.h"
+
+/* Sets up copies of the volumes that are white media: their samples pass on all the light that arrives. */
+static void set_up_white_volumes(sweep *sweep) {
+  sweep_layers *layers = &sweep->layers;
+  for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
+    layers->ones[i][0] = layers->ones[i][1] = layers->ones[i][2] = 1;
+  for (int g = 0; g < sweep->content.volume_count; g++) {
+    layers->white[g] = sweep->content.volumes[g].classifier;
+    layers->white[g].color = layers->ones;
+    layers->white_volumes[g] = sweep->shade_volumes[g];
+    layers->white_volumes[g].classifier = &layers->white[g];
+    layers->white_volumes[g].phong = 0;
+    layers->white_volumes[g].lit = 1;
+  }
+}
+
+static void set_up_white_light(const shade_light *from, shade_light *white) {
+  *white = *from;
+  white->inverse_square = 0;
+  white->texture = (light_texture){0};
+  white->cone = (light_cone){.scale = 0};
+  for (int c = 0; c < 3; c++) white->color[c] = 1;
+}
+
+static hl_status allocate_passes(sweep *sweep, hl_error *error) {
+  hl_context *context = sweep->content.context;
+  sweep_layers *layers = &sweep->layers;
+  size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count;
+  layers->passes = hl_allocate_zeroed(context, 2 * lights + 3, sizeof *layers->passes);
+  layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
+  layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
+  layers->white_patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->content.pool),
+                                      sizeof *layers->white_patches);
+  layers->white = hl_allocate_zeroed(context, volumes, sizeof *layers->white);
+  layers->ones = hl_allocate(context, CLASSIFIER_ENTRIES + 2, sizeof *layers->ones);
+  if (layers->passes == NULL || layers->white_lights == NULL || layers->white_volumes == NULL ||
+      layers->white_patches == NULL || layers->white == NULL || layers->ones == NULL)
+    return hl_fail_memory(error, (CLASSIFIER_ENTRIES + 2) * sizeof *layers->ones, "the layers");
+  return HL_OK;
+}
+
+/* Adds a pass that shades the given lights, without ambient light and emission. Returns null where the layer
+ * is not wanted. */
+static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
+  if (pixels == NULL) return NULL;
+  layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
+  *pass = (layer_pass){sweep->content.hot->render.shade, sweep->shade, false, pixels, COLORS * TILE_PIXELS};
+  pass->job.lights = lights;
+  pass->job.light_count = light_count;
+  for (int c = 0; c < 3; c++) pass->job.ambient[c] = 0;
+  pass->job.emission = 0;
+  return pass;
+}
+
+hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
+  const layer_pixels *pixels = sweep->layer_pixels;
+  if (pixels == NULL || pixels->wanted == NULL) return HL_OK;
+  hl_status status = allocate_passes(sweep, error);
+  if (status != HL_OK) return status;
+  set_up_white_volumes(sweep);
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    const light_pixels *to = &pixels->lights[sweep->geometry->light[i]];
+    shade_light *white = &sweep->layers.white_lights[i];
+    (void)add_pass(sweep, to->picture, &sweep->shade_lights[i], 1);
+    set_up_white_light(&sweep->shade_lights[i], white);
+    layer_pass *shadow = add_pass(sweep, to->shadow, white, 1);
+    if (shadow != NULL) shadow->white = true;
+  }
+  layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
+  for (int c = 0; c < 3 && ambient != NULL; c++) ambient->job.ambient[c] = sweep->shade.ambient[c];
+  layer_pass *emission = sweep->first ? add_pass(sweep, pixels->emission, NULL, 0) : NULL;
+  if (emission != NULL) emission->job.emission = sweep->shade.emission;
+  layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
+  if (measures != NULL) {
+    measures->shade = sweep->content.hot->render.measure;
+    measures->tile_floats = MEASURES * TILE_PIXELS;
+  }
+  return HL_OK;
+}
+
+void hl_sweep_layers_end(sweep *sweep) {
+  sweep_layers *layers = &sweep->layers;
+  void *owned[] = {layers->passes,        layers->white_lights, layers->white_volumes,
+                   layers->white_patches, layers->white,        layers->ones};
+  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->content.context, owned[i]);
+}
+
+void hl_sweep_layers_sheet(sweep *sweep) {
+  sweep_layers *layers = &sweep->layers;
+  for (int i = 0; i < layers->pass_count; i++) {
+    layers->passes[i].job.rays = sweep->shade.rays;
+    layers->passes[i].job.height = sweep->shade.height;
+  }
+}
+
+/* The tile's patches, of the white volumes. */
+static const shade_patch *white_patches(const sweep *sweep, const tile_slab *slab) {
+  shade_patch *white = sweep->layers.white_patches +
+                       (size_t)slab->worker * (size_t)sweep->content.volume_count;
+  for (int i = 0; i < slab->patch_count; i++) {
+    white[i] = slab->patches[i];
+    white[i].volume = &sweep->layers.white_volumes[slab->patches[i].volume - sweep->shade_volumes];
+  }
+  return white;
+}
+
+void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
+  if (sweep->layers.pass_count == 0) return;
+  tile_slab white = *slab;
+  white.patches = white_patches(sweep, slab);
+  for (int i = 0; i < sweep->layers.pass_count; i++) {
+    const layer_pass *pass = &sweep->layers.passes[i];
+    uint64_t samples = 0; /* statistics count the picture's own samples alone */
+    (void)pass->shade(&pass->job, pass->white ? &white : slab, pass->pixels + slab->tile * pass->tile_floats,
+                      &samples);
+  }
+}

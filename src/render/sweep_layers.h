@@ -1,0 +1,14 @@
+/* render/sweep_layers.h - the layers of a sweep: its tiles shaded once more for each of them. */
+#ifndef HL_RENDER_SWEEP_LAYERS_H
+#define HL_RENDER_SWEEP_LAYERS_H
+
+#include "render/sweep.h"
+
+/* Begin is called after hl_sweep_begin; sheet gives all layers the sheet of the sweep's
+ * own shading; tile shades one tile of every layer. */
+hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
+void hl_sweep_layers_end(sweep *sweep);
+void hl_sweep_layers_sheet(sweep *sweep);
+void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab);
+
+#endif
