@@ -64,7 +64,7 @@ void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
                                lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
 
-/* ---- What a sample needs to know of shadow buffers: its pixel in them, and the light that is left ---- */
+/* ---- Looking up shadow buffers at samples: the map to their pixels, and the transmittance ---- */
 
 /* The map from frame space to a buffer's pixels. */
 typedef struct shadow_map {
