@@ -16,7 +16,8 @@ export function make(tag, attributes = {}, ...children) {
 let identifiers = 0;
 const newId = () => `control-${++identifiers}`;
 
-export const row = (label, ...controls) => make("div", { class: "row" }, label, ...controls);
+// label: an element, or "" for a row without a name.
+export const row = (label, ...controls) => make("div", { class: "row" }, label || make("span"), ...controls);
 
 // Numbers as people read them: three or four digits that matter.
 export function shortNumber(value) {

@@ -5,12 +5,14 @@
 // second; then the exact one, which is what `halflight render` makes of the same scene.
 
 import { fetchFrame } from "./api.js";
+import { worldHeight } from "./camera.js";
+import { length } from "./vector.js";
 
 const BUDGET = 1000 / 20; // milliseconds of a frame while something moves
 const REST_AFTER = 120; // milliseconds without a change
-const SETTLED_WITHIN = 380; // milliseconds for the first picture of full size, so that it comes half a second after
-const LEAST_PIXELS = 160 * 160;
-const MOST_SPACING = 3; // voxels between sheets while something moves
+const SETTLED_WITHIN = 350; // milliseconds for the first picture of full size, so that it is there half a second after
+const WIDEST = 4; // voxels between sheets while something moves, at most
+const LARGEST_PIXEL = 1.45; // voxels: the renderer averages several samples for larger pixels, which saves no time
 const ADAPTION = 0.6; // how much of an error in time one frame corrects, as an exponent
 
 // Sides that are multiples of 16 render without a copy.
@@ -24,13 +26,13 @@ export class Frames {
   #busy = false;
   #generation = 0;
   #timer = 0;
-  #pixels = 300 * 300;
-  #spacing = 1.5;
-  #cost = 0; // milliseconds per pixel of a picture with sheets a voxel apart
+  #work = 60000; // pixels, for sheets a voxel apart, that take as long as the budget
+  #voxels;
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
   // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
-  constructor(store, canvas, report) {
+  constructor(store, start, canvas, report) {
+    this.#voxels = start.volumes.map((volume) => Math.min(...volume.axes.map(length)));
     this.#store = store;
     this.#canvas = canvas;
     this.#report = report;
@@ -68,12 +70,12 @@ export class Frames {
     this.#busy = true;
     while (this.#changed) {
       this.#changed = false;
-      const scene = this.#scaled(this.#pixels, this.#spacing), began = performance.now();
+      const scene = this.#affordable(), began = performance.now();
       try {
         const frame = await fetchFrame(scene, { quality: 80 });
         if (frame !== null) {
           await this.#show(frame.blob, scene.image);
-          this.#learn(scene, performance.now() - began, frame.times.render ?? 0);
+          this.#learn(performance.now() - began);
           this.statistics.previews++;
           this.#tell("moving", scene, began, frame.blob);
         }
@@ -87,29 +89,40 @@ export class Frames {
     this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
   }
 
-  // Larger or smaller, and sheets closer or wider, by how long the last picture took.
-  #learn(scene, milliseconds, rendering) {
-    const { width, height } = scene.image, spacing = scene.render.sheet_spacing;
-    const cost = (rendering * spacing) / (width * height);
-    this.#cost = this.#cost === 0 ? cost : 0.7 * this.#cost + 0.3 * cost;
+  // How much work fits into the budget, by how long the last picture took.
+  #learn(milliseconds) {
     const factor = Math.min(Math.max(BUDGET / milliseconds, 0.25), 2) ** ADAPTION;
-    const pixels = width * height * factor, full = this.#full().pixels;
-    if (pixels < LEAST_PIXELS) this.#spacing = Math.min(this.#spacing / factor, MOST_SPACING);
-    else if (pixels > full / 2 || this.#spacing > 2) this.#spacing = Math.max(this.#spacing / factor, 1);
-    this.#pixels = Math.min(Math.max(pixels, LEAST_PIXELS), full);
+    const least = this.#leastPixels() / WIDEST, most = this.#full().pixels;
+    this.#work = Math.min(Math.max(this.#work * factor, least), most);
+  }
+
+  // The pixels of the smallest picture that is worth while, whose pixels are hardly larger than voxels.
+  #leastPixels() {
+    const { camera, volumes, image } = this.#store.scene;
+    const scale = volumes.map(({ transform }) => [transform?.scale ?? 1].flat().map(Math.abs));
+    const voxel = Math.min(...volumes.map((_, v) => this.#voxels[v] * Math.min(...scale[v])));
+    const height = Math.min(worldHeight(camera) / (LARGEST_PIXEL * voxel), image.height);
+    return Math.max(height, 96) ** 2 * (image.width / image.height);
+  }
+
+  // From the smallest picture with the widest sheets to the full one with sheets a voxel apart, both by equal
+  // factors, so that their work is what fits into the budget.
+  #affordable() {
+    const full = this.#full().pixels, least = Math.min(this.#leastPixels(), full);
+    const at = Math.log((WIDEST * this.#work) / least) / Math.log((WIDEST * full) / least);
+    const part = Math.min(Math.max(at, 0), 1);
+    return this.#scaled(least * (full / least) ** part, WIDEST ** (1 - part));
   }
 
   // The picture at rest, in two steps, as long as nothing changes.
   async #refine(generation) {
     if (generation !== this.#generation) return;
     this.statistics.stage = "refining";
-    const full = this.#full().pixels, scene = this.#store.scene;
-    const spacing = (this.#cost * full) / SETTLED_WITHIN; // that takes as long as there is time
+    const { pixels } = this.#full(), scene = this.#store.scene;
+    const spacing = Math.min((pixels * BUDGET) / (this.#work * SETTLED_WITHIN), WIDEST);
     try {
-      if (spacing > scene.render.sheet_spacing * 1.2) {
-        const coarser = Math.min(spacing, 2);
-        await this.#step(generation, this.#scaled(full * Math.min(1, coarser / spacing), coarser), "settled");
-      }
+      if (spacing > scene.render.sheet_spacing * 1.2)
+        await this.#step(generation, this.#scaled(pixels, spacing), "settled");
       if (generation === this.#generation) await this.#step(generation, scene, "final");
     } catch (error) {
       if (generation === this.#generation) this.#report({ stage: "failed", error });

@@ -84,6 +84,8 @@ function begin(start) {
     volumePanel(store, start, current, chooseVolume), viewPanel(store, () => frameEverything(store)),
     exportPanel(store, start, message),
   ];
+  const box = panels[3].element;
+  box.addEventListener("toggle", () => { overlay.showsBox = box.open; });
   find("panels").append(...panels.map((panel) => panel.element));
   const updatePanels = () => {
     panels.forEach((panel) => panel.update());
@@ -91,7 +93,7 @@ function begin(start) {
     find("redo").disabled = !store.canRedo;
   };
   store.listen((_, name) => { if (name !== "camera") updatePanels(); });
-  const frames = new Frames(store, find("picture"), showFrame);
+  const frames = new Frames(store, start, find("picture"), showFrame);
   new Pointer(find("view"), store);
 
   const help = find("help");

@@ -6,7 +6,7 @@ import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
 import { directionOf, sizeOf, withDirection, withSize } from "./light.js";
 
-const MARKER = { size: 34, left: 56, bottom: 60 }; // pixels
+const MARKER = { size: 34, left: 64, bottom: 64 }; // pixels
 const BAR_WIDTH = 140; // pixels, at most
 const SPHERE_OF_HEIGHT = 0.42; // radius of the sphere on which lights are moved, of the picture's shorter side
 const RING_PER_DEGREE = 1.6; // pixels of a handle's ring for each degree of the light's size
@@ -32,6 +32,7 @@ export class Overlay {
   #box = make("svg:path", { class: "clip-box", "aria-hidden": "true" });
   #width = 1;
   #height = 1;
+  #showBox = false;
   chosenLight = 0;
   onChooseLight = () => {};
 
@@ -47,6 +48,12 @@ export class Overlay {
   get showsLights() { return this.#showLights; }
   set showsLights(shows) {
     this.#showLights = shows;
+    this.draw();
+  }
+
+  // The edges of clipped volumes.
+  set showsBox(shows) {
+    this.#showBox = shows;
     this.draw();
   }
 
@@ -87,7 +94,7 @@ export class Overlay {
   #drawBox() {
     const project = projector(this.#store.scene.camera, this.#width, this.#height);
     const lines = this.#store.scene.volumes.flatMap((volume, v) => {
-      if (!volume.clip || !this.#start.volumes[v]) return [];
+      if (!this.#showBox || !volume.clip || !this.#start.volumes[v]) return [];
       const whole = worldBox(this.#start.volumes[v]), { min, max } = volume.clip;
       if (min.every((x, k) => x <= whole.min[k]) && max.every((x, k) => x >= whole.max[k])) return [];
       const points = corners(volume.clip).map((point) => project(placed(point, volume.transform)));

@@ -23,7 +23,7 @@ function clipRow(axis, box, get, set) {
     const ends = ["min", "max"].map((end) => get()[end][axis]);
     ["min", "max"].forEach((end, n) => { inputs[end].value = ends[n]; });
     text.textContent = ends.map(shortNumber).join(" … ");
-    ends.forEach((value, n) => track.style.setProperty(n === 0 ? "--from" : "--to", `${(100 * (value - box.min[axis])) / span}%`));
+    ends.forEach((value, n) => track.style.setProperty(n === 0 ? "--from" : "--to", (value - box.min[axis]) / span));
   }
   return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, text), update };
 }
