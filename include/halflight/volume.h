@@ -49,6 +49,11 @@ typedef struct hl_volume_description {
   ptrdiff_t stride_bytes[3]; /* bytes from one voxel to the next along i, j, k; all 0: packed */
   int borrow;     /* non-zero: packed u8, u16 and f32 voxels are not copied and must outlive the volume */
   hl_space space; /* default unknown */
+  /* Called once when the library no longer reads `voxels`: when the volume's last reference is released, by
+   * the thread that does it, or before hl_volume_create() returns where voxels were copied. Not called where
+   * hl_volume_create() fails. Default null. */
+  void (*release)(void *release_data, const void *voxels);
+  void *release_data; /* for `release` */
 } hl_volume_description;
 
 #define HL_HISTOGRAM_BINS 256

@@ -224,7 +224,11 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a volume");
   if (packed && description->borrow && can_borrow(description)) {
     made->voxels = description->voxels;
-    return finish_volume(made, subject, volume, error);
+    hl_status measured = finish_volume(made, subject, volume, error);
+    if (measured != HL_OK) return measured;
+    (*volume)->release = description->release;
+    (*volume)->release_data = description->release_data;
+    return HL_OK;
   }
   size_t count = hl_volume_voxel_count(made), voxel_bytes = hl_storage_bytes(made->storage);
   unsigned char *row = hl_allocate(context, description->dimensions[0],
@@ -237,7 +241,10 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   }
   copy_voxels(description, stride, row, made->owned_voxels);
   hl_release(context, row);
-  return finish_volume(made, subject, volume, error);
+  hl_status measured = finish_volume(made, subject, volume, error);
+  if (measured == HL_OK && description->release != NULL)
+    description->release(description->release_data, description->voxels);
+  return measured;
 }
 
 void hl_volume_retain(hl_volume *volume) {
@@ -253,6 +260,7 @@ void hl_volume_release(hl_volume *volume) {
   if (volume == NULL || atomic_fetch_sub(&volume->references, 1) != 1) return;
   hl_arrays_release(volume->context, volume->arrays, volume->array_count);
   hl_release(volume->context, volume->owned_voxels);
+  if (volume->release != NULL) volume->release(volume->release_data, volume->voxels);
   hl_release(volume->context, volume);
 }
 

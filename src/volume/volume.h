@@ -36,6 +36,8 @@ struct hl_volume {
   hl_storage storage;
   const void *voxels; /* [k][j][i]; stored values; owned unless borrowed */
   void *owned_voxels; /* the block to hl_release; null if borrowed */
+  void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
+  void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */
   double value_offset;
   affine3 index_to_world; /* voxel centres at integer indices */

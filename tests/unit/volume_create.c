@@ -215,6 +215,41 @@ static void test_borrowed_voxels_are_not_copied(void **state) {
   hl_context_destroy(context);
 }
 
+static void count_release(void *release_data, const void *voxels) {
+  (void)voxels;
+  ++*(int *)release_data;
+}
+
+/* Voxels are given back once: when the last reference goes, at once where they were copied, never on failure.
+ */
+static void test_borrowed_voxels_are_given_back(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  _Alignas(8) static const uint16_t voxels[8] = {1, 2, 3, 4, 5, 6, 7, 8};
+  int released = 0;
+  hl_volume_description description = describe(2, 2, 2, HL_VOXEL_U16, voxels);
+  description.borrow = 1;
+  description.release = count_release;
+  description.release_data = &released;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
+  hl_volume_retain(volume);
+  hl_volume_release(volume);
+  assert_int_equal(released, 0);
+  hl_volume_release(volume);
+  assert_int_equal(released, 1);
+  description.type = HL_VOXEL_I16; /* copied */
+  assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
+  assert_int_equal(released, 2);
+  hl_volume_release(volume);
+  assert_int_equal(released, 2);
+  description.value_scale = 0; /* refused */
+  assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_ERROR_ARGUMENT);
+  assert_int_equal(released, 2);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void test_nonfinite_voxels(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -396,6 +431,7 @@ int main(void) {
       cmocka_unit_test(test_types_and_strides),
       cmocka_unit_test(test_extremes_of_each_type),
       cmocka_unit_test(test_borrowed_voxels_are_not_copied),
+      cmocka_unit_test(test_borrowed_voxels_are_given_back),
       cmocka_unit_test(test_nonfinite_voxels),
       cmocka_unit_test(test_constant_volume),
       cmocka_unit_test(test_histogram_bins),

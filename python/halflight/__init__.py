@@ -1,0 +1,32 @@
+"""Halflight: pictures of volumes in which every voxel can cast a hard or a soft shadow.
+
+>>> import numpy as np, halflight
+>>> image = halflight.render(np.ones((16, 16, 16), np.uint8), size=(64, 64))
+>>> image.size
+(64, 64)
+
+Arrays are [z][y][x] unless ``axes=`` says otherwise. See docs/python.md.
+"""
+import sys as _sys
+
+if not getattr(_sys, "_is_gil_enabled", lambda: True)():
+    raise ImportError("halflight is not made for Python without the global lock: use the ordinary interpreter")
+
+from ._library import lib as _lib, text_of as _text_of
+from .camera import Camera
+from .colors import colormaps
+from .errors import HalflightWarning, InputError, UnsupportedError
+from .image import Image
+from .lights import Directional, Disk, Light, Point, Polygon, Rect, Spot
+from .render import Renderer, reference, render
+from .scene import Scene
+from .transfer import TransferFunction, presets
+from .volume import Info, Volume, info
+
+__version__ = _text_of(_lib.hl_version())
+
+__all__ = [
+    "Camera", "Directional", "Disk", "HalflightWarning", "Image", "Info", "InputError", "Light", "Point", "Polygon",
+    "Rect", "Renderer", "Scene", "Spot", "TransferFunction", "UnsupportedError", "Volume", "colormaps", "info",
+    "presets", "reference", "render",
+]

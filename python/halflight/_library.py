@@ -1,0 +1,176 @@
+"""The library's calls: one context for the process, errors as exceptions, Ctrl-C and progress.
+
+cffi releases the interpreter's lock during every call. While a call runs, the library asks C code
+(python/native.c), which asks here every 50 ms: in the main thread entering Python runs the handlers of
+signals, so that Ctrl-C raises in `python_wants_stop` and the call ends.
+"""
+from __future__ import annotations
+
+import itertools
+import os
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from . import _native
+from .errors import HalflightWarning, InputError, UnsupportedError
+
+ffi = _native.ffi
+lib = _native.lib
+
+Report = Callable[[str, float], object]
+
+
+class _Calls(threading.local):
+    """What the callbacks of this thread's call leave behind."""
+
+    def __init__(self) -> None:
+        self.failure: BaseException | None = None
+        self.reports: list[Report | None] = []
+        self.messages: list[str] = []
+
+
+_calls = _Calls()
+_lent: dict[int, object] = {}  # arrays that volumes borrow, by the number that the library gives back
+_numbers = itertools.count(1)
+
+
+def _remember(kind: type[BaseException], failure: BaseException, trace: object) -> None:
+    _calls.failure = failure
+
+
+@ffi.def_extern(error=1, onerror=_remember)  # type: ignore[untyped-decorator]
+def python_wants_stop() -> int:
+    return 0
+
+
+@ffi.def_extern(error=1, onerror=_remember)  # type: ignore[untyped-decorator]
+def python_progress(stage: Any, fraction: float) -> int:
+    report = _calls.reports[-1] if _calls.reports else None
+    if report is not None:
+        report(text_of(stage), fraction)
+    return 0
+
+
+@ffi.def_extern()  # type: ignore[untyped-decorator]
+def python_log(level: int, message: Any) -> None:
+    if level == lib.HL_LOG_WARNING:
+        _calls.messages.append(text_of(message))
+
+
+@ffi.def_extern()  # type: ignore[untyped-decorator]
+def python_array_released(key: int) -> None:
+    _lent.pop(key, None)
+
+
+def text_of(characters: Any) -> str:
+    """The text of a `const char *`."""
+    whole: bytes = ffi.string(characters)
+    return whole.decode("utf-8", "replace")
+
+
+def _make_context() -> Any:
+    made, error = ffi.new("hl_context **"), ffi.new("hl_error *")
+    if lib.python_context_create(made, error) != lib.HL_OK:
+        raise ImportError(text_of(error.message))
+    return made[0]
+
+
+context = _make_context()
+
+
+def lend(description: Any, array: object) -> None:
+    """Keep `array` until the library no longer reads the voxels of `description`."""
+    key = next(_numbers)
+    _lent[key] = array
+    lib.python_lend(description, key)
+
+
+def unlend(description: Any) -> None:
+    """Take back what was lent where no volume was made."""
+    _lent.pop(int(ffi.cast("uintptr_t", description.release_data)), None)
+
+
+def _exception(status: int, error: Any, path: str | None) -> BaseException:
+    message = text_of(error.message) or text_of(lib.hl_status_name(status))
+    if status == lib.HL_ERROR_CANCELLED:
+        failure, _calls.failure = _calls.failure, None
+        return failure or KeyboardInterrupt()
+    if path is not None and not os.path.exists(path) and status in (lib.HL_ERROR_IO, lib.HL_ERROR_INPUT):
+        return FileNotFoundError(message)
+    if status == lib.HL_ERROR_INPUT:
+        failed = InputError(message)
+        failed.line, failed.column, failed.byte_offset = error.line, error.column, error.byte_offset
+        return failed
+    kinds: dict[int, type[Exception]] = {
+        lib.HL_ERROR_ARGUMENT: ValueError, lib.HL_ERROR_MEMORY: MemoryError, lib.HL_ERROR_IO: OSError,
+        lib.HL_ERROR_UNSUPPORTED: UnsupportedError}
+    return kinds.get(status, RuntimeError)(message)
+
+
+def _frames_to_caller() -> int:
+    """How many frames up the first one outside this package is: where a warning belongs."""
+    depth, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        depth, frame = depth + 1, frame.f_back
+    return depth
+
+
+def warn(message: str) -> None:
+    """Warn the caller of the package."""
+    warnings.warn(message, HalflightWarning, stacklevel=_frames_to_caller())
+
+
+@contextmanager
+def listening(report: Report | None) -> Iterator[None]:
+    """Calls within tell their progress to `report`."""
+    _calls.reports.append(report)
+    try:
+        yield
+    finally:
+        _calls.reports.pop()
+
+
+def call(function: Any, *arguments: Any, path: str | None = None) -> None:
+    """Call `function(*arguments, error)`, and raise what it reports.
+
+    Parameters
+    ----------
+    function : C function
+        One that returns hl_status and takes hl_error last.
+    path : str, optional
+        The file that is read: where it is missing, the exception is FileNotFoundError.
+    """
+    error = ffi.new("hl_error *")
+    lib.python_call_begin(bool(_calls.reports) and _calls.reports[-1] is not None)
+    try:
+        status = function(*arguments, error)
+    finally:
+        lib.python_call_end()
+    if _calls.messages:
+        messages, _calls.messages = _calls.messages, []
+        for message in messages:
+            warn(message)
+    if status != lib.HL_OK:
+        raise _exception(status, error, path)
+    if _calls.failure is not None:  # a callback failed in the call's last moment
+        failure, _calls.failure = _calls.failure, None
+        raise failure
+
+
+def made(function: Any, type_name: str, release: Any, *arguments: Any, path: str | None = None) -> Any:
+    """The object that `function(*arguments, &object, error)` makes; `release` ends it."""
+    place = ffi.new(f"{type_name} **")
+    call(function, *arguments, place, path=path)
+    return ffi.gc(place[0], release)
+
+
+def names(function: Any) -> list[str]:
+    """The names that `function(0)`, `function(1)`, ... tell until null."""
+    found: list[str] = []
+    while (name := function(len(found))) != ffi.NULL:
+        found.append(text_of(name))
+    return found

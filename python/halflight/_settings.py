@@ -1,0 +1,95 @@
+"""Fields of the library's structs by the names of its tables of settings (halflight/settings.h)."""
+from __future__ import annotations
+
+import functools
+import numbers
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from ._library import ffi, lib, text_of
+from ._words import choice
+
+
+class Setting(NamedTuple):
+    """A row of a table."""
+
+    field: str
+    type: int
+    choices: dict[str, int]
+    only_for: int
+    standard: tuple[float, ...]
+
+
+@functools.cache
+def table(kind: int) -> dict[str, Setting]:
+    """The rows of a table by the names of the struct's fields."""
+    rows = {}
+    for index in range(lib.hl_setting_count(kind)):
+        row = lib.hl_setting_get(kind, index)
+        choices: dict[str, int] = {}
+        while row.choices != ffi.NULL and row.choices[len(choices)].name != ffi.NULL:
+            one = row.choices[len(choices)]
+            choices[text_of(one.name)] = one.value
+        field = text_of(row.field)
+        rows[field] = Setting(field, row.type, choices, row.only_for, tuple(row.standard))
+    return rows
+
+
+def number(place: str, value: object) -> float:
+    """A real number."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        if not (hasattr(value, "__float__") and getattr(value, "shape", None) == ()):
+            raise TypeError(f"{place}: {value!r} is no number")
+    return float(value)
+
+
+def numbers_of(place: str, value: Any, count: int = 3) -> list[float]:
+    """A sequence of `count` real numbers."""
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
+        raise TypeError(f"{place}: {value!r} is not {count} numbers")
+    if len(value) != count:
+        raise ValueError(f"{place}: {len(value)} numbers where {count} are needed")
+    return [number(f"{place}[{index}]", one) for index, one in enumerate(value)]
+
+
+def to_field(place: str, setting: Setting, value: object) -> object:
+    """`value` as cffi wants it in the struct's field."""
+    if setting.type == lib.HL_SETTING_FLAG:
+        if type(value).__name__ not in ("bool", "bool_"):
+            raise TypeError(f"{place}: {value!r} is neither True nor False")
+        return int(bool(value))
+    if setting.type == lib.HL_SETTING_CHOICE or (setting.choices and isinstance(value, str)):
+        return setting.choices[choice(place, value, setting.choices)]
+    if setting.type == lib.HL_SETTING_WHOLE:
+        whole = number(place, value)
+        if whole != int(whole) or abs(whole) >= 2**31:
+            raise ValueError(f"{place}: {value!r} is no whole number")
+        return int(whole)
+    if setting.type == lib.HL_SETTING_NUMBER:
+        return number(place, value)
+    return numbers_of(place, value)
+
+
+def from_field(setting: Setting, value: Any) -> Any:
+    """What Python calls the value of a field."""
+    if setting.type == lib.HL_SETTING_FLAG:
+        return bool(value)
+    if setting.type == lib.HL_SETTING_CHOICE:
+        return next((name for name, code in setting.choices.items() if code == value), None)
+    if setting.type in (lib.HL_SETTING_NUMBER, lib.HL_SETTING_WHOLE):
+        return value
+    return tuple(value)
+
+
+def fill(place: str, struct: Any, kind: int, values: Mapping[str, object]) -> None:
+    """Set the struct's fields that `values` names and that are not None."""
+    rows = table(kind)
+    for name, value in values.items():
+        if value is not None:
+            setattr(struct, name, to_field(f"{place}{name}", rows[name], value))
+
+
+def read(struct: Any, kind: int, only_for: int | None = None) -> dict[str, Any]:
+    """The struct's fields; of lights and cameras those that the type has."""
+    return {name: from_field(row, getattr(struct, name)) for name, row in table(kind).items()
+            if only_for is None or row.only_for == 0 or row.only_for & 1 << only_for}

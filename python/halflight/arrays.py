@@ -1,0 +1,142 @@
+"""Arrays as the library reads them: where voxels lie in memory, and where in the world.
+
+The library borrows packed voxels of uint8, uint16 and float32. Which index axis is called first, and from which
+end it is counted, is free, so every array whose voxels fill a block of memory is borrowed as it lies: C or
+Fortran order, transposed or flipped. Other arrays are copied once, by the library.
+"""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ._library import call, context, ffi, lend, lib, unlend, warn
+from ._settings import number, numbers_of
+
+_TYPES = {
+    "u1": lib.HL_VOXEL_U8, "i1": lib.HL_VOXEL_I8, "u2": lib.HL_VOXEL_U16, "i2": lib.HL_VOXEL_I16,
+    "u4": lib.HL_VOXEL_U32, "i4": lib.HL_VOXEL_I32, "u8": lib.HL_VOXEL_U64, "i8": lib.HL_VOXEL_I64,
+    "f2": lib.HL_VOXEL_F16, "f4": lib.HL_VOXEL_F32, "f8": lib.HL_VOXEL_F64,
+}
+_BORROWED = ("u1", "u2", "f4")
+_LARGE = 64 << 20  # bytes: a copy of this size is worth a word
+
+Spacing = float | Sequence[float]
+
+
+class Place(NamedTuple):
+    """Where the voxels are: the first one's centre, and the world step along each of the index axes x, y, z."""
+
+    origin: tuple[float, ...]
+    steps: tuple[tuple[float, ...], ...]
+
+
+def check_axes(axes: object) -> str:
+    """`axes`, if it has each of x, y and z once."""
+    if not isinstance(axes, str):
+        raise TypeError(f"axes: {axes!r} is no text such as 'zyx'")
+    if sorted(axes) != ["x", "y", "z"]:
+        raise ValueError(f"axes: '{axes}' does not have each of x, y and z once: 'zyx' is [z][y][x], 'xyz' [x][y][z]")
+    return axes
+
+
+def spacing_xyz(spacing: Spacing, axes: str) -> list[float]:
+    """The distances along x, y and z: `spacing` has the array's order, or is one number for all."""
+    given = [number("spacing", spacing)] * 3 if np.ndim(spacing) == 0 else numbers_of("spacing", spacing)
+    for one in given:
+        if not one > 0:
+            raise ValueError(f"spacing: {one:g} is not above 0: give the world units between voxels")
+    return [given[axes.index(name)] for name in "xyz"]
+
+
+def _matrix(place: str, value: Any, shapes: Sequence[tuple[int, int]]) -> list[list[float]]:
+    """A matrix of one of these shapes, or its numbers in a row."""
+    try:
+        matrix = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{place}: {value!r} is no matrix of numbers") from None
+    for shape in shapes:
+        if matrix.shape == shape or matrix.shape == (shape[0] * shape[1],):
+            found: list[list[float]] = matrix.reshape(shape).tolist()
+            return found
+    wanted = " or ".join(f"{rows}x{columns}" for rows, columns in shapes)
+    raise ValueError(f"{place}: the shape {matrix.shape} is not {wanted}")
+
+
+def make_place(axes: str, spacing: Spacing | None, origin: Any, direction: Any, affine: Any) -> Place:
+    """The place that the keywords of `Volume` say."""
+    if affine is not None:
+        for name, value in (("spacing", spacing), ("origin", origin), ("direction", direction)):
+            if value is not None:
+                raise TypeError(f"{name} and affine say the same: give one of them")
+        rows = _matrix("affine", affine, [(4, 4), (3, 4)])
+        return Place(tuple(row[3] for row in rows[:3]), tuple(tuple(row[n] for row in rows[:3]) for n in range(3)))
+    along = spacing_xyz(1.0 if spacing is None else spacing, axes)
+    turned = np.eye(3).tolist() if direction is None else _matrix("direction", direction, [(3, 3)])
+    first = [0.0, 0.0, 0.0] if origin is None else numbers_of("origin", origin)
+    return Place(tuple(first), tuple(tuple(row[n] * along[n] for row in turned) for n in range(3)))
+
+
+def readable(array: np.ndarray[Any, Any], axes: str) -> np.ndarray[Any, Any]:
+    """The voxels as [z][y][x] in a type and byte order that the library reads; a view where that is possible."""
+    if array.ndim != 3:
+        raise ValueError(f"the array has the shape {array.shape}: a volume has three axes, here '{axes}'; "
+                         "of more, choose with an index, such as array[0]")
+    if isinstance(array, np.ma.MaskedArray):
+        array = np.ma.filled(array.astype(np.float32), np.nan)
+    voxels = array.transpose([axes.index(name) for name in "zyx"])
+    if voxels.dtype == np.bool_:
+        voxels = voxels.view(np.uint8)
+    kind = voxels.dtype.str[1:]
+    if kind not in _TYPES:
+        raise TypeError(f"the array's type is {array.dtype}: a volume is of bool, integers or floats of 16 to 64 bits")
+    if not voxels.dtype.isnative:
+        if voxels.nbytes >= _LARGE:
+            warn(f"the array's bytes are in the other order: {voxels.nbytes >> 20} MiB are copied")
+        voxels = voxels.astype(voxels.dtype.newbyteorder("="))
+    if not voxels.flags.aligned or not any(voxels.strides):
+        voxels = np.array(voxels, order="C")
+    return voxels
+
+
+def _as_it_lies(voxels: np.ndarray[Any, Any], place: Place) -> tuple[np.ndarray[Any, Any], Place]:
+    """Axes sorted by their strides, none counted backwards: packed wherever the voxels fill a block."""
+    origin, steps = list(place.origin), list(place.steps)
+    for n in range(3):
+        axis = 2 - n  # of the array [z][y][x]
+        if voxels.strides[axis] < 0 and voxels.shape[axis] > 1:
+            origin = [o + s * (voxels.shape[axis] - 1) for o, s in zip(origin, steps[n], strict=True)]
+            steps[n] = tuple(-s for s in steps[n])
+            voxels = np.flip(voxels, axis)
+    order = sorted(range(3), key=lambda axis: -voxels.strides[axis] if voxels.shape[axis] > 1 else 0)
+    lying = voxels.transpose(order)
+    if voxels.flags.c_contiguous or not lying.flags.c_contiguous:
+        return voxels, Place(tuple(origin), tuple(steps))
+    return lying, Place(tuple(origin), tuple(steps[2 - axis] for axis in reversed(order)))
+
+
+def make_volume(array: np.ndarray[Any, Any], axes: str, place: Place, space: int, owner: object) -> Any:
+    """An hl_volume of the array's voxels; `owner` is kept as long as it borrows them."""
+    if 0 in array.shape:
+        raise ValueError(f"the array has the shape {array.shape}: there is no voxel in it")
+    voxels = readable(array, axes)
+    kind = voxels.dtype.str[1:]
+    if kind in _BORROWED:
+        voxels, place = _as_it_lies(voxels, place)
+    description = ffi.new("hl_volume_description *")
+    lib.hl_volume_description_defaults(description)
+    description.type = _TYPES[kind]
+    description.dimensions = voxels.shape[::-1]
+    description.stride_bytes = [0, 0, 0] if voxels.flags.c_contiguous else voxels.strides[::-1]
+    description.origin, description.axis = place.origin, place.steps
+    description.space = space
+    description.voxels = ffi.cast("void *", voxels.__array_interface__["data"][0])
+    lend(description, (voxels, owner))
+    made = ffi.new("hl_volume **")
+    try:
+        call(lib.hl_volume_create, context, description, made)
+    except BaseException:
+        unlend(description)
+        raise
+    return ffi.gc(made[0], lib.hl_volume_release)

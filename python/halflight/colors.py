@@ -1,0 +1,99 @@
+"""Colours and colormaps.
+
+Numbers are linear RGB, as everywhere in Halflight. Names, "#rrggbb" and matplotlib's colormaps are sRGB, and
+are made linear here.
+"""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ._library import lib, names
+from ._settings import numbers_of
+from ._words import nearest
+
+__all__ = ["colormaps"]
+
+# Matplotlib's one-letter names and the commonest CSS ones, sRGB; others come from matplotlib where it is there.
+_NAMED = {
+    "black": "#000000", "white": "#ffffff", "red": "#ff0000", "lime": "#00ff00", "green": "#008000",
+    "blue": "#0000ff", "yellow": "#ffff00", "cyan": "#00ffff", "magenta": "#ff00ff", "gray": "#808080",
+    "grey": "#808080", "silver": "#c0c0c0", "orange": "#ffa500", "purple": "#800080", "brown": "#a52a2a",
+    "pink": "#ffc0cb", "gold": "#ffd700", "navy": "#000080", "teal": "#008080", "ivory": "#fffff0",
+    "tan": "#d2b48c", "k": "#000000", "w": "#ffffff",
+}
+
+
+def colormaps() -> list[str]:
+    """The library's own colormaps.
+
+    Examples
+    --------
+    >>> "viridis" in colormaps()
+    True
+    """
+    return names(lib.hl_colormap_name)
+
+
+def to_linear(srgb: Any) -> Any:
+    """sRGB values from 0 to 1 as linear light (IEC 61966-2-1)."""
+    values = np.asarray(srgb, dtype=np.float64)
+    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+
+
+def linear_color(place: str, color: Any) -> list[float]:
+    """A colour as three numbers: a name, "#rrggbb", a grey level or linear RGB."""
+    if isinstance(color, str):
+        code = _NAMED.get(color.lower(), color)
+        if code.startswith("#") and len(code) == 7:
+            try:
+                return [float(one) for one in to_linear([int(code[n:n + 2], 16) / 255 for n in (1, 3, 5)])]
+            except ValueError:
+                pass
+        try:
+            from matplotlib.colors import to_rgb
+
+            return [float(one) for one in to_linear(to_rgb(color))]
+        except (ImportError, ValueError):
+            raise ValueError(f"{place}: there is no colour '{color}'{nearest(color, _NAMED)}") from None
+    if np.ndim(color) == 0:
+        return 3 * numbers_of(place, [color], 1)
+    return numbers_of(place, color)
+
+
+def sampled(place: str, cmap: Any, low: float, high: float) -> list[list[float]] | None:
+    """Colour points [value, r, g, b] from `low` to `high` for a colormap that the library does not name.
+
+    `cmap` is a matplotlib colormap, its name, a colour, or a sequence of colours. None: the library has it.
+    """
+    if isinstance(cmap, str):
+        if cmap in colormaps():
+            return None
+        cmap = _by_name(place, cmap)
+    if not callable(cmap) and (not hasattr(cmap, "__len__") or len(cmap) == 0):
+        raise TypeError(f"{place}: {cmap!r} is no colormap, colour or list of colours")
+    if callable(cmap):
+        colors = to_linear(np.asarray(cmap(np.linspace(0, 1, 256)))[:, :3])
+    else:
+        colors = np.asarray([linear_color(place, one) for one in cmap]) if np.ndim(cmap) != 1 or any(
+            isinstance(one, str) for one in cmap) else np.asarray([linear_color(place, cmap)])
+    if len(colors) == 0:
+        raise ValueError(f"{place}: there is no colour in it")
+    values = np.linspace(low, high, len(colors)) if len(colors) > 1 else [low]
+    return [[float(value), *map(float, color)] for value, color in zip(values, colors, strict=True)]
+
+
+def _by_name(place: str, name: str) -> Any:
+    """A matplotlib colormap, or one colour."""
+    try:
+        from matplotlib import colormaps as of_matplotlib
+
+        if name in of_matplotlib:
+            return of_matplotlib[name]
+    except ImportError:
+        pass
+    try:
+        return [linear_color(place, name)]
+    except ValueError:
+        raise ValueError(f"{place}: there is no colormap or colour '{name}'{nearest(name, colormaps())}") from None

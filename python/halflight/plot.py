@@ -1,0 +1,61 @@
+"""`Image.plot`: a picture in a matplotlib axis."""
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .image import Image
+
+_LONGEST = 0.25  # of the picture's width: the scale bar
+
+
+def world_height(image: Image) -> float:
+    """The world height of the picture at the camera's target."""
+    camera = image.scene.camera
+    if camera.height is not None:
+        return camera.height
+    return 2 * math.dist(camera.position, camera.target) * math.tan(math.radians(camera.fovy_deg) / 2)
+
+
+def round_length(longest: float) -> float:
+    """The greatest of 1, 2 and 5 times a power of ten that is not longer."""
+    power = 10.0 ** math.floor(math.log10(longest))
+    return next(factor * power for factor in (5, 2, 1) if factor * power <= longest)
+
+
+def _srgb(linear: Any) -> Any:
+    values = np.clip(linear, 0, 1)
+    return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055)
+
+
+def plot(image: Image, ax: Axes | None, colorbar: bool, scale_bar: bool, unit: str) -> Axes:
+    """See `Image.plot`."""
+    from matplotlib import pyplot
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, Normalize
+
+    axis: Axes = pyplot.subplots()[1] if ax is None else ax
+    axis.imshow(image.to_srgb8())
+    axis.set_axis_off()
+    width, height = image.size
+    if scale_bar:
+        pixel = world_height(image) / height
+        length = round_length(_LONGEST * width * pixel)
+        x, y = 0.05 * width, 0.95 * height
+        axis.plot([x, x + length / pixel], [y, y], color="white", linewidth=3, solid_capstyle="butt")
+        axis.annotate(f"{length:g} {unit}".strip(), (x + length / pixel / 2, y), xytext=(0, 4),
+                      textcoords="offset points", color="white", ha="center", va="bottom")
+    if colorbar:
+        points = image.scene.volumes[0].look["transfer_function"].color
+        low, high = points[0, 0], points[-1, 0]
+        if low < high:
+            values = np.linspace(low, high, 256)
+            shown = _srgb(np.stack([np.interp(values, points[:, 0], points[:, c]) for c in (1, 2, 3)], 1))
+            bar = ScalarMappable(Normalize(low, high), ListedColormap(shown.tolist()))
+            axis.figure.colorbar(bar, ax=axis)
+    return axis

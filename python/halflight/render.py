@@ -1,0 +1,280 @@
+"""From a scene to a picture."""
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _settings, arrays, transfer
+from ._library import call, context, ffi, lib, made, text_of
+from ._words import suggests
+from .camera import Camera
+from .image import Image, Pixels
+from .lights import Light
+from .progress import Progress, told
+from .scene import Scene, Settings
+from .volume import Look, Source, Volume
+
+__all__ = ["Renderer", "reference", "render"]
+
+
+def _add_layers(image: Image) -> tuple[Any, dict[str, Pixels], list[Any]]:
+    """Buffers for all layers, as ``halflight render --layers`` asks for them."""
+    struct = lib.hl_scene_describe(image.scene._handle)
+    layers = ffi.new("hl_layers *")
+    layers.struct_size = ffi.sizeof("hl_layers")
+    arrays_by_name: dict[str, Pixels] = {}
+    lights = ffi.new("hl_light_layers[]", struct.light_count)
+
+    def add(name: str, channels: str) -> Any:
+        pointer, arrays_by_name[name] = image._add_layer(name, channels)
+        return pointer
+
+    layers.ambient = add("ambient", "RGB")
+    volumes = [struct.volumes[n] for n in range(struct.volume_count)]
+    if any(one.shading == lib.HL_SHADING_FLAT or one.material.emission > 0 for one in volumes):
+        layers.emission = add("emission", "RGB")
+    for n, light in enumerate(lights):
+        light.picture = add(f"light{n}", "RGB")
+        light.shadow = add(f"light{n}_shadow", "RGB")
+    layers.lights, layers.light_count = lights, len(lights)
+    layers.depth_first = add("depth_first", "Z")
+    layers.depth_mean = add("depth_mean", "Z")
+    layers.normal = add("normal", "XYZ")
+    return layers, arrays_by_name, [lights]
+
+
+def _told_statistics(struct: Any) -> dict[str, Any]:
+    names = [name for name, _ in ffi.typeof("hl_render_statistics").fields if name != "struct_size"]
+    found = {name: getattr(struct, name) for name in names}
+    found["instruction_set"] = text_of(lib.hl_instruction_set_name(struct.instruction_set))
+    return found
+
+
+def _as_scene(scene: Any) -> Scene:
+    if not isinstance(scene, Scene):
+        raise TypeError(f"{type(scene).__name__} is no Scene: use halflight.render() for volumes")
+    return scene
+
+
+class Renderer:
+    """Renders scenes one after the other, and keeps what is prepared of their volumes.
+
+    A renderer serves one thread at a time (another one waits); for more, make one for each. After ``fork`` the
+    child may go on with it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> scene, renderer = Scene(np.ones((8, 8, 8), np.uint8), size=(32, 32)), Renderer()
+    >>> frames = [renderer.render(scene.replace(camera=(angle, 20))) for angle in (0, 90)]
+    >>> [frame.size for frame in frames]
+    [(32, 32), (32, 32)]
+    """
+
+    __slots__ = ("__weakref__", "_handle", "_lock", "_process")
+
+    def __init__(self) -> None:
+        self._handle = made(lib.hl_renderer_create, "hl_renderer", lib.hl_renderer_destroy, context)
+        self._lock, self._process = threading.Lock(), os.getpid()
+
+    @suggests
+    def render(self, scene: Scene, *, layers: bool = False, progress: Progress = None) -> Image:
+        """The scene's picture.
+
+        Parameters
+        ----------
+        scene : Scene
+            What is rendered.
+        layers : bool
+            Keep each light, its shadow, ambient light, depths and normals apart, in ``Image.layers``.
+        progress : bool or callable, optional
+            True: a bar by tqdm, or a line on stderr. A callable gets the stage's name and a fraction, 0 to 1;
+            what it raises stops the render.
+        """
+        if self._process != os.getpid():  # a lock that another thread held at the fork stays locked
+            self._lock, self._process = threading.Lock(), os.getpid()
+        image = Image(_as_scene(scene))
+        wanted, found, keep = _add_layers(image) if layers else (ffi.NULL, dict[str, Pixels](), [])
+        statistics = ffi.new("hl_render_statistics *")
+        statistics.struct_size = ffi.sizeof("hl_render_statistics")
+        with self._lock, told(progress):
+            call(lib.hl_renderer_render_layers, self._handle, scene._handle, lib.hl_image_pixels(image._handle),
+                 4 * image.size[0], wanted, statistics)
+        del keep
+        image._finish(found, _told_statistics(statistics))
+        return image
+
+
+@suggests
+def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, rays: int = 0, layers: bool = False,
+              progress: Progress = None) -> Image:
+    """The scene's picture by the slow ray marcher that judges the sheets.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is rendered.
+    light_points : int
+        Points on each extended light.
+    step : float
+        In smallest voxel edges.
+    rays : int
+        Along each side of a pixel, 1 to 8; 0: as many as the renderer averages.
+    layers, progress
+        As for `Renderer.render`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> scene = Scene(np.ones((8, 8, 8), np.uint8), size=(16, 16), shadows="hard")
+    >>> exact = np.asarray(reference(scene))
+    >>> bool(abs(exact - Renderer().render(scene)).max() < 0.1)
+    True
+    """
+    image = Image(_as_scene(scene))
+    options = ffi.new("hl_reference_options *")
+    lib.hl_reference_options_defaults(options)
+    options.light_points, options.step, options.rays = light_points, step, rays
+    options.threads = lib.hl_scene_describe(scene._handle).render.threads
+    wanted, found, keep = _add_layers(image) if layers else (ffi.NULL, dict[str, Pixels](), [])
+    with told(progress):
+        call(lib.hl_reference_render_layers, context, scene._handle, options, lib.hl_image_pixels(image._handle),
+             4 * image.size[0], wanted)
+    del keep
+    image._finish(found, {})
+    return image
+
+
+def _clim(clim: Any) -> list[float] | None:
+    if clim is None:
+        return None
+    low, high = _settings.numbers_of("clim", clim, 2)
+    if not low < high:
+        raise ValueError(f"clim: {low:g} is not below {high:g}")
+    return [low, high]
+
+
+def _look(volume: Volume, cmap: Any, clim: Any, opacity: Any, unit_distance: float | None, tf: Any) -> Volume:
+    """The volume with the transfer function that the keywords ask for."""
+    range_wanted = _clim(clim)
+    if all(one is None for one in (cmap, clim, opacity, unit_distance, tf)):
+        return volume
+    function: transfer.TransferFunction = volume.look["transfer_function"]
+    info = volume.info()
+    if tf is not None:
+        function = transfer.named_function(tf, volume._handle, function)
+    if opacity is not None:
+        values = range_wanted or list(info.range)
+        distance = float(info.spacing.min()) if unit_distance is None else unit_distance
+        color = function.color
+        if range_wanted is not None and cmap is None:
+            color = transfer.spread(function, range_wanted, info.range).color
+        function = transfer.TransferFunction(transfer.opacity_points(opacity, values), color, distance)
+    elif range_wanted is not None:
+        function = transfer.spread(function, range_wanted, info.range)
+    if unit_distance is not None:
+        function = transfer.TransferFunction(function.opacity, function.color,
+                                             _settings.number("opacity_unit_distance", unit_distance))
+    if cmap is not None:
+        function = transfer.recolored(function, cmap, range_wanted, volume._handle)
+    return volume.replace(transfer_function=function)
+
+
+def _given(**words: Any) -> dict[str, Any]:
+    return {word: value for word, value in words.items() if value is not None}
+
+
+def _is_scene(volume: Any) -> bool:
+    return isinstance(volume, (str, os.PathLike)) and os.fspath(volume).lower().endswith(".json")
+
+
+@suggests
+def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None, direction: Any = None,
+           affine: Any = None, axes: str | None = None, cmap: Any = None, clim: Sequence[float] | None = None,
+           opacity: Any = None, opacity_unit_distance: float | None = None, shade: bool | str | None = None,
+           ambient: float | None = None, diffuse: float | None = None, specular: float | None = None,
+           shininess: float | None = None, tf: Any = None, shadows: bool | str | None = None,
+           lights: Light | Sequence[Light] | None = None, camera: Camera | str | tuple[float, float] | None = None,
+           size: tuple[int, int] | None = None, background: Any = None, threads: int | None = None,
+           layers: bool = False, progress: Progress = None) -> Image:
+    """A picture of a volume, in one call.
+
+    An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
+    What is not given is chosen from the data, as ``halflight render`` does; a file's picture is byte for byte the
+    program's.
+
+    Parameters
+    ----------
+    volume : path, array, Volume, or an object that has an array
+        A volume file, a scene file (.json), or what `Volume` takes.
+    spacing, origin, direction, affine, axes : optional
+        The place of an array in the world: see `Volume`.
+    cmap : str, matplotlib colormap, colour or colours, optional
+        Halflight's colormaps, matplotlib's, or one colour; over `clim`, by default over the values that are seen.
+    clim : (low, high), optional
+        The data values that colours and, unless `opacity` has values of its own, opacities spread over.
+    opacity : float, str or sequence, optional
+        A number for all values; "linear", "sigmoid" or "geom" over `clim`; numbers spread evenly over `clim`; or
+        pairs (value, opacity). Per `opacity_unit_distance`.
+    opacity_unit_distance : float, optional
+        World units; by default the smallest voxel edge where `opacity` is given.
+    shade : bool or str, optional
+        True or "phong": surfaces; False or "flat": the colours themselves, without light; "none": a medium, lit
+        and shadowed, without surfaces.
+    ambient, diffuse, specular, shininess : float, optional
+        The material: ka, kd, ks and n.
+    tf : str, path or TransferFunction, optional
+        A preset (`presets`), or a file: Halflight's, ParaView's or Slicer's.
+    shadows : bool or str, optional
+        "off", "hard" or "soft"; True is "soft".
+    lights : a light or a list of them, optional
+        See `halflight.lights`.
+    camera : Camera, str or (azimuth, elevation), optional
+        A side ("front", "left", "top", "iso", ...) and angles in degrees frame the volume.
+    size : (width, height), optional
+        Pixels; default (512, 512).
+    background : colour or "transparent", optional
+        Names and "#rrggbb" are sRGB, numbers linear.
+    threads : int, optional
+        0, the default, is one per processor. The picture is the same with any number.
+    layers, progress : optional
+        As for `Renderer.render`.
+
+    Returns
+    -------
+    Image
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
+    >>> image = render(np.exp(-4 * (x**2 + y**2 + z**2)), cmap="inferno", size=(64, 48))
+    >>> image.size
+    (64, 48)
+    """
+    place = _given(spacing=spacing, origin=origin, direction=direction, affine=affine, axes=axes)
+    shading = ("phong" if shade else "flat") if isinstance(shade, (bool, np.bool_)) else shade
+    material: Look = _given(ambient=ambient, diffuse=diffuse, specular=specular,  # type: ignore[assignment]
+                            shininess=shininess, shading=shading)
+    settings: Settings = _given(  # type: ignore[assignment]
+        shadows=("soft" if shadows else "off") if isinstance(shadows, (bool, np.bool_)) else shadows, lights=lights,
+        camera=camera, size=size, background=background, threads=threads)
+    with told(progress):
+        scene = _scene_of(volume, place, material, settings, (cmap, clim, opacity, opacity_unit_distance, tf))
+    return Renderer().render(scene, layers=layers, progress=progress)
+
+
+def _scene_of(volume: Any, place: Mapping[str, Any], material: Look, settings: Settings,
+              look: tuple[Any, Any, Any, Any, Any]) -> Scene:
+    if isinstance(volume, Scene) or _is_scene(volume):
+        for word in place:
+            raise TypeError(f"{word} is for volumes: a scene says where its volumes are")
+        scene = volume if isinstance(volume, Scene) else Scene.load(volume)
+        changed = [_look(one, *look).replace(**material) for one in scene.volumes]
+        return scene.replace(changed, **settings)
+    one = Volume(volume, **place)
+    return Scene(_look(one, *look).replace(**material), **settings)

@@ -1,0 +1,268 @@
+"""Scenes: volumes, lights, a camera and settings, checked by the library when they are made."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, TypedDict, Unpack
+
+from . import _settings, colors
+from ._library import call, context, ffi, lib, made, text_of
+from ._words import check_keywords, choice
+from .camera import Camera, camera_from
+from .lights import Light, light_from
+from .volume import Volume, as_volume, volume_from
+
+__all__ = ["Scene", "Settings"]
+
+SIDES = ("automatic", "front", "back", "left", "right", "top", "bottom", "iso")
+
+
+class Settings(TypedDict, total=False):
+    """Keywords of `Scene`. What is not given is chosen from the first volume."""
+
+    camera: Camera | str | tuple[float, float]
+    lights: Light | Sequence[Light]
+    ambient: float | Sequence[float] | str
+    size: tuple[int, int]
+    background: float | Sequence[float] | str
+    exposure: float
+    description: str
+    shadows: str
+    soft_method: str
+    light_samples: int
+    sheet_spacing: float
+    kernel: str
+    reconstruction: str
+    slicing: str
+    shadow_lookup: str
+    shadow_resolution: int | str
+    threads: int
+    compositing: str
+
+
+class Scene:
+    """What is rendered; immutable.
+
+    Parameters
+    ----------
+    volumes : Volume, path, array, or a list of them
+        Look, lights and camera are chosen from the first, as ``halflight render`` does.
+    **settings : Settings
+        `camera` (a Camera; "front", "back", "left", "right", "top", "bottom", "iso"; or azimuth and elevation in
+        degrees), `lights`, `ambient`, `size` (width, height in pixels), `background` (a colour or "transparent"),
+        `exposure` (stops), `description`, and the scene file's `render` keys: `shadows` ("off", "hard", "soft"),
+        `soft_method` ("cascade", "paper", "sublights"), `light_samples`, `sheet_spacing`, `kernel`,
+        `reconstruction`, `slicing`, `shadow_lookup`, `shadow_resolution`, `threads`, `compositing`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> scene = Scene(np.ones((8, 8, 8), np.uint8), size=(64, 48), shadows="hard")
+    >>> scene.size, scene.settings["shadows"]
+    ((64, 48), 'hard')
+    """
+
+    __slots__ = ("__weakref__", "_handle", "_volumes")
+
+    def __init__(self, volumes: Any, **settings: Unpack[Settings]) -> None:
+        check_keywords("Scene()", settings, Settings.__annotations__)
+        sources = volumes if isinstance(volumes, list) else [volumes]
+        if not sources:
+            raise ValueError("a scene needs at least one volume")
+        self._volumes = tuple(as_volume(source) for source in sources)
+        base = self._volumes[0]._base_scene()[0]
+        self._handle = _build(base, self._volumes, settings, True)
+
+    @classmethod
+    def from_json(cls, text: str, folder: str | os.PathLike[str] | None = None, name: str = "scene") -> Scene:
+        """The scene of a scene file's text; relative paths begin in `folder`, by default the current one.
+
+        Examples
+        --------
+        >>> shapes = '{"halflight": 1, "volumes": [{"shapes": [{"type": "sphere", "radius": 8}], "voxel_size": 1}]}'
+        >>> Scene.from_json(shapes).size
+        (512, 512)
+        """
+        raw = text.encode()
+        return cls._of(made(lib.hl_scene_from_json, "hl_scene", lib.hl_scene_release, context, raw, len(raw),
+                            ffi.NULL if folder is None else ffi.new("char[]", os.fsencode(folder)), name.encode()))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Scene:
+        """The scene of a file: relative paths begin beside it."""
+        file = os.fspath(path)
+        return cls._of(made(lib.hl_scene_load, "hl_scene", lib.hl_scene_release, context, os.fsencode(file),
+                            path=file))
+
+    @classmethod
+    def _of(cls, handle: Any) -> Scene:
+        scene = cls.__new__(cls)
+        scene._handle = handle
+        count = lib.hl_scene_describe(handle).volume_count
+        scene._volumes = tuple(volume_from(handle, index) for index in range(count))
+        return scene
+
+    def to_json(self) -> str:
+        """The scene file's text. Volumes of arrays have no file: save them first."""
+        text = ffi.new("char **")
+        call(lib.hl_scene_to_json, context, self._handle, text)
+        try:
+            return text_of(text[0])
+        finally:
+            lib.hl_text_release(context, text[0])
+
+    def replace(self, volumes: Any = None, **settings: Unpack[Settings]) -> Scene:
+        """Another scene with some things changed.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> Scene(np.ones((8, 8, 8), np.uint8)).replace(size=(32, 32)).size
+        (32, 32)
+        """
+        check_keywords("Scene.replace()", settings, ["volumes", *Settings.__annotations__])
+        other = Scene.__new__(Scene)
+        given = self._volumes if volumes is None else volumes if isinstance(volumes, (list, tuple)) else [volumes]
+        other._volumes = tuple(as_volume(source) for source in given)
+        other._handle = _build(self._handle, other._volumes, settings, False)
+        return other
+
+    @property
+    def _struct(self) -> Any:
+        return lib.hl_scene_describe(self._handle)
+
+    @property
+    def volumes(self) -> tuple[Volume, ...]:
+        """The volumes."""
+        return self._volumes
+
+    @property
+    def camera(self) -> Camera:
+        """The camera."""
+        return camera_from(self._struct.camera)
+
+    @property
+    def lights(self) -> tuple[Light, ...]:
+        """The lights."""
+        return tuple(light_from(self._struct.lights[n], self._handle) for n in range(self._struct.light_count))
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self._struct.width, self._struct.height
+
+    @property
+    def ambient(self) -> tuple[float, float, float]:
+        """Light from everywhere, linear RGB."""
+        red, green, blue = self._struct.ambient
+        return red, green, blue
+
+    @property
+    def background(self) -> tuple[float, float, float] | str:
+        """Linear RGB, or "transparent"."""
+        red, green, blue = self._struct.background
+        return "transparent" if self._struct.background_transparent else (red, green, blue)
+
+    @property
+    def exposure(self) -> float:
+        """Stops, for PNG alone."""
+        exposure: float = self._struct.exposure
+        return exposure
+
+    @property
+    def settings(self) -> Mapping[str, Any]:
+        """The `render` keys."""
+        return _settings.read(self._struct.render, lib.HL_SETTINGS_RENDER)
+
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"<halflight.Scene {width}x{height}, {len(self.volumes)} volumes, {len(self.lights)} lights>"
+
+
+def _set_lights(struct: Any, settings: Mapping[str, Any], keep: list[Any]) -> None:
+    lights = settings.get("lights")
+    if lights is None and "shadows" not in settings:
+        return
+    if lights is None:  # as the program's --shadows: of all lights that cast any
+        array = ffi.new("hl_light[]", struct.light_count)
+        ffi.memmove(array, struct.lights, ffi.sizeof("hl_light") * struct.light_count)
+        for light in array:
+            light.shadows = lib.HL_SHADOWS_OFF if light.shadows == lib.HL_SHADOWS_OFF else lib.HL_SHADOWS_DEFAULT
+    else:
+        given = [lights] if isinstance(lights, Light) else list(lights)
+        array = ffi.new("hl_light[]", len(given))
+        for n, light in enumerate(given):
+            if not isinstance(light, Light):
+                raise TypeError(f"lights[{n}]: {light!r} is no light: use Directional, Point, Spot, Rect, Disk or Polygon")
+            light._fill(array[n], keep, f"lights[{n}]: ")
+    keep.append(array)
+    struct.lights, struct.light_count = array, len(array)
+
+
+def _set_background(struct: Any, background: Any) -> None:
+    struct.background_transparent = isinstance(background, str) and background == "transparent"
+    if not struct.background_transparent:
+        struct.background = colors.linear_color("background", background)
+
+
+def _frame(struct: Any, side: int, angles: Sequence[float] | None) -> None:
+    """Place the camera so that it frames all volumes, from a side or turned to azimuth and elevation."""
+    view = ffi.new("hl_view *")
+    camera = ffi.addressof(struct, "camera")
+    address = ffi.addressof(struct)
+    call(lib.hl_view_choose, address, side, ffi.NULL, view)
+    call(lib.hl_camera_frame_view, address, view, 1.0, camera)
+    if angles is not None:
+        view.azimuth_deg, view.elevation_deg = angles
+        if lib.hl_camera_turn(view, camera) != lib.HL_OK:
+            raise ValueError(f"camera: azimuth {angles[0]} and elevation {angles[1]}: the elevation is from -90 to 90")
+
+
+def _set_camera(struct: Any, camera: Any, reframe: bool) -> None:
+    if isinstance(camera, Camera):
+        camera._fill(struct.camera)
+    elif isinstance(camera, str):
+        side = SIDES.index(choice("camera", camera, SIDES))
+        _frame(struct, side, None)
+    elif camera is not None:
+        if isinstance(camera, (dict, set)) or not hasattr(camera, "__len__"):
+            raise TypeError(f"camera: {camera!r} is no Camera, side or (azimuth, elevation)")
+        angles = _settings.numbers_of("camera", camera, 2)
+        if abs(angles[1]) > 90:
+            raise ValueError(f"camera: the elevation {angles[1]:g} is not from -90 to 90")
+        _frame(struct, lib.HL_SIDE_AUTOMATIC, angles)
+    elif reframe:
+        _frame(struct, lib.HL_SIDE_AUTOMATIC, None)
+
+
+def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], chosen: bool) -> Any:
+    """An hl_scene: that of `base` with other volumes and settings. chosen: its camera was chosen for a volume."""
+    keep: list[Any] = [base]
+    pointer = ffi.new("hl_scene_description *", lib.hl_scene_describe(base)[0])
+    struct = pointer[0]
+    array = ffi.new("hl_scene_volume[]", len(volumes))
+    for n, volume in enumerate(volumes):
+        volume._fill(array[n], keep, f"volumes[{n}]: " if len(volumes) > 1 else "")
+    struct.volumes, struct.volume_count = array, len(volumes)
+    if chosen and len(volumes) > 1:
+        spacings = [lib.hl_scene_describe(one._base_scene()[0]).render.sheet_spacing for one in volumes]
+        struct.render.sheet_spacing = min(spacings)
+    if (size := settings.get("size")) is not None:
+        width, height = _settings.numbers_of("size", size, 2)
+        if min(width, height) < 1:
+            raise ValueError(f"size: {width:g} x {height:g} pixels: give whole numbers from 1 on, (width, height)")
+        _settings.fill("size: ", struct, lib.HL_SETTINGS_IMAGE, {"width": width, "height": height})
+    reframe = chosen and (size is not None or len(volumes) > 1 or any(one._changes.keys() - {"name"} for one in volumes))
+    _set_camera(struct, settings.get("camera"), reframe)
+    _set_lights(struct, settings, keep)
+    if (ambient := settings.get("ambient")) is not None:
+        struct.ambient = colors.linear_color("ambient", ambient)
+    if (background := settings.get("background")) is not None:
+        _set_background(struct, background)
+    _settings.fill("", struct, lib.HL_SETTINGS_IMAGE, {"exposure": settings.get("exposure")})
+    if (description := settings.get("description")) is not None:
+        keep.append(text := ffi.new("char[]", description.encode()))
+        struct.description = text
+    render = {word: value for word, value in settings.items() if word in _settings.table(lib.HL_SETTINGS_RENDER)}
+    _settings.fill("", struct.render, lib.HL_SETTINGS_RENDER, render)
+    return made(lib.hl_scene_create, "hl_scene", lib.hl_scene_release, context, pointer)

@@ -1,0 +1,171 @@
+"""Transfer functions: which values are seen, and in which colour."""
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+
+from . import colors
+from ._library import call, context, ffi, lib, names
+from ._settings import number, numbers_of
+from ._words import nearest, suggests
+
+__all__ = ["TransferFunction", "presets"]
+
+
+def presets() -> list[str]:
+    """The names for ``tf=``: transfer functions that adapt to the volume.
+
+    Examples
+    --------
+    >>> "ct-bone" in presets()
+    True
+    """
+    return names(lib.hl_preset_name)
+
+
+class TransferFunction:
+    """Opacity and colour by data value, piecewise linear, constant beyond the end points.
+
+    Parameters
+    ----------
+    opacity : sequence of (value, opacity)
+        Sorted by value; opacity 0 to 1 per `unit_distance`: a homogeneous medium of opacity ``o`` lets
+        ``(1 - o) ** (d / unit_distance)`` of the light through a length ``d``.
+    color : sequence of (value, r, g, b), or (r, g, b)
+        Sorted by value; linear RGB.
+    unit_distance : float
+        World units.
+
+    Examples
+    --------
+    >>> TransferFunction([(0, 0), (100, 0.5)], color=(1, 0.5, 0.2)).color.shape
+    (1, 4)
+    """
+
+    __slots__ = ("color", "opacity", "unit_distance")
+
+    @suggests
+    def __init__(self, opacity: Any, color: Any = (1.0, 1.0, 1.0),
+                 unit_distance: float = 1.0) -> None:
+        place = "TransferFunction: "
+        self.unit_distance = number(f"{place}unit_distance", unit_distance)
+        points = [numbers_of(f"{place}opacity[{n}]", point, 2) for n, point in enumerate(opacity)]
+        self.opacity = np.array(points, dtype=np.float64).reshape(-1, 2)
+        if isinstance(color, str) or np.ndim(color) <= 1:
+            rows = [[0.0, *colors.linear_color(f"{place}color", color)]]
+        else:
+            rows = [numbers_of(f"{place}color[{n}]", row, 4) for n, row in enumerate(color)]
+        self.color = np.array(rows, dtype=np.float64)
+
+    def __repr__(self) -> str:
+        return (f"TransferFunction({self.opacity.tolist()}, color={self.color.tolist()}, "
+                f"unit_distance={self.unit_distance})")
+
+    def __eq__(self, other: object) -> bool:
+        return (isinstance(other, TransferFunction) and self.unit_distance == other.unit_distance
+                and np.array_equal(self.opacity, other.opacity) and np.array_equal(self.color, other.color))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _fill(self, struct: Any, keep: list[Any]) -> None:
+        opacity = ffi.new("hl_opacity_point[]", [tuple(point) for point in self.opacity.tolist()])
+        color = ffi.new("hl_color_point[]", [(row[0], row[1:]) for row in self.color.tolist()])
+        keep += [opacity, color]
+        struct.unit_distance = self.unit_distance
+        struct.opacity, struct.opacity_count = opacity, len(self.opacity)
+        struct.color, struct.color_count = color, len(self.color)
+
+
+def function_from(struct: Any) -> TransferFunction:
+    """The transfer function of a struct."""
+    opacity = [(struct.opacity[n].value, struct.opacity[n].opacity) for n in range(struct.opacity_count)]
+    color = [(struct.color[n].value, *struct.color[n].color) for n in range(struct.color_count)]
+    return TransferFunction(opacity, color or (1.0, 1.0, 1.0), struct.unit_distance)
+
+
+def _made(function: Any, *arguments: Any, path: str | None = None) -> Any:
+    struct = ffi.gc(ffi.new("hl_transfer_function *"), lambda one: lib.hl_transfer_function_release(context, one))
+    call(function, context, *arguments, struct, path=path)
+    return struct
+
+
+def named_function(tf: Any, volume: Any, old: TransferFunction) -> TransferFunction:
+    """What ``tf=`` names: a preset, a file or a TransferFunction. Files with colours alone keep `old`'s opacity."""
+    if isinstance(tf, TransferFunction):
+        return tf
+    if not isinstance(tf, (str, os.PathLike)):
+        raise TypeError(f"tf: {tf!r} is no preset, path or TransferFunction")
+    path = os.fspath(tf)
+    if path in presets():
+        return function_from(_made(lib.hl_transfer_function_preset, path.encode(), volume))
+    if "." not in path and "/" not in path and not os.path.exists(path):
+        raise ValueError(f"tf: there is no preset or file '{path}'{nearest(path, presets())}")
+    loaded = _made(lib.hl_transfer_function_load, os.fsencode(path), path=path)
+    function = function_from(loaded)
+    if loaded.opacity == ffi.NULL:
+        function.opacity, function.unit_distance = old.opacity, old.unit_distance
+    return function
+
+
+def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, volume: Any) -> TransferFunction:
+    """The function with the colours of `cmap` over `clim`, by default over the values that are seen."""
+    if clim is None:
+        seen, struct, keep = ffi.new("double[2]"), ffi.new("hl_transfer_function *"), list[Any]()
+        function._fill(struct, keep)
+        call(lib.hl_transfer_function_seen_range, volume, struct, seen)
+        clim = list(seen)
+    points = colors.sampled("cmap", cmap, *clim)
+    if points is None:
+        points = function_from(_made(lib.hl_transfer_function_colormap, cmap.encode(), *clim)).color.tolist()
+    return TransferFunction(function.opacity, points, function.unit_distance)
+
+
+def spread(function: TransferFunction, clim: list[float], values: tuple[float, float]) -> TransferFunction:
+    """Opacity and colours moved so that what was seen between two values is seen between those of `clim`.
+
+    `values` is the volume's range, which bounds what was seen (as `halflight render --range` does).
+    """
+    low, high = values if values[0] < values[1] else (0.0, 1.0)
+    points = function.opacity
+    shown = np.flatnonzero(points[:, 1] > 0)
+    if len(shown) > 0:
+        first, last = shown[0], shown[-1] + 1
+        begin = points[first - 1, 0] if first > 0 else low
+        end = points[last, 0] if last < len(points) else high
+        bounds = (low, high)
+        low = begin if bounds[0] < begin < bounds[1] else low
+        high = end if bounds[0] < end < bounds[1] else high
+    factor = (clim[1] - clim[0]) / (high - low)
+    opacity, color = points.copy(), function.color.copy()
+    opacity[:, 0] = clim[0] + (opacity[:, 0] - low) * factor
+    color[:, 0] = clim[0] + (color[:, 0] - low) * factor
+    return TransferFunction(opacity, color, function.unit_distance)
+
+
+_SHAPES = ("linear", "sigmoid", "geom")
+
+
+def opacity_points(opacity: Any, clim: list[float]) -> list[tuple[float, float]]:
+    """What ``opacity=`` says, as points (value, opacity).
+
+    A number holds for all values within `clim`; a name or a list of numbers is spread evenly over `clim`; pairs
+    are data values and opacities.
+    """
+    if isinstance(opacity, str):
+        if opacity not in _SHAPES:
+            raise ValueError(f"opacity: there is no '{opacity}'{nearest(opacity, _SHAPES)}")
+        x = np.linspace(0, 1, 33)
+        shape = {"linear": x, "geom": (256.0 ** x - 1) / 255, "sigmoid": 1 / (1 + np.exp(-10 * (x - 0.5)))}[opacity]
+        if opacity == "sigmoid":
+            shape = (shape - shape[0]) / (shape[-1] - shape[0])
+        return list(zip(np.linspace(clim[0], clim[1], 33).tolist(), shape.tolist(), strict=True))
+    if not hasattr(opacity, "__len__"):
+        return [(clim[0], number("opacity", opacity)), (clim[1], number("opacity", opacity))]
+    if len(opacity) == 0:
+        raise ValueError("opacity: there is no point in it")
+    if all(hasattr(point, "__len__") for point in opacity):
+        return [tuple(numbers_of(f"opacity[{n}]", point, 2)) for n, point in enumerate(opacity)]  # type: ignore[misc]
+    flat = numbers_of("opacity", opacity, len(opacity))
+    return list(zip(np.linspace(clim[0], clim[1], len(flat)).tolist(), flat, strict=True))

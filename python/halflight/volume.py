@@ -1,0 +1,327 @@
+"""Volumes: voxels with their place in the world, and how they look."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypedDict, Unpack
+
+import numpy as np
+
+from . import _settings, arrays, neighbours
+from ._library import call, context, ffi, lib, made, text_of
+from ._words import check_keywords
+from .transfer import TransferFunction, function_from
+
+__all__ = ["Info", "Look", "Volume", "info"]
+
+Source = Any  # a path, an array, or an object of one of the packages that halflight.neighbours knows
+
+
+class Look(TypedDict, total=False):
+    """How a volume looks and where it stands: keywords of `Volume`. What is not given is chosen from the data."""
+
+    name: str
+    transfer_function: TransferFunction
+    shading: str
+    ambient: float
+    diffuse: float
+    specular: float
+    shininess: float
+    emission: float
+    attenuation_color: Sequence[float]
+    visible: bool
+    casts_shadow: bool
+    receives_shadow: bool
+    clip: tuple[Sequence[float], Sequence[float]] | None
+    scale: float | Sequence[float]
+    rotate_axis: Sequence[float]
+    rotate_angle_deg: float
+    translate: Sequence[float]
+
+
+_OF_FILES = ("array", "component", "series", "time", "channel", "level")
+_MATERIAL = ("ambient", "diffuse", "specular", "shininess", "emission")
+_FIELDS = ("shading", "attenuation_color", "visible", "casts_shadow", "receives_shadow", "rotate_axis",
+           "rotate_angle_deg", "translate")
+
+
+@dataclass(frozen=True)
+class Info:
+    """What a volume holds, as ``halflight info --json`` says it. Values are data values.
+
+    Attributes
+    ----------
+    dimensions : tuple of 3 int
+        Voxels along the index axes x, y, z.
+    type : str
+        Of the voxels: "uint8", "int16", "float32", ...
+    spacing, origin : ndarray of float64, shape (3,)
+        World units: the distance of voxels along x, y, z, and the centre of the first voxel.
+    direction : ndarray of float64, shape (3, 3)
+        Its columns are the unit vectors of the index axes x, y, z.
+    range : tuple of 2 float
+        The least and the greatest finite value.
+    mean : float
+        Of the finite voxels.
+    nonfinite_count : int
+        NaN and infinite voxels, which are transparent.
+    histogram : ndarray of uint64, shape (256,)
+        Finite voxels in equal bins over `range`.
+    space : str or None
+        "RAS", "LPS" or "LAS" where the world's axes are known.
+    taken_for : str
+        What an automatic look takes the volume for.
+    """
+
+    dimensions: tuple[int, int, int]
+    type: str
+    spacing: np.ndarray[Any, np.dtype[np.float64]]
+    origin: np.ndarray[Any, np.dtype[np.float64]]
+    direction: np.ndarray[Any, np.dtype[np.float64]]
+    range: tuple[float, float]
+    mean: float
+    nonfinite_count: int
+    histogram: np.ndarray[Any, np.dtype[np.uint64]]
+    space: str | None
+    taken_for: str
+
+
+class Volume:
+    """Voxels with their place in the world, and how they look.
+
+    Arrays are not copied where the library can read them as they lie: packed uint8, bool, uint16 and float32, in
+    any order of the axes. The array must not be changed while the volume, a scene with it or a renderer of such a
+    scene lives; it may be deleted.
+
+    Parameters
+    ----------
+    source : path, array, or an object that has one
+        A file (NRRD, MetaImage, NIfTI, VTK, NumPy, raw), anything with ``__array__``, the buffer protocol or
+        DLPack, images of nibabel, SimpleITK and ITK, pynrrd's ``(data, header)``, xarray, PyVista and VTK image
+        data, zarr, h5py and dask arrays.
+    spacing : float or 3 floats, optional
+        World units between voxels, in the order of `axes`.
+    origin : (x, y, z), optional
+        World position of the first voxel's centre.
+    direction : array_like, shape (3, 3), optional
+        Its columns are the unit vectors of the index axes x, y, z in the world.
+    affine : array_like, shape (4, 4) or (3, 4), optional
+        From voxel indices (x, y, z) to the world, in place of the three above.
+    axes : str, optional
+        The order of the array's axes; "zyx", the default, is ``array[z][y][x]``.
+    array, component, series, time, channel, level : optional
+        Of a file with several: the array's name; the number of the component, or "magnitude"; a DICOM series by
+        number, UID or description; the number of the time step, channel and resolution.
+    **look : Look
+        How it looks and where it stands: `name`, `transfer_function`, `shading` ("phong", "none", "flat"),
+        `ambient`, `diffuse`, `specular`, `shininess`, `emission`, `attenuation_color`, `visible`,
+        `casts_shadow`, `receives_shadow`, `clip` ((x, y, z), (x, y, z)), `scale`, `rotate_axis`,
+        `rotate_angle_deg`, `translate`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> volume = Volume(np.zeros((4, 5, 6), np.uint8), spacing=(2, 1, 1))
+    >>> volume.dimensions
+    (6, 5, 4)
+    """
+
+    __slots__ = ("__weakref__", "_automatic", "_base", "_changes", "_file", "_handle", "_loading", "_order")
+
+    def __init__(self, source: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None,
+                 direction: Any = None, affine: Any = None, axes: str | None = None, array: str | None = None,
+                 component: int | str | None = None, series: str | None = None, time: int | None = None,
+                 channel: int | None = None, level: int | None = None, **look: Unpack[Look]) -> None:
+        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes",
+                                          *_OF_FILES])
+        self._handle: Any = None
+        self._file: str | None = None
+        self._loading: Any = None
+        self._automatic: Any = None  # the scene that shows the volume with no further choice
+        self._base: tuple[Any, int] | None = None  # or the scene that it was read from, and its number there
+        self._order: tuple[int, ...] | None = None
+        self._changes: dict[str, Any] = dict(look)
+        if isinstance(source, Volume):
+            self._share(source)
+            return
+        if axes is not None:
+            arrays.check_axes(axes)
+        place = {"spacing": spacing, "origin": origin, "direction": direction, "affine": affine}
+        chosen = {"array": array, "component": component, "series": series, "time": time, "channel": channel,
+                  "level": level}
+        self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None})
+
+    def _read(self, source: Source, axes: str | None, place: dict[str, Any], chosen: dict[str, Any]) -> None:
+        if isinstance(source, (str, os.PathLike)):
+            for word in ("origin", "direction", "affine"):
+                if place[word] is not None:
+                    raise TypeError(f"{word} is for arrays: a file says it itself")
+            self._load(os.fspath(source), place["spacing"], axes or "zyx", chosen)
+            return
+        for word in chosen:
+            raise TypeError(f"{word} is for files that hold several: choose by an index")
+        found = neighbours.find(source)
+        order = axes or found.axes or "zyx"
+        known = {word: value for word, value in place.items() if value is not None} or found.place
+        space = found.space if known is found.place else 0
+        self._handle = arrays.make_volume(found.array, order, arrays.make_place(order, *map(known.get, place)), space,
+                                          found.owner)
+        shape = np.shape(found.array)
+        self._order = tuple(shape[order.index(letter)] for letter in "xyz")
+        if found.name is not None:
+            self._changes.setdefault("name", found.name)
+
+    def _share(self, other: Volume) -> None:
+        self._handle, self._file, self._loading = other._handle, other._file, other._loading
+        self._automatic, self._base, self._order = other._automatic, other._base, other._order
+        self._changes = {**other._changes, **self._changes}
+
+    def _load(self, path: str, spacing: arrays.Spacing | None, axes: str, chosen: dict[str, Any]) -> None:
+        options = ffi.new("hl_volume_load_options *")
+        lib.hl_volume_load_options_defaults(options)
+        keep = []
+        for word, value in chosen.items():
+            if word in ("array", "series"):
+                keep.append(value := ffi.new("char[]", str(value).encode()))
+            elif value == "magnitude" and word == "component":
+                value = lib.HL_COMPONENT_MAGNITUDE
+            elif isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 0:
+                raise ValueError(f"{word}: {value!r} is no number from 0 on"
+                                 + (" and not 'magnitude'" if word == "component" else ""))
+            setattr(options, word, value)
+        if spacing is not None:
+            options.spacing = arrays.spacing_xyz(spacing, axes)
+        self._file = path
+        self._loading = (options, keep)
+        self._handle = made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, os.fsencode(path),
+                            options, path=path)
+
+    def replace(self, **look: Unpack[Look]) -> Volume:
+        """The same voxels with another look."""
+        return Volume(self, **look)
+
+    @property
+    def look(self) -> Mapping[str, Any]:
+        """How the volume looks: what was given, and what is chosen from the data."""
+        struct = self._struct()
+        look = _settings.read(struct, lib.HL_SETTINGS_VOLUME)
+        look = {word: look[word] for word in _FIELDS} | _settings.read(struct.material, lib.HL_SETTINGS_MATERIAL)
+        look["name"] = None if struct.name == ffi.NULL else text_of(struct.name)
+        look["transfer_function"] = function_from(struct.transfer_function)
+        look["clip"] = (tuple(struct.clip_min), tuple(struct.clip_max)) if struct.clipped else None
+        look["scale"] = tuple(struct.scale * one for one in struct.axis_scale)
+        return look | self._changes
+
+    @property
+    def dimensions(self) -> tuple[int, int, int]:
+        """Voxels along the index axes x, y, z."""
+        return self.info().dimensions
+
+    def info(self) -> Info:
+        """Size, type, place and statistics."""
+        raw = ffi.new("hl_volume_info *")
+        raw.struct_size = ffi.sizeof("hl_volume_info")
+        if lib.hl_volume_get_info(self._handle, raw) != lib.HL_OK:
+            raise RuntimeError("the volume is not known")
+        kind = ffi.new("const char **")
+        call(lib.hl_volume_guess, self._handle, self._file_text(), kind)
+        dimensions = self._order or tuple(raw.dimensions)
+        return Info(
+            dimensions=(int(dimensions[0]), int(dimensions[1]), int(dimensions[2])),
+            type=text_of(lib.hl_voxel_type_name(raw.type)), spacing=np.array(list(raw.spacing)),
+            origin=np.array(list(raw.origin)), direction=np.array([list(row) for row in raw.direction]),
+            range=(raw.range[0], raw.range[1]), mean=raw.mean, nonfinite_count=raw.nonfinite_count,
+            histogram=np.array(list(raw.histogram), dtype=np.uint64),
+            space=None if lib.hl_space_name(raw.space) == ffi.NULL else text_of(lib.hl_space_name(raw.space)),
+            taken_for=text_of(kind[0]))
+
+    def __repr__(self) -> str:
+        size = "x".join(map(str, self.dimensions))
+        return f"<halflight.Volume {size} {self.info().type}{'' if self._file is None else f' {self._file}'}>"
+
+    def _file_text(self) -> Any:
+        return ffi.NULL if self._file is None else ffi.new("char[]", os.fsencode(self._file))
+
+    def _base_scene(self) -> tuple[Any, int]:
+        """A scene that has the volume, and the volume's number there."""
+        if self._base is not None:
+            return self._base
+        if self._automatic is None:
+            self._automatic = made(lib.hl_scene_for_volume, "hl_scene", lib.hl_scene_release, context, self._handle,
+                                   self._file_text())
+        return self._automatic, 0
+
+    def _struct(self) -> Any:
+        scene, index = self._base_scene()
+        return lib.hl_scene_describe(scene).volumes[index]
+
+    def _fill(self, struct: Any, keep: list[Any], place: str) -> None:
+        """Set an hl_scene_volume, which is valid as long as `keep`."""
+        keep.append(self)
+        ffi.memmove(ffi.addressof(struct), ffi.addressof(self._struct()), ffi.sizeof("hl_scene_volume"))
+        if self._loading is not None:
+            options = self._loading[0]
+            for word in ("spacing", *_OF_FILES):
+                setattr(struct, word, getattr(options, word))
+        changes = dict(self._changes)
+        if (name := changes.pop("name", None)) is not None:
+            if not isinstance(name, str):
+                raise TypeError(f"{place}name: {name!r} is no text")
+            keep.append(text := ffi.new("char[]", name.encode()))
+            struct.name = text
+        if (function := changes.pop("transfer_function", None)) is not None:
+            if not isinstance(function, TransferFunction):
+                raise TypeError(f"{place}transfer_function: {function!r} is no TransferFunction")
+            function._fill(struct.transfer_function, keep)
+        if "clip" in changes:
+            clip = changes.pop("clip")
+            struct.clipped = clip is not None
+            if clip is not None:
+                if len(clip) != 2:
+                    raise ValueError(f"{place}clip: {clip!r} is not ((x, y, z), (x, y, z))")
+                struct.clip_min = _settings.numbers_of(f"{place}clip[0]", clip[0])
+                struct.clip_max = _settings.numbers_of(f"{place}clip[1]", clip[1])
+                if not all(low < high for low, high in zip(struct.clip_min, struct.clip_max, strict=True)):
+                    raise ValueError(f"{place}clip: {clip!r}: the first corner is not below the second")
+        if (scale := changes.pop("scale", None)) is not None:
+            struct.scale = 1.0
+            struct.axis_scale = ([_settings.number(f"{place}scale", scale)] * 3 if np.ndim(scale) == 0
+                                 else _settings.numbers_of(f"{place}scale", scale))
+        material = {word: changes.pop(word, None) for word in _MATERIAL}
+        _settings.fill(place, struct.material, lib.HL_SETTINGS_MATERIAL, material)
+        _settings.fill(place, struct, lib.HL_SETTINGS_VOLUME, changes)
+
+
+def volume_from(scene: Any, index: int) -> Volume:
+    """The volume with this number in a scene."""
+    struct = lib.hl_scene_describe(scene).volumes[index]
+    found = Volume.__new__(Volume)
+    found._loading = found._automatic = found._order = None
+    found._file = None if struct.file == ffi.NULL else os.fsdecode(ffi.string(struct.file))
+    found._base, found._changes = (scene, index), {}
+    lib.hl_volume_retain(struct.volume)
+    found._handle = ffi.gc(struct.volume, lib.hl_volume_release)
+    return found
+
+
+def as_volume(source: Any) -> Volume:
+    """A Volume as it is, and anything else as one."""
+    return source if isinstance(source, Volume) else Volume(source)
+
+
+def info(volume: Source, **place: Any) -> Info:
+    """What a volume holds, as ``halflight info --json`` says it.
+
+    Parameters
+    ----------
+    volume : path, array or Volume
+        See `Volume`, whose keywords are taken too.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> info(np.arange(8, dtype=np.uint8).reshape(2, 2, 2)).range
+    (0.0, 7.0)
+    """
+    return Volume(volume, **place).info()

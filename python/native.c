@@ -1,0 +1,75 @@
+/* python/native.c - callbacks of the context, which are C as long as possible (python/native.h). */
+#include <time.h>
+
+#include <halflight/halflight.h>
+
+#include "native.h"
+
+/* Python functions that cffi defines (halflight/_library.py). */
+static int python_wants_stop(void);
+static int python_progress(const char *stage, double fraction);
+static void python_log(int level, const char *message);
+static void python_array_released(uintptr_t key);
+
+/* Between two questions to Python: Ctrl-C is answered as soon as a person can tell. */
+static const double SECONDS_BETWEEN_QUESTIONS = 0.05;
+
+/* The call that a thread is in. */
+typedef struct native_call {
+  double asked, told; /* when Python was asked last whether to stop, and told its progress; seconds */
+  int listening, stopped;
+} native_call;
+static _Thread_local native_call call;
+
+static double now(void) {
+  struct timespec time;
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+void python_call_begin(int listening) { call = (native_call){.asked = now(), .listening = listening}; }
+
+void python_call_end(void) { call = (native_call){.asked = now()}; }
+
+static int on_cancelled(void *user_data) {
+  (void)user_data;
+  double time = now();
+  if (call.stopped || time - call.asked < SECONDS_BETWEEN_QUESTIONS) return call.stopped;
+  call.asked = time;
+  call.stopped = python_wants_stop();
+  return call.stopped;
+}
+
+static void on_progress(void *user_data, const char *stage, double fraction) {
+  (void)user_data;
+  double time = now();
+  if (!call.listening || call.stopped || (fraction < 1 && time - call.told < SECONDS_BETWEEN_QUESTIONS))
+    return;
+  call.told = time;
+  call.stopped = python_progress(stage, fraction);
+}
+
+static void on_log(void *user_data, hl_log_level level, const char *message) {
+  (void)user_data;
+  python_log((int)level, message);
+}
+
+hl_status python_context_create(hl_context **context, hl_error *error) {
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.cancelled = on_cancelled;
+  options.progress = on_progress;
+  options.log = on_log;
+  return hl_context_create(&options, context, error);
+}
+
+static void on_released(void *user_data, const void *voxels) {
+  (void)voxels;
+  python_array_released((uintptr_t)user_data);
+}
+
+void python_lend(hl_volume_description *description, uintptr_t key) {
+  description->borrow = 1;
+  description->release = on_released;
+  description->release_data = (void *)key;
+}

@@ -1,0 +1,159 @@
+"""Ctrl-C, progress, threads, fork, memory."""
+import gc
+import multiprocessing
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import halflight
+from halflight import Renderer, Scene, _library
+
+
+@pytest.fixture(scope="module")
+def slow():
+    """A scene that takes many seconds."""
+    rng = np.random.default_rng(1)
+    return Scene(rng.integers(0, 255, (40, 40, 40), np.uint8), size=(400, 400), sheet_spacing=0.02,
+                 soft_method="sublights", light_samples=8, shadows="soft")
+
+
+def test_ctrl_c_stops_a_render_and_leaves_the_renderer_usable(slow, small):
+    renderer = Renderer()
+    expected = np.asarray(Renderer().render(small))
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    start = time.perf_counter()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        renderer.render(slow)
+    assert time.perf_counter() - start < 3
+    assert np.array_equal(np.asarray(renderer.render(small)), expected)
+
+
+def test_ctrl_c_stops_the_reference(slow):
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        halflight.reference(slow)
+
+
+def test_progress_calls_and_may_stop(slow, small):
+    told = []
+    Renderer().render(small, progress=lambda stage, fraction: told.append((stage, fraction)))
+    assert told and told[-1][1] <= 1 and {stage for stage, _ in told} <= {"prepare", "render", "load", "write"}
+    assert all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction in told)
+
+    class Enough(Exception):
+        pass
+
+    def stop(stage, fraction):
+        raise Enough(stage)
+
+    with pytest.raises(Enough):
+        Renderer().render(slow, progress=stop)
+
+
+def test_progress_on_stderr(small, capfd, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "tqdm.auto", None)
+    Renderer().render(small, progress=True)
+    assert "%" in capfd.readouterr().err
+
+
+def test_progress_may_render(small):
+    inner = []
+    scene = small.replace(size=(16, 16))
+
+    def nested(stage, fraction):
+        if not inner:
+            inner.append(Renderer().render(scene))
+
+    outer = Renderer().render(small, progress=nested)
+    assert np.array_equal(np.asarray(outer), np.asarray(Renderer().render(small))) and len(inner) == 1
+
+
+def test_the_lock_is_released(slow):
+    """Python goes on while the library renders."""
+    counted = []
+    ended = threading.Event()
+
+    def count():
+        while not ended.is_set():
+            counted.append(time.perf_counter())
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        Renderer().render(slow)
+    ended.set()
+    thread.join()
+    assert len(counted) > 20
+
+
+def test_renderers_in_threads(small):
+    expected = np.asarray(Renderer().render(small))
+    results = []
+
+    def work(renderer):
+        for _ in range(3):
+            results.append(np.asarray(renderer.render(small)))
+
+    shared = Renderer()
+    threads = [threading.Thread(target=work, args=(renderer,)) for renderer in (Renderer(), Renderer(), shared, shared)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(results) == 12 and all(np.array_equal(one, expected) for one in results)
+
+
+def test_fork(small):
+    renderer = Renderer()
+    expected = np.asarray(renderer.render(small))
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        same = np.array_equal(np.asarray(renderer.render(small)), expected)
+        os.write(write, b"1" if same else b"0")
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert os.read(read, 1) == b"1"
+    assert np.array_equal(np.asarray(renderer.render(small)), expected)
+
+
+def mean_of(angle):
+    z, y, x = np.mgrid[-1:1:16j, -1:1:16j, -1:1:16j]
+    volume = (255 * np.exp(-5 * (x**2 + y**2 + z**2))).astype(np.uint8)
+    return float(np.asarray(halflight.render(volume, size=(32, 32), camera=(angle, 20), threads=1)).mean())
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_multiprocessing(method):
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        assert pool.map(mean_of, [0, 40]) == [mean_of(0), mean_of(40)]
+
+
+def test_frames_leave_memory_flat(blob):
+    renderer, lent = Renderer(), len(_library._lent)
+
+    def frames(count):
+        for n in range(count):
+            renderer.render(Scene(blob[n % 2:], size=(32, 32), threads=1))
+
+    frames(2)
+    gc.collect()
+    before = _library.lib.hl_context_memory_held(_library.context)
+    frames(12)
+    gc.collect()
+    assert _library.lib.hl_context_memory_held(_library.context) <= before + 4096
+    assert len(_library._lent) <= lent + 1
+
+
+def test_warnings_point_at_the_caller(tmp_path):
+    np.save(tmp_path / "vectors.npy", np.ones((6, 5, 4, 3), np.float32))
+    with pytest.warns(halflight.HalflightWarning) as found:
+        halflight.Volume(tmp_path / "vectors.npy")
+    assert found[0].filename == __file__

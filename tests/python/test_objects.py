@@ -1,0 +1,165 @@
+"""Scenes, lights, cameras, transfer functions, images."""
+import dataclasses
+import io
+import json
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import halflight
+from halflight import (Camera, Directional, Disk, Image, Point, Polygon, Rect, Renderer, Scene, Spot, TransferFunction,
+                       Volume, _library, _settings)
+
+LIGHTS = [
+    Directional(direction=(0, 1, -1), angular_diameter_deg=3, color=(1, 0.5, 0.25), intensity=2, shadows="hard"),
+    Point(position=(1, 2, 30), radius=2, falloff="inverse_square"),
+    Spot(position=(1, 2, 30), direction=(0, 0, -2), opening_angle_deg=50, falloff_angle_deg=4, radius=1),
+    Rect(position=(0, 0, 40), edge1=(2, 0, 0), edge2=(0, 3, 0), shadows="off"),
+    Disk(position=(0, 0, 40), normal=(0, 0, -1), radius=3, frame="camera"),
+    Polygon(vertices=((0, 0, 40), (5, 0, 40), (0, 5, 40))),
+]
+
+
+def plain(light):
+    values = {field.name: getattr(light, field.name) for field in dataclasses.fields(light)}
+    return type(light), {name: np.asarray(value).tolist() for name, value in values.items()}
+
+
+@pytest.mark.parametrize("light", LIGHTS, ids=lambda light: type(light).__name__)
+def test_lights_come_back_from_the_scene(blob, light):
+    assert plain(Scene(blob, lights=light).lights[0]) == plain(light)
+
+
+@pytest.mark.parametrize("light", LIGHTS, ids=lambda light: type(light).__name__)
+def test_defaults_are_the_library_s(light):
+    """Each default of a dataclass is the table's."""
+    rows = _settings.table(_library.lib.HL_SETTINGS_LIGHT)
+    standard = {"shadows": None, "falloff": "none", "frame": "world", "vertices": ()}
+    for field in dataclasses.fields(light):
+        if field.name.startswith("_"):
+            continue
+        expected = standard.get(field.name, ()) if field.name in standard else rows[field.name].standard
+        actual = field.default
+        if isinstance(actual, float):
+            expected = expected[0]
+        assert actual == expected, field.name
+
+
+def test_cameras_come_back(blob):
+    for camera in (Camera(position=(0, -90, 5), target=(1, 2, 3), fovy_deg=20),
+                   Camera(position=(0, -90, 5), target=(1, 2, 3), up=(0, 1, 1), height=40)):
+        found = Scene(blob, camera=camera).camera
+        assert tuple(found.position) == tuple(camera.position) and found.height == camera.height
+        assert tuple(found.up) == tuple(camera.up) and tuple(found.target) == tuple(camera.target)
+
+
+def test_json_is_the_program_s_file(program, tmp_path, blob):
+    np.save(tmp_path / "blob.npy", blob)
+    scene = Scene(str(tmp_path / "blob.npy"), size=(64, 48), shadows="hard", lights=LIGHTS[:2], background="navy")
+    text = scene.to_json()
+    (tmp_path / "scene.json").write_text(text)
+    again = Scene.from_json(text)
+    assert again.to_json() == text and json.loads(text)["halflight"] == 1
+    picture = np.asarray(Renderer().render(scene))
+    assert np.array_equal(picture, np.asarray(Renderer().render(again)))
+    assert np.array_equal(picture, np.asarray(Renderer().render(Scene.load(tmp_path / "scene.json"))))
+    subprocess.run([program, "render", tmp_path / "scene.json", "--quiet", "-o", tmp_path / "c.npy"], check=True)
+    assert np.array_equal(np.load(tmp_path / "c.npy"), picture)
+
+
+def test_volume_looks_come_back(blob):
+    look = {"name": "ball", "shading": "none", "ambient": 0.5, "diffuse": 0.25, "specular": 0.125, "shininess": 7.0,
+            "emission": 0.5, "attenuation_color": (1.0, 0.5, 0.25), "visible": False, "casts_shadow": False,
+            "receives_shadow": False, "clip": ((1.0, 2.0, 3.0), (9.0, 8.0, 7.0)), "scale": (2.0, 1.0, 1.0),
+            "rotate_axis": (0.0, 1.0, 0.0), "rotate_angle_deg": 30.0, "translate": (5.0, 6.0, 7.0),
+            "transfer_function": TransferFunction([(0, 0), (50, 0.5)], color=[(0, 1, 0, 0), (9, 0, 1, 0)],
+                                                  unit_distance=2)}
+    scene = Scene([Volume(blob), Volume(blob, **look)], size=(32, 32))
+    # Through the library and back, for a volume that knows nothing but the scene.
+    found = halflight.volume.volume_from(scene._handle, 1)
+    assert found.look == look
+    assert found.replace(visible=True).look["visible"] is True
+
+
+def test_a_replaced_scene_changes_only_what_is_named(small):
+    other = small.replace(size=(32, 24), exposure=1)
+    assert other.size == (32, 24) and other.exposure == 1 and small.size == (64, 48)
+    assert other.camera == small.camera and [plain(one) for one in other.lights] == [plain(one) for one in small.lights]
+    assert small.replace(shadows="off").settings["shadows"] == "off"
+    assert small.replace(background="transparent").background == "transparent"
+
+
+def test_several_volumes_are_framed_together(blob):
+    one, two = Volume(blob), Volume(blob, origin=(60, 0, 0))
+    target = Scene([one, two], size=(64, 48)).camera.target
+    assert 30 < target[0] < 60
+
+
+def test_images(tmp_path, small):
+    image = Renderer().render(small)
+    array = np.asarray(image)
+    assert array.dtype == np.float32 and array.shape == (48, 64, 4) == image.shape
+    assert np.asarray(image) is array or np.shares_memory(np.asarray(image), array)
+    assert np.array(image, dtype=np.float64).dtype == np.float64
+    for name in ("a.png", "a.exr", "a.npy"):
+        image.save(tmp_path / name)
+    assert np.array_equal(np.load(tmp_path / "a.npy"), array)
+    assert image.encode("npy") == (tmp_path / "a.npy").read_bytes()
+    assert image.encode("exr") == (tmp_path / "a.exr").read_bytes()
+    assert image._repr_png_() == (tmp_path / "a.png").read_bytes()
+    Image_ = pytest.importorskip("PIL.Image")
+    shown = np.asarray(Image_.open(io.BytesIO(image._repr_png_())).convert("RGBA"))
+    assert np.array_equal(shown, image.to_srgb8())
+    assert image.to_srgb8("transparent")[0, 0, 3] == 0
+    assert image.statistics["sheets"] > 0 and image.statistics["voxels_total"] == 24 * 20 * 28
+
+
+def test_pixels_outlive_their_image(small):
+    array = np.asarray(Renderer().render(small))
+    expected = array.copy()
+    others = [Renderer().render(small.replace(background=0.1 * n, camera=(n, 10))) for n in range(5)]
+    assert len(others) == 5 and np.array_equal(array, expected)
+
+
+def test_layers_sum_to_the_picture(small):
+    image = Renderer().render(small, layers=True)
+    layers = image.layers
+    total = layers["ambient"] + sum(layers[f"light{n}"] for n in range(len(small.lights)))
+    assert np.allclose(total, np.asarray(image)[..., :3], atol=1e-5)
+    assert layers["depth_first"].shape == (48, 64) and layers["normal"].shape == (48, 64, 3)
+    with pytest.raises(TypeError):
+        layers["ambient2"] = 1
+    assert image.encode("png")[:4] == b"\x89PNG"
+
+
+def test_the_reference_agrees(small):
+    scene = small.replace(shadows="hard", size=(32, 24))
+    exact = halflight.reference(scene)
+    assert abs(np.asarray(exact) - Renderer().render(scene)).max() < 0.05
+
+
+def test_lists():
+    assert "viridis" in halflight.colormaps() and "mip" in halflight.presets()
+    assert halflight.__version__ == "0.1.0"
+
+
+def test_plot(small):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+    _, axis = pyplot.subplots()
+    assert Renderer().render(small).plot(axis, unit="mm") is axis
+    assert len(axis.images) == 1 and len(axis.figure.axes) == 2
+    assert axis.texts[0].get_text().endswith("mm")
+    pyplot.close("all")
+
+
+def test_import_is_quick_and_needs_numpy_alone():
+    code = ("import sys, time, numpy; before = set(sys.modules); start = time.perf_counter(); import halflight; "
+            "print(time.perf_counter() - start, *sorted({m.partition('.')[0] for m in set(sys.modules) - before}))")
+    seconds, *names = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True,
+                                     text=True).stdout.split()
+    assert "matplotlib" not in names and "tqdm" not in names
+    assert float(seconds) < 0.5  # 0.03 on an idle machine

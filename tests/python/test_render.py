@@ -1,0 +1,117 @@
+"""halflight.render(): the program's bytes, and every keyword."""
+import subprocess
+
+import numpy as np
+import pytest
+
+import halflight
+from halflight import Camera, Directional, TransferFunction
+
+
+def pixels(volume, **words):
+    return np.asarray(halflight.render(volume, size=words.pop("size", (64, 48)), **words))
+
+
+def run(program, folder, source, *options):
+    subprocess.run([program, "render", source, "--quiet", "-o", folder / "program.npy", *options], check=True)
+    return (folder / "program.npy").read_bytes()
+
+
+CASES = [
+    ({}, []),
+    ({"size": (96, 64)}, ["--size", "96x64"]),
+    ({"size": (96, 64), "shadows": "hard"}, ["--size", "96x64", "--shadows", "hard"]),
+    ({"size": (64, 64), "cmap": "viridis", "clim": (10, 200)},
+     ["--size", "64x64", "--colormap", "viridis", "--range", "10,200"]),
+    ({"size": (64, 64), "clim": (10, 200)}, ["--size", "64x64", "--range", "10,200"]),
+    ({"size": (64, 64), "tf": "ct-bone"}, ["--size", "64x64", "--tf", "ct-bone"]),
+    ({"size": (64, 64), "camera": (30, 40)}, ["--size", "64x64", "--azimuth", "30", "--elevation", "40"]),
+    ({"size": (64, 64), "camera": "left"}, ["--size", "64x64", "--view", "left"]),
+    ({"size": (64, 64), "shade": False}, ["--size", "64x64", "--shading", "flat"]),
+    ({"size": (64, 64), "spacing": (3, 2, 1)}, ["--size", "64x64", "--spacing", "1,2,3"]),
+    ({"size": (64, 64), "threads": 1, "background": "red"}, ["--size", "64x64", "--threads", "1"]),
+]
+
+
+@pytest.mark.parametrize("words, options", CASES, ids=[" ".join(options) or "default" for _, options in CASES])
+def test_a_path_gives_the_bytes_of_the_program(program, tmp_path, blob, words, options):
+    source = tmp_path / "blob.npy"
+    np.save(source, blob)
+    halflight.render(source, **words).save(tmp_path / "python.npy")
+    assert (tmp_path / "python.npy").read_bytes() == run(program, tmp_path, source, *options)
+
+
+def test_a_png_is_the_program_s_too(program, tmp_path, blob):
+    source = tmp_path / "blob.npy"
+    np.save(source, blob)
+    halflight.render(source, size=(64, 48)).save(tmp_path / "python.png")
+    command = [program, "render", source, "--quiet", "--size", "64x48", "-o", tmp_path / "program.png"]
+    subprocess.run(command, check=True)
+    assert (tmp_path / "python.png").read_bytes() == (tmp_path / "program.png").read_bytes()
+
+
+def test_layers_are_the_program_s(program, tmp_path, blob):
+    source = tmp_path / "blob.npy"
+    np.save(source, blob)
+    halflight.render(source, size=(64, 48), layers=True).save(tmp_path / "python.exr")
+    command = [program, "render", source, "--quiet", "--layers", "--size", "64x48", "-o", tmp_path / "program.exr"]
+    subprocess.run(command, check=True)
+    assert (tmp_path / "python.exr").read_bytes() == (tmp_path / "program.exr").read_bytes()
+
+
+def test_an_array_gives_the_picture_of_its_file(tmp_path, blob):
+    np.save(tmp_path / "blob.npy", blob)
+    assert np.array_equal(pixels(blob), pixels(tmp_path / "blob.npy"))
+
+
+def test_no_keyword_is_ignored(blob):
+    plain = pixels(blob)
+    for words in ({"spacing": (2, 1, 1)}, {"affine": np.diag([1, 2, 1, 1])}, {"axes": "xyz"}, {"cmap": "magma"},
+                  {"clim": (100, 200)}, {"opacity": 0.1}, {"opacity": "linear"}, {"opacity": "sigmoid"},
+                  {"opacity": "geom"}, {"opacity": [0, 0.2, 0.9]}, {"opacity": [(50, 0), (60, 0.3)]},
+                  {"opacity_unit_distance": 9}, {"shade": False}, {"shade": "none"}, {"ambient": 3}, {"diffuse": 0.2},
+                  {"specular": 2}, {"shininess": 2}, {"tf": "smoke"}, {"shadows": False}, {"shadows": "hard"},
+                  {"direction": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]},
+                  {"lights": Directional(direction=(0, 1, 0))}, {"lights": []},
+                  {"camera": "top"}, {"camera": (10, 80)}, {"camera": Camera(position=(14, -99, 9), target=(14, 0, 9))},
+                  {"tf": TransferFunction([(30, 0), (40, 0.9)], color=(1, 0, 0))}):
+        assert not np.array_equal(pixels(blob, **words), plain), words
+    # The world's origin moves what is looked at, and the camera with it: the picture is the same up to rounding.
+    moved, here = (halflight.Scene(halflight.Volume(blob, origin=(x, 0, 0)), size=(64, 48)).camera for x in (100, 0))
+    assert moved.target[0] == pytest.approx(100 + here.target[0], abs=1e-6)
+    assert np.array_equal(pixels(blob, threads=1), plain)
+    assert pixels(blob, size=(30, 20)).shape == (20, 30, 4)
+    assert tuple(halflight.render(blob, background="white", size=(16, 16)).to_srgb8()[0, 0]) == (255,) * 4
+
+
+def test_opacity_is_per_unit_distance():
+    """A homogeneous slab of 8 units with opacity 0.2 per 2 units lets (1 - 0.2)^(8 / 2) through."""
+    slab = np.full((8, 40, 40), 7, np.uint8)
+    camera = Camera(position=(19.5, 19.5, 100), target=(19.5, 19.5, 3.5), up=(0, 1, 0), height=4)
+    alpha = pixels(slab, opacity=0.2, opacity_unit_distance=2, camera=camera, shade=False, cmap="white")[24, 32, 3]
+    assert alpha == pytest.approx(1 - 0.8**4, abs=1e-4)
+
+
+def test_cmap_takes_colours_in_srgb_and_numbers_in_linear_light(blob):
+    flat = {"shade": False, "opacity": 0.99}
+    assert np.allclose(pixels(blob, cmap="#bc0000", **flat)[24, 32, :3], [0.5029, 0, 0], atol=2e-3)
+    assert np.allclose(pixels(blob, cmap=(0.5, 0, 0), **flat)[24, 32, :3], [0.5, 0, 0], atol=1e-3)
+    grey = pixels(blob, cmap=["black", "white"], clim=(0, 255), **flat)
+    assert np.allclose(grey[..., 0], grey[..., 1])
+
+
+def test_matplotlib_colormaps(blob):
+    matplotlib = pytest.importorskip("matplotlib")
+    by_name = pixels(blob, cmap="Spectral", clim=(0, 255))
+    assert np.array_equal(by_name, pixels(blob, cmap=matplotlib.colormaps["Spectral"], clim=(0, 255)))
+    # Halflight's viridis is matplotlib's, in fewer points.
+    own = pixels(blob, cmap="viridis", clim=(0, 255))
+    assert abs(own - pixels(blob, cmap=matplotlib.colormaps["viridis"], clim=(0, 255))).max() < 0.02
+
+
+def test_a_scene_file_is_rendered_as_by_the_program(program, tmp_path):
+    scene = tmp_path / "scene.json"
+    scene.write_text('{"halflight": 1, "image": {"width": 64, "height": 48}, "volumes": '
+                     '[{"shapes": [{"type": "torus", "radius": 20, "tube_radius": 6}], "voxel_size": 1}]}')
+    halflight.render(scene).save(tmp_path / "python.npy")
+    assert (tmp_path / "python.npy").read_bytes() == run(program, tmp_path, scene)
