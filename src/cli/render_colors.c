@@ -322,7 +322,7 @@ bool render_is_maximum(const cli_value *values, const hl_scene_description *desc
   return (look != NULL ? look->compositing : description->render.compositing) == HL_COMPOSITING_MAXIMUM;
 }
 
-/* What light alone changes. */
+/* Options that have no effect in a picture without light. */
 static const enum render_option of_light[] = {
     RENDER_LIGHT,         RENDER_LIGHT_SIZE,    RENDER_SHADOWS,
     RENDER_SOFT_METHOD,   RENDER_LIGHT_SAMPLES, RENDER_SHADOW_RESOLUTION,

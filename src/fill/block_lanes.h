@@ -84,7 +84,7 @@ LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   return lanes_bits(inside) == 0xffff;
 }
 
-/* As find_points(), in a tile that tile_is_inside(). */
+/* The same as find_points() for a tile that tile_is_inside(). */
 LANES_INLINE block_points find_points_inside(const fill_source *source, int x, int y) {
   block_points points;
   points.position = rays_positions(&source->rays, block_u(x), block_v(y));

@@ -10,7 +10,7 @@
 #include "fill/row_lanes.h"
 #include "fill/windows_lanes.h"
 
-/* Where the 64 taps of every lane are in memory; all lie in the grid. */
+/* The addresses of every lane's 64 taps; all lie in the grid. */
 typedef struct tap_window {
   const unsigned char *voxels;
   lanes_offsets offsets; /* bytes from voxels to tap (0,0,0) */

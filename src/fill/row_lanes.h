@@ -84,7 +84,7 @@ LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
       {_mm512_xor_si512(higher_bytes(even, odd), sign), _mm512_xor_si512(lower_bytes(even, odd), sign)}};
 }
 
-/* From voxels to voxels less 128, and back. */
+/* Subtracts 128 from unsigned voxels, or adds it back, by flipping the sign bits. */
 LANES_INLINE lanes_int taps_with_sign(lanes_int taps) { return taps ^ (int32_t)0x80808080; }
 
 LANES_INLINE lanes_int weigh_signed_bytes(lanes_int less_128, const byte_weights *weights) {
@@ -256,7 +256,7 @@ LANES_INLINE lanes slope_row(hl_storage storage, const unsigned char *row, const
       slope_of_shorts(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), &slopes->shorts));
 }
 
-/* From units of weights or slopes to stored units. */
+/* Convert sums from units of weights, or of slopes, to stored units. */
 LANES_INLINE lanes from_units(hl_storage storage, lanes sum) {
   return has_integer_weights(storage) ? sum * WEIGHT_INVERSE : sum;
 }

@@ -132,7 +132,7 @@ static hl_status prepare(const voxel_sort *sort, voxel_lists *lists, sort_job *j
   return HL_OK;
 }
 
-/* From counts to where each bucket starts: start[c] = sum of the counts before c. */
+/* Turns counts into starts of buckets: start[c] is the sum of the counts before c. */
 static uint64_t accumulate(const uint32_t *count, size_t cells, uint32_t *start) {
   uint64_t sum = 0;
   for (size_t cell = 0; cell < cells; cell++) {

@@ -7,7 +7,7 @@
 
 enum { WINDOW_WIDTH = GRID_COLUMN }; /* voxels along x that taps are taken from */
 
-/* The lowest byte of each lane in all four. */
+/* Copies each lane's lowest byte into all four of its bytes. */
 LANES_INLINE __m512i repeat_bytes(__m512i x) {
   return _mm512_shuffle_epi8(x, _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0));
 }

@@ -125,7 +125,7 @@ LANES_INLINE void copy_window(const voxel_window *window, window_copies *copies)
   else copy_slices(window, WINDOW_SPREAD + 1, copies);
 }
 
-/* Of eight lanes, lane k in the lower half of the register and lane k + 4 in the upper half, repeated. */
+/* Repeats lane k of eight in the lower half of the register, and lane k + 4 in the upper half. */
 LANES_INLINE __m256i lanes_of_two(const lanes_int *x, int half, int k) {
   __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)x + half);
   return _mm256_shuffle_epi8(eight, _mm256_set1_epi32(0x03020100 + k * 0x04040404));

@@ -39,8 +39,10 @@ static double reach(const frame_job *job, vec3 along, double tangent) {
   return hl_outline_reach(job->outline, along, job->forward, tangent);
 }
 
-/* Derived: the plane x = ex + t (z - ez) and its mirror hold every point, so ex - t ez >= l and -ex - t ez >=
- * r, the reaches to the two sides; together ez <= -(l + r) / (2 t), with ex = (l - r) / 2. */
+/* The depth of the nearest eye that has the outline between two sides of the picture. Derived: all points lie
+ * between the plane x = ex + t (z - ez) and its mirror image, so ex - t ez >= l and -ex - t ez >= r, the
+ * reaches to the two sides; together ez <= -(l + r) / (2 t), with ex = (l - r) / 2. */
+
 static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
   return -(reach(job, along, tangent) + reach(job, vec3_scale(along, -1), tangent)) / 2 / tangent;
 }
@@ -228,7 +230,8 @@ hl_status hl_camera_frame_view(const hl_scene_description *description, const hl
 
 hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, hl_error *error) {
   static const double turns[] = {
-      0, -2, 4, 2, 1, -3, 5, 3}; /* of HL_VIEW_AZIMUTH: the four three-quarter views, and their mirrors */
+      0, -2, 4, 2,
+      1, -3, 5, 3}; /* the three-quarter views to try: turned by these multiples of HL_VIEW_AZIMUTH */
   const hl_camera usual = {.type = HL_CAMERA_PERSPECTIVE, .fovy_deg = 30};
   hl_scene_description square = *description;
   square.width = square.height = 1;

@@ -49,7 +49,8 @@ static bool is_empty(const float pixel[4]) {
 /* The linear value, before encoding, of a pixel's colour c. */
 static float hl_stored_value(const hl_codes *codes, const float pixel[4], int c) {
   if (!codes->transparent) return pixel[c] * codes->exposure + (1 - pixel[3]) * codes->background[c];
-  /* Unassociated colour cannot express light above alpha, as emission gives: the colour saturates. */
+  /* Unassociated colour is light divided by alpha, at most 1. Emission may give more light than alpha: the
+   * colour then saturates. */
   return pixel[3] > 0 ? pixel[c] / pixel[3] * codes->exposure : 0;
 }
 

@@ -4,7 +4,7 @@
 
 typedef enum hl_color_space {
   HL_SPACE_RGB = 0,
-  HL_SPACE_HSV = 1,       /* the short way round the hues */
+  HL_SPACE_HSV = 1,       /* hues are mixed along the shorter arc of the colour circle */
   HL_SPACE_LAB = 2,       /* CIELAB, white point D65 */
   HL_SPACE_DIVERGING = 3, /* Moreland's Msh, through white between distant hues */
   HL_SPACE_STEP = 4       /* the second colour right after the first point, as VTK has it */

@@ -54,15 +54,15 @@ void hl_light_emission_project(const light_source *source, const view *view, dou
 /* Whether a light's penumbrae are coloured, whatever the light's own colour. */
 bool hl_light_emission_colored(const hl_light *light);
 
-/* The kernel of one penumbra as taps `step` pixels apart, to weigh pixels that are means over step x step
- * pixels. */
+/* The kernel of one penumbra: taps `step` pixels apart along u and v. The pixels that they weigh must first
+ * be averaged over as many pixels. */
 typedef struct emission_taps {
   int count;
   int32_t x[EMISSION_TAPS], y[EMISSION_TAPS]; /* pixels */
   float weight[HL_CHANNELS][EMISSION_TAPS];
 } emission_taps;
 
-/* The distances of taps along u and v. width: of the light's penumbra, pixels. */
+/* Chooses the distances of taps along u and v. width: the penumbra's width, pixels. */
 void hl_light_emission_steps(const light_emission *emission, double width, int step[2]);
 /* slope: of the rays to the receivers, along u and v; where the light is tilted, the taps depend on it. */
 void hl_light_emission_taps(const light_emission *emission, double width, const int step[2],

@@ -228,7 +228,7 @@ LANES_INLINE void add_plane(const shade_job *job, const block_density *d, const 
 /* A way at least this fraction of the slab's counts as the whole slab's: the rest is rounding. */
 static const float WHOLE_WAY = 0.999f;
 
-/* Where the light's way through all boxes is shorter than through the slab. */
+/* Finds the light's ways, and the lanes where a box makes them shorter than the slab. */
 LANES_INLINE light_ways find_light_ways(const block_slab *slab, block_density *densities, int count,
                                         lanes3 towards, lanes path) {
   light_ways ways = {.all = find_ways(slab, densities, count, towards, path)};

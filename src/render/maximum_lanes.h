@@ -15,9 +15,9 @@ LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high
   return lanes_select(value >= low, value, lanes_set(-1.0f));
 }
 
-/* Where the middle one of three sheets has the greatest value of the three, the peak of the parabola through
- * them (derived): of a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2, t in sheets, it is a + (b - p)^2 / (8 (2 a -
- * p - b)). */
+/* The peak of the parabola through the values p, a, b on three sheets, where a is the greatest; else a.
+ * Derived: the parabola is a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2, t in sheets; its peak is a + (b - p)^2
+ * / (8 (2 a - p - b)). */
 LANES_INLINE lanes peak_of_three(lanes p, lanes a, lanes b) {
   lanes bend = lanes_fma(a, lanes_set(2.0f), -(p + b)), slope = b - p;
   lanes rise = slope * slope / lanes_max(bend * 8.0f, lanes_set(1e-20f));

@@ -52,8 +52,8 @@ typedef struct sweep_layers {
 
 typedef struct sweep sweep;
 
-/* What a sweep does with each tile of a slab. Returns the blocks that stay open: in them, later sheets may
- * still change the picture. */
+/* A function that a sweep calls for each tile of a slab. Returns the blocks that stay open: in them, later
+ * sheets may still change the picture. */
 typedef uint32_t tile_action(const sweep *sweep, const tile_slab *slab);
 
 struct sweep {

@@ -169,7 +169,7 @@ void hl_view_sheets_end(view_sheets *sheets) {
   hl_occupancy_release(content->context, &sheets->occupancy);
 }
 
-/* What is kept of a patch on a sheet; empty where another sheet was kept. */
+/* The kept densities of a patch on a sheet; emptied if they were another sheet's. */
 static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
   kept_patch *kept = &sheets->kept[patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)];
   if (kept->sheet != sheet) *kept = (kept_patch){.sheet = sheet};

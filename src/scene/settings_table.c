@@ -55,7 +55,7 @@ static const hl_setting_choice automatic_resolution[] = {{"auto", 0}, {NULL, 0}}
 #define ONE(type) (1u << (type))
 #define PLACED    (ONE(HL_LIGHT_POINT) | ONE(HL_LIGHT_SPOT) | ONE(HL_LIGHT_RECT) | ONE(HL_LIGHT_DISK))
 
-/* What rows of these types have in common. */
+/* Parts that many rows have in common. */
 #define FIELD(structure, name) .field = #name, .offset = offsetof(structure, name)
 #define A_POINT                                                                                      \
   .type = HL_SETTING_POINT, .unit = "world units", .low = -HL_LIMIT_LENGTH, .high = HL_LIMIT_LENGTH, \

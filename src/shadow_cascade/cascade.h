@@ -46,8 +46,8 @@
 /* CASCADE_MARGIN: pixels of zeros between rows, and rows of zeros between planes, which blurs may read. */
 enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48 };
 
-/* Absorbed light over the pixels of a level. Around them are zeros: the margin after a row, or a field, is
- * the one before the next. */
+/* Absorbed light over the pixels of a level, with a margin of zeros around them. One margin serves as the end
+ * of a row and the beginning of the next, and likewise between fields. */
 typedef struct cascade_field {
   field_pixel *pixels;  /* pixel (0,0); in the level's memory */
   unsigned char *zeros; /* [tiles]; 1 where the tile is all zeros: work skips it; in the level's flags */

@@ -21,9 +21,9 @@ typedef struct sublight_map {
 /* One sub-light's buffer. */
 typedef struct sublight {
   view view;
-  sublight_pixel *pixels; /* pixel (0,0) of the first channel; the others a plane apart; in memory */
-  uint16_t *lit;          /* [tiles]; blocks with light at the end of the last run of slabs; in flags */
-  unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since; in marks */
+  sublight_pixel *pixels; /* pixel (0,0) of the first channel, the others a plane apart; a part of `memory` */
+  uint16_t *lit; /* [tiles]; blocks with light at the end of the last run of slabs; a part of `flags` */
+  unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since; a part of `marks` */
   sublight_job job;       /* the current slab's */
   bool reaches;           /* the sub-light lies before the slab */
   bool shifted;           /* the job's scale is 1 */

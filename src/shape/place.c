@@ -15,7 +15,7 @@ void hl_shape_defaults(hl_shape *shape) {
                       .texture = {.frequency = 1, .octaves = 1, .bias = 0.5, .gain = 0.5, .amplitude = 1}};
 }
 
-/* As mat3_rotation(), with sine and cosine that are the same on every machine. */
+/* The same as mat3_rotation(), with a sine and cosine that are the same on every machine. */
 static mat3 rotation(const hl_shape *shape) {
   vec3 a = vec3_normalise(vec3_of(shape->rotate_axis));
   double s, c;

@@ -109,8 +109,8 @@ typedef struct hl_interval {
   double low, high;
 } hl_interval;
 
-/* The signed distance (negative inside; edge / 2 and -edge / 2 stand for anything farther) at p, a point of
- * the volume's frame. live: [count], from hl_shapes_bounds(); null: all. */
+/* The signed distance from the surface at p, a point of the volume's frame: negative inside, clamped to half
+ * of `edge` both ways. live: [count], from hl_shapes_bounds(); null: all shapes. */
 double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, vec3 p);
 
 /* Bounds of that distance within radius of p. live: set for the shapes that can affect the distance there. */

@@ -340,7 +340,7 @@ LANES_INLINE __m512 two_row_pairs(const float *table, int32_t first, int32_t sec
   return _mm512_castpd_ps(_mm512_insertf64x4(low, _mm256_castps_pd(_mm256_loadu_ps(table + second)), 1));
 }
 
-/* In each quarter of four registers four rows of four floats: their columns. */
+/* Transposes, in each quarter of the registers, four rows of four floats to four columns. */
 LANES_INLINE void columns_of_quads(const __m512 rows[4], __m512 columns[4]) {
   __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(rows[0], rows[1])),
           b = _mm512_castps_pd(_mm512_unpacklo_ps(rows[2], rows[3]));
@@ -477,7 +477,7 @@ LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int inde
   *second = pair >> 16 & 0xffff;
 }
 
-/* Where sixteen squares of two by two numbers begin in a table. */
+/* The first column and row, in a table, of sixteen squares of two by two numbers. */
 typedef struct lanes_squares {
   lanes_int column, row;
 } lanes_squares;

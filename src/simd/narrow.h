@@ -6,13 +6,13 @@
 #include "simd/lanes.h"
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* In 16 bits each, clamped to their range. */
+/* Narrows lanes to 16 bits each, clamped. */
 LANES_INLINE __m256i narrow_shorts(lanes_int x) {
   __m256i half[2];
   memcpy(half, &x, sizeof half);
   return _mm256_packs_epi32(half[0], half[1]);
 }
-/* In 8 bits each. */
+/* Narrows lanes to 8 bits each, clamped. */
 LANES_INLINE __m128i narrow_bytes(lanes_int x) {
   __m256i shorts = narrow_shorts(x);
   return _mm_packs_epi16(_mm256_castsi256_si128(shorts), _mm256_extracti128_si256(shorts, 1));

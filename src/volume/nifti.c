@@ -15,7 +15,7 @@
 
 enum { HEADER_1_BYTES = 348, HEADER_2_BYTES = 540, NAME_BYTES = 1024 };
 
-/* Where the fields of a version lie in its header. */
+/* The offsets of the fields in a version's header. */
 typedef struct nifti_layout {
   int version;
   size_t header_bytes, magic, dim, datatype, pixdim, vox_offset, slope, intercept, qform_code, sform_code,

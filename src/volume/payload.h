@@ -11,7 +11,8 @@ typedef enum hl_trailing {
   HL_TRAILING_REFUSED
 } hl_trailing;
 
-/* What a header says about its voxels. */
+/* The description of the voxels by a file's header. */
+
 typedef struct hl_payload {
   hl_volume_description grid; /* dimensions, type, origin, axis, value_scale, value_offset; nothing else */
   size_t components;          /* values of each voxel */

@@ -33,7 +33,8 @@ static bool is_long(uint16_t vr) {
   return false;
 }
 
-/* Of sequences that a file without value representations gives a length, those that are gone into. */
+/* The sequences to read in files without value representations, which do not mark sequences of known length.
+ */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
       0x52009229, 0x52009230,                         /* functional groups: shared, per frame */

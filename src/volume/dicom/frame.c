@@ -192,7 +192,7 @@ static void unpack_halved(const unsigned char *packed, size_t pixels, unsigned c
   }
 }
 
-/* From one plane per sample to samples side by side. */
+/* Turns one plane per sample into samples side by side. */
 static void interleave(const unsigned char *planes, size_t pixels, size_t samples, size_t size,
                        unsigned char *values) {
   for (size_t n = 0; n < pixels; n++)

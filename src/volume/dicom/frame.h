@@ -4,7 +4,7 @@
 
 #include "volume/dicom/set.h"
 
-/* What one thread needs to read frames; zero it at first. */
+/* One thread's memory for reading frames; zeros at first. */
 typedef struct hl_dicom_workspace {
   hl_context *context;
   unsigned char *packed; /* owned; a frame as it lies in the file */

@@ -187,7 +187,8 @@ static void clear_header(hl_dicom_header *header) {
   clear_frame(&header->base);
 }
 
-/* The frame that an element within the functional groups of frames is of; a new one is empty. */
+/* Finds the frame that the current element, within the functional groups of frames, belongs to. A new frame
+ * is empty. */
 static hl_status frame_of(const hl_dicom_reader *reader, hl_dicom_header *header, hl_dicom_frame **frame,
                           hl_error *error) {
   hl_context *context = hl_source_context(reader->source);

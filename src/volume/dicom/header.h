@@ -17,7 +17,7 @@ typedef enum hl_dicom_codec {
   HL_DICOM_UNKNOWN_CODEC
 } hl_dicom_codec;
 
-/* What may differ between the frames of a file. */
+/* Attributes that may differ between the frames of a file. */
 typedef struct hl_dicom_frame {
   double position[3];    /* of the first voxel's centre, in the patient: LPS, millimetres */
   double orientation[6]; /* unit steps along a row, then along a column */

@@ -123,7 +123,7 @@ hl_status hl_dicom_series_choose(const hl_dicom_set *set, const char *wanted, si
 
 /* ---- files ---- */
 
-/* Where a file says nothing of each frame, its frames follow each other along the normal. */
+/* If a file does not describe each frame, its frames follow each other along the normal. */
 static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_frame *frame) {
   *frame = index < header->frames_told ? header->frames[index] : header->base;
   frame->index = (uint32_t)index;

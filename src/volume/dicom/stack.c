@@ -92,15 +92,16 @@ static hl_status keep_majority(sorting *s, hl_error *error) {
   return HL_OK;
 }
 
-/* ---- order and places ---- */
+/* ---- order and positions of slices ---- */
 
-/* What is no number comes first. */
+/* Compares two numbers; NaN comes first. */
 static int compare(double a, double b) {
   if (isnan(a) || isnan(b)) return isnan(b) - isnan(a);
   return a < b ? -1 : a > b;
 }
 
-/* What tells frames at one place apart, the most telling first. */
+/* Compares frames at the same position, which belong to different volumes: by the attributes that tell
+ * volumes apart, the most reliable first. */
 static int by_volume(const hl_dicom_frame *a, const hl_dicom_frame *b) {
   const double of_a[] = {a->temporal,    a->echo,     a->b_value, a->trigger, a->segment,
                          a->acquisition, a->instance, a->file,    a->index};

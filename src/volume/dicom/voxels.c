@@ -136,7 +136,7 @@ static hl_status read_slice(reading *r, size_t place, int worker, unsigned char 
   return HL_OK;
 }
 
-/* ---- gaps: linear between the slices around them ---- */
+/* ---- missing slices: interpolated linearly from the slices beside them ---- */
 
 static void blend(const reading *r, double weight, unsigned char *slice, const unsigned char *other) {
   float *floats = (float *)(void *)slice;
