@@ -38,11 +38,11 @@ typedef struct hl_image_write_options {
 
 HL_API void hl_image_write_options_defaults(hl_image_write_options *options);
 
-/* By extension: .png (sRGB, composited over the background), .exr (linear float), .npy (float32,
- * height x width x 4). Written to a temporary name beside path and renamed: never half a file. Layers become
- * channels "name.R" and so on of an .exr, and files of their own beside an .npy, "picture-name.npy" (height x
- * width x channels, or height x width), which are written before it; for a .png an image with layers is
- * refused. options may be null. */
+/* Writes a picture in the format of the path's extension: .png (sRGB, composited over the background), .exr
+ * (linear float) or .npy (float32, height x width x 4). It is written to a temporary name beside the path and
+ * renamed: there is never half a file. Layers become channels "name.R" and so on of an .exr, and files of
+ * their own beside an .npy, "picture-name.npy" (height x width x channels, or height x width), which are
+ * written before it; for a .png an image with layers is refused. options may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                                                const hl_image_write_options *options, hl_error *error);
 

@@ -85,8 +85,8 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
 /* True if --tf, --colormap, --range or --threshold was given. */
 bool render_recolors(const cli_value *values);
 
-/* --look: whether it replaces the transfer functions, its transfer function for one volume
- * (hl_transfer_function_release), and its other changes. bare: see render_change_scene(). */
+/* For --look: true if it replaces the volumes' transfer functions; makes its transfer function for one volume
+ * (free with hl_transfer_function_release); applies its other changes. bare: see render_change_scene(). */
 bool render_look_recolors(const cli_value *values, bool bare);
 hl_status render_look_function(cli_host *host, const cli_value *values, const hl_volume *volume,
                                hl_transfer_function *function, hl_error *error);

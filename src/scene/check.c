@@ -83,7 +83,7 @@ static hl_status check_camera(const hl_camera *camera, hl_error *error) {
   return hl_check_settings(&check, HL_SETTINGS_CAMERA, camera, (int)camera->type);
 }
 
-/* ---- what must fit together ---- */
+/* ---- checks of several parts together: distances beside voxels, brightness ---- */
 
 /* A length or a distance that floats must hold beside voxels. */
 static hl_status check_reach(const hl_checker *check, const char *key, double length,

@@ -18,7 +18,7 @@ static void bound_points(const view *unit, const light_source *source, const vec
     double uv[2];
     bool in_front = hl_view_project(unit, points[i], uv);
     for (int axis = 0; axis < 2; axis++) {
-      if (!in_front) { /* beside or behind a light near the volume: as wide as the buffer goes */
+      if (!in_front) { /* the point lies beside or behind a near light: take the greatest bounds */
         low[axis] = -WIDEST;
         high[axis] = WIDEST;
         continue;

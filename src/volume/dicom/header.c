@@ -294,7 +294,7 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   p->high = (int)high;
   p->is_signed = header->representation == 1;
   p->planar = header->planar == 1;
-  /* Of these the numbers are what was measured; elsewhere white stands for the least. */
+  /* CT and PET store measured values; otherwise MONOCHROME1 shows the least value as white */
   bool measured = hl_text_equal(header->modality, "CT") || hl_text_equal(header->modality, "PT");
   p->inverted = hl_text_equal(header->photometric, "MONOCHROME1") && !measured;
   p->is_ybr = hl_text_starts(header->photometric, "YBR_FULL");
