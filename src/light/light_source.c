@@ -138,7 +138,8 @@ void hl_lit_region(const view *view, const light_source *source, double low[2], 
     double reach = tan(acos(source->sectors->least));
     cut((double[2]){-reach, -reach}, (double[2]){reach, reach}, low, high);
   }
-  if (source->shadows != HL_SHADOWS_HARD) return; /* occluders outside the lit region cast penumbrae into it */
+  if (source->shadows != HL_SHADOWS_HARD)
+    return; /* occluders outside the lit region cast penumbrae into it */
   if (source->light->texture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);
   if (source->light->type == HL_LIGHT_SPOT && bound_cone(view, source, lit_low, lit_high))

@@ -1,4 +1,4 @@
-/* light/light_texture.c - where a light's image stands, averaged to the picture's pixels and blurred by the
+/* light/light_texture.c - places a light texture, averages it to the picture's pixels and blurs it by the
  * light's shape. */
 #include "light/light_texture.h"
 
@@ -7,7 +7,7 @@
 #include "scene/light_shape.h"
 #include "view/view.h"
 
-/* The image as a picture plane that the light looks through: its pixels are the view's. Derived: a sample x
+/* The light's view through its screen, with the image's pixels. Derived: a sample x
  * lies on the ray through c + s R + t U; with the light at P, x - P = w (c - P + s R + t U), and for parallel
  * light along d, x = c + s R + t U + k d: three linear equations, w or k being the third unknown. */
 static view view_of_screen(const light_source *source, int width, int height) {
@@ -24,8 +24,8 @@ static view view_of_screen(const light_source *source, int width, int height) {
   return view;
 }
 
-/* Length of a vector of the screen where its shadow falls on the content's middle, across the light's ray
- * there; where the content lies before the screen, its own. */
+/* Length of a screen vector's projection at the content's middle, across the light's ray there; not shrunk
+ * where the content lies before the screen. */
 static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
   vec3 way = source->direction;
   double magnified = 1;
@@ -42,12 +42,12 @@ static double length_at_content(const light_source *source, const view *view, ve
 /* Weights of neighbouring pixels for each pixel of a result. */
 typedef struct axis_weights {
   int count, taps;
-  int *first; /* owned; [count]; the first pixel that is weighed; all of them are in the image, beyond which
-                 it is dark */
+  int *first; /* owned; [count]; the first pixel that is weighted; all lie in the image, outside which it is
+                 dark */
   float *weights; /* owned; [count][taps] */
 } axis_weights;
 
-/* The part of a kernel below x, its half width being 1. */
+/* The fraction of a kernel of half width 1 that lies below x. */
 typedef double kernel_fraction(double x);
 
 static double box_below(double x) { return fmin(fmax((x + 1) / 2, 0), 1); }
@@ -150,11 +150,11 @@ static hl_status make_level(hl_context *context, kernel_fraction *below, const t
   return status;
 }
 
-/* ---- how much the light's extent blurs ---- */
+/* ---- blur by the light's extent ---- */
 
-/* Standard deviations in pixels of the image, along u and v, of what a point of the screen casts at distance
- * 1 behind it (point light: at an infinite one): the light's spread, moved onto the screen along the ray to
- * the content's middle. */
+/* Standard deviations of the blur in pixels of the image, along u and v, at distance 1 behind the screen
+ * (near light: at infinite distance): the light's spread, projected onto the screen along the ray to the
+ * content's middle. */
 static void spread_on_screen(const light_source *source, const view *view, vec3 content,
                              double deviation[2]) {
   vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
@@ -172,16 +172,16 @@ static void spread_on_screen(const light_source *source, const view *view, vec3 
   }
 }
 
-/* Distance behind the screen, or the part of 1 - Zs / Z, of one point; without a sign. */
+/* The scale of the blur at a point: its distance from the screen, or |1 - Zs / Z| for a near light. */
 static double blur_at(const light_source *source, const view *view, vec3 point) {
   if (source->parallel) return fabs(mat3_apply(view->inverse, vec3_subtract(point, view->corner)).x);
   double w = mat3_apply(view->inverse, vec3_subtract(point, view->origin)).x;
   return fabs(1 - 1 / fmax(w, 0.05));
 }
 
-/* Level 0 blurs by 1.4 pixels of the picture, every other by the root of 2 more; pixels of a level are half
- * as large as its blur, no smaller than 0.7 of the picture's; an image that is magnified beyond the greatest
- * side gets coarser ones. */
+/* Level 0 blurs by 1.4 pixels of the picture, each further level by the root of 2 more. A level's pixels are
+ * half as large as its blur, at least 0.7 of the picture's, and larger where the level would exceed the
+ * greatest side. */
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
 enum { GREATEST_LEVEL_SIDE = 8192 };
 
@@ -248,7 +248,7 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
 
 /* ---- the screen ---- */
 
-/* As many pixels as the picture has where the image falls, at most the image's own. */
+/* The number of pixels that the picture has across the projected image, at most the image's own. */
 static int resolution(double length, int count, double pixel, float *sharpness) {
   double wanted = ceil(length / pixel);
   int chosen = wanted < 1 ? 1 : wanted < count ? (int)wanted : count;

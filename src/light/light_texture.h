@@ -1,21 +1,20 @@
-/* light/light_texture.h - the image that a light projects (section 4, fig. 9), ready for lookups at samples.
+/* light/light_texture.h - the image that a light projects (section 4, fig. 9), ready for look-ups at samples.
  *
- * Every sample is projected onto the screen along its light ray: the pattern is as sharp as its image,
+ * Every sample is projected onto the screen along its light ray: the pattern is as sharp as the image,
  * whatever the shadow buffer's resolution. An image finer than the picture is averaged down to the picture's
  * pixels once a frame.
  *
- * Through an extended light's soft shadows the screen is seen by each point of the light from elsewhere: at
- * the distance t behind the screen the image is convolved with the light's shape, scaled by t (parallel
- * light) or by 1 - Zs / Z, the screen being at Zs and the sample at Z from a near light (eq. (5), the screen
- * as occluder). Levels of doubling variance are made once a frame, and each sample takes its own mean of
- * two. */
+ * An extended light with soft shadows blurs the image: at the distance t behind the screen it is convolved
+ * with the light's shape, scaled by t (parallel light) or by 1 - Zs / Z, the screen at Zs and the sample at Z
+ * from a near light (eq. (5), the screen as occluder). Blurred levels of the image, each of twice the
+ * variance of the one before, are made once a frame; each sample interpolates between two of them. */
 #ifndef HL_LIGHT_LIGHT_TEXTURE_H
 #define HL_LIGHT_LIGHT_TEXTURE_H
 
 #include "core/error.h"
 #include "light/light_source.h"
 
-/* The image blurred by the light's own shape, dark beyond the screen: a border of zeros. */
+/* The image blurred by the light's shape. It has a border of zeros: beyond the screen it is dark. */
 typedef struct texture_level {
   const float *pixels; /* [height][width][3]; in the light texture's memory */
   int width, height;
@@ -30,13 +29,13 @@ typedef struct light_texture {
   float map[3][4]; /* frame space -> (w, w u, w v): u, v in pixels from the image's top left corner; w <= 0:
                       the ray does not pass the screen's plane */
   float sharpness[2]; /* along u and v: pixels of the picture that one of the image covers, at least 1 */
-  float beyond[4]; /* parallel: frame space -> distance along the rays from the screen; else it follows from
-                    * w */
-  int parallel;
-  float first; /* 1 / square of the distance (point light: of the part) at which the image is level 0; level l
-                  has 2^l times that square, and the blur's variance with it */
   float
-      edge[2]; /* along u and v: width in pixels of the image of the box that blurs as much, at distance 1 */
+      beyond[4]; /* parallel light: frame space -> distance from the screen along the rays; else w tells it */
+  int parallel;
+  float first; /* 1 / square of the distance (near light: of 1 - Zs / Z) that level 0 is blurred for; level l
+                  is for 2^l times that square, and has 2^l times the variance */
+  float edge[2]; /* along u and v: pixels of the image; width of the box with the blur's variance, at distance
+                    1 */
   int level_count; /* 0: the light has no extent that matters */
   texture_level level[TEXTURE_LEVELS];
   float *memory; /* owned; the image averaged and its levels; null where neither is needed */

@@ -1,7 +1,6 @@
-/* scene/scene.c - defaults, and the immutable scene: a checked deep copy of a description.
+/* scene/scene.c - defaults of descriptions, and scenes: checked deep copies of a description.
  *
- * In: a description of plain data. Out: an hl_scene that owns every array and text in its copy and holds a
- * reference to each volume. Renderers read it through hl_scene_describe().
+ * A scene owns every array and text of its copy and holds a reference to each volume.
  */
 #include "scene/scene.h"
 
@@ -64,7 +63,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, scene);
 }
 
-/* *copy = items, in memory of its own; null for none. */
+/* Copies an array into memory owned by the caller; null for no items. */
 static hl_status copy_array(hl_context *context, const void *items, size_t count, size_t size,
                             const char *what, void **copy, hl_error *error) {
   *copy = NULL;
@@ -97,7 +96,8 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
   return HL_OK;
 }
 
-/* to: owned parts are null until they are its own, so that release_volume() can follow a failure. */
+/* Copies a volume. Pointers in *to are null until they are owned, so that release_volume() can follow a
+ * failure. */
 static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to,
                              hl_error *error) {
   *to = *from;
@@ -157,7 +157,7 @@ static hl_status copy_picture(hl_context *context, light_picture from, const flo
   return status == HL_OK ? copy_text(context, from.file, file, error) : status;
 }
 
-/* to: its images' pointers are null until they are its own. */
+/* Copies a light's images. Pointers in *to are null until they are owned. */
 static hl_status copy_images(hl_context *context, const hl_light *from, hl_light *to, hl_error *error) {
   const hl_light_texture *texture = &from->texture;
   const hl_light_emission *emission = &from->emission;

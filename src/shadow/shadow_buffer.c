@@ -1,4 +1,4 @@
-/* shadow/shadow_buffer.c - place, size and memory of shadow buffers. */
+/* shadow/shadow_buffer.c - position, size and memory of shadow buffers. */
 #include "shadow/shadow_buffer.h"
 
 #include <string.h>
@@ -35,7 +35,7 @@ static void bound_points(const view *unit, const light_source *source, const vec
   }
 }
 
-/* What is to be lit, and around it what casts penumbrae onto it, as far as there is anything. */
+/* Bounds the points, and a margin around them for penumbrae, which ends where the content ends. */
 static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent,
                          double low[2], double high[2]) {
   double content_low[2], content_high[2];
@@ -48,8 +48,8 @@ static void bound_buffer(const view *unit, const light_source *source, const sha
   }
 }
 
-/* Pixel edge in the units of the unit view: world for parallel light, at distance 1 for a point light, whose
- * pixels grow with distance and must still be small enough at the far side. */
+/* The edge of a pixel: frame units for parallel light; at distance 1 for a near light, whose pixels grow with
+ * distance and must be small enough at the farthest point. */
 static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent,
                          const double size[2]) {
   double pixel = extent->pixel;
@@ -77,9 +77,9 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
   return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
 }
 
-/* Pixels a little smaller, so that the first and the last one but the borders' have their middles just inside
- * the bounds: light that runs along a box's face and is read beside it is then not mixed with what passes
- * outside. Soft shadows' are square, and so are those of what is thinner than this part of one. */
+/* Makes pixels a little smaller, so that, borders aside, the middles of the first and the last pixel lie just
+ * inside the bounds: light along a box's face is then not mixed with light that passes outside. The fraction
+ * of a pixel up to which bounds are too thin for it; pixels of soft shadows are not fitted either. */
 static const double LEAST_FITTED = 0.25;
 
 static pixel_row row_between(double low, double size, double pixel) {
@@ -136,7 +136,8 @@ static size_t tiles_of(const shadow_buffer *buffer) {
   return (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
 }
 
-/* The memory of a buffer whose size is set. plane_count: of all channels, the second ones included. */
+/* Lays out the memory of a buffer whose size is set. plane_count: planes of all channels, second planes
+ * included. */
 static void lay_out(shadow_buffer *buffer, size_t plane_count, hl_layout *layout) {
   buffer->planes = hl_layout_take(layout, plane_count, buffer->plane * sizeof *buffer->planes);
   buffer->tile_lit = hl_layout_take(layout, tiles_of(buffer), sizeof *buffer->tile_lit);

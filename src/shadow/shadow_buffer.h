@@ -1,8 +1,8 @@
 /* shadow/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the current sheet.
  *
- * Perpendicular to the light's axis for hard shadows, parallel to the sheets for soft ones (fig. 17). Its
- * pixels are little larger than the image's where the volume is. Around it light is unattenuated: a margin of
- * ones, which blurs read. */
+ * It is perpendicular to the light's direction for hard shadows, parallel to the sheets for soft ones (fig.
+ * 17). At the volume its pixels are little larger than the picture's. Around it is a margin of ones,
+ * unattenuated light, which blurs read. */
 #ifndef HL_SHADOW_SHADOW_BUFFER_H
 #define HL_SHADOW_SHADOW_BUFFER_H
 
@@ -19,8 +19,8 @@ typedef struct shadow_buffer {
   size_t plane;                      /* floats of one channel, margins included */
   size_t origin;                     /* offset of pixel (0,0) in a plane */
   float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory */
-  float *second[HL_CHANNELS];  /* pixel (0,0); in memory; null: none. The paper's soft shadows: between two
-                                  blurs. The cascade's: what light receivers fade from, see cascade.h */
+  float *second[HL_CHANNELS];  /* pixel (0,0); in memory; null: none. The method's second planes: for `paper`
+                                  the  result of half a blur, for `cascade` the light that samples fade from */
   float *planes;               /* in memory; [1 or 2][channels][plane] */
   uint16_t *tile_lit;          /* in memory; [tiles]; blocks that light still reaches */
   unsigned char *tile_touched; /* in memory; [2][tiles]; 1 where some transmittance is below 1 */
@@ -28,17 +28,17 @@ typedef struct shadow_buffer {
   size_t capacity;             /* bytes of memory */
 } shadow_buffer;
 
-/* What decides a buffer's place and size. */
+/* The input that decides a buffer's position and size. */
 typedef struct shadow_extent {
-  const vec3 *points; /* corners of all that is to be lit or to cast shadows; frame space */
+  const vec3 *points; /* corners of the region to cover; frame space */
   int point_count;
   double pixel;           /* wanted edge of a pixel at the volume, frame units */
   int resolution;         /* pixels along the longer side; 0: by pixel */
   size_t greatest_pixels; /* limit of width * height */
-  double margin;       /* around the points, for penumbrae: frame units; at distance 1 where not parallel */
-  const vec3 *content; /* corners of all there is: the margin ends there; frame space */
+  double margin;          /* around the points, for penumbrae: frame units; at distance 1 for a near light */
+  const vec3 *content;    /* corners of all content, beyond which no margin is needed; frame space */
   int content_count;
-  vec3 u; /* unit: along the buffer's rows; zero: along the light's tilt */
+  vec3 u; /* unit; the direction of the buffer's rows; zero: the light's tilt */
 } shadow_extent;
 
 /* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
@@ -59,7 +59,8 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
 size_t hl_shadow_plane(const view *view, int reach);
 /* The bytes that hl_shadow_buffer_reset() needs. */
 uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size);
-/* Finds a tile's tile_lit anew after a blur. both: what the second planes hold is light, too. */
+/* Finds a tile's tile_lit again after a blur. both: a block is lit where the second planes have light, too.
+ */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
                                lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);

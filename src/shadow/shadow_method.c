@@ -33,7 +33,7 @@ shadow_layouts hl_light_shadow_count(light_shadow *shadow) {
   return layouts;
 }
 
-/* Room for what the method keeps from frame to frame. */
+/* Makes room for the planes that the method keeps from frame to frame. */
 static hl_status grow(hl_context *context, shadow_memory *memory, size_t bytes, hl_error *error) {
   if (memory->capacity >= bytes) return HL_OK;
   hl_release(context, memory->planes);

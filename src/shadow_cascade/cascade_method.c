@@ -3,23 +3,23 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* Chunks after which a level's sums are found anew. */
+/* Chunks after which a level's sums are made again. */
 static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
 
-/* Of boxes, in pixels of the buffer, where the light is widest. */
+/* The difference of two boxes' variances, where the light is widest; pixels of the buffer squared. */
 static double variance_between(double wide, double narrow) {
   return fmax(wide * wide - narrow * narrow, 0) / 12;
 }
 
-/* What a level's sums are blurred by its pixels on the way to the buffer (derived: halving takes the mean of
- * two pixels, of variance 1/4, and the bilinear way back weighs 3/4 and 1/4, of variance 3/4; s^2 in all from
- * s to 2 s, a geometric sum). */
+/* The variance by which a level's coarser pixels blur its sums on the way to the buffer (derived: halving
+ * takes the mean of two pixels, of variance 1/4; doubling weighs by 3/4 and 1/4, of variance 3/4; together
+ * s^2 from scale s to 2 s and back, which is a geometric sum). */
 static double resampled_by(const cascade_level *level) {
   return ((double)level->scale * level->scale - 1) / 3;
 }
 
-/* From a level's sum to a place in a level as fine or finer. What resampling blurs too much for this way is
- * owed by the next. */
+/* The blur from a level's sum to omega on a level as fine or finer. Variance that resampling adds beyond this
+ * blur is taken off the next one (owed). */
 static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega,
                                  cascade_level *to) {
   double variance = variance_between(receiver - from->sum_omega, receiver - omega),
@@ -33,7 +33,7 @@ static cascade_blur blur_towards(const cascade_level *from, double receiver, dou
   return blur;
 }
 
-/* Moves a level's groups forward by the first `gone`, whose fields the places left free take over. */
+/* Removes a level's `gone` oldest groups; their fields are used by the next groups. */
 static void forget_oldest(cascade_level *level, int gone) {
   cascade_group free[2] = {level->group[0], level->group[1]};
   for (int g = gone; g < level->capacity; g++) level->group[g - gone] = level->group[g];
@@ -50,7 +50,7 @@ static void copy_field(const cascade_crew *crew, const cascade_level *level, con
   hl_cascade_add(crew, &sum);
 }
 
-/* The oldest group of level 0 goes to level 1 as it is, on that level's pixels. */
+/* Moves the oldest group of level 0 to level 1, on the pixels of that level. */
 static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0], *next = &cascade->level[1];
   const cascade_group *from = &level->group[0];
@@ -65,10 +65,10 @@ static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   forget_oldest(level, 1);
 }
 
-/* The two oldest groups of a level go to the next, where the first has a group at its own place already and
- * the second lies between that and a new one at the third's place: what it took is shared between them by its
- * distances (derived: kernels are then linear between groups, so that what a penumbra's middle should be is
- * kept). */
+/* Moves the two oldest groups of a level, a and b, to the next level. That level already has a group at a's
+ * omega, and gets a new one at the omega of the third group. b lies between these two: its absorbed light is
+ * split between them by its distances (derived: kernels are then linear between groups, which keeps a
+ * penumbra's middle). */
 static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
   cascade_group a = level->group[0], b = level->group[1];
@@ -128,8 +128,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
   }
 }
 
-/* What the chunk's slabs took of the light that reached the chunk goes to the groups at its two ends. Tiles
- * stay marked until the buffer is refilled. */
+/* Adds the light that the chunk's slabs have absorbed to the groups at the chunk's two ends. Tiles stay
+ * marked until the buffer is refilled. */
 static void absorb_piece(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
@@ -156,7 +156,7 @@ static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, doubl
     merge_up(cascade, i, crew);
 }
 
-/* In the middle of the slab before the sheet. */
+/* omega in the middle of the slab before the sheet. */
 static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
   return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
@@ -204,7 +204,7 @@ static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) 
   hl_cascade_add(crew, &sum);
 }
 
-/* What the groups before absorbed, blurred for this group, and what this group did. */
+/* Adds a group to the sum of the groups before it, which is blurred for this group first. */
 static void pass_group(int channels, cascade_level *from, cascade_level *level, const cascade_group *group,
                        double receiver, int reach, const cascade_crew *crew) {
   cascade_blur blur = blur_towards(from, receiver, group->omega, level);
@@ -216,7 +216,8 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
           blur, crew);
 }
 
-/* Nothing lies before the farthest group, whose penumbra pays for the look-up. */
+/* Starts the sum with the farthest group. The blur of look-ups is owed: the group's own blur is reduced by
+ * it. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
                        const cascade_crew *crew) {
   level->owed[0] = level->owed[1] = cascade->lookup_variance;
@@ -226,7 +227,7 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
 
 /* ---- where the next slabs read ---- */
 
-/* In the tiles that sheets up to the next chunk's end can touch. */
+/* Finds the tiles that sheets up to the next chunk's end can touch. */
 static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const sheet_stack *sheets,
                        int sheet) {
   int last = sheet;
@@ -236,15 +237,15 @@ static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const 
   hl_cascade_reads_find(&cascade->reads, occupancy, sheet, last);
 }
 
-/* How far what is on the way from one group, or the sum behind it, to the next is blurred and resampled,
- * pixels of the buffer. */
+/* The reach of the blur and resampling from one group's sum to the next group's level, pixels of the buffer.
+ */
 static int reach_of(const cascade_level *level, double variance, const cascade_level *next) {
   double own = variance * level->greatest_fraction / ((double)level->scale * level->scale);
   return (hl_blur_box_of_variance(own).reach + 1) * level->scale +
          hl_cascade_doubling_reach(level->scale, next->scale);
 }
 
-/* How far what passed group g of a level is still blurred on its way to the buffer, pixels of that. */
+/* The reach of all blurs from group g of a level to the buffer, pixels of the buffer. */
 static int reach_behind(const soft_cascade *cascade, int index, int g, double receiver) {
   const cascade_level *from = &cascade->level[index];
   double omega = from->group[g].omega;
@@ -262,9 +263,9 @@ static int reach_behind(const soft_cascade *cascade, int index, int g, double re
   return reach + reach_of(from, variance_between(receiver - omega, 0), &cascade->level[0]);
 }
 
-/* From the farthest group to the nearest; levels are renewed in turn, the thicker the more rarely. Empty
- * groups are left out, which keeps blurs few and kernels boxes. Returns the nearest level with anything in
- * sum; null if nothing is in the way. */
+/* Sums the groups from the farthest to the nearest. Thicker levels are summed less often. Empty groups are
+ * left out, which saves blurs and keeps kernels close to boxes. Returns the nearest level with anything in
+ * its sum; null if nothing is in the way. */
 static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *sum = NULL;
   bool due = false;
@@ -273,7 +274,7 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
-    /* until it is due again receivers go on by a period less one chunk: their mean is served */
+    /* until the level is due again, receivers move on by a period less one chunk: take the middle one */
     double served = receiver + cascade->chunk * (double)(period - 1) / 2;
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
@@ -293,14 +294,14 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
   return sum;
 }
 
-/* Of a tile: whether it was refilled at the last chunk's end, and at this one's. */
+/* Bits of cascade->refilled: the tile was refilled at the last chunk's end, at this chunk's end. */
 enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
 
 typedef struct refill_task {
   soft_cascade *cascade;
   shadow_buffer *buffer;
   const cascade_functions *functions;
-  bool any; /* shade is not all zeros */
+  bool any; /* cascade->absorbed is not all zeros */
 } refill_task;
 
 static void refill_piece(void *data, size_t index, int worker) {
@@ -335,10 +336,11 @@ static void refill_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* Less than this, pixels squared, is not worth a blur: a third of what a bilinear look-up has. */
+/* The least variance worth a blur, pixels squared: a third of a bilinear look-up's. */
 static const double LEAST_VARIANCE = 0.05;
 
-/* What receivers around omega = receiver lack, where it is read; false if nothing is in the way. */
+/* Finds cascade->absorbed for receivers around omega = receiver, where it is read; false if nothing is in the
+ * way. */
 static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   if (cascade->emission != NULL) return hl_cascade_pass_emission(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);
@@ -357,7 +359,7 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   return true;
 }
 
-/* The buffer that sheets look up. any: whether find_shade found any. */
+/* Refills the buffer that sheets look up. any: whether find_shade() found anything. */
 static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, bool any, const cascade_crew *crew) {
   refill_task task = {cascade, buffer, crew->functions, any};
   hl_pool_run(crew->pool, hl_cascade_row_pieces(&cascade->level[0]), refill_piece, &task);
@@ -386,7 +388,7 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
 
 /* ---- the method ---- */
 
-/* How far receivers have faded to the buffer from its second planes. */
+/* Sets how far samples have faded from the second planes to the buffer. */
 static void before_shading(light_shadow *shadow, int sheet) {
   const soft_cascade *cascade = shadow->state;
   double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
@@ -400,7 +402,7 @@ static void before_slab(light_shadow *shadow, int sheet) {
   cascade->slab = isfinite(middle) ? middle - cascade->chunk_start : 0;
 }
 
-/* What the slab takes is counted in the moments, and taken from the second planes too. */
+/* The slab is composited into the second planes too, and counted in the moments. */
 static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *job) {
   const soft_cascade *cascade = shadow->state;
   const shadow_buffer *buffer = shadow->buffer;

@@ -1,4 +1,4 @@
-/* shadow_cascade/cascade_passes.c - sums, blurs and parts of a cascade's fields. */
+/* shadow_cascade/cascade_passes.c - sums, blurs and merges of a cascade's fields. */
 #include "shadow_cascade/cascade_passes.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@ void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *fi
   for (size_t row = 0; row < TILE; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(field_pixel));
 }
 
-/* Fewer are faster looked at one by one. */
+/* From this many tiles on, memchr() is faster than a loop. */
 enum { MANY_TILES = 4 };
 
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
@@ -33,7 +33,7 @@ int hl_cascade_doubling_reach(int from, int to) {
   return reach;
 }
 
-/* Says whether a tile is all zeros after some of its rows were found. What the others hold is not read: they
+/* Notes whether a tile is all zeros after some of its rows were computed. The other rows are not read, so all
  * may be cleared. */
 static void note_zeros(const cascade_level *level, const cascade_field *field, int x, int y, tile_rows rows,
                        int above_zero) {
@@ -51,7 +51,7 @@ typedef struct add_task {
   bool doubled; /* b is coarser: a of zeros may be left out */
 } add_task;
 
-/* In a row of tiles from x0 to x1, both included. */
+/* Whether a sum is all zeros in a row of tiles, from x0 to x1, both included. */
 static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   const cascade_sum *sum = &task->sum;
   const cascade_level *levels[2] = {sum->level_a, sum->level_b};
@@ -59,7 +59,7 @@ static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   for (int i = 0; i < 2; i++) {
     if (fields[i] == NULL) continue;
     int scale = levels[i]->scale, own = sum->level->scale, first = x0, last = x1, top = y, bottom = y;
-    if (scale == own && x0 == x1) { /* most often: without a call */
+    if (scale == own && x0 == x1) { /* the usual case, without a call */
       if (!fields[i]->zeros[y * sum->level->tiles_x + x0]) return false;
       continue;
     }
@@ -74,7 +74,7 @@ static bool row_is_zeros(const cascade_level *level, const cascade_field *field,
   return hl_cascade_all_zeros(level, field, piece.first, piece.end - 1, piece.y, piece.y);
 }
 
-/* Most rows of a pass hold nothing, and are zeros already. */
+/* Adds a row of tiles. Most rows are zeros, and were before: these return at once. */
 static void add_tiles(const add_task *task, row_piece piece) {
   const cascade_level *level = task->sum.level;
   const cascade_field *a = task->sum.a, *to = task->sum.to;
@@ -226,7 +226,7 @@ typedef struct merge_task {
   add_task sums[MERGE_SUMS];
 } merge_task;
 
-/* A row of tiles of the farther level, and those of the nearer one below it. */
+/* Merges one row of tiles of the farther level, and the rows of the nearer level that it covers. */
 static void merge_row(void *data, size_t index, int worker) {
   merge_task *task = data;
   size_t first = index * (size_t)task->ratio, end = first + (size_t)task->ratio;
@@ -254,7 +254,7 @@ void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger) {
                       *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
   for (int i = 0; i < 2; i++) {
-    /* what goes to the first, by way of the second's fields */
+    /* the matter for the first goes by way of the second's fields */
     const cascade_sum sums[3] = {
         {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},
         {next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE},

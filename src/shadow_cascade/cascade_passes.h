@@ -1,11 +1,11 @@
-/* shadow_cascade/cascade_passes.h - passes over whole fields of a cascade: a row of tiles a task; tiles of
- * zeros are skipped. */
+/* shadow_cascade/cascade_passes.h - passes over whole fields of a cascade, in tasks of a piece of a row of
+ * tiles; tiles of zeros are skipped. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_PASSES_H
 #define HL_SHADOW_CASCADE_CASCADE_PASSES_H
 
 #include "shadow_cascade/cascade.h"
 
-/* Rows of tiles are worked on in parts, so that threads end at the same time. */
+/* Rows of tiles are divided into pieces, so that threads finish at the same time. */
 enum { ROW_PIECES = 2 };
 typedef struct row_piece {
   int y, first, end;
@@ -20,11 +20,11 @@ static inline row_piece hl_cascade_row_piece(const cascade_level *level, size_t 
                      level->tiles_x * (piece + 1) / ROW_PIECES};
 }
 
-/* How much a pass blurs. */
+/* The blur of a pass. */
 typedef struct cascade_blur {
-  double
-      variance; /* where the light is widest, pixels of the level; columns and rows have their parts of it */
-  double resampled[2]; /* along rows and columns: what resampling blurs by itself, and is taken off */
+  double variance; /* where the light is widest, pixels of the level squared; columns and rows have fractions
+                      of it */
+  double resampled[2]; /* along rows and columns: variance of the resampling itself, which is taken off */
 } cascade_blur;
 
 /* The sum to = a + (1 - thin) b. Each field lies on a level: a's and b's may be twice as fine as to's, b's
@@ -50,7 +50,7 @@ typedef struct cascade_blurred_sum {
 } cascade_blurred_sum;
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *sum);
 
-/* One channel of what a group holds. */
+/* One channel of a group. */
 typedef struct cascade_matter {
   const cascade_field *absorbed, *thin;
 } cascade_matter;
@@ -68,18 +68,17 @@ typedef struct cascade_merger {
 /* One row of tiles after the other goes all the way. */
 void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
-/* Pixels of the buffer that doubling reads beyond those that it finds, from pixels of one scale down to
- * another's. */
+/* How far beyond its output doubling reads, from one scale down to another; pixels of the buffer. */
 int hl_cascade_doubling_reach(int from, int to);
 
-/* True if all tiles of the level's rectangle are zeros; what lies outside is. */
+/* True if all tiles of a rectangle are zeros; tiles outside the level are. */
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
                           int y1);
 
 /* Makes a tile's pixels zeros. */
 void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *field, int x, int y);
 
-/* Makes a tile zeros, and says so; most are already. */
+/* Clears a tile and marks it as zeros, unless it is already. */
 static inline void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x,
                                          int y) {
   unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
