@@ -41,11 +41,12 @@ typedef struct light_texture {
   float *memory; /* owned; the image averaged and its levels; null where neither is needed */
 } light_texture;
 
-/* What a light's texture falls on; frame space. */
+/* The content that a light texture falls on; frame space. */
 typedef struct texture_use {
-  const vec3 *points; /* [point_count]; corners of what is lit */
+  const vec3 *points; /* [point_count]; corners of the content */
   int point_count;
-  vec3 content; /* the middle of what is lit */
+  vec3 content; /* the content's middle */
+
   double pixel; /* the edge of a picture's pixel there */
 } texture_use;
 

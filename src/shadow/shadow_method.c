@@ -1,5 +1,5 @@
-/* shadow/shadow_method.c - one light's shadows in one sweep: its method chosen, planned, begun and ended; and
- * what the methods have in common. */
+/* shadow/shadow_method.c - one light's shadows in one sweep: chooses, plans, begins and ends the method; and
+ * tools for all methods. */
 #include "shadow/shadow_method.h"
 
 #include "core/memory.h"

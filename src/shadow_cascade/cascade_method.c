@@ -1,4 +1,5 @@
-/* shadow_cascade/cascade_method.c - the groups of a cascade, and the light that they leave. */
+/* shadow_cascade/cascade_method.c - the groups of a cascade, their blurred sum, and the shadow buffer made of
+ * it. */
 #include <string.h>
 
 #include "shadow_cascade/cascade_passes.h"

@@ -27,8 +27,8 @@ typedef struct cascade_blur {
   double resampled[2]; /* along rows and columns: variance of the resampling itself, which is taken off */
 } cascade_blur;
 
-/* The sum to = a + (1 - thin) b. Each field lies on a level: a's and b's may be twice as fine as to's, b's
- * twice as coarse, too. */
+/* The sum to = a + (1 - thin) b. a and b may both be on levels twice as fine as to, or b alone on one twice
+ * as coarse. */
 typedef struct cascade_sum {
   const cascade_level *level_a;  /* of a and thin */
   const cascade_field *a, *thin; /* a: null for zeros where b is coarser than to; thin: null for zeros */
@@ -36,12 +36,12 @@ typedef struct cascade_sum {
   const cascade_field *b;        /* null for zeros where a is not coarser than to */
   const cascade_level *level;    /* of to */
   const cascade_field *to;
-  int reach; /* to is found within so many pixels of the buffer around what is read; READ_EVERYWHERE: in all
-                tiles */
+  int reach; /* `to` is computed within this many pixels of the buffer around tiles that are read;
+                READ_EVERYWHERE: in all tiles */
 } cascade_sum;
 void hl_cascade_add(const cascade_crew *crew, const cascade_sum *sum);
 
-/* The sum to = a + (1 - thin) blurred from, all on one level. */
+/* The sum to = a + (1 - thin) * (from, blurred), all on one level. */
 typedef struct cascade_blurred_sum {
   const cascade_level *level;
   const cascade_field *from, *a, *thin, *to; /* a and thin: null for zeros */
@@ -55,8 +55,8 @@ typedef struct cascade_matter {
   const cascade_field *absorbed, *thin;
 } cascade_matter;
 
-/* Two groups' matter to the next level, which may be twice as coarse: a's and b's, but for a fraction of
- * b's, are added to the first group there; this fraction becomes the second. */
+/* Moves two groups' matter to the next level, which may be twice as coarse: a's and b's are added to `first`
+ * there, except a fraction of b's, which becomes `second`. */
 typedef struct cascade_merger {
   const cascade_level *level;
   cascade_matter a, b;  /* on level; b is changed */
@@ -65,7 +65,7 @@ typedef struct cascade_merger {
   const cascade_level *next;
   cascade_matter first, second; /* on next */
 } cascade_merger;
-/* One row of tiles after the other goes all the way. */
+/* Each row of tiles goes through all steps at once. */
 void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
 /* How far beyond its output doubling reads, from one scale down to another; pixels of the buffer. */
