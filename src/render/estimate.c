@@ -12,7 +12,7 @@ uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volu
                           const grid_functions *functions, int threads) {
   uint64_t bytes = SMALL_PARTS;
   for (size_t i = 0; i < scene->volume_count; i++)
-    if (prepared[i].volume != scene->volumes[i].volume)
+    if (prepared[i].volume == NULL)
       bytes += hl_prepared_bytes(&scene->volumes[i], scene->render.kernel, functions, threads);
   return bytes;
 }

@@ -7,7 +7,8 @@
 
 #include "render/sweep.h"
 
-/* The bytes that the volumes that are not prepared yet take at most. */
+/* The bytes that the volumes that are not prepared yet take at most. Call hl_prepared_release_stale() before.
+ */
 uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared,
                           const grid_functions *functions, int threads);
 

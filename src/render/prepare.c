@@ -79,6 +79,19 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   memset(prepared, 0, sizeof *prepared);
 }
 
+/* The grid that is kept serves the scene's volume. */
+static bool has_same_voxels(const prepared_volume *prepared, const hl_scene_volume *scene, hl_kernel kernel) {
+  return prepared->volume == scene->volume && prepared->kernel == kernel &&
+         prepared->empty == hl_scene_volume_empty_value(scene) && same_clip(prepared, scene);
+}
+
+void hl_prepared_release_stale(hl_context *context, const hl_scene_description *scene,
+                               prepared_volume *prepared) {
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (!has_same_voxels(&prepared[i], &scene->volumes[i], scene->render.kernel))
+      hl_prepared_release(context, &prepared[i]);
+}
+
 /* Who prepares volumes, and for which kernel. */
 typedef struct preparation {
   hl_context *context;
@@ -95,8 +108,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   const affine3 index_to_frame = hl_scene_volume_index_to_world(scene);
   hl_status status = HL_OK;
   double empty = hl_scene_volume_empty_value(scene);
-  bool same_voxels = prepared->volume == scene->volume && prepared->kernel == kernel &&
-                     prepared->empty == empty && same_clip(prepared, scene);
+  bool same_voxels = has_same_voxels(prepared, scene, kernel);
   bool same = same_voxels && same_function(&prepared->function, &scene->transfer_function);
   if (!same_voxels) {
     hl_prepared_release(context, prepared);

@@ -25,6 +25,9 @@ typedef struct prepared_volume {
  * frame space (frame.h). */
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, prepared_volume *prepared, hl_error *error);
+/* Releases those of prepared[0 .. count) whose grids the scene's volumes cannot use any more. */
+void hl_prepared_release_stale(hl_context *context, const hl_scene_description *scene,
+                               prepared_volume *prepared);
 /* The most bytes that preparing one volume takes; kernel: the scene's. */
 uint64_t hl_prepared_bytes(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
                            int threads);

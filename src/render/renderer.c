@@ -396,6 +396,7 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
   if (status == HL_OK) hl_pool_resume(renderer->pool);
   renderer->estimate = 0;
   const hot_functions *hot = hl_hot_functions(renderer->context->options.instruction_set);
+  if (status == HL_OK) hl_prepared_release_stale(renderer->context, scene, renderer->prepared);
   if (status == HL_OK)
     status = check_room(
         renderer, hl_prepare_bytes(scene, renderer->prepared, &hot->grid, hl_pool_threads(renderer->pool)),

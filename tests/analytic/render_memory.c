@@ -9,6 +9,7 @@
 
 #include "reference_stage.h"
 #include "render/estimate.h"
+#include "render/prepare.h"
 
 enum { SIDE = 320, EDGE = 64 };
 
@@ -120,8 +121,44 @@ static void frames_are_refused_beforehand(void **state) {
   assert_non_null(strstr(error.message, "make the picture smaller"));
 }
 
+/* What is foretold for the volumes of a scene that were perhaps made ready before; then makes them ready. */
+static uint64_t prepare_bytes(stage *set, hl_pool *pool, prepared_volume *prepared) {
+  const hot_functions *hot = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR);
+  hl_prepared_release_stale(set->context, &set->scene, prepared);
+  uint64_t bytes = hl_prepare_bytes(&set->scene, prepared, &hot->grid, 1);
+  assert_int_equal(hl_prepare_volumes(set->context, pool, hot, &set->scene, prepared, NULL), HL_OK);
+  return bytes;
+}
+
+/* A volume is made ready anew where its kernel or its clip box alone changes: that memory is foretold, too.
+ */
+static void changed_volumes_count(void **state) {
+  (void)state;
+  stage set;
+  hl_pool *pool = NULL;
+  prepared_volume prepared = {0};
+  open_stage(&set, 0);
+  assert_int_equal(hl_pool_create(set.context, 1, &pool, NULL), HL_OK);
+  const uint64_t first = prepare_bytes(&set, pool, &prepared), same = prepare_bytes(&set, pool, &prepared);
+  set.scene.render.kernel = HL_KERNEL_LINEAR;
+  const uint64_t kernel = prepare_bytes(&set, pool, &prepared);
+  set.volumes[0].clipped = 1;
+  for (int a = 0; a < 3; a++) set.volumes[0].clip_max[a] = 24;
+  const uint64_t clipped = prepare_bytes(&set, pool, &prepared);
+  print_message("# first %.2f MiB, the same again %.2f, another kernel %.2f, a clip box %.2f\n",
+                (double)first / (1 << 20), (double)same / (1 << 20), (double)kernel / (1 << 20),
+                (double)clipped / (1 << 20));
+  assert_true(same < first / 4);
+  assert_true(kernel > first / 2);
+  assert_true(clipped == kernel);
+  hl_prepared_release(set.context, &prepared);
+  hl_pool_destroy(pool);
+  stage_close(&set);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(estimates_hold),
+                                     cmocka_unit_test(changed_volumes_count),
                                      cmocka_unit_test(frames_are_refused_beforehand)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
