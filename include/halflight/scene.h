@@ -145,6 +145,8 @@ typedef struct hl_scene_volume {
   double axis_scale[3]; /* times `scale`: along x, y and z of the volume's own file, before the rotation */
   int time, channel, level; /* of the file (hl_volume_load_options), for hl_scene_to_json; default
                                HL_INDEX_DEFAULT */
+  double anisotropy; /* g of Henyey and Greenstein's phase function, by which a medium scatters light; above
+                        0: onwards, below: back; default 0: evenly */
 } hl_scene_volume;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;

@@ -13,17 +13,12 @@
 
 #define DATA_PREFIX "data:" /* begins the names of files in the context's data folder */
 
-static const char *const volume_keys[] = {"name",       "stand_in",
-                                          "file",       "shapes",
-                                          "voxel_size", "transform",
-                                          "shading",    "transfer_function",
-                                          "material",   "attenuation_color",
-                                          "visible",    "casts_shadow",
-                                          "clip",       "receives_shadow",
-                                          "array",      "component",
-                                          "time",       "channel",
-                                          "level",      "spacing",
-                                          "series",     NULL};
+static const char *const volume_keys[] = {"name",       "stand_in",          "file",    "shapes",
+                                          "voxel_size", "transform",         "shading", "transfer_function",
+                                          "material",   "attenuation_color", "visible", "casts_shadow",
+                                          "clip",       "receives_shadow",   "array",   "component",
+                                          "time",       "channel",           "level",   "spacing",
+                                          "series",     "scattering",        NULL};
 
 /* How a file is read. */
 static const char *const of_file[] = {"array", "component", "time", "channel", "level", "series", "spacing"};
@@ -75,6 +70,17 @@ static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene
   if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "clip/min", volume);
   if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "clip/max", volume);
   volume->clipped = 1;
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+static hl_status read_scattering(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+  static const char *const keys[] = {"anisotropy", NULL};
+  if (value == NULL) return HL_OK;
+  size_t mark = hl_json_enter(reader, "scattering");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK)
+    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "scattering/anisotropy", volume);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
@@ -347,6 +353,7 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
                                      HL_SETTINGS_MATERIAL, &volume->material);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_VOLUME, 0, volume);
   if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
+  if (status == HL_OK) status = read_scattering(reader, json_object_get(value, "scattering"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);
   if (status == HL_OK) status = choose_shading(reader, value, volume);
   if (status != HL_OK) return status;

@@ -283,6 +283,11 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
   write_settings(w, HL_SETTINGS_MATERIAL, 0, &volume->material);
   close_bracket(w, "}");
   write_key(w, HL_SETTINGS_VOLUME, "attenuation_color", volume);
+  if (volume->anisotropy != 0) {
+    open_bracket(w, "scattering", "{");
+    write_key(w, HL_SETTINGS_VOLUME, "scattering/anisotropy", volume);
+    close_bracket(w, "}");
+  }
   write_key(w, HL_SETTINGS_VOLUME, "visible", volume);
   write_key(w, HL_SETTINGS_VOLUME, "casts_shadow", volume);
   write_key(w, HL_SETTINGS_VOLUME, "receives_shadow", volume);

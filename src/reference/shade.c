@@ -1,10 +1,10 @@
 /* reference/shade.c - the colour that a lit sample sends to the eye; eqs. (3) and (4).
  *
  *     surface   C = c ka Ia + c kd I max(N.L, 0) + ks I max(E.R, 0)^n     (specular only where N.L > 0)
- *     medium    C = c (ka Ia + I)
+ *     medium    C = c (ka Ia + p I)
  *     flat      C = c, whatever the light
  *
- * Emission adds c ke to a surface and to a medium.
+ * p is Henyey and Greenstein's phase function times 4 pi. Emission adds c ke to a surface and to a medium.
  * A sample of a volume shaded "phong" goes from medium to surface as its gradient grows from nothing.
  */
 #include <string.h>
@@ -64,6 +64,11 @@ typedef struct surface {
   double amount; /* 0: medium, 1: surface */
 } surface;
 
+/* p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos = -E.L: 1 in all directions for g = 0. */
+static double phase(double g, vec3 to_eye, vec3 towards) {
+  return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
+}
+
 /* The light of one source that the sample sends to the eye. */
 static void shade_light(const reference *all, const reference_sample *at, const surface *here, size_t light,
                         reference_worker *worker, light_part *part) {
@@ -77,7 +82,8 @@ static void shade_light(const reference *all, const reference_sample *at, const 
     vec3 reflected = vec3_subtract(vec3_scale(here->normal, 2 * cosine), arrived->towards);
     gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   }
-  double matt = here->amount * material->diffuse * fmax(cosine, 0) + (1 - here->amount);
+  double matt = here->amount * material->diffuse * fmax(cosine, 0) +
+                (1 - here->amount) * phase(at->volume->described->anisotropy, at->to_eye, arrived->towards);
   if (matt <= 0 && gloss <= 0) return;
   const double *reach = light_reach(all, at->volume, light, at->point, worker);
   for (int c = 0; c < 3; c++)

@@ -90,8 +90,16 @@ LANES_INLINE lanes power(lanes base, float exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Step 15: eqs. (3) and (4) with the light's centre; a medium is lit alike from all sides. Emission is added;
- * a volume shaded flat has nothing else. */
+/* Henyey and Greenstein's phase function, "Diffuse radiation in the galaxy" (1941), times 4 pi, so that 1 is
+ * scattering that is the same in all directions: (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos the cosine of the
+ * angle between the light's way before and after. turn: -cos. */
+LANES_INLINE lanes phase(float g, lanes turn) {
+  lanes squared = lanes_line(turn, 2 * g, 1 + g * g);
+  return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
+}
+
+/* Step 15: eqs. (3) and (4) with the light's centre; a medium scatters by its phase function. Emission is
+ * added; a volume shaded flat has nothing else. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color) {
   const shade_volume *volume = d->patch->volume;
@@ -101,9 +109,10 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
   for (int i = 0; i < job->light_count && volume->lit; i++) {
     if (lights[i].dark) continue;
     const color_lanes *intensity = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full;
-    lanes facing = dot3(d->normal, lights[i].towards);
-    lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface,
-                              1.0f - d->surface);
+    lanes facing = dot3(d->normal, lights[i].towards), medium = 1.0f - d->surface;
+    if (volume->anisotropy != 0)
+      medium = medium * phase(volume->anisotropy, dot3(g->towards_eye, lights[i].towards));
+    lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface, medium);
     lanes3 mirrored = add_scaled3(scale3(lights[i].towards, lanes_set(-1.0f)), d->normal, facing * 2.0f);
     lanes glint = power(dot3(g->towards_eye, mirrored), volume->shininess) * volume->specular * d->surface;
     glint = lanes_keep(facing > 0.0f, glint);

@@ -26,6 +26,7 @@ typedef struct shade_volume {
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
   const float (*shown)[4];               /* in a maximum projection: rows of SHOWN_...; else null */
   int rank;                              /* among the visible volumes */
+  float anisotropy;                      /* g of the phase function */
 } shade_volume;
 
 /* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside

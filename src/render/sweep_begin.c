@@ -156,7 +156,8 @@ static void set_up_shading(sweep *sweep) {
                             .ambient = (float)volume->material.ambient,
                             .diffuse = (float)volume->material.diffuse,
                             .specular = (float)volume->material.specular,
-                            .shininess = (float)volume->material.shininess};
+                            .shininess = (float)volume->material.shininess,
+                            .anisotropy = (float)volume->anisotropy};
     shade->emission = shade->lit ? (float)volume->material.emission : 1;
     if (!shade->lit) shade->ambient = shade->receives_shadow = 0;
     if (sweep->maximum->values != NULL && volume->visible) {

@@ -156,6 +156,7 @@ static void draw_volume(dice *d, random_scene *scene, double size) {
   volume->shading = chance(d, 0.5) ? HL_SHADING_PHONG : HL_SHADING_NONE;
   volume->material = (hl_material){between(d, 0, 1), between(d, 0, 1), between(d, 0, 1), between(d, 0, 80),
                                    0};
+  if (chance(d, 0.5)) volume->anisotropy = between(d, -0.8, 0.8);
   for (int c = 0; c < 3 && chance(d, 0.4); c++) volume->attenuation_color[c] = between(d, 0, 2);
   volume->visible = !chance(d, 0.1);
   volume->casts_shadow = !chance(d, 0.1);

@@ -1,5 +1,5 @@
-/* analytic/sheets_colour.c - what colours come out as: flat shading, emission, three scales. Closed forms,
- * each asked of the sheets and of the reference. */
+/* analytic/sheets_colour.c - what colours come out as: flat shading, emission, scattering, three scales.
+ * Closed forms, each asked of the sheets and of the reference. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -241,6 +241,40 @@ static void test_three_scales_are_another_spacing(void **state) {
   }
 }
 
+/* ---- the phase function ---- */
+
+/* With one parallel light and parallel rays of the eye, a medium's light is that of even scattering times
+ * p = (1 - g^2) / (1 + g^2 - 2 g cos)^1.5, whatever shadows leave of it. */
+static void test_phase_function_of_a_medium(void **state) {
+  (void)state;
+  static float even[PIXELS * 4], pixels[PIXELS * 4];
+  static const vec3 ways[] = {{0.3, 0.2, -1}, {0.2, -0.4, 1}, {1, 0.1, -0.2}};
+  static const double anisotropies[] = {0.8, 0.3, -0.6};
+  for (int k = 0; k < 18; k++) {
+    double g = anisotropies[k / 6], cosine = 0;
+    for (int scattered = 0; scattered < 2; scattered++) {
+      stage set;
+      hl_scene_volume *slab = open_slab(&set, 0.3);
+      slab->shading = HL_SHADING_NONE;
+      slab->anisotropy = scattered ? g : 0;
+      for (int c = 0; c < 3; c++) set.scene.ambient[c] = 0;
+      set.scene.light_count = 1;
+      const vec3 way = ways[k % 3];
+      set.lights[0].direction[0] = way.x;
+      set.lights[0].direction[1] = way.y;
+      set.lights[0].direction[2] = way.z;
+      vec3 towards_eye = vec3_normalise((vec3){3, 2, 30});
+      cosine = vec3_dot(vec3_normalise(ways[k % 3]), towards_eye);
+      render(&set, k / 3 % 2 == 1, scattered ? pixels : even);
+      stage_close(&set);
+    }
+    double phase = (1 - g * g) / pow(1 + g * g - 2 * g * cosine, 1.5);
+    for (int i = 0; i < 4 * PIXELS; i++)
+      assert_near((double)pixels[i], (double)even[i] * (i % 4 == 3 ? 1 : phase), 1e-5 * (1 + phase));
+    assert_true(even[4 * (SIDE / 2 * SIDE + SIDE / 2)] > 0.01f);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_flat_colour_is_the_asked_one),
@@ -248,6 +282,7 @@ int main(void) {
       cmocka_unit_test(test_layers_of_flat_colours),
       cmocka_unit_test(test_emission_of_a_medium),
       cmocka_unit_test(test_emission_adds_to_light),
+      cmocka_unit_test(test_phase_function_of_a_medium),
       cmocka_unit_test(test_three_scales_are_another_spacing),
   };
   return cmocka_run_group_tests_name("sheets_colour", tests, NULL, NULL);

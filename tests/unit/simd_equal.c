@@ -779,7 +779,8 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    {-0.5f, -0.5f, -0.5f},
                                    {8.5f, 9.5f, 10.5f},
                                    NULL,
-                                   v};
+                                   v,
+                                   round % 3 == 1 ? -0.7f : round % 3 * 0.4f};
     s->patches[v] = (shade_patch){&s->volumes[v],
                                   s->density[2 * v],
                                   s->density[2 * v + 1],
