@@ -263,7 +263,7 @@ const cli_command render_command = {
     .summary = "render a scene (.json) or volume files to a picture",
     .description =
         "Renders INPUT, a scene (.json), a .png with a scene in it, or volume files (NRRD, MetaImage,\n"
-        "NIfTI, VTK, NumPy, MRC, raw), together where there are several; '-' is standard input.\n"
+        "NIfTI, VTK, NumPy, MRC, TIFF, raw), together where there are several; '-' is standard input.\n"
         "A volume needs no options: the camera frames it, the transfer function comes from its\n"
         "histogram, and a key light from the upper left casts soft shadows. Options override\n"
         "what the scene says; a default holds where neither says anything.",

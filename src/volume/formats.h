@@ -12,6 +12,7 @@
   HL_FORMAT(vti)       \
   HL_FORMAT(legacy_vtk) \
   HL_FORMAT(npy)       \
+  HL_FORMAT(tiff)      \
   HL_FORMAT(mrc)       \
   HL_FORMAT(dicom)     \
   HL_FORMAT(dat)

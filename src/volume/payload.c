@@ -329,8 +329,7 @@ static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_erro
   return HL_OK;
 }
 
-/* The volume's grid. A magnitude is stored as floats to which the scale has been applied. */
-static hl_volume_description grid_of(const hl_payload *payload, const double spacing[3]) {
+hl_volume_description hl_payload_grid(const hl_payload *payload, const double spacing[3]) {
   hl_volume_description grid = payload->grid;
   if (payload->components > 1 && payload->component == HL_COMPONENT_MAGNITUDE) {
     grid.type = HL_VOXEL_F32;
@@ -348,7 +347,7 @@ hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const do
                           hl_volume **volume, hl_error *error) {
   hl_status status = check_promise(stream, payload, error);
   if (status != HL_OK) return status;
-  hl_volume_description grid = grid_of(payload, spacing);
+  hl_volume_description grid = hl_payload_grid(payload, spacing);
   size_t stored_bytes = hl_storage_bytes(hl_voxel_type_storage(grid.type));
   void *voxels = hl_allocate(stream->context, voxel_count(payload), stored_bytes);
   if (voxels == NULL) return hl_fail_memory(error, voxel_count(payload) * stored_bytes, stream->path);

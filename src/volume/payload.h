@@ -32,6 +32,10 @@ void hl_payload_defaults(hl_payload *payload);
  * checked. */
 uint64_t hl_payload_bytes(const hl_payload *payload);
 
+/* The volume's grid: of a magnitude, floats to which the scale has been applied. spacing: replaces the grid's
+ * unless 0. */
+hl_volume_description hl_payload_grid(const hl_payload *payload, const double spacing[3]);
+
 /* Checks the grid and, before any allocation, whether the stream can hold so many bytes; then reads and
  * converts the voxels and makes the volume. Reports progress and can be cancelled. spacing: replaces the
  * grid's spacing unless 0. */

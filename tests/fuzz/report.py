@@ -32,6 +32,9 @@ TARGETS = {
 SHARED = ("all volume files, what they share included", ["volume/"],
           ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "npy", "mrc", "raw"])
 
+TARGETS["tiff"] = ("TIFF, OME-TIFF, ImageJ", ["volume/tiff"])
+SHARED[2].append("tiff")
+
 root = pathlib.Path(__file__).resolve().parents[2]
 coverage = root / "build-coverage"
 

@@ -20,7 +20,7 @@ static const seed_kind kinds[] = {
     {"metaimage", ".mhd", "v.raw"}, {"nifti", ".nii", NULL},      {"nifti", ".nii.gz", NULL},
     {"nifti", ".hdr", NULL},        {"legacy_vtk", ".vtk", NULL}, {"vti", ".vti", NULL},
     {"raw", ".raw", NULL},          {"raw", ".raw.gz", NULL},     {"raw", ".dat", "v.raw"},
-    {"npy", ".npy", NULL},          {"mrc", ".mrc", NULL}};
+    {"npy", ".npy", NULL},          {"mrc", ".mrc", NULL},        {"tiff", ".tif", NULL}};
 
 enum { EVERY = 7 }; /* prime to the samples' periods: one in so many is written */
 

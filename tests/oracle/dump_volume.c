@@ -1,9 +1,9 @@
 /* tests/oracle/dump_volume.c - prints what a volume file holds, for comparison with other readers.
  *
  * usage: dump_volume VOLUME [VOXELS]...   (pairs: each VOLUME with the file for its voxels, or "-" for none);
- * VOLUME may end with #TIME,CHANNEL,LEVEL, each -1 for the default One JSON object a line on stdout: the
- * volume's info, or {"error": line, "status": code}. VOXELS receives the data values as native float64, i
- * fastest.
+ * VOLUME may end with #TIME,CHANNEL,LEVEL,COMPONENT, each -1 for the default One JSON object a line on
+ * stdout: the volume's info, or {"error": line, "status": code}. VOXELS receives the data values as native
+ * float64, i fastest.
  */
 #include <stdio.h>
 #include <string.h>
@@ -46,7 +46,8 @@ static int dump(hl_context *context, const char *path, const char *voxels) {
   char name[4096];
   snprintf(name, sizeof name, "%s", path);
   char *mark = strrchr(name, '#');
-  if (mark != NULL && sscanf(mark, "#%d,%d,%d", &options.time, &options.channel, &options.level) == 3)
+  if (mark != NULL &&
+      sscanf(mark, "#%d,%d,%d,%d", &options.time, &options.channel, &options.level, &options.component) == 4)
     *mark = 0;
   hl_status status = hl_volume_load_with(context, name, &options, &volume, &error);
   if (status != HL_OK) {

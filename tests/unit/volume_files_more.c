@@ -116,7 +116,103 @@ static void mrc_samples(sample_function *function, void *data) {
     }
 }
 
-void for_each_microscope_sample(sample_function *function, void *data) { mrc_samples(function, data); }
+/* ---- TIFF ---- */
+
+#ifdef HL_WITH_TIFF
+
+typedef struct tiff_kind {
+  bool big_endian, wide, tiled, described; /* wide: BigTIFF; described: by ImageJ */
+} tiff_kind;
+
+static const char imagej[] = "ImageJ=1.53\nimages=2\nslices=2\nunit=um\nspacing=3\n";
+
+/* type: 3 of 16 bits, 4 of 32, 2 text, 5 a fraction; value: itself, or where it lies. */
+static void add_tiff_tag(byte_buffer *file, const tiff_kind *kind, unsigned tag, unsigned type,
+                         uint64_t count, uint64_t value) {
+  size_t room = kind->wide ? 8 : 4, bytes = type == 3 ? 2 : type == 4 ? 4 : room;
+  add_integer(file, tag, 2, kind->big_endian);
+  add_integer(file, type, 2, kind->big_endian);
+  add_integer(file, count, room, kind->big_endian);
+  add_integer(file, value, bytes, kind->big_endian);
+  if (bytes < room) add_integer(file, 0, room - bytes, kind->big_endian);
+}
+
+/* A page's directory, what its tags point to, and its voxels, in one strip or one tile of 16 x 16. */
+static void add_tiff_page(byte_buffer *file, const tiff_kind *kind, hl_voxel_type type, int page) {
+  bool is_float = type == HL_VOXEL_F16 || type == HL_VOXEL_F32 || type == HL_VOXEL_F64;
+  bool is_signed = type == HL_VOXEL_I8 || type == HL_VOXEL_I16 || type == HL_VOXEL_I32 ||
+                   type == HL_VOXEL_I64;
+  size_t room = kind->wide ? 8 : 4, voxel_bytes = hl_voxel_type_bytes(type);
+  unsigned tags = (kind->tiled ? 11 : 10) + (kind->described ? 3 : 0);
+  size_t text = file->length + (kind->wide ? 8 : 2) + tags * (kind->wide ? 20 : 12) + room;
+  size_t fractions = kind->described ? text + sizeof imagej : text,
+         data = fractions + (kind->described ? 16 : 0);
+  size_t bytes = voxel_bytes * (kind->tiled ? 256 : NI * NJ), next = page + 1 < NK ? data + bytes : 0;
+  add_integer(file, tags, kind->wide ? 8 : 2, kind->big_endian);
+  add_tiff_tag(file, kind, 256, 4, 1, NI);
+  add_tiff_tag(file, kind, 257, 4, 1, NJ);
+  add_tiff_tag(file, kind, 258, 3, 1, 8 * voxel_bytes);
+  add_tiff_tag(file, kind, 259, 3, 1, 1);
+  add_tiff_tag(file, kind, 262, 3, 1, 1);
+  if (kind->described) add_tiff_tag(file, kind, 270, 2, sizeof imagej, text);
+  if (!kind->tiled) add_tiff_tag(file, kind, 273, 4, 1, data);
+  add_tiff_tag(file, kind, 277, 3, 1, 1);
+  if (!kind->tiled) add_tiff_tag(file, kind, 278, 3, 1, NJ), add_tiff_tag(file, kind, 279, 4, 1, bytes);
+  for (unsigned axis = 0; kind->described && axis < 2; axis++) {
+    if (!kind->wide) add_tiff_tag(file, kind, 282 + axis, 5, 1, fractions + 8 * axis);
+    else { /* two numbers of 32 bits fit */ add_tiff_tag(file, kind, 282 + axis, 5, 1, 0);
+      file->length -= 8;
+      add_integer(file, axis == 0 ? 4 : 2, 4, kind->big_endian), add_integer(file, 1, 4, kind->big_endian);
+    }
+  }
+  if (kind->tiled) {
+    add_tiff_tag(file, kind, 322, 3, 1, 16), add_tiff_tag(file, kind, 323, 3, 1, 16);
+    add_tiff_tag(file, kind, 324, 4, 1, data), add_tiff_tag(file, kind, 325, 4, 1, bytes);
+  }
+  add_tiff_tag(file, kind, 339, 3, 1, is_float ? 3 : is_signed ? 2 : 1);
+  add_integer(file, next, room, kind->big_endian);
+  if (kind->described) {
+    add(file, imagej, sizeof imagej);
+    add_integer(file, 4, 4, kind->big_endian), add_integer(file, 1, 4, kind->big_endian);
+    add_integer(file, 2, 4, kind->big_endian), add_integer(file, 1, 4, kind->big_endian);
+  }
+  byte_buffer voxels = {.length = 0};
+  add_voxels(&voxels, type, kind->big_endian);
+  const unsigned char *first = voxels.data + (size_t)page * NI * NJ * voxel_bytes;
+  static const unsigned char nothing[256 * 8] = {0};
+  for (size_t row = 0; row < NJ; row++) {
+    add(file, first + row * NI * voxel_bytes, NI * voxel_bytes);
+    if (kind->tiled) add(file, nothing, (16 - NI) * voxel_bytes);
+  }
+  if (kind->tiled) add(file, nothing, 16 * (16 - NJ) * voxel_bytes);
+}
+
+static void tiff_samples(sample_function *function, void *data) {
+  for (size_t t = 0; t < sizeof numpy_types / sizeof *numpy_types; t++)
+    for (unsigned variant = (unsigned)t % 3; variant < 16; variant += 3) {
+      tiff_kind kind = {variant & 1, variant & 2, (variant & 4) && t < 2, variant & 8};
+      volume_sample made = begin_sample(numpy_types[t].type, "%s_%u.tif", numpy_types[t].name, variant);
+      add_text(&made.file, "%s", kind.big_endian ? "MM" : "II");
+      add_integer(&made.file, kind.wide ? 43 : 42, 2, kind.big_endian);
+      if (kind.wide) add_integer(&made.file, 8, 2, kind.big_endian), add_integer(&made.file, 0, 2, false);
+      add_integer(&made.file, kind.wide ? 16 : 8, kind.wide ? 8 : 4, kind.big_endian);
+      for (int page = 0; page < NK; page++) add_tiff_page(&made.file, &kind, made.type, page);
+      static const double described[3] = {0.25, 0.5, 3};
+      for (int axis = 0; axis < 3 && kind.described; axis++) made.axis[axis][axis] = described[axis];
+      function(&made, data);
+    }
+}
+
+#else
+
+static void tiff_samples(sample_function *function, void *data) { (void)function, (void)data; }
+
+#endif
+
+void for_each_microscope_sample(sample_function *function, void *data) {
+  mrc_samples(function, data);
+  tiff_samples(function, data);
+}
 
 /* ---- several components ---- */
 

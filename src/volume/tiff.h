@@ -1,0 +1,9 @@
+/* volume/tiff.h - reads TIFF's pages: tiff_load.c, or tiff_absent.c in a build without libtiff. */
+#ifndef HL_VOLUME_TIFF_H
+#define HL_VOLUME_TIFF_H
+
+#include "volume/format.h"
+
+hl_status hl_tiff_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+
+#endif

@@ -1,0 +1,445 @@
+/* volume/tiff_file.c - libtiff behind this library's errors, limits and voxel types. */
+#define _GNU_SOURCE
+#include "volume/tiff_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/context.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "volume/convert.h"
+
+enum { LARGEST_ALLOCATION = 1 << 30, WARNINGS_TOLD = 4, PAGES_MOST = 1 << 22 };
+
+/* ---- reading for libtiff ---- */
+
+static tmsize_t read_bytes(thandle_t handle, void *bytes, tmsize_t wanted) {
+  tiff_file *file = handle;
+  uint64_t left = file->at < file->size ? file->size - file->at : 0;
+  size_t count = wanted < 0 ? 0 : (uint64_t)wanted < left ? (size_t)wanted : (size_t)left, done = 0;
+  if (file->memory != NULL) {
+    memcpy(bytes, file->memory + file->at, count);
+    done = count;
+  }
+  while (done < count) {
+    ssize_t got = pread(file->descriptor, (char *)bytes + done, count - done, (off_t)(file->at + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    done += (size_t)got;
+  }
+  file->at += done;
+  return (tmsize_t)done;
+}
+
+static tmsize_t write_nothing(thandle_t handle, void *bytes, tmsize_t count) {
+  (void)handle, (void)bytes, (void)count;
+  return 0;
+}
+
+static toff_t seek(thandle_t handle, toff_t offset, int whence) {
+  tiff_file *file = handle;
+  file->at = whence == SEEK_SET ? offset : whence == SEEK_CUR ? file->at + offset : file->size + offset;
+  return file->at;
+}
+
+static int close_nothing(thandle_t handle) {
+  (void)handle;
+  return 0;
+}
+
+static toff_t size_of(thandle_t handle) { return ((tiff_file *)handle)->size; }
+
+static int on_error(TIFF *tiff, void *data, const char *module, const char *format, va_list arguments) {
+  (void)tiff, (void)module;
+  tiff_file *file = data;
+  if (file->message[0] == 0) {
+    vsnprintf(file->message, sizeof file->message, format, arguments);
+    hl_make_printable(file->message);
+  }
+  return 1;
+}
+
+/* Tags of other programs are no matter; of the rest the first few are told. */
+static int on_warning(TIFF *tiff, void *data, const char *module, const char *format, va_list arguments) {
+  (void)tiff, (void)module;
+  tiff_file *file = data;
+  char text[300];
+  vsnprintf(text, sizeof text, format, arguments);
+  hl_make_printable(text);
+  if (strncmp(text, "Unknown field", 13) != 0 && file->warnings++ < WARNINGS_TOLD)
+    hl_log(file->context, HL_LOG_WARNING, "%.300s: %s", file->path, text);
+  return 1;
+}
+
+static hl_status open_descriptor(tiff_file *file, bool quiet, hl_error *error) {
+  struct stat about;
+  hl_status status = HL_OK;
+  if (quiet) file->descriptor = open(file->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  else status = hl_file_open(file->context, file->path, &file->descriptor, error);
+  if (status != HL_OK) return status;
+  if (file->descriptor < 0 || fstat(file->descriptor, &about) != 0)
+    return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", file->path, strerror(errno));
+  if (!S_ISREG(about.st_mode))
+    return hl_fail(error, HL_ERROR_IO, "%s: is not a regular file, and TIFF is read from several places",
+                   file->path);
+  file->size = about.st_size > 0 ? (uint64_t)about.st_size : 0;
+  return HL_OK;
+}
+
+hl_status tiff_file_open(hl_context *context, const char *path, const void *bytes, size_t byte_count,
+                         bool quiet, tiff_file *file, hl_error *error) {
+  *file = (tiff_file){.context = context, .memory = bytes, .size = byte_count, .descriptor = -1};
+  file->path = hl_copy_text(context, path);
+  if (file->path == NULL) return hl_fail_memory(error, strlen(path) + 1, path);
+  hl_status status = bytes == NULL ? open_descriptor(file, quiet, error) : HL_OK;
+  if (status != HL_OK) return status;
+  TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+  if (options == NULL) return hl_fail_memory(error, 100, path);
+  uint64_t limit = context->options.memory_limit;
+  TIFFOpenOptionsSetMaxSingleMemAlloc(
+      options, limit > 0 && limit < LARGEST_ALLOCATION ? (tmsize_t)limit : LARGEST_ALLOCATION);
+  TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, file);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, file);
+  /* m: not mapped into memory; c: strips stay as they are; O: places of strips are read as they are needed */
+  file->tiff = TIFFClientOpenExt(path, "rmcO", file, read_bytes, write_nothing, seek, close_nothing, size_of,
+                                 NULL, NULL, options);
+  TIFFOpenOptionsFree(options);
+  return file->tiff != NULL ? HL_OK : tiff_file_fail(file, "not a TIFF file that can be read", error);
+}
+
+void tiff_file_close(tiff_file *file) {
+  if (file->tiff != NULL) TIFFClose(file->tiff);
+  if (file->descriptor >= 0) close(file->descriptor);
+  hl_release(file->context, file->path);
+  *file = (tiff_file){.descriptor = -1};
+}
+
+hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *error) {
+  return hl_fail(error, HL_ERROR_INPUT, "%s: %s%s%s", file->path, what, file->message[0] != 0 ? ": " : "",
+                 file->message);
+}
+
+hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *error) {
+  file->message[0] = 0;
+  if (!TIFFSetSubDirectory(file->tiff, offset)) return tiff_file_fail(file, "a damaged page", error);
+  if (level == 0) return HL_OK;
+  uint16_t count = 0;
+  uint64_t *offsets = NULL;
+  if (!TIFFGetField(file->tiff, TIFFTAG_SUBIFD, &count, &offsets) || level > count)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: a page has %d resolutions, the first page %d or more",
+                   file->path, (int)count + 1, level + 1);
+  return TIFFSetSubDirectory(file->tiff, offsets[level - 1])
+             ? HL_OK
+             : tiff_file_fail(file, "a damaged page of a lower resolution", error);
+}
+
+/* ---- pages ---- */
+
+/* The type that samples of so many bits are unpacked to; 0: none. */
+static hl_voxel_type type_of(unsigned format, unsigned bits) {
+  bool is_signed = format == SAMPLEFORMAT_INT;
+  if (format == SAMPLEFORMAT_IEEEFP)
+    return bits == 16 ? HL_VOXEL_F16 : bits == 32 ? HL_VOXEL_F32 : bits == 64 ? HL_VOXEL_F64 : 0;
+  if (format != SAMPLEFORMAT_UINT && format != SAMPLEFORMAT_VOID && !is_signed) return 0;
+  if (bits >= 1 && bits <= 8) return is_signed ? HL_VOXEL_I8 : HL_VOXEL_U8;
+  if (bits >= 9 && bits <= 16) return is_signed ? HL_VOXEL_I16 : HL_VOXEL_U16;
+  if (bits >= 17 && bits <= 32) return is_signed ? HL_VOXEL_I32 : HL_VOXEL_U32;
+  return bits == 64 ? (is_signed ? HL_VOXEL_I64 : HL_VOXEL_U64) : 0;
+}
+
+hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error) {
+  TIFF *tiff = file->tiff;
+  uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG, compression = 1,
+           photometric = PHOTOMETRIC_MINISBLACK, across = 1, down = 1;
+  uint32_t depth = 1;
+  *shape = (tiff_shape){.width = 0};
+  TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &shape->width);
+  TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &shape->height);
+  TIFFGetField(tiff, TIFFTAG_IMAGEDEPTH, &depth);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planar);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
+  TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+  shape->bits = bits;
+  shape->components = samples;
+  shape->planar = planar == PLANARCONFIG_SEPARATE && samples > 1;
+  shape->type = type_of(format, bits);
+  if (shape->width < 1 || shape->height < 1 || samples < 1 || shape->width > INT32_MAX ||
+      shape->height > INT32_MAX)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: a page of %u x %u pixels with %u samples", file->path,
+                   shape->width, shape->height, samples);
+  if (shape->type == 0)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: samples of %u bits and TIFF's format %u are not read",
+                   file->path, bits, format);
+  if (depth > 1)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: pages of several slices (ImageDepth %u) are not read",
+                   file->path, depth);
+  if (!TIFFIsCODECConfigured(compression))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: TIFF's compression %u is not read: save it with another",
+                   file->path, compression);
+  if (photometric != PHOTOMETRIC_YCBCR) return HL_OK;
+  if (compression == COMPRESSION_JPEG) {
+    TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+    return HL_OK;
+  }
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_YCBCRSUBSAMPLING, &across, &down);
+  if (across == 1 && down == 1) return HL_OK;
+  return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: colours of fewer pixels than brightness are not read",
+                 file->path);
+}
+
+bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b) {
+  return a->width == b->width && a->height == b->height && a->type == b->type && a->bits == b->bits &&
+         a->components == b->components && a->planar == b->planar;
+}
+
+hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error) {
+  size_t capacity = 0;
+  *offsets = NULL;
+  *count = 0;
+  file->message[0] = 0;
+  do {
+    if (*count == capacity) {
+      size_t wanted = capacity == 0 ? 64 : 2 * capacity;
+      uint64_t *larger = hl_reallocate(file->context, *offsets, wanted, sizeof *larger);
+      if (larger == NULL) return hl_fail_memory(error, wanted * sizeof *larger, file->path);
+      *offsets = larger;
+      capacity = wanted;
+    }
+    (*offsets)[(*count)++] = TIFFCurrentDirOffset(file->tiff);
+    if (*count > PAGES_MOST)
+      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d pages", file->path, (int)PAGES_MOST);
+    if (*count % 64 == 0 && hl_cancelled(file->context))
+      return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", file->path);
+  } while (TIFFReadDirectory(file->tiff));
+  return file->message[0] == 0 ? HL_OK : tiff_file_fail(file, "a damaged page", error);
+}
+
+bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
+  uint16_t compression = COMPRESSION_NONE;
+  TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
+  /* the most bytes that one byte can become: of deflate 1032 (zlib's own page), of LZW a code of 12 bits 4096
+   */
+  double most = compression == COMPRESSION_NONE                                                  ? 1
+                : compression == COMPRESSION_PACKBITS                                            ? 64
+                : compression == COMPRESSION_LZW                                                 ? 4096 / 1.5
+                : compression == COMPRESSION_ADOBE_DEFLATE || compression == COMPRESSION_DEFLATE ? 1032
+                                                                                                 : 65536;
+  double pixels = (double)shape->width * shape->height;
+  double bytes = pixels * shape->components * shape->bits / 8;
+  if (bytes <= (double)file->size * most) return true;
+  return TIFFGetStrileByteCount(file->tiff, 0) == 0 && bytes <= (double)file->size * 65536; /* sparse */
+}
+
+/* ---- voxels ---- */
+
+/* Unpacks `count` samples whose bits follow each other, the highest first, to the type's bytes. */
+static void unpack_bits(const unsigned char *source, size_t count, const tiff_shape *shape,
+                        unsigned char *samples) {
+  size_t bytes = hl_voxel_type_bytes(shape->type), place = 0;
+  bool is_signed = shape->type == HL_VOXEL_I8 || shape->type == HL_VOXEL_I16 || shape->type == HL_VOXEL_I32;
+  for (size_t n = 0; n < count; n++) {
+    uint64_t value = 0;
+    for (unsigned left = shape->bits; left > 0;) {
+      unsigned skip = (unsigned)(place % 8), take = 8 - skip < left ? 8 - skip : left;
+      unsigned part = (unsigned)(source[place / 8] >> (8 - skip - take)) & ((1U << take) - 1);
+      value = value << take | part;
+      place += take;
+      left -= take;
+    }
+    if (is_signed && value >> (shape->bits - 1) != 0) value |= ~(uint64_t)0 << shape->bits;
+    uint8_t narrow = (uint8_t)value;
+    uint16_t wide = (uint16_t)value;
+    uint32_t widest = (uint32_t)value;
+    memcpy(samples + n * bytes,
+           bytes == 1   ? (void *)&narrow
+           : bytes == 2 ? (void *)&wide
+                        : (void *)&widest,
+           bytes);
+  }
+}
+
+/* libtiff gives 24 bits in native byte order. */
+static void unpack_24(const unsigned char *source, size_t count, bool is_signed, unsigned char *samples) {
+  const uint16_t one = 1;
+  bool little = *(const unsigned char *)&one == 1;
+  for (size_t n = 0; n < count; n++) {
+    const unsigned char *s = source + 3 * n;
+    uint32_t value = little ? (uint32_t)s[0] | (uint32_t)s[1] << 8 | (uint32_t)s[2] << 16
+                            : (uint32_t)s[2] | (uint32_t)s[1] << 8 | (uint32_t)s[0] << 16;
+    if (is_signed && value >> 23 != 0) value |= 0xff000000U;
+    memcpy(samples + 4 * n, &value, 4);
+  }
+}
+
+/* What decoding a page's chunks needs. */
+typedef struct page_reading {
+  tiff_file *file;
+  const tiff_shape *shape;
+  int component; /* or HL_COMPONENT_MAGNITUDE */
+  uint32_t chunk_width, chunk_height;
+  bool tiled;
+  size_t row_bytes, chunk_bytes; /* of a decoded chunk */
+  unsigned char *chunk;          /* owned; [chunk_bytes] */
+  unsigned char *samples;        /* owned; a row of samples of the type */
+  unsigned char *picked;         /* owned; a row of one component */
+  unsigned char *voxels;
+} page_reading;
+
+static double sample_value(hl_voxel_type type, const void *stored) {
+  float real;
+  uint16_t wide;
+  switch (hl_voxel_type_storage(type)) {
+    case HL_STORAGE_U8: return *(const unsigned char *)stored - hl_voxel_type_bias(type);
+    case HL_STORAGE_U16: memcpy(&wide, stored, 2); return wide - hl_voxel_type_bias(type);
+    default: memcpy(&real, stored, 4); return (double)real;
+  }
+}
+
+/* Stores the component `index` of a row, or adds it to the magnitude. */
+static void take_component(page_reading *r, const unsigned char *samples, unsigned step, unsigned index,
+                           size_t count, size_t first) {
+  hl_voxel_type type = r->shape->type;
+  size_t bytes = hl_voxel_type_bytes(type), stored = hl_storage_bytes(hl_voxel_type_storage(type));
+  const unsigned char *row = samples;
+  if (step > 1) {
+    for (size_t n = 0; n < count; n++) memcpy(r->picked + n * bytes, samples + n * step * bytes, bytes);
+    row = r->picked;
+  }
+  if (r->component != HL_COMPONENT_MAGNITUDE) {
+    hl_voxels_store(type, false, row, count, r->voxels + first * stored);
+    return;
+  }
+  float *magnitude = (float *)r->voxels + first;
+  for (size_t n = 0; n < count; n++) {
+    unsigned char one[8];
+    hl_voxels_store(type, false, row + n * bytes, 1, one);
+    double value = sample_value(type, one), before = index > 0 ? (double)magnitude[n] : 0;
+    magnitude[n] = (float)(index > 0 ? sqrt(before * before + value * value) : fabs(value));
+  }
+}
+
+/* Takes a row of a decoded chunk. plane: the component of a chunk of one. */
+static void take_row(page_reading *r, const unsigned char *row, unsigned plane, size_t count, size_t first) {
+  const tiff_shape *shape = r->shape;
+  unsigned each = shape->planar ? 1 : shape->components;
+  const unsigned char *samples = row;
+  if (shape->bits == 24) {
+    unpack_24(row, count * each, shape->type == HL_VOXEL_I32, r->samples);
+    samples = r->samples;
+  } else if (shape->bits != 8 * hl_voxel_type_bytes(shape->type)) {
+    unpack_bits(row, count * each, shape, r->samples);
+    samples = r->samples;
+  }
+  size_t bytes = hl_voxel_type_bytes(shape->type);
+  if (shape->planar) {
+    take_component(r, samples, 1, plane, count, first);
+  } else if (r->component == HL_COMPONENT_MAGNITUDE) {
+    for (unsigned c = 0; c < each; c++) take_component(r, samples + c * bytes, each, c, count, first);
+  } else {
+    take_component(r, samples + (size_t)r->component * bytes, each, 0, count, first);
+  }
+}
+
+/* Decodes chunk `index`; what is not in the file is 0. */
+static hl_status decode(page_reading *r, uint32_t index, uint32_t rows, hl_error *error) {
+  tiff_file *file = r->file;
+  file->message[0] = 0;
+  int failed = 0;
+  uint64_t stored = TIFFGetStrileByteCountWithErr(file->tiff, index, &failed);
+  if (stored == 0 && !failed) {
+    memset(r->chunk, 0, r->chunk_bytes);
+    return HL_OK;
+  }
+  size_t wanted = r->row_bytes * rows;
+  tmsize_t got = failed     ? -1
+                 : r->tiled ? TIFFReadEncodedTile(file->tiff, index, r->chunk, (tmsize_t)r->chunk_bytes)
+                            : TIFFReadEncodedStrip(file->tiff, index, r->chunk, (tmsize_t)wanted);
+  return got >= 0 && (size_t)got >= wanted ? HL_OK : tiff_file_fail(file, "a damaged page", error);
+}
+
+static hl_status read_chunk(page_reading *r, unsigned plane, uint32_t x, uint32_t y, hl_error *error) {
+  const tiff_shape *shape = r->shape;
+  TIFF *tiff = r->file->tiff;
+  uint32_t columns = shape->width - x < r->chunk_width ? shape->width - x : r->chunk_width;
+  uint32_t rows = shape->height - y < r->chunk_height ? shape->height - y : r->chunk_height;
+  uint16_t sample = (uint16_t)(shape->planar ? plane : 0);
+  uint32_t index = r->tiled ? TIFFComputeTile(tiff, x, y, 0, sample) : TIFFComputeStrip(tiff, y, sample);
+  hl_status status = decode(r, index, rows, error);
+  for (uint32_t row = 0; status == HL_OK && row < rows; row++)
+    take_row(r, r->chunk + row * r->row_bytes, plane, columns, (size_t)(y + row) * shape->width + x);
+  return status;
+}
+
+static hl_status read_chunks(page_reading *r, hl_error *error) {
+  const tiff_shape *shape = r->shape;
+  hl_status status = HL_OK;
+  unsigned begin = 0, end = 1;
+  if (shape->planar && r->component >= 0) begin = (unsigned)r->component, end = begin + 1;
+  if (shape->planar && r->component < 0) end = shape->components;
+  for (unsigned plane = begin; plane < end; plane++)
+    for (uint64_t y = 0; y < shape->height && status == HL_OK; y += r->chunk_height) {
+      for (uint64_t x = 0; x < shape->width && status == HL_OK; x += r->chunk_width)
+        status = read_chunk(r, plane, (uint32_t)x, (uint32_t)y, error);
+      if (status == HL_OK && hl_cancelled(r->file->context))
+        status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->file->path);
+    }
+  return status;
+}
+
+/* The size of a chunk: refuses one whose rows libtiff counts otherwise. */
+static hl_status measure_chunks(page_reading *r, hl_error *error) {
+  const tiff_shape *shape = r->shape;
+  TIFF *tiff = r->file->tiff;
+  r->tiled = TIFFIsTiled(tiff);
+  r->chunk_width = shape->width;
+  r->chunk_height = shape->height;
+  if (r->tiled) {
+    TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &r->chunk_width);
+    TIFFGetField(tiff, TIFFTAG_TILELENGTH, &r->chunk_height);
+  } else {
+    uint32_t rows = shape->height;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows);
+    if (rows < r->chunk_height) r->chunk_height = rows;
+  }
+  if (r->chunk_width < 1 || r->chunk_height < 1)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: a page in chunks of %u x %u pixels", r->file->path,
+                   r->chunk_width, r->chunk_height);
+  uint64_t samples = (uint64_t)r->chunk_width * (shape->planar ? 1 : shape->components), bits, bytes;
+  uint64_t told = r->tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff);
+  if (__builtin_mul_overflow(samples, shape->bits, &bits) || (bits + 7) / 8 != told ||
+      __builtin_mul_overflow(told, r->chunk_height, &bytes) || bytes > PTRDIFF_MAX)
+    return tiff_file_fail(r->file, "a page whose rows have another length than its pixels", error);
+  if ((double)bytes > 65536.0 * (double)r->file->size)
+    return tiff_file_fail(r->file, "a page whose chunks are larger than the file can fill", error);
+  r->row_bytes = (size_t)told;
+  r->chunk_bytes = (size_t)bytes;
+  return HL_OK;
+}
+
+hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, void *voxels,
+                         hl_error *error) {
+  page_reading r = {.file = file, .shape = shape, .component = component, .voxels = voxels};
+  file->message[0] = 0;
+  hl_status status = measure_chunks(&r, error);
+  if (status != HL_OK) return status;
+  size_t samples = (size_t)r.chunk_width * (shape->planar ? 1 : shape->components);
+  r.chunk = hl_allocate(file->context, r.chunk_bytes, 1);
+  r.samples = hl_allocate(file->context, samples, 8);
+  r.picked = hl_allocate(file->context, r.chunk_width, 8);
+  if (r.chunk == NULL || r.samples == NULL || r.picked == NULL)
+    status = hl_fail_memory(error, r.chunk_bytes + 16 * samples, file->path);
+  else status = read_chunks(&r, error);
+  hl_release(file->context, r.chunk);
+  hl_release(file->context, r.samples);
+  hl_release(file->context, r.picked);
+  return status;
+}

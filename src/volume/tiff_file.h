@@ -1,0 +1,59 @@
+/* volume/tiff_file.h - the pages of a TIFF file, decoded by libtiff to one component's voxels.
+ *
+ * libtiff reads from a file or from the caller's memory. Its warnings go to the context's log, its errors
+ * become error lines, and each of its allocations is bounded. A tiff_file belongs to one thread. */
+#ifndef HL_VOLUME_TIFF_FILE_H
+#define HL_VOLUME_TIFF_FILE_H
+
+#include <tiffio.h>
+
+#include "volume/volume.h"
+
+/* What a page's directory says about its voxels. */
+typedef struct tiff_shape {
+  uint32_t width, height;
+  hl_voxel_type type;
+  unsigned bits;       /* of a sample in the file; unpacked to the type */
+  unsigned components; /* samples of a pixel */
+  bool planar;         /* each component has chunks of its own */
+} tiff_shape;
+
+typedef struct tiff_file {
+  hl_context *context;
+  char *path;                  /* owned */
+  const unsigned char *memory; /* borrowed; [size]; null: the file is read */
+  uint64_t size, at;
+  int descriptor; /* -1: none */
+  TIFF *tiff;
+  char message[300]; /* libtiff's first error since it was cleared */
+  int warnings;
+} tiff_file;
+
+/* bytes: the content, or null. quiet: the context's `reads` callback is not called (from other threads).
+ * Close *file in any case. */
+hl_status tiff_file_open(hl_context *context, const char *path, const void *bytes, size_t byte_count,
+                         bool quiet, tiff_file *file, hl_error *error);
+void tiff_file_close(tiff_file *file);
+
+/* Fails with libtiff's own words. */
+hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *error);
+
+/* Makes the directory at an offset current; level: the level-th of its smaller pictures (0: itself). */
+hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *error);
+
+/* The current directory's shape; refuses what is not read. */
+hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error);
+bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b);
+
+/* Offsets of all directories, owned by the caller (hl_release). */
+hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error);
+
+/* Whether the current directory's chunks can hold a page of its shape, by their number of bytes and the best
+ * that its compression can do. */
+bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
+
+/* Decodes the current directory's component, or HL_COMPONENT_MAGNITUDE, into width x height stored voxels. */
+hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, void *voxels,
+                         hl_error *error);
+
+#endif

@@ -1,0 +1,402 @@
+/* volume/tiff_load.c - the volume of a TIFF file's pages.
+ *
+ * libtiff decodes the pages (tiff_file.h), their order is found by tiff_plan.h. Slices are decoded in
+ * parallel, each thread with a libtiff of its own. */
+#include "volume/tiff.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/pool.h"
+#include "volume/convert.h"
+#include "volume/tiff_file.h"
+#include "volume/tiff_plan.h"
+
+enum {
+  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read sooner than threads start */
+  FIRST_BYTES = 1 << 16
+};
+
+/* A file and the places of its directories. */
+typedef struct stack_file {
+  char *path;        /* owned */
+  uint64_t *offsets; /* owned; [count] */
+  size_t count;
+} stack_file;
+
+typedef struct stack_reading {
+  hl_context *context;
+  hl_load_request *request;
+  const unsigned char *memory; /* the first file's content, or null */
+  size_t memory_size;
+  tiff_plan plan;
+  stack_file *files; /* owned; [plan.file_count] */
+  int level;
+  tiff_shape shape;       /* of each slice, at the level */
+  uint32_t width, height; /* at level 0 */
+  int component;
+  unsigned char *voxels; /* owned until the volume takes it */
+  size_t slice_bytes;
+  /* of the threads */
+  hl_pool *pool;
+  tiff_file *open;   /* owned; [threads]; each one's file */
+  uint32_t *opened;  /* owned; [threads]: which it is; UINT32_MAX: none */
+  hl_error *errors;  /* owned; [threads]: of its first slice that failed */
+  size_t *failed;    /* owned; [threads]: that slice; SIZE_MAX: none */
+  hl_status *status; /* owned; [threads] */
+  atomic_size_t done, first_failed;
+} stack_reading;
+
+/* ---- the first file: its pages, and what its first page says ---- */
+
+static void read_resolution(tiff_file *file, double resolution[2]) {
+  float x = 0, y = 0;
+  TIFFGetField(file->tiff, TIFFTAG_XRESOLUTION, &x);
+  TIFFGetField(file->tiff, TIFFTAG_YRESOLUTION, &y);
+  resolution[0] = isfinite((double)x) && x > 0 ? (double)x : 0;
+  resolution[1] = isfinite((double)y) && y > 0 ? (double)y : 0;
+}
+
+/* Leaves out pages that are smaller pictures of others, and those of another shape. */
+static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stack_file *stack,
+                                  hl_error *error) {
+  size_t kept = 0, others = 0;
+  hl_status status = HL_OK;
+  for (size_t n = 0; n < stack->count && status == HL_OK; n++) {
+    uint32_t kind = 0;
+    tiff_shape shape;
+    status = tiff_file_go(file, stack->offsets[n], 0, error);
+    if (status != HL_OK) return status;
+    TIFFGetField(file->tiff, TIFFTAG_SUBFILETYPE, &kind);
+    bool same = tiff_file_shape(file, &shape, NULL) == HL_OK && tiff_shapes_equal(&shape, first);
+    bool reduced = (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) != 0;
+    others += !same && !reduced;
+    if (same && !reduced) stack->offsets[kept++] = stack->offsets[n];
+  }
+  if (kept == 0) stack->offsets[kept++] = stack->offsets[0];
+  if (others > 0)
+    hl_log(file->context, HL_LOG_WARNING,
+           "%.300s: %zu of %zu pages have another size or type than the first: they are left out", file->path,
+           others, stack->count);
+  stack->count = kept;
+  return status;
+}
+
+/* How many smaller resolutions each page has. */
+static size_t count_levels(tiff_file *file) {
+  uint16_t count = 0;
+  uint64_t *offsets = NULL;
+  return TIFFGetField(file->tiff, TIFFTAG_SUBIFD, &count, &offsets) ? (size_t)count + 1 : 1;
+}
+
+static uint64_t volume_bytes(const stack_reading *r, const tiff_shape *shape) {
+  size_t stored = hl_storage_bytes(hl_voxel_type_storage(shape->type));
+  uint64_t bytes;
+  if (__builtin_mul_overflow((uint64_t)shape->width * shape->height, r->plan.slice_count * stored, &bytes))
+    return UINT64_MAX;
+  return bytes;
+}
+
+/* Sets the level and the shape of its pages: the wanted one, else the finest that leaves half of the memory
+ * limit. */
+static hl_status choose_level(stack_reading *r, tiff_file *file, uint64_t offset, hl_error *error) {
+  hl_selection *selection = &r->request->selection;
+  uint64_t limit = r->context->options.memory_limit;
+  int wanted = r->request->level;
+  if (wanted >= 0 && (size_t)wanted >= selection->levels)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no level %d: the file has %zu, from 0", file->path,
+                   wanted, selection->levels);
+  hl_status status = HL_OK;
+  for (r->level = wanted >= 0 ? wanted : 0; status == HL_OK; r->level++) {
+    status = tiff_file_go(file, offset, r->level, error);
+    if (status == HL_OK) status = tiff_file_shape(file, &r->shape, error);
+    bool last = wanted >= 0 || (size_t)r->level + 1 >= selection->levels;
+    if (status == HL_OK && (last || limit == 0 || volume_bytes(r, &r->shape) <= limit / 2)) break;
+  }
+  if (status == HL_OK && wanted < 0 && r->level > 0)
+    hl_log(r->context, HL_LOG_WARNING,
+           "%.300s: level %d of %zu is taken, the finest that the memory limit leaves room for: choose by "
+           "\"level\" (--level)",
+           file->path, r->level, selection->levels);
+  selection->level = r->level;
+  return status;
+}
+
+static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *error) {
+  if (tiff_file_can_hold(file, &r->shape)) return HL_OK;
+  return hl_fail(
+      error, HL_ERROR_INPUT,
+      "%s: a page promises %u x %u pixels of %u samples of %u bits, more than the file's %llu bytes can "
+      "hold",
+      file->path, r->shape.width, r->shape.height, r->shape.components, r->shape.bits,
+      (unsigned long long)file->size);
+}
+
+static hl_status read_first(stack_reading *r, tiff_file *file, hl_error *error) {
+  stack_file stack = {.path = NULL};
+  tiff_shape first;
+  char *description = NULL, *copy = NULL;
+  double resolution[2];
+  hl_status status = tiff_file_shape(file, &first, error);
+  uint64_t start = TIFFCurrentDirOffset(file->tiff);
+  read_resolution(file, resolution);
+  r->request->selection.levels = count_levels(file);
+  if (status == HL_OK && TIFFGetField(file->tiff, TIFFTAG_IMAGEDESCRIPTION, &description)) {
+    copy = hl_copy_text(r->context, description);
+    if (copy == NULL) status = hl_fail_memory(error, strlen(description) + 1, file->path);
+  }
+  if (status == HL_OK) status = tiff_file_pages(file, &stack.offsets, &stack.count, error);
+  bool ome = copy != NULL && strstr(copy, "<OME") != NULL;
+  if (status == HL_OK && !ome) status = drop_other_pages(file, &first, &stack, error);
+  if (status == HL_OK)
+    status = tiff_plan_make(r->request, file->path, copy, stack.count, first.components, resolution, &r->plan,
+                            error);
+  if (status == HL_OK) {
+    r->width = first.width, r->height = first.height;
+    r->files = hl_allocate_zeroed(r->context, r->plan.file_count, sizeof *r->files);
+    if (r->files == NULL) status = hl_fail_memory(error, r->plan.file_count * sizeof *r->files, file->path);
+  }
+  if (status == HL_OK) {
+    r->files[0] = stack;
+    stack.offsets = NULL;
+    r->files[0].path = hl_copy_text(r->context, file->path);
+    if (r->files[0].path == NULL) status = hl_fail_memory(error, strlen(file->path), file->path);
+  }
+  if (status == HL_OK) status = choose_level(r, file, start, error);
+  if (status == HL_OK) status = check_size(r, file, error);
+  hl_release(r->context, stack.offsets);
+  hl_release(r->context, copy);
+  return status;
+}
+
+/* ---- the other files ---- */
+
+static hl_status find_pages(stack_reading *r, size_t index, hl_error *error) {
+  stack_file *stack = &r->files[index];
+  tiff_file file = {.descriptor = -1};
+  char *folder = hl_path_folder(r->context, r->files[0].path);
+  stack->path = folder == NULL ? NULL : hl_path_join(r->context, folder, r->plan.files[index]);
+  hl_release(r->context, folder);
+  if (stack->path == NULL) return hl_fail_memory(error, 100, r->plan.files[index]);
+  hl_status status = tiff_file_open(r->context, stack->path, NULL, 0, false, &file, error);
+  if (status == HL_OK) status = tiff_file_pages(&file, &stack->offsets, &stack->count, error);
+  tiff_file_close(&file);
+  return status;
+}
+
+/* Every slice's page is there. */
+static hl_status check_slices(const stack_reading *r, hl_error *error) {
+  for (size_t z = 0; z < r->plan.slice_count; z++) {
+    const tiff_slice *slice = &r->plan.slices[z];
+    const stack_file *file = &r->files[slice->file];
+    if (slice->is_there && slice->page >= file->count)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: slice %zu is page %u, the file has %zu: is it cut short?",
+                     file->path, z, slice->page + 1, file->count);
+  }
+  return HL_OK;
+}
+
+/* ---- slices ---- */
+
+static hl_status read_slice(stack_reading *r, size_t z, int worker, hl_error *error) {
+  const tiff_slice *slice = &r->plan.slices[z];
+  unsigned char *voxels = r->voxels + z * r->slice_bytes;
+  if (!slice->is_there) {
+    memset(voxels, 0, r->slice_bytes);
+    return HL_OK;
+  }
+  tiff_file *file = &r->open[worker];
+  stack_file *stack = &r->files[slice->file];
+  hl_status status = HL_OK;
+  if (r->opened[worker] != slice->file) {
+    tiff_file_close(file);
+    r->opened[worker] = slice->file;
+    bool first = slice->file == 0;
+    status = tiff_file_open(r->context, stack->path, first ? r->memory : NULL, first ? r->memory_size : 0,
+                            true, file, error);
+    if (status != HL_OK) r->opened[worker] = UINT32_MAX;
+    file->warnings = 1000; /* they were told when the pages were found */
+  }
+  tiff_shape shape;
+  if (status == HL_OK) status = tiff_file_go(file, stack->offsets[slice->page], r->level, error);
+  if (status == HL_OK) status = tiff_file_shape(file, &shape, error);
+  if (status == HL_OK && !tiff_shapes_equal(&shape, &r->shape))
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: slice %zu has %u x %u pixels of %u samples of %u bits, the first %u x %u, %u, %u",
+                   stack->path, z, shape.width, shape.height, shape.components, shape.bits, r->shape.width,
+                   r->shape.height, r->shape.components, r->shape.bits);
+  return status == HL_OK ? tiff_file_read(file, &shape, r->component, voxels, error) : status;
+}
+
+static void slice_task(void *data, size_t z, int worker) {
+  stack_reading *r = data;
+  if (z > atomic_load(&r->first_failed)) return;
+  hl_error error = {0};
+  hl_status status = read_slice(r, z, worker, &error);
+  if (status != HL_OK && z < r->failed[worker]) {
+    r->failed[worker] = z;
+    r->status[worker] = status;
+    r->errors[worker] = error;
+    size_t before = atomic_load(&r->first_failed);
+    while (z < before && !atomic_compare_exchange_weak(&r->first_failed, &before, z)) {}
+  }
+  size_t done = atomic_fetch_add(&r->done, 1) + 1;
+  if (worker == 0) hl_progress(r->context, "load", (double)done / (double)r->plan.slice_count);
+}
+
+/* The error of the first slice that failed, whichever thread read it. */
+static hl_status find_failure(const stack_reading *r, int threads, hl_error *error) {
+  for (int n = 0; n < threads; n++)
+    if (r->failed[n] != SIZE_MAX && r->failed[n] == atomic_load(&r->first_failed)) {
+      if (error != NULL) *error = r->errors[n];
+      return r->status[n];
+    }
+  return HL_OK;
+}
+
+static hl_status make_threads(stack_reading *r, int *threads, hl_error *error) {
+  bool parallel = r->plan.slice_count > 1 && volume_bytes(r, &r->shape) >= PARALLEL_VOXELS;
+  hl_status status = hl_pool_create(r->context, parallel ? 0 : 1, &r->pool, error);
+  if (status != HL_OK) return status;
+  size_t count = (size_t)(*threads = hl_pool_threads(r->pool));
+  r->open = hl_allocate_zeroed(r->context, count, sizeof *r->open);
+  r->opened = hl_allocate(r->context, count, sizeof *r->opened);
+  r->errors = hl_allocate_zeroed(r->context, count, sizeof *r->errors);
+  r->failed = hl_allocate(r->context, count, sizeof *r->failed);
+  r->status = hl_allocate_zeroed(r->context, count, sizeof *r->status);
+  if (r->open == NULL || r->opened == NULL || r->errors == NULL || r->failed == NULL || r->status == NULL)
+    return hl_fail_memory(error, count * sizeof *r->errors, r->files[0].path);
+  for (size_t n = 0; n < count; n++) {
+    r->open[n].descriptor = -1;
+    r->opened[n] = UINT32_MAX;
+    r->failed[n] = SIZE_MAX;
+  }
+  atomic_init(&r->done, 0);
+  atomic_init(&r->first_failed, SIZE_MAX);
+  return HL_OK;
+}
+
+static void release_threads(stack_reading *r, int threads) {
+  for (int n = 0; n < threads && r->open != NULL; n++) tiff_file_close(&r->open[n]);
+  hl_pool_destroy(r->pool);
+  hl_release(r->context, r->open);
+  hl_release(r->context, r->opened);
+  hl_release(r->context, r->errors);
+  hl_release(r->context, r->failed);
+  hl_release(r->context, r->status);
+}
+
+static hl_status read_slices(stack_reading *r, hl_error *error) {
+  int threads = 0;
+  hl_status status = make_threads(r, &threads, error);
+  if (status == HL_OK) {
+    hl_pool_run(r->pool, r->plan.slice_count, slice_task, r);
+    status = find_failure(r, threads, error);
+    if (status == HL_OK && (hl_pool_cancelled(r->pool) || hl_cancelled(r->context)))
+      status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->files[0].path);
+  }
+  release_threads(r, threads);
+  return status;
+}
+
+/* ---- the volume ---- */
+
+/* The grid; axes that the file does not tell are as long as the first that it tells. */
+static void describe(const stack_reading *r, hl_payload *payload) {
+  hl_volume_description *grid = &payload->grid;
+  double known = 1;
+  for (int axis = 2; axis >= 0; axis--)
+    if (r->plan.spacing[axis] > 0) known = r->plan.spacing[axis];
+  grid->dimensions[0] = r->shape.width;
+  grid->dimensions[1] = r->shape.height;
+  grid->dimensions[2] = r->plan.slice_count;
+  grid->type = r->shape.type;
+  const double coarser[3] = {(double)r->width / r->shape.width, (double)r->height / r->shape.height, 1};
+  for (int axis = 0; axis < 3; axis++) {
+    double step = (r->plan.spacing[axis] > 0 ? r->plan.spacing[axis] : known) * coarser[axis];
+    grid->axis[axis][axis] = step;
+    /* voxels of lower levels are larger about the same corner */
+    grid->origin[axis] = (step - step / coarser[axis]) / 2;
+  }
+  payload->components = r->shape.components;
+  payload->block = 1;
+}
+
+static hl_status make_volume(stack_reading *r, hl_volume **volume, hl_error *error) {
+  hl_payload payload;
+  hl_payload_defaults(&payload);
+  describe(r, &payload);
+  const char *path = r->files[0].path;
+  hl_status status = hl_volume_check_grid(&payload.grid, path, error);
+  if (status == HL_OK) status = hl_component_only(r->request, path, false, &payload, error);
+  if (status != HL_OK) return status;
+  r->component = payload.component;
+  hl_volume_description grid = hl_payload_grid(&payload, r->request->spacing);
+  size_t stored = hl_storage_bytes(hl_voxel_type_storage(grid.type));
+  r->slice_bytes = (size_t)r->shape.width * r->shape.height * stored;
+  r->voxels = hl_allocate(r->context, r->slice_bytes, r->plan.slice_count);
+  if (r->voxels == NULL) return hl_fail_memory(error, r->slice_bytes * r->plan.slice_count, path);
+  status = read_slices(r, error);
+  if (status != HL_OK) return status;
+  void *voxels = r->voxels;
+  r->voxels = NULL;
+  return hl_volume_adopt(r->context, &grid, path, voxels, volume, error);
+}
+
+static void release(stack_reading *r) {
+  for (size_t n = 0; r->files != NULL && n < r->plan.file_count; n++) {
+    hl_release(r->context, r->files[n].path);
+    hl_release(r->context, r->files[n].offsets);
+  }
+  hl_release(r->context, r->files);
+  hl_release(r->context, r->voxels);
+  tiff_plan_release(&r->plan);
+}
+
+/* The whole of a pipe or of compressed data, since pages are read from several places. */
+static hl_status read_whole(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error) {
+  size_t capacity = 0, got = 1;
+  hl_status status = HL_OK;
+  for (*length = 0; status == HL_OK && got > 0; *length += got) {
+    if (*length == capacity) {
+      size_t wanted = capacity == 0 ? FIRST_BYTES : 2 * capacity;
+      unsigned char *larger = hl_reallocate(stream->context, *bytes, wanted, 1);
+      if (larger == NULL) return hl_fail_memory(error, wanted, stream->path);
+      *bytes = larger;
+      capacity = wanted;
+    }
+    got = 0;
+    status = hl_stream_read(stream, *bytes + *length, capacity - *length, &got, error);
+    if (status == HL_OK && hl_cancelled(stream->context))
+      return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path);
+  }
+  if (status == HL_OK && stream->cut_short)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the compressed data are cut short", stream->path);
+  return status;
+}
+
+hl_status hl_tiff_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  stack_reading r = {.context = request->context, .request = request};
+  tiff_file file = {.descriptor = -1};
+  const char *path = (*stream)->path;
+  unsigned char *whole = NULL;
+  hl_status status = HL_OK;
+  if (!hl_stream_memory(*stream, &r.memory, &r.memory_size) && !hl_stream_is_plain_file(*stream)) {
+    status = read_whole(*stream, &whole, &r.memory_size, error);
+    r.memory = whole;
+  }
+  if (status == HL_OK)
+    status = tiff_file_open(request->context, path, r.memory, r.memory_size, true, &file, error);
+  if (status == HL_OK) status = read_first(&r, &file, error);
+  tiff_file_close(&file);
+  for (size_t n = 1; status == HL_OK && n < r.plan.file_count; n++) status = find_pages(&r, n, error);
+  if (status == HL_OK) status = check_slices(&r, error);
+  if (status == HL_OK) status = make_volume(&r, volume, error);
+  release(&r);
+  hl_release(request->context, whole);
+  return status;
+}

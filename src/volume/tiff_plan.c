@@ -1,0 +1,302 @@
+/* volume/tiff_plan.c - the order of a TIFF file's pages.
+ *
+ * OME-XML: the schema of 2016-06 of the Open Microscopy Environment: Pixels has the sizes and the order of
+ * dimensions, TiffData says from which page of which file planes come. ImageJ: lines "name=value" of the
+ * description of the first page, as ij.io.FileSaver writes them; planes follow each other as channel, slice,
+ * frame. */
+#include "volume/tiff_plan.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "volume/text.h"
+#include "volume/xml.h"
+
+enum { FILES_MOST = 65536, NAME_BYTES = 1024, SIZE_MOST = 1 << 24 };
+
+void tiff_plan_release(tiff_plan *plan) {
+  for (size_t n = 0; n < plan->file_count; n++) hl_release(plan->context, plan->files[n]);
+  hl_release(plan->context, plan->files);
+  hl_release(plan->context, plan->slices);
+  *plan = (tiff_plan){.context = NULL};
+}
+
+static hl_status make_slices(tiff_plan *plan, size_t count, const char *path, hl_error *error) {
+  plan->slices = hl_allocate_zeroed(plan->context, count, sizeof *plan->slices);
+  plan->slice_count = count;
+  return plan->slices != NULL ? HL_OK : hl_fail_memory(error, count * sizeof *plan->slices, path);
+}
+
+/* Adds a file; null: the first file itself. */
+static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl_error *error) {
+  /* a new file is mostly the last one again */
+  for (size_t n = plan->file_count; name != NULL && n-- > 1;)
+    if (strcmp(plan->files[n], name) == 0) {
+      *index = (uint32_t)n;
+      return HL_OK;
+    }
+  if (plan->file_count >= FILES_MOST)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "a volume of more than %d files", (int)FILES_MOST);
+  if ((plan->file_count & (plan->file_count - 1)) == 0) { /* a power of two: full */
+    size_t wanted = plan->file_count == 0 ? 1 : 2 * plan->file_count;
+    char **larger = hl_reallocate(plan->context, plan->files, wanted, sizeof *larger);
+    if (larger == NULL) return hl_fail_memory(error, wanted * sizeof *larger, "names of files");
+    plan->files = larger;
+  }
+  char *copy = name == NULL ? NULL : hl_copy_text(plan->context, name);
+  if (name != NULL && copy == NULL) return hl_fail_memory(error, strlen(name) + 1, name);
+  *index = (uint32_t)plan->file_count;
+  plan->files[plan->file_count++] = copy;
+  return HL_OK;
+}
+
+/* ---- OME-XML ---- */
+
+typedef struct ome_reader {
+  tiff_plan *plan;
+  hl_load_request *request;
+  const char *path;
+  size_t pages, components; /* of the first file */
+  size_t size[3];           /* planes along Z, C, T */
+  char order[3];            /* "ZCT" in some order: the first changes fastest */
+  bool in_pixels, done, is_planned;
+  /* TiffData */
+  bool is_open, whole; /* its planes are not yet placed; to the last plane */
+  size_t first[3], count, page;
+  size_t placed; /* planes of all of them */
+  char file[NAME_BYTES];
+} ome_reader;
+
+static bool has_name(const hl_xml_tag *tag, const char *name) {
+  const char *colon = strrchr(tag->name, ':');
+  return strcmp(colon != NULL ? colon + 1 : tag->name, name) == 0;
+}
+
+/* A whole number's attribute, or `other` where there is none. */
+static bool read_number(const hl_xml_tag *tag, const char *name, size_t other, size_t *number) {
+  const char *text = hl_xml_attribute(tag, name);
+  *number = other;
+  return text == NULL || (hl_text_sizes(text, number, 1) == 1 && *number <= SIZE_MOST);
+}
+
+/* The length of a voxel in micrometres; 0: not told. */
+static double read_length(const hl_xml_tag *tag, char axis) {
+  static const struct {
+    const char *names;
+    double micrometres;
+  } units[] = {{"\xc2\xb5m|\xce\xbcm|um|micron", 1},
+               {"nm", 1e-3},
+               {"mm", 1e3},
+               {"cm", 1e4},
+               {"m", 1e6},
+               {"pm", 1e-6},
+               {"\xc3\x85", 1e-4},
+               {"in", 25400}};
+  char name[] = "PhysicalSizeX", unit_name[] = "PhysicalSizeXUnit";
+  name[sizeof name - 2] = axis;
+  unit_name[12] = axis;
+  const char *text = hl_xml_attribute(tag, name), *unit = hl_xml_attribute(tag, unit_name);
+  double value;
+  if (text == NULL || !hl_text_number(text, strlen(text), &value) || !(value > 0) || !isfinite(value))
+    return 0;
+  for (size_t n = 0; unit != NULL && n < sizeof units / sizeof *units; n++)
+    if (hl_text_is_one_of(unit, units[n].names)) return value * units[n].micrometres;
+  return value;
+}
+
+static hl_status fail_ome(const ome_reader *ome, const char *what, hl_error *error) {
+  return hl_fail(error, HL_ERROR_INPUT, "%s: its OME-XML %s", ome->path, what);
+}
+
+static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
+  const char *order = hl_xml_attribute(tag, "DimensionOrder");
+  size_t total;
+  if (!read_number(tag, "SizeZ", 1, &ome->size[0]) || !read_number(tag, "SizeC", 1, &ome->size[1]) ||
+      !read_number(tag, "SizeT", 1, &ome->size[2]) || ome->size[0] == 0 || ome->size[1] == 0 ||
+      ome->size[2] == 0 || !hl_multiply(ome->size[0], ome->size[1], &total) ||
+      !hl_multiply(total, ome->size[2], &total) || total > SIZE_MOST)
+    return fail_ome(ome, "has sizes that are no numbers from 1 on, or too large", error);
+  memcpy(ome->order, "ZCT", 3);
+  if (order != NULL && strlen(order) == 5 && strchr(order + 2, 'Z') != NULL &&
+      strchr(order + 2, 'C') != NULL && strchr(order + 2, 'T') != NULL)
+    memcpy(ome->order, order + 2, 3);
+  /* colours are samples of a pixel: their planes are one */
+  if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
+  for (int axis = 0; axis < 3; axis++) ome->plan->spacing[axis] = read_length(tag, "XYZ"[axis]);
+  ome->in_pixels = true;
+  return HL_OK;
+}
+
+static int axis_of(char letter) { return letter == 'Z' ? 0 : letter == 'C' ? 1 : 2; }
+
+/* The chosen time step and channel, and a list of slices. */
+static hl_status begin_slices(ome_reader *ome, hl_error *error) {
+  if (ome->is_planned) return HL_OK;
+  ome->is_planned = true;
+  hl_status status = hl_steps_choose(ome->request, ome->path, ome->size[2], ome->size[1], error);
+  return status == HL_OK ? make_slices(ome->plan, ome->size[0], ome->path, error) : status;
+}
+
+/* Places the planes of a TiffData. */
+static hl_status place_planes(ome_reader *ome, hl_error *error) {
+  size_t at[3], total = ome->size[0] * ome->size[1] * ome->size[2], place = 0, factor = 1;
+  uint32_t file = 0;
+  ome->is_open = false;
+  hl_status status = begin_slices(ome, error);
+  if (status != HL_OK) return status;
+  for (int n = 0; n < 3; n++) {
+    int axis = axis_of(ome->order[n]);
+    if (ome->first[axis] >= ome->size[axis]) return fail_ome(ome, "names a plane beyond its sizes", error);
+    place += ome->first[axis] * factor;
+    factor *= ome->size[axis];
+  }
+  size_t count = ome->whole || ome->count > total - place ? total - place : ome->count;
+  const hl_selection *chosen = &ome->request->selection;
+  ome->placed += count;
+  if (ome->placed > 2 * total) return fail_ome(ome, "names most of its planes more than once", error);
+  for (size_t n = 0; n < count; n++) {
+    size_t left = place + n;
+    for (int k = 0; k < 3; k++) {
+      int axis = axis_of(ome->order[k]);
+      at[axis] = left % ome->size[axis];
+      left /= ome->size[axis];
+    }
+    if (at[1] != (size_t)chosen->channel || at[2] != (size_t)chosen->time) continue;
+    if (file == 0 && ome->file[0] != 0 && (status = add_file(ome->plan, ome->file, &file, error)) != HL_OK)
+      return status;
+    ome->plan->slices[at[0]] = (tiff_slice){file, (uint32_t)(ome->page + n), true};
+  }
+  return HL_OK;
+}
+
+static hl_status begin_planes(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
+  if (!read_number(tag, "FirstZ", 0, &ome->first[0]) || !read_number(tag, "FirstC", 0, &ome->first[1]) ||
+      !read_number(tag, "FirstT", 0, &ome->first[2]) || !read_number(tag, "IFD", 0, &ome->page) ||
+      !read_number(tag, "PlaneCount", 1, &ome->count))
+    return fail_ome(ome, "has a TiffData whose numbers are none", error);
+  ome->whole = hl_xml_attribute(tag, "PlaneCount") == NULL && hl_xml_attribute(tag, "IFD") == NULL;
+  ome->file[0] = 0;
+  ome->is_open = true;
+  return tag->is_end ? place_planes(ome, error) : HL_OK;
+}
+
+/* A file beside the first one; a path could lead anywhere. */
+static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
+  const char *name = hl_xml_attribute(tag, "FileName"), *slash = strrchr(ome->path, '/');
+  if (name == NULL) return HL_OK;
+  if (strchr(name, '/') != NULL || strlen(name) >= sizeof ome->file || name[0] == 0)
+    return fail_ome(ome, "names a file that is not beside it", error);
+  /* the first file, under its own name */
+  if (strcmp(name, slash != NULL ? slash + 1 : ome->path) != 0) strcpy(ome->file, name);
+  return HL_OK;
+}
+
+static hl_status read_tag(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
+  if (!ome->in_pixels) return tag->is_start && has_name(tag, "Pixels") ? read_pixels(ome, tag, error) : HL_OK;
+  if (tag->is_start && has_name(tag, "TiffData")) return begin_planes(ome, tag, error);
+  if (tag->is_start && ome->is_open && has_name(tag, "UUID")) return read_file(ome, tag, error);
+  if (tag->is_end && ome->is_open && has_name(tag, "TiffData")) return place_planes(ome, error);
+  if (tag->is_end && has_name(tag, "Pixels")) ome->done = true; /* of the first image */
+  return HL_OK;
+}
+
+/* Without TiffData, or where pages lack, planes are the pages in order. */
+static hl_status finish_ome(ome_reader *ome, hl_error *error) {
+  if (!ome->in_pixels) return fail_ome(ome, "has no Pixels: is it a companion of another file?", error);
+  hl_status status = begin_slices(ome, error);
+  size_t missing = 0;
+  bool any = false;
+  for (size_t z = 0; status == HL_OK && z < ome->plan->slice_count; z++)
+    any = any || ome->plan->slices[z].is_there;
+  if (status == HL_OK && !any) {
+    memset(ome->first, 0, sizeof ome->first);
+    ome->whole = true, ome->page = 0, ome->file[0] = 0;
+    status = place_planes(ome, error);
+  }
+  for (size_t z = 0; status == HL_OK && z < ome->plan->slice_count; z++)
+    missing += !ome->plan->slices[z].is_there;
+  if (missing > 0)
+    hl_log(ome->plan->context, HL_LOG_WARNING,
+           "%.300s: its OME-XML names no page for %zu of %zu slices: they are 0", ome->path, missing,
+           ome->plan->slice_count);
+  return status;
+}
+
+static hl_status plan_ome(hl_load_request *request, const char *path, const char *description, size_t pages,
+                          size_t components, tiff_plan *plan, hl_error *error) {
+  ome_reader ome = {.plan = plan, .request = request, .path = path, .pages = pages, .components = components};
+  hl_stream *stream = NULL;
+  hl_xml_tag *tag = hl_allocate(plan->context, 1, sizeof *tag);
+  if (tag == NULL) return hl_fail_memory(error, sizeof *tag, path);
+  bool ended = false;
+  hl_status status = hl_stream_open_memory(plan->context, path, description, strlen(description), &stream,
+                                           error);
+  while (status == HL_OK && !ome.done) {
+    status = hl_xml_next_tag(stream, tag, &ended, error);
+    if (status != HL_OK || ended) break;
+    status = read_tag(&ome, tag, error);
+  }
+  if (status == HL_OK) status = finish_ome(&ome, error);
+  hl_stream_close(stream);
+  hl_release(plan->context, tag);
+  plan->is_told = true;
+  return status;
+}
+
+/* ---- ImageJ, and pages alone ---- */
+
+/* The number after "name=" at the start of a line, or `other`. */
+static double find_number(const char *description, const char *name, double other) {
+  size_t length = strlen(name);
+  for (const char *line = description; line != NULL; line = strchr(line, '\n')) {
+    if (*line == '\n') line++;
+    if (strncmp(line, name, length) != 0 || line[length] != '=') continue;
+    const char *text = line + length + 1;
+    double value;
+    if (hl_text_number(text, strcspn(text, "\r\n"), &value) && isfinite(value)) return value;
+  }
+  return other;
+}
+
+static size_t find_count(const char *description, const char *name) {
+  double value = find_number(description, name, 1);
+  return value >= 1 && value <= SIZE_MOST && value == floor(value) ? (size_t)value : 1;
+}
+
+static hl_status plan_pages(hl_load_request *request, const char *path, const char *description, size_t pages,
+                            const double resolution[2], tiff_plan *plan, hl_error *error) {
+  size_t channels = 1, times = 1, slices = pages;
+  plan->is_told = description != NULL && strncmp(description, "ImageJ=", 7) == 0;
+  if (plan->is_told) {
+    channels = find_count(description, "channels");
+    times = find_count(description, "frames");
+    slices = find_count(description, "slices");
+    if (channels * times > pages || slices != pages / (channels * times)) {
+      slices = pages / (channels * times);
+      if (slices == 0 || slices * channels * times != pages) channels = times = 1, slices = pages;
+    }
+    for (int axis = 0; axis < 2; axis++)
+      plan->spacing[axis] = resolution[axis] > 0 ? 1 / resolution[axis] : 1;
+    plan->spacing[2] = fabs(find_number(description, "spacing", 1));
+  }
+  hl_status status = hl_steps_choose(request, path, times, channels, error);
+  if (status == HL_OK) status = make_slices(plan, slices, path, error);
+  const hl_selection *chosen = &request->selection;
+  for (size_t z = 0; status == HL_OK && z < slices; z++)
+    plan->slices[z] = (tiff_slice){
+        0, (uint32_t)(((size_t)chosen->time * slices + z) * channels + (size_t)chosen->channel), true};
+  return status;
+}
+
+hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,
+                         size_t components, const double resolution[2], tiff_plan *plan, hl_error *error) {
+  *plan = (tiff_plan){.context = request->context};
+  uint32_t first;
+  hl_status status = add_file(plan, NULL, &first, error);
+  if (status != HL_OK) return status;
+  bool ome = description != NULL && strstr(description, "<OME") != NULL;
+  return ome ? plan_ome(request, path, description, pages, components, plan, error)
+             : plan_pages(request, path, description, pages, resolution, plan, error);
+}
