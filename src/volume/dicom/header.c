@@ -304,8 +304,12 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
                    hl_source_path(source), header->syntax);
   if (p->is_float && p->allocated < 32) return refuse(source, "floats of fewer than 32 bits", error);
   if (p->allocated == 64 && !p->is_float) return refuse(source, "integers of 64 bits", error);
-  if (p->encapsulated && p->codec != HL_DICOM_NATIVE && p->allocated != 8 && p->allocated != 16)
+  bool any_bits = p->codec == HL_DICOM_NATIVE || (p->codec == HL_DICOM_RLE && p->allocated == 32);
+  if (!any_bits && p->allocated != 8 && p->allocated != 16)
     return refuse(source, "compressed pixels have 8 or 16 bits, these have others", error);
+  if (p->codec != HL_DICOM_NATIVE && !p->encapsulated)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: its pixels should be compressed, and are not",
+                   hl_source_path(source));
   return HL_OK;
 }
 

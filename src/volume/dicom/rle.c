@@ -35,7 +35,7 @@ static bool unpack(const unsigned char *bytes, size_t length, size_t count, size
 
 hl_status hl_dicom_decode_rle(const hl_dicom_packed *packed, void *values, hl_error *error) {
   const hl_dicom_pixels *p = packed->pixels;
-  size_t bytes_each = p->allocated > 8 ? 2 : 1, segments = p->samples * bytes_each;
+  size_t bytes_each = p->allocated > 8 ? (size_t)p->allocated / 8 : 1, segments = p->samples * bytes_each;
   if (packed->length < HEADER_BYTES)
     return hl_dicom_fail_packed(packed, "RLE", "it is shorter than its header", error);
   if (hl_dicom_u32(packed->bytes, false) != segments || segments > SEGMENTS_MOST)
