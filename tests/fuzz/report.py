@@ -23,6 +23,9 @@ TARGETS = {
     "vti": ("VTK XML", ["volume/vti.c", "volume/xml.c"]),
     "npy": ("NumPy", ["volume/npy.c"]),
     "mrc": ("MRC, CCP4", ["volume/mrc.c"]),
+    "dicom": ("DICOM, zip archives", ["volume/dicom.c", "volume/source.c", "volume/bundle_zip.c"] + [
+        f"volume/dicom/{name}.c" for name in ("directory", "elements", "frame", "header", "jpeg", "jpeg_2000", "jpeg_ls",
+                                              "jpeg_lossless", "rle", "set", "stack", "voxels")]),
     "raw": ("bare voxels, descriptors", ["volume/raw.c"]),
     "transfer": ("transfer functions", ["json/transfer_load.c", "json/transfer_function.c"]),
     "shapes": ("shapes", ["json/shapes.c", "json/shapes_volume.c", "shape/"]),
@@ -30,7 +33,7 @@ TARGETS = {
     "scene": ("scene files", ["json/", "scene/"]),
     "render": ("whole renders", ["render/", "light/", "shadow", "grid/", "view/", "fill/"])}
 SHARED = ("all volume files, what they share included", ["volume/"],
-          ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "npy", "mrc", "raw"])
+          ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "npy", "mrc", "dicom", "raw"])
 
 TARGETS["tiff"] = ("TIFF, OME-TIFF, ImageJ", ["volume/tiff"])
 SHARED[2].append("tiff")
