@@ -162,6 +162,20 @@ typedef struct hl_volume_selection {
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_selection(const hl_volume *volume,
                                                         hl_volume_selection *selection);
 
+/* A series of DICOM slices, of those that a folder or an archive holds. */
+typedef struct hl_volume_series {
+  size_t struct_size;                       /* set by the caller */
+  const char *uid, *modality, *description; /* "" where the files have none; the volume's */
+  double number;                            /* NaN: none */
+  size_t dimensions[3];                     /* columns, rows, slices of all its times */
+  int chosen;                               /* the volume was read from this series */
+} hl_volume_series;
+
+/* How many series there were; 0: the volume came from elsewhere. */
+HL_API size_t hl_volume_series_count(const hl_volume *volume);
+HL_API HL_WARN_UNUSED hl_status hl_volume_get_series(const hl_volume *volume, size_t index,
+                                                     hl_volume_series *series);
+
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */
 HL_API double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k);
 

@@ -79,6 +79,35 @@ static void print_selection(const hl_volume *volume) {
   if (s.levels > 1) printf("  levels      %zu: level %d is shown\n", s.levels, s.level);
 }
 
+static void print_json_series(json_writer *json, const hl_volume *volume) {
+  hl_volume_series series = {.struct_size = sizeof series};
+  if (hl_volume_series_count(volume) == 0) return;
+  json_open_array(json, "series");
+  for (size_t n = 0; hl_volume_get_series(volume, n, &series) == HL_OK; n++) {
+    const uint64_t dimensions[3] = {series.dimensions[0], series.dimensions[1], series.dimensions[2]};
+    json_open_object(json, NULL);
+    json_text(json, "uid", series.uid);
+    if (isfinite(series.number)) json_number(json, "number", series.number);
+    json_text(json, "modality", series.modality);
+    json_text(json, "description", series.description);
+    json_integers(json, "dimensions", dimensions, 3);
+    json_bool(json, "chosen", series.chosen != 0);
+    json_close(json);
+  }
+  json_close(json);
+}
+
+static void print_series(const hl_volume *volume) {
+  hl_volume_series s = {.struct_size = sizeof s};
+  size_t count = hl_volume_series_count(volume);
+  for (size_t n = 0; hl_volume_get_series(volume, n, &s) == HL_OK; n++) {
+    printf("  %s  ", n == 0 ? "series    " : "          ");
+    if (isfinite(s.number)) printf("%.0f: ", s.number);
+    printf("%s%s\"%s\", %zu x %zu x %zu%s\n", s.modality, s.modality[0] != '\0' ? " " : "", s.description,
+           s.dimensions[0], s.dimensions[1], s.dimensions[2], s.chosen && count > 1 ? ": is shown" : "");
+  }
+}
+
 static void print_arrays(const hl_volume *volume) {
   hl_volume_array array = {.struct_size = sizeof array};
   size_t count = hl_volume_array_count(volume);
@@ -120,6 +149,7 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   json_integer(&json, "nonfinite_count", info->nonfinite_count);
   print_json_arrays(&json, volume);
   print_json_selection(&json, volume);
+  print_json_series(&json, volume);
   json_text(&json, "taken_for", kind);
   json_integers(&json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
   json_close(&json);
@@ -158,6 +188,7 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
   printf("  type        %s\n", hl_voxel_type_name(info->type));
   print_arrays(volume);
   print_selection(volume);
+  print_series(volume);
   printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
   printf("  origin      %.9g, %.9g, %.9g\n", info->origin[0], info->origin[1], info->origin[2]);
   for (int axis = 0; axis < 3; axis++)

@@ -259,6 +259,7 @@ void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count
 void hl_volume_release(hl_volume *volume) {
   if (volume == NULL || atomic_fetch_sub(&volume->references, 1) != 1) return;
   hl_arrays_release(volume->context, volume->arrays, volume->array_count);
+  hl_release(volume->context, volume->series);
   hl_release(volume->context, volume->owned_voxels);
   if (volume->release != NULL) volume->release(volume->release_data, volume->voxels);
   hl_release(volume->context, volume);
@@ -301,6 +302,24 @@ hl_status hl_volume_get_array(const hl_volume *volume, size_t index, hl_volume_a
                              entry->of_cells,
                              chosen,
                              chosen ? volume->component : HL_COMPONENT_DEFAULT};
+  return HL_OK;
+}
+
+size_t hl_volume_series_count(const hl_volume *volume) { return volume != NULL ? volume->series_count : 0; }
+
+hl_status hl_volume_get_series(const hl_volume *volume, size_t index, hl_volume_series *series) {
+  if (volume == NULL || series == NULL || series->struct_size != sizeof *series ||
+      index >= volume->series_count)
+    return HL_ERROR_ARGUMENT;
+  const hl_series_entry *entry = &volume->series[index];
+  const size_t *n = entry->dimensions;
+  *series = (hl_volume_series){sizeof *series,
+                               entry->uid,
+                               entry->modality,
+                               entry->description,
+                               entry->number,
+                               {n[0], n[1], n[2]},
+                               index == volume->chosen_series};
   return HL_OK;
 }
 

@@ -42,11 +42,34 @@ static void tell_damage(const hl_dicom_set *set) {
            set->bundle->links_passed);
 }
 
+/* Gives the request the list of series, for the volume. */
+static hl_status list_series(const hl_dicom_set *set, size_t chosen, hl_load_request *request,
+                             hl_error *error) {
+  size_t count = set->series_count;
+  hl_series_entry *list = hl_allocate_zeroed(set->context, count, sizeof *list);
+  if (list == NULL) return hl_fail_memory(error, count * sizeof *list, "a list of series");
+  for (size_t n = 0; n < count; n++) {
+    const hl_dicom_series *series = &set->series[n];
+    list[n].number = series->number;
+    list[n].dimensions[0] = series->columns;
+    list[n].dimensions[1] = series->rows;
+    list[n].dimensions[2] = series->frames;
+    hl_text_printable(list[n].uid, series->uid);
+    hl_text_printable(list[n].modality, series->modality);
+    hl_text_printable(list[n].description, series->description);
+  }
+  request->series_list = list;
+  request->series_count = count;
+  request->chosen_series = chosen;
+  return HL_OK;
+}
+
 static hl_status load_series(hl_dicom_set *set, hl_load_request *request, hl_volume **volume,
                              hl_error *error) {
   size_t series;
   hl_dicom_stack stack;
   hl_status status = hl_dicom_series_choose(set, request->series, &series, error);
+  if (status == HL_OK) status = list_series(set, series, request, error);
   if (status != HL_OK) return status;
   status = hl_dicom_stack_make(set, series, &stack, error);
   if (status == HL_OK) status = hl_dicom_voxels_read(set, &stack, request, volume, error);

@@ -24,6 +24,8 @@ typedef struct hl_load_request {
   size_t array_count;
   size_t chosen; /* the array that is read */
   int chosen_component;
+  hl_series_entry *series_list; /* owned; [series_count]: DICOM series */
+  size_t series_count, chosen_series;
   bool more;              /* the file has arrays beyond HL_ARRAYS_MOST */
   hl_selection selection; /* what there is of times, channels and levels, and what is read; counts are 1
                              before the reader chooses */

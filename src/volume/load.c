@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "core/context.h"
+#include "core/memory.h"
 #include "volume/decoders.h"
 #include "volume/format.h"
 #include "volume/formats.h"
@@ -205,6 +206,7 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
 static hl_status finish(hl_load_request *request, hl_status status, hl_volume **volume) {
   if (status != HL_OK) {
     hl_arrays_release(request->context, request->arrays, request->array_count);
+    hl_release(request->context, request->series_list);
     return status;
   }
   if (request->array_told[0] != 0) hl_log(request->context, HL_LOG_WARNING, "%s", request->array_told);
@@ -213,6 +215,9 @@ static hl_status finish(hl_load_request *request, hl_status status, hl_volume **
   if (request->selection_told[0] != 0)
     hl_log(request->context, HL_LOG_WARNING, "%s", request->selection_told);
   (*volume)->selection = request->selection;
+  (*volume)->series = request->series_list;
+  (*volume)->series_count = request->series_count;
+  (*volume)->chosen_series = request->chosen_series;
   (*volume)->arrays = request->arrays;
   (*volume)->array_count = request->array_count;
   (*volume)->chosen_array = request->chosen;

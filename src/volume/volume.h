@@ -13,6 +13,8 @@
 
 #include "core/vector.h"
 
+enum { HL_SERIES_TEXT_BYTES = 66 };
+
 typedef enum hl_storage { HL_STORAGE_U8 = 0, HL_STORAGE_U16 = 1, HL_STORAGE_F32 = 2 } hl_storage;
 
 /* An array of the file that a volume was loaded from. */
@@ -28,6 +30,13 @@ typedef struct hl_selection {
   size_t times, channels, levels;
   int time, channel, level;
 } hl_selection;
+
+/* A DICOM series of the input that a volume was loaded from; printable. */
+typedef struct hl_series_entry {
+  char uid[HL_SERIES_TEXT_BYTES], modality[HL_SERIES_TEXT_BYTES], description[HL_SERIES_TEXT_BYTES];
+  double number; /* NAN: none */
+  size_t dimensions[3];
+} hl_series_entry;
 
 struct hl_volume {
   hl_context *context;
@@ -51,6 +60,8 @@ struct hl_volume {
   size_t array_count, chosen_array;
   int component; /* index of the component that was read, or HL_COMPONENT_MAGNITUDE */
   hl_selection selection;
+  hl_series_entry *series; /* owned; [series_count]; null unless loaded from DICOM files */
+  size_t series_count, chosen_series;
 };
 
 static inline size_t hl_storage_bytes(hl_storage storage) {

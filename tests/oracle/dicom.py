@@ -247,6 +247,9 @@ def test_series():
         "t00200011": ("IS", 8), "t0008103e": ("LO", "Leg"), "t00080060": ("CS", "MR")})
     (root / "two" / "notes.txt").write_text("not a slice")
     expect("the largest of two series", root / "two", HU, 'of 2 series, 7: CT "Thorax", 5 x 4 x 6 is taken')
+    info, _, _ = read(root / "two")
+    listed = [(s["number"], s["modality"], s["description"], s["dimensions"], s["chosen"]) for s in info["series"]]
+    check("info lists the series", listed == [(7, "CT", "Thorax", [5, 4, 6], True), (8, "MR", "Leg", [5, 4, 3], False)], info)
     for wish in ("8", "1.2.4", "leg"):
         info, _, told = read(root / "two", "--series", wish)
         check(f"--series {wish}", info is not None and info["dimensions"] == [5, 4, 3], told)
