@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+"""Holds the DICOM reader against pydicom (its own test files), GDCM (every codec) and dcm2niix (geometry).
+
+usage: dicom_judges.py DUMP_VOLUME
+Needs Debian's python3-pydicom, python3-gdcm, python3-nibabel and dcm2niix, and no network. Prints a line for each file;
+exit 1 if a value or a place differs.
+"""
+import glob
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import warnings
+
+import gdcm
+import nibabel
+import numpy as np
+import pydicom
+from pydicom.dataset import FileDataset, FileMetaDataset
+from pydicom.pixel_data_handlers.util import convert_color_space
+
+warnings.filterwarnings("ignore")
+pydicom.config.settings.reading_validation_mode = pydicom.config.IGNORE
+DUMP = sys.argv[1]
+folder = pathlib.Path(tempfile.mkdtemp(prefix="halflight-judges-"))
+wrong = 0
+
+
+def read(path):
+    told = subprocess.run([DUMP, str(path), str(folder / "voxels")], capture_output=True, timeout=60, text=True)
+    info = json.loads(told.stdout)
+    if "error" in info:
+        return info, None
+    return info, np.fromfile(folder / "voxels").reshape(info["dimensions"][::-1])
+
+
+def tell(name, good, what):
+    global wrong
+    wrong += not good
+    print("equal " if good else "DIFFER", name, what)
+
+
+def judge_pixels(path, name):
+    data = pydicom.dcmread(path, force=True)
+    if not any(key in data for key in ("PixelData", "FloatPixelData", "DoubleFloatPixelData")):
+        return
+    info, found = read(path)
+    try:
+        wanted = data.pixel_array
+    except Exception as reason:
+        print("none  ", name, f"pydicom: {str(reason)[:60]}; here: {info.get('error', 'read')[-90:]}")
+        return
+    if found is None:
+        print("not   ", name, info["error"][-110:])
+        return
+    syntax, tolerance = str(data.file_meta.TransferSyntaxUID), 1e-6
+    if data.SamplesPerPixel == 3:
+        if "YBR_FULL" in data.PhotometricInterpretation and not np.allclose(
+                np.sqrt((wanted.astype(float) ** 2).sum(-1)).ravel(), found.ravel()):
+            wanted = convert_color_space(wanted, data.PhotometricInterpretation, "RGB")
+            tolerance = 0.01 if syntax.endswith(".4.50") else tolerance  # colours are rounded twice
+        wanted = np.sqrt((wanted.astype(float) ** 2).sum(-1))
+    else:
+        wanted = wanted.astype(float)
+        if data.PhotometricInterpretation == "MONOCHROME1" and data.Modality not in ("CT", "PT"):
+            wanted = 2 ** data.BitsStored - 1 - wanted if data.PixelRepresentation == 0 else -1 - wanted
+        slope = data.get("RescaleSlope", data.get("DoseGridScaling", 1))
+        wanted = wanted * float(slope) + float(data.get("RescaleIntercept", 0))
+    if wanted.size != found.size:
+        tell(name, False, f"{wanted.shape} {found.shape}")
+        return
+    difference = np.nanmax(np.abs(wanted.ravel() - found.ravel()))
+    tell(name, difference <= tolerance * max(1, np.abs(wanted).max()), f"by {difference:g}")
+
+
+def write_slice(path, plane, position, orientation, number):
+    meta = FileMetaDataset()
+    meta.TransferSyntaxUID = "1.2.840.10008.1.2.1"
+    meta.MediaStorageSOPClassUID = "1.2.840.10008.5.1.4.1.1.4"
+    meta.MediaStorageSOPInstanceUID = f"1.2.3.{number}"
+    data = FileDataset(str(path), {}, file_meta=meta, preamble=b"\0" * 128)
+    data.SOPClassUID, data.SOPInstanceUID = meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID
+    data.Modality, data.SeriesInstanceUID, data.StudyInstanceUID = "MR", "1.2.3", "1.2"
+    data.SeriesNumber, data.InstanceNumber, data.PatientName = 1, number, "A"
+    data.ImagePositionPatient = [round(float(x), 6) for x in position]
+    data.ImageOrientationPatient = [float(x) for x in orientation]
+    data.PixelSpacing, data.SliceThickness = [2, 1.75], 9
+    data.Rows, data.Columns = plane.shape
+    data.SamplesPerPixel, data.PhotometricInterpretation = 1, "MONOCHROME2"
+    data.BitsAllocated = data.BitsStored = 8 * plane.itemsize
+    data.HighBit, data.PixelRepresentation = data.BitsStored - 1, int(plane.dtype.kind == "i")
+    data.PixelData = plane.tobytes()
+    data.is_little_endian, data.is_implicit_VR = True, False
+    data.save_as(str(path), write_like_original=False)
+
+
+def judge_codecs():
+    noise, syntaxes = np.random.RandomState(2), gdcm.TransferSyntax
+    planes = {"int16": noise.randint(-1500, 3000, (37, 53)).astype(np.int16),
+              "uint16": noise.randint(0, 65535, (20, 33)).astype(np.uint16),
+              "uint8": noise.randint(0, 255, (21, 16)).astype(np.uint8)}
+    for kind, plane in planes.items():
+        write_slice(folder / "plain", plane, (0, 0, 0), (1, 0, 0, 0, 1, 0), 1)
+        for codec in ("JPEGLosslessProcess14", "JPEGLosslessProcess14_1", "JPEGLSLossless", "JPEG2000Lossless", "RLELossless"):
+            reader, change, writer = gdcm.ImageReader(), gdcm.ImageChangeTransferSyntax(), gdcm.ImageWriter()
+            reader.SetFileName(str(folder / "plain"))
+            reader.Read()
+            change.SetTransferSyntax(gdcm.TransferSyntax(getattr(syntaxes, codec)))
+            change.SetInput(reader.GetImage())
+            change.Change()
+            writer.SetFile(reader.GetFile())
+            writer.SetImage(change.GetOutput())
+            writer.SetFileName(str(folder / "packed"))
+            writer.Write()
+            info, found = read(folder / "packed")
+            tell(f"{codec} of {kind}", found is not None and np.array_equal(found[0], plane), info.get("error", ""))
+
+
+def judge_geometry():
+    c, s = math.cos(0.3), math.sin(0.3)
+    twisted = (c, s, 0, -s * c, c * c, -s)
+    cases = {"axial": ((1, 0, 0, 0, 1, 0), (0, 0, 4)), "downwards": ((1, 0, 0, 0, 1, 0), (0, 0, -4)),
+             "turned": ((c, s, 0, -s, c, 0), (0, 0, 4)), "oblique": (twisted, 4 * np.cross(twisted[:3], twisted[3:])),
+             "sagittal": ((0, 1, 0, 0, 0, -1), (3, 0, 0)), "coronal": ((1, 0, 0, 0, 0, -1), (0, -3, 0))}
+    values = np.random.RandomState(3).randint(0, 4000, (9, 17, 13)).astype(np.int16)
+    for name, (orientation, step) in cases.items():
+        series = folder / name
+        series.mkdir()
+        for n, plane in enumerate(values):
+            position = np.array([-10, 20, 5]) + n * np.array(step)
+            write_slice(series / f"{n * 7 % 9}", plane, position, orientation, n + 1)
+        subprocess.run(["dcm2niix", "-z", "n", "-f", name, "-o", str(folder), str(series)], capture_output=True, timeout=60)
+        image = nibabel.load(folder / f"{name}.nii")
+        info, found = read(series)
+        place = np.array(info["direction"]).reshape(3, 3) * info["spacing"]
+        indices = np.array(list(np.ndindex(*info["dimensions"])))
+        world = (indices @ place.T + info["origin"]) * [-1, -1, 1]  # LPS to RAS
+        there = (np.c_[world, np.ones(len(world))] @ np.linalg.inv(image.affine).T)[:, :3]
+        voxels = np.rint(there).astype(int)
+        inside = ((voxels >= 0) & (voxels < image.shape[:3])).all()
+        off = np.abs(there - voxels).max()
+        same = inside and np.array_equal(np.asarray(image.dataobj)[tuple(voxels.T)], found[tuple(indices[:, ::-1].T)])
+        tell(f"{name} slices, by dcm2niix", bool(same and off < 1e-4), f"places differ by {off:.2g} voxels")
+
+
+base = os.path.dirname(pydicom.__file__) + "/data"
+for path in sorted(glob.glob(base + "/test_files/**/*", recursive=True) + glob.glob(base + "/charset_files/*.dcm")):
+    if os.path.isfile(path) and "DICOMDIR" not in path and not path.endswith((".py", ".json", ".txt", ".xml", ".zip", ".pyc")):
+        try:
+            judge_pixels(path, path[len(base) + 1:])
+        except pydicom.errors.InvalidDicomError:
+            pass
+judge_codecs()
+judge_geometry()
+print(f"{wrong} differ")
+sys.exit(1 if wrong else 0)
