@@ -205,7 +205,7 @@ static hl_status peek_inflated(hl_source *source, uint64_t offset, size_t wanted
   *available = clip(source, offset, wanted);
   if (offset >= source->length) *available = 0;
   else if (source->length - offset < *available) *available = (size_t)(source->length - offset);
-  *bytes = *available > 0 ? source->inflated + offset : NULL;
+  if (*available > 0) *bytes = source->inflated + offset; /* else the caller's empty block stays */
   return status;
 }
 
