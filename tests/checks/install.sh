@@ -57,7 +57,7 @@ if [ ! -x "$folder/root/usr/local/bin/halflight" ] || ! $as_root chroot / true 2
   echo "not tried in a root folder of its own: that takes the prefix /usr/local and the right to chroot"
   exit 0
 fi
-for name in $(LD_LIBRARY_PATH=$(dirname "$library") ldd "$folder/picture" | grep -o '/[^ ]*' | grep -v "^$folder"); do
+for name in $(LD_LIBRARY_PATH=$(dirname "$library") ldd "$folder/picture" "$program" | grep -o '/[^ ]*' | grep -v "^$folder"); do
   mkdir -p "$folder/root$(dirname "$name")"
   cp -L "$name" "$folder/root$name"
 done

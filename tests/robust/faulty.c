@@ -37,6 +37,8 @@ static int cancelled(void *user_data) {
 static faulty *at_work; /* null: the system's allocator does not fail */
 static atomic_bool system_struck;
 
+bool faulty_system_at_work(void) { return at_work != NULL; }
+
 bool faulty_system_strikes(void) {
   faulty *f = at_work;
   if (f == NULL || !strikes(f, &f->allocations_left, atomic_load(&f->for_good))) return false;

@@ -21,6 +21,8 @@ typedef struct faulty {
  * but work may do without (a thread less, no buffer for a file), and the error may have another name. */
 bool faulty_system_strikes(void);
 
+bool faulty_system_at_work(void); /* between the start and the end of the work that is to meet failures */
+
 void faulty_open(faulty *f);
 void faulty_close(faulty *f); /* asserts that nothing is held */
 
