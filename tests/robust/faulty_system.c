@@ -1,6 +1,6 @@
 /* tests/robust/faulty_system.c - the system's allocator, which other libraries and the C library use, fails
- * as the context's does. Linked into a program, it takes the place of malloc and its like. libtiff is spared: its
- * TIFFReadDirectory() follows a null pointer when malloc fails within it (4.5.0). */
+ * as the context's does. Linked into a program, it takes the place of malloc and its like. libtiff is spared:
+ * its TIFFReadDirectory() follows a null pointer when malloc fails within it (4.5.0). */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
