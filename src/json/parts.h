@@ -53,4 +53,9 @@ typedef struct hl_function_subject {
 hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value,
                                          hl_function_subject subject, hl_transfer_function *function);
 
+/* ParaView's colour map: an array of one object. Slicer's preset: an object with "volumeProperties". The
+ * points are owned by *function. */
+hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function);
+hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_transfer_function *function);
+
 #endif

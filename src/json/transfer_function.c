@@ -2,7 +2,7 @@
  *
  * The function starts as the preset or the file that is named or, where neither a file nor opacity is given,
  * as the automatic one (for shapes: an opaque solid). Points, colormap and unit_distance then replace its
- * own.
+ * own. A file of its own may also be a scene, whose first volume's function is taken, or another program's.
  */
 #include <string.h>
 
@@ -224,5 +224,54 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
                                        : 0; /* in a file of its own the function is the root */
   hl_status status = read_members(reader, value, subject, function);
   if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+/* The transfer function of a scene's first volume; refused where it depends on the voxels, which are not read
+ * here. */
+static hl_status read_of_scene(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
+  const json_t *volume = json_array_get(json_object_get(root, "volumes"), 0);
+  const json_t *value = json_object_get(volume, "transfer_function");
+  hl_json_enter(reader, "volumes/0/transfer_function");
+  if (value == NULL || json_object_get(value, "preset") != NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
+                        "the scene leaves its points to be chosen from the voxels: "
+                        "write them, as 'halflight render SCENE --print-scene' does");
+  return hl_json_read_transfer_function(reader, value, (hl_function_subject){.volume = NULL}, function);
+}
+
+static hl_status read_any(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
+  if (json_is_array(root)) return hl_json_read_paraview(reader, root, function);
+  if (json_object_get(root, "volumes") != NULL) return read_of_scene(reader, root, function);
+  if (json_object_get(root, "volumeProperties") != NULL) return hl_json_read_slicer(reader, root, function);
+  return hl_json_read_transfer_function(reader, root, (hl_function_subject){.volume = NULL}, function);
+}
+
+static hl_status load(hl_json_reader *reader, const char *path, hl_transfer_function *function) {
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  json_t *root = NULL;
+  hl_status status = hl_file_read(reader->context, path, HL_JSON_LIMIT, &bytes, &length, reader->error);
+  if (status != HL_OK) return status;
+  status = hl_json_parse((const char *)bytes, length, path, &root, reader->error);
+  if (status == HL_OK) status = read_any(reader, root, function);
+  if (status == HL_OK) {
+    status = hl_transfer_function_check(function, "", reader->error);
+    if (status != HL_OK) hl_json_prefix(reader, NULL);
+  }
+  json_decref(root);
+  hl_release(reader->context, bytes);
+  return status;
+}
+
+hl_status hl_transfer_function_load(hl_context *context, const char *path, hl_transfer_function *function,
+                                    hl_error *error) {
+  if (context == NULL || path == NULL || function == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_load: null context, path or function");
+  hl_json_reader reader = {.context = context, .name = path, .error = error};
+  hl_transfer_function made = {.unit_distance = 1};
+  hl_status status = load(&reader, path, &made);
+  if (status != HL_OK) hl_transfer_function_release(context, &made);
+  else *function = made;
   return status;
 }

@@ -1,18 +1,15 @@
-/* json/transfer_load.c - transfer functions from files: Halflight's own, a scene's first, ParaView's colour
- * maps, Slicer's presets.
+/* json/foreign_functions.c - transfer functions as other programs save them: ParaView's colour maps, Slicer's
+ * presets.
  *
- * An array is ParaView's, an object with "volumeProperties" Slicer's, one with "volumes" a scene. Foreign
- * colours are sRGB, mixed in the space that the file names. They become points in linear RGB, so close
+ * Their colours are sRGB, mixed in the space that the file names. They become points in linear RGB, so close
  * together that straight lines between them come near that mixing. A warning names what is left out. */
 #include <math.h>
 #include <string.h>
 
 #include "core/context.h"
-#include "core/file.h"
 #include "core/memory.h"
 #include "json/color_space.h"
 #include "json/parts.h"
-#include "scene/check.h"
 #include "scene/scene.h"
 #include "scene/transfer_function.h"
 
@@ -134,7 +131,7 @@ static hl_status read_flat(hl_json_reader *reader, const json_t *map, const char
 
 static const char *const space_names[] = {"RGB", "HSV", "Lab", "Diverging", "Step", NULL};
 
-static hl_status read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
+hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
   hl_status status = hl_json_array(reader, root, 1, 1);
   if (status != HL_OK) return status;
   hl_json_enter_index(reader, 0);
@@ -211,7 +208,7 @@ static void warn_of_gradient(hl_json_reader *reader, const json_t *component) {
   }
 }
 
-static hl_status read_slicer(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
+hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
   hl_json_enter(reader, "volumeProperties");
   const json_t *properties = json_object_get(root, "volumeProperties");
   hl_status status = hl_json_array(reader, properties, 1, 1);
@@ -234,54 +231,5 @@ static hl_status read_slicer(hl_json_reader *reader, const json_t *root, hl_tran
     status = set_color(reader->context, nodes, count, HL_SPACE_RGB, function, reader->error);
   hl_release(reader->context, nodes);
   if (status == HL_OK) warn_of_gradient(reader, component);
-  return status;
-}
-
-/* The transfer function of a scene's first volume; refused where it depends on the voxels, which are not read
- * here. */
-static hl_status read_of_scene(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
-  const json_t *volume = json_array_get(json_object_get(root, "volumes"), 0);
-  const json_t *value = json_object_get(volume, "transfer_function");
-  hl_json_enter(reader, "volumes/0/transfer_function");
-  if (value == NULL || json_object_get(value, "preset") != NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
-                        "the scene leaves its points to be chosen from the voxels: "
-                        "write them, as 'halflight render SCENE --print-scene' does");
-  return hl_json_read_transfer_function(reader, value, (hl_function_subject){.volume = NULL}, function);
-}
-
-static hl_status read_any(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
-  if (json_is_array(root)) return read_paraview(reader, root, function);
-  if (json_object_get(root, "volumes") != NULL) return read_of_scene(reader, root, function);
-  if (json_object_get(root, "volumeProperties") != NULL) return read_slicer(reader, root, function);
-  return hl_json_read_transfer_function(reader, root, (hl_function_subject){.volume = NULL}, function);
-}
-
-static hl_status load(hl_json_reader *reader, const char *path, hl_transfer_function *function) {
-  unsigned char *bytes = NULL;
-  size_t length = 0;
-  json_t *root = NULL;
-  hl_status status = hl_file_read(reader->context, path, HL_JSON_LIMIT, &bytes, &length, reader->error);
-  if (status != HL_OK) return status;
-  status = hl_json_parse((const char *)bytes, length, path, &root, reader->error);
-  if (status == HL_OK) status = read_any(reader, root, function);
-  if (status == HL_OK) {
-    status = hl_transfer_function_check(function, "", reader->error);
-    if (status != HL_OK) hl_json_prefix(reader, NULL);
-  }
-  json_decref(root);
-  hl_release(reader->context, bytes);
-  return status;
-}
-
-hl_status hl_transfer_function_load(hl_context *context, const char *path, hl_transfer_function *function,
-                                    hl_error *error) {
-  if (context == NULL || path == NULL || function == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_load: null context, path or function");
-  hl_json_reader reader = {.context = context, .name = path, .error = error};
-  hl_transfer_function made = {.unit_distance = 1};
-  hl_status status = load(&reader, path, &made);
-  if (status != HL_OK) hl_transfer_function_release(context, &made);
-  else *function = made;
   return status;
 }
