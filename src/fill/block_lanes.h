@@ -32,7 +32,7 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
   for (int a = 0; a < 3; a++) {
     float count = (float)grid->dimension[a];
     points.inside &= (axis[a] > -0.5f - GRID_MARGIN) & (axis[a] < count - 0.5f + GRID_MARGIN);
-    /* outside the box the border's values continue, smoothly, and are constant from -1 and n on */
+    /* outside the grid, densities continue the border's values smoothly; constant below -1 and above n */
     axis[a] = lanes_clamp(axis[a], -1.0f, count * (1 - 1e-6f));
     points.cell[a] = lanes_floor(axis[a]);
   }
@@ -134,7 +134,7 @@ LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, c
   return !_mm_testz_si128(word, _mm_shuffle_epi8(bit_of, bit));
 }
 
-/* False where a cell does not lie in the 2x2x2 bricks from the cell `first` on. */
+/* False where some cell lies outside the 2x2x2 bricks that begin at the cell `first`. */
 LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3], __m128i within[3]) {
   for (int axis = 0; axis < 3; axis++) within[axis] = narrow_bytes(cell[axis] - first[axis]);
   __m128i all = _mm_or_si128(_mm_or_si128(within[0], within[1]), within[2]);

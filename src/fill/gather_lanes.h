@@ -190,8 +190,8 @@ LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, 
   return points;
 }
 
-/* First finds which of the others show something, then sums: mixed, the processor would guess wrong and begin
- * sums in vain. inside: tile_is_inside(). */
+/* First decides which of the other blocks show something, then sums them: alternating the two would make the
+ * processor mispredict branches and begin sums in vain. inside: tile_is_inside(). */
 LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, int inside, float *density) {
   block_points points[TILE_BLOCKS];

@@ -37,7 +37,7 @@ static const float CLOSE_ENTRIES = 4;
 typedef struct way_sums {
   lanes extinction; /* the mean, (I(b) - I(a)) / (b - a) */
   lanes integral;   /* I(b) - I(a), 0 where the ends are close */
-  lanes moment;     /* the integral of extinction * entry, treated alike */
+  lanes moment;     /* the integral of extinction * entry, 0 where the ends are close */
 } way_sums;
 
 LANES_INLINE way_sums sums_of_way(const classifier *classifier, table_coordinate a, table_coordinate b) {

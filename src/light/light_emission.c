@@ -28,8 +28,8 @@ static void add_color(const hl_light_emission *emission, double s, double t, dou
   }
 }
 
-/* Mean colour of cell (i, j) of side x side. A parallel light's offset belongs to the direction of travel,
- * opposite to the one in which the light is seen. */
+/* Mean colour of cell (i, j) of side x side. The offset of a point on a parallel light changes the direction
+ * of travel, which is opposite to the direction in which the light is seen: its sign is turned. */
 static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j,
                          double mean[HL_CHANNELS]) {
   const hl_light_emission *emission = &source->light->emission;

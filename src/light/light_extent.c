@@ -72,7 +72,8 @@ static double area_left_of(const flat_polygon *polygon, double x) {
   return area;
 }
 
-/* The y on the line at x below which the fraction b of the line's length inside the polygon lies. */
+/* The y below which the fraction b of the vertical line at x lies, as far as the line runs inside the
+ * polygon. */
 static double height_of_part(const flat_polygon *polygon, double x, double b) {
   double crossing[HL_LIMIT_VERTICES], length = 0;
   size_t count = 0;
@@ -96,7 +97,8 @@ static double height_of_part(const flat_polygon *polygon, double x, double b) {
   return count > 0 ? crossing[count - 1] : 0;
 }
 
-/* The point with the fraction a of the area left of it and the fraction b of the line at its x below it. */
+/* The point for (a, b): the fraction a of the area lies left of its x, and the fraction b of the polygon's
+ * line at x lies below its y. */
 static vec3 point_of_polygon(const hl_light *light, double a, double b) {
   flat_polygon polygon = flatten(light);
   double low = INFINITY, high = -INFINITY;
@@ -228,8 +230,9 @@ void hl_sheet_light_position(const sheet_light *seen, const light_source *source
   position[2] = source->parallel ? 0 : vec3_dot(from_middle, normal);
 }
 
-/* Derived: a point of the light at x + z h, seen from a receiver at slope s, lies at x - s z on the plane
- * through the light's centre; of the mean square of that a box has 1/12. */
+/* Derived: seen from a receiver at slope s, a point of the light at x + z h lies at x - s z on the plane
+ * through the light's centre. A box of width w has the variance w^2 / 12, so w^2 is 12 times the mean square
+ * of x - s z. */
 double hl_sheet_light_squared_width(const sheet_light *light, int axis, double slope) {
   double width = axis == 0 ? light->width_u : light->width_v;
   if (light->parallel) return width * width;

@@ -14,8 +14,8 @@ vec3 hl_light_point(const light_source *source, double a, double b);
  * even steps. */
 void hl_sublight_grid_point(int side, int i, int j, double square[2]);
 
-/* The same for this light: where sub-lights are few, points that give its penumbrae the least error. They do
- * not lie one in each cell, so they do not suit emission images. */
+/* The same for one light: with few sub-lights, the points that give this light's penumbrae the least error.
+ * Cells may hold several of these points or none, so they do not suit emission images. */
 void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]);
 
 /* The light as the content's middle sees it on a plane parallel to the sheets: through the light's centre, or

@@ -58,7 +58,8 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
     vec3 across = vec3_add(vec3_scale(u, cos(turn)), vec3_scale(v, sin(turn)));
     sectors.axis[i] = vec3_add(vec3_scale(eye_direction, along), vec3_scale(across, sin(phi)));
   }
-  /* Derived: half the cosine of a direction across the eye's that lies midway between two axes. */
+  /* Derived: half the cosine between an axis and the direction across the eye's that lies midway between two
+   * axes. */
   sectors.least = fmax(0.5 * cos(HL_PI / 6) * sin(phi), 0.1);
   return sectors;
 }

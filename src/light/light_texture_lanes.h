@@ -13,7 +13,8 @@ LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
          lanes_clamp(lanes_fma(size - u, sharpness, half), 0, 1);
 }
 
-/* One axis of a bilinear lookup: the two pixels, held at the image's borders, and the way between them. */
+/* One axis of a bilinear look-up: the two pixels, clamped to the image, and the fraction of the way between
+ * them. */
 typedef struct texture_taps {
   lanes_int first, second;
   lanes fraction;
@@ -28,7 +29,7 @@ LANES_INLINE texture_taps taps_at(lanes u, int size) {
   return taps;
 }
 
-/* Bilinear in an image of width x height pixels, held at its borders. */
+/* Bilinear in an image of width x height pixels; coordinates beyond its borders are clamped. */
 LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u, lanes v, lanes color[3]) {
   texture_taps x = taps_at(u, width), y = taps_at(v, height);
   lanes_int top = y.first * (int32_t)width, bottom = y.second * (int32_t)width;

@@ -10,8 +10,8 @@
 #include "render/pack_lanes.h"
 #include "shadow/shadow_lookup_lanes.h"
 
-/* The four pixels of a shadow buffer around a sample, and the steps to them. With sub-lights, four pixels as
- * far from the sample as the pixels of all their buffers are on average. */
+/* The four pixels of a shadow buffer around a sample, and the steps to them. Sub-lights have many buffers:
+ * four pixels then stand for all, as far from the sample as those buffers' pixels are on average. */
 enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample to each pixel; in pixels */

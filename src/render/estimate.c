@@ -1,6 +1,6 @@
-/* render/estimate.c - see estimate.h. Sums what hl_prepare_volumes(), the frame and hl_sweep_begin()
- * allocate. The sizes of light textures and of the lists of splatted voxels are known only when they are
- * made: the sums leave them out, and the memory limit refuses them then. */
+/* render/estimate.c - see estimate.h. Adds up the memory of hl_prepare_volumes(), the frame and
+ * hl_sweep_begin(). Left out are light textures and the lists of splatted voxels: their sizes are known only
+ * when they are made, and the memory limit refuses them then. */
 #include "render/estimate.h"
 
 #include "core/context.h"

@@ -146,10 +146,10 @@ static double box_volume(const vec3 corners[8]) {
   return fmax(fabs(vec3_dot(vec3_cross(x, y), z)), 1e-300);
 }
 
-/* The mean of the boxes' centres, each weighted by its box's volume. Derived: the sum of V c over the parts
- * of a box is V c of the box, so a volume that is cut into parts keeps its middle, if the parts' boxes of
- * relevant bricks fill the box of the whole. The middle gives near lights their direction, and so the sheets.
- */
+/* The mean of the boxes' centres, each weighted by its box's volume V. Derived: where a box is cut into
+ * parts, the sum of V c over the parts is V c of the box. So a volume that is cut into parts keeps its
+ * middle, as long as the boxes around the parts' relevant bricks together fill the box around the whole
+ * volume's. The middle gives near lights their direction, and so the sheets. */
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
   double volumes = 0;
@@ -162,8 +162,8 @@ static vec3 content_middle(const frame *frame) {
   return frame->point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
 }
 
-/* Sets eye_direction: half way between straight ahead and the middle of the content where the eye is outside
- * the content, else straight ahead; and the sizes of pixels at the content. */
+/* Sets eye_direction and the sizes of pixels at the content. Where the eye is outside the content, its
+ * direction is half way between straight ahead and the content's middle; elsewhere straight ahead. */
 static void look(frame *frame) {
   vec3 start, forward;
   hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);

@@ -24,7 +24,7 @@ static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometr
 /* The tile action's data. */
 typedef struct hidden_search {
   int32_t *shown_from; /* [tiles][16]; first visible slab; 0: the block is not covered yet */
-  bool trying;         /* opaque blocks stay open, to count what they cover */
+  bool trying;         /* blocks stay open after they are opaque, so that what they cover is counted */
 } hidden_search;
 
 static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {
@@ -55,9 +55,9 @@ static bool is_tried(const sweep *sweep, size_t tile) {
   return (hl_tile_x(sweep, tile) + hl_tile_y(sweep, tile) * 11) % 32 == 0;
 }
 
-/* The search pays where more pixels than this are covered for each that is seen. A seen pixel costs it about
- * half of what lighting a covered one would (measured); more is asked for, as a few tried tiles are no sure
- * sign. */
+/* The search pays where, for each pixel that is seen, more pixels than this are covered. A seen pixel costs
+ * the search about half of the time that lighting a covered one takes (measured); the number is higher than
+ * that, because a few tried tiles are no sure sign. */
 static const double COVERED_PER_SEEN = 0.75;
 
 static bool is_worth_while(const sweep *front) {
@@ -69,8 +69,8 @@ static bool is_worth_while(const sweep *front) {
   return (double)covered > COVERED_PER_SEEN * (double)seen;
 }
 
-/* Runs the search in the tried tiles only (trying), where it goes on behind opaque blocks to count what they
- * cover; or in all other tiles. */
+/* Runs the search in the tried tiles only (trying), where opaque blocks stay open so that what they cover is
+ * counted; else in all other tiles. */
 static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
   search->trying = trying;
   for (size_t tile = 0; tile < front->tiles; tile++)

@@ -78,8 +78,8 @@ static const float *value_at(const layer_grid *grid, const float *pixels, int fl
   return pixels + ((tile * TILE_BLOCKS + block) * (size_t)floats + (size_t)value) * BLOCK_PIXELS + lane;
 }
 
-/* The sum of a value over the frame's pixels in one pixel of the picture; infinite values are left out.
- * count: is raised by the number of values added; may be null. */
+/* The sum of one value over the pixels of the frame that make up one pixel of the picture; infinite values
+ * are left out. *count is raised by the number of values added; count may be null. */
 static float sum_of(const layer_grid *grid, const float *pixels, int floats, int column, int row, int value,
                     int *count) {
   int side = grid->oversampling;

@@ -31,10 +31,10 @@ LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
 }
 
 /* The light's transmittance within the slab, averaged as the eye sees it. e: the slab's optical depth for the
- * eye; left: exp(-e). enter: the light's optical depth where the eye's ray enters the matter; more: the depth
- * added where the ray leaves (derived; exact for extinction that varies along one direction only): int e
- * exp(-e s) exp(-enter - more s) ds / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), phi(-x) = exp(x)
- * phi(x). */
+ * eye; left: exp(-e). enter: the light's optical depth where the eye's ray enters the matter; more: what the
+ * depth gains until the ray leaves. Derived; exact for extinction that varies along one direction only: int e
+ * exp(-e s) exp(-enter - more s) ds / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), with phi(-x) =
+ * exp(x) phi(x). */
 LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes more) {
   lanes sum = e + more, both = lanes_abs(sum);
   mean_transmittance of_both = transmittance_within(both, lanes_exp_negative(both)),
@@ -43,8 +43,8 @@ LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes mor
   return seen * exp_of_depth(enter + lanes_min(sum, lanes_set(0)));
 }
 
-/* Lengths of the light's way within a volume's box, to where a segment of the eye's ray begins and ends.
- * ways_of_light(): path: the light's whole ways from the slab's first sheet to these two points. */
+/* Lengths of the light's way within a volume's box, to where a section of the eye's ray begins and ends. In
+ * ways_of_light(), path holds the two lengths from the slab's first sheet on, without a box. */
 typedef struct ways_in_box {
   lanes first, last;
 } ways_in_box;
@@ -74,11 +74,11 @@ LANES_INLINE lanes coordinate_seen(const block_density *d) {
   return lanes_fma(d->after - d->before, d->seen, d->before);
 }
 
-/* The even extinction that gives the light's way through the slab the right optical depth down to where a
- * volume's matter is seen (derived). The eye's ray may run along a surface that the light's ray crosses. At a
- * distance s towards the light from the point seen, the density is f - s g.l to first order, g the gradient;
- * this gives the mean extinction of the light's way. With even extinction the eye would see the slab at
- * another position (`evenly`): the factor makes the depths agree there. */
+/* The even extinction with which the light's way through the slab has the right optical depth down to where a
+ * volume's matter is seen (derived). Needed because the eye's ray may run along a surface that the light's
+ * ray crosses. At a distance s towards the light from the point seen, the density is f - s g.l to first
+ * order, g the gradient; its mean extinction is the result, before a correction: with even extinction the eye
+ * would see the slab at another position (`evenly`), and a factor makes the depths agree there. */
 LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   if (lanes_bits(d->sloped) == 0) return d->sums.extinction;
@@ -115,15 +115,15 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
 
 /* Optical depths of the slab for one light, from its first sheet on. */
 typedef struct light_depths {
-  lanes enter[HL_CHANNELS],
-      more[HL_CHANNELS]; /* where the eye's rays enter the matter; what is added where they leave it */
-  lanes near[HL_CHANNELS][NEAR_PIXELS]; /* on the first sheet at the near pixels, less the depth where the
-                                           sample's own light arrives */
+  lanes enter[HL_CHANNELS], more[HL_CHANNELS]; /* where the eye's rays enter the matter, and what the depth
+                                                  gains until they leave it */
+  lanes near[HL_CHANNELS][NEAR_PIXELS]; /* at the near pixels on the first sheet, minus the depth at the point
+                                           through which the sample's own light comes */
   lanes_int plane;                      /* lanes where a plane's matter gives `near`; elsewhere it is 0 */
   lanes_int face; /* lanes near a face of a box; `near` then holds the whole depth from the face on */
   lanes beside;   /* near a face: how much the face counts, 0 to 1 */
-  lanes before_enter[HL_CHANNELS],
-      before_more[HL_CHANNELS]; /* near a face: as enter and more, for the way before the slab */
+  lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS]; /* near a face: like enter and more, but for the
+                                                                light's way before the slab */
 } light_depths;
 
 /* A coordinate of the table, with the extinction and the integral there. */
@@ -252,8 +252,8 @@ typedef struct seen_light {
   const near_pixels *near; /* of its buffer; null where that is read at its nearest pixel */
 } seen_light;
 
-/* Adds the depths of a volume's matter between the face of its box and the slab, near the face; to before
- * those at the near pixels. share: the fraction of the volume's matter that counts. */
+/* Near a box's face: adds the optical depth of a volume's matter between the face and the slab. `before`
+ * receives the depths at the near pixels. share: the fraction of the volume's matter that counts. */
 LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const block_density *d,
                            const seen_light *light, lanes share, lanes before[HL_CHANNELS][NEAR_PIXELS],
                            light_depths *depths) {
@@ -265,7 +265,7 @@ LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const b
   ways_before ways = find_ways_before(faces, slab, light->path, light->near);
   depths->face |= there;
   depths->beside = lanes_max(depths->beside, lanes_keep(there, likely));
-  /* of several boxes that meet in the slab, each has matter in its part */
+  /* where several boxes meet in the slab, each volume fills a part of it */
   lanes filled = lanes_min(d->way.part.length / lanes_max(slab->part.length, lanes_set(1e-6f)),
                            lanes_set(1.0f));
   lanes extinction = lanes_keep(there, d->sums.extinction * likely * filled);
@@ -281,8 +281,8 @@ LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const b
   }
 }
 
-/* Weakens the depths before the slab where they differ little from pixel to pixel, and adds them. before: of
- * all volumes together, at the near pixels. */
+/* Adds to `near` the depths between the faces and the slab, weakened where they hardly differ from pixel to
+ * pixel. before: these depths at the near pixels, all volumes together. */
 LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS], light_depths *depths) {
   lanes spread = lanes_set(0);
   for (int c = 0; c < channels; c++) {

@@ -60,7 +60,8 @@ static bool shows(const shown_values *values, double from, double to) {
 /* The greatest, or the least, value that is shown between entry and entry + 1. */
 static double end_of_step(const shown_values *values, int entry, bool greatest) {
   double inside = entry, outside = entry + 1;
-  for (int i = 0; i < BISECTIONS; i++) { /* greatest: something is shown from `inside` to the step's end */
+  /* for the greatest value, something is always shown between `inside` and the step's end */
+  for (int i = 0; i < BISECTIONS; i++) {
     double middle = (inside + outside) / 2;
     bool some = greatest ? shows(values, middle, entry + 1) : shows(values, entry, middle);
     if (some == greatest) inside = middle;
@@ -97,7 +98,7 @@ static double end_of(const prepared_volume *prepared, double step) {
   return fmax(LEAST_END, ROUNDINGS * FLT_EPSILON * greatest / step);
 }
 
-/* rows: [SHOWN_ENTRIES]; their columns: SHOWN_FROM and the others. */
+/* rows: [SHOWN_ENTRIES]; fills their columns, SHOWN_FROM and so on. */
 static void fill_shown(const prepared_volume *prepared, float (*rows)[4]) {
   const classifier *classifier = &prepared->classifier;
   const grid *grid = &prepared->grid;

@@ -26,9 +26,9 @@ LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3
   return -dot3(way, slab->geometry.towards_eye);
 }
 
-/* Stores the depth at which alpha reaches FIRST_OPACITY, in the lanes in which it does so in this slab: at
- * the fraction u of the slab's optical depth e with (1 - A) exp(-u e) = 1 - FIRST_OPACITY, A the alpha before
- * the slab (derived). */
+/* Stores the depth at which alpha reaches FIRST_OPACITY, in the lanes where alpha reaches it in this slab.
+ * Derived: with A the alpha before the slab and e the slab's optical depth, the fraction u of e has been
+ * passed where (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
 LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities,
                              int count, lanes before, lanes after, float *first) {
   lanes_int crossed = (before < FIRST_OPACITY) & (after >= FIRST_OPACITY);

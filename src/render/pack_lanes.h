@@ -6,8 +6,8 @@
 #include "render/slab_lanes.h"
 #include "simd/packing.h"
 
-/* The packed slab that a block's pixels went to. whole: all sixteen pixels have a slab of their own, without
- * packing. */
+/* The packed slab that a block's pixels went to. whole: the block has a slab of its own, all sixteen pixels
+ * in their places. */
 typedef struct packed_block {
   lanes_packing packing;
   int slab, whole;
@@ -42,7 +42,7 @@ LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_c
   return add_slab(tile, patch_count, densities);
 }
 
-/* A block_way consists of lanes only. */
+/* A block_way is copied lane by lane: it consists of lanes only. */
 enum { WAY_LANES = sizeof(block_way) / sizeof(lanes) };
 
 LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *from, block_density *into) {

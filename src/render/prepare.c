@@ -92,7 +92,7 @@ void hl_prepared_release_stale(hl_context *context, const hl_scene_description *
       hl_prepared_release(context, &prepared[i]);
 }
 
-/* Who prepares volumes, and for which kernel. */
+/* The context, the threads and the kernel that volumes are prepared with. */
 typedef struct preparation {
   hl_context *context;
   hl_pool *pool;

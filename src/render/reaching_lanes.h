@@ -55,9 +55,9 @@ LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *tap
   lanes_gather_pairs(buffer + lookup->map.stride, at, &light[2], &light[3]);
 }
 
-/* Near a box's face the lengths of the ways give the light's transmittance from the face to the slab. found:
- * the buffer's transmittance; own: the transmittance if the box's matter were even and nothing else were in
- * the way. Where the buffer has more, the matter between is thinner: the depths are scaled by the ratio of
+/* Near a box's face, the light's transmittance from the face to the slab, from the lengths of its ways.
+ * found: the transmittance that the buffer holds; own: the transmittance if the box's matter were even and
+ * nothing else in the way. A greater `found` means thinner matter: the depths are then scaled by the ratio of
  * the two optical depths. */
 LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lanes own) {
   lanes_int some = own < 0.999f;
@@ -68,9 +68,9 @@ LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lane
 }
 
 /* The light that reaches the slab where a plane's own matter makes the buffer vary from pixel to pixel.
- * Derived: at each pixel T = O E, with O the transmittance of everything else and E = exp(-depth) that of the
- * plane's matter; where O is even, the weighted mean of T is O times that of E. At most the brightest of the
- * pixels. */
+ * Derived: at each pixel T = O E, where E = exp(-depth) is the transmittance of the plane's matter and O the
+ * transmittance of everything else; where O is the same at all pixels, the weighted mean of T is O times the
+ * weighted mean of E. The result is at most the brightest pixel's. */
 LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps *taps, light_depths *depths,
                                   int channel) {
   lanes light[NEAR_PIXELS], own[NEAR_PIXELS], greatest = lanes_set(0);
@@ -95,8 +95,8 @@ LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps
   return lanes_select(taps->inside, reached, lanes_set(1.0f));
 }
 
-/* The same for sub-lights, whose pixels lie in all positions around the sample: by the mean over the near
- * pixels. */
+/* The same for sub-lights: their pixels lie in all positions around the sample, so the mean over the near
+ * pixels stands for them. */
 LANES_INLINE void correct_parts(light_depths *depths, int channels, color_lanes *reached) {
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);
@@ -123,7 +123,7 @@ LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *t
     if (planes != active || fades) reached.c[c] = interpolated(light->lookup, taps, light->cubic, c);
     if (planes == 0) continue;
     lanes of_plane = reaching_plane(light->lookup, taps, depths, c);
-    if (fades) { /* adds the difference of the cubic and the bilinear look-up, the less the face counts */
+    if (fades) { /* adds the cubic look-up minus the bilinear one, less of it the more the face counts */
       lanes differ = reached.c[c] - interpolated(light->lookup, taps, 0, c);
       of_plane = lanes_max(of_plane + lanes_keep(faint, differ * (1.0f - depths->beside)), lanes_set(0));
     }

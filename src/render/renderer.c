@@ -115,7 +115,7 @@ typedef struct frame_work {
   grid *grids;         /* [volumes] */
   frame_sweep *sweeps; /* [LIGHT_SECTORS * lights + 1] */
   int sweep_count;
-  float *pixels; /* [sweeps][tiles][16][4][16]; owned, or the caller's (in_place) */
+  float *pixels; /* [sweeps][tiles][16][4][16]; owned, or the caller's if in_place */
   bool in_place;
   float *tile_rows; /* in_place: [threads][tiles_x][16][4][16] */
   size_t tiles_x, tiles;
@@ -249,8 +249,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
                            error);
 }
 
-/* Channels of light attenuation: three where matter absorbs colours differently, or an emission's colours
- * come from different places. */
+/* The number of channels of light attenuation: three where matter absorbs the colours differently, or where
+ * an emission image's colours come from different places; else one. */
 static int attenuation_channels(const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->light_count; i++)
     if (hl_light_emission_colored(&scene->lights[i])) return 3;

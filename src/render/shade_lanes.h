@@ -7,8 +7,8 @@
 
 static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
-/* The light that arrives from one light, and from where (step 14 and the first half of step 15; eqs. 1 and
- * 2). */
+/* The light that arrives from one light, with its direction (step 14 and the first half of step 15; eqs. 1
+ * and 2). */
 typedef struct arriving_light {
   int dark;                   /* it lights nothing; the other fields are not set */
   lanes3 towards;             /* unit */
@@ -90,9 +90,9 @@ LANES_INLINE lanes power(lanes base, float exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Henyey and Greenstein's phase function, "Diffuse radiation in the galaxy" (1941), times 4 pi, so that 1 is
- * scattering that is the same in all directions: (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos the cosine of the
- * angle between the light's way before and after. turn: -cos. */
+/* Henyey and Greenstein's phase function, "Diffuse radiation in the galaxy" (1941), times 4 pi: 1 stands for
+ * scattering alike in all directions. (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), where cos is the cosine of the
+ * angle between the light's direction before and after. turn: -cos. */
 LANES_INLINE lanes phase(float g, lanes turn) {
   lanes squared = lanes_line(turn, 2 * g, 1 + g * g);
   return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
@@ -206,13 +206,14 @@ LANES_INLINE int composite_packed(const shade_job *job, const packed_block *bloc
  * packed slab share voxels. */
 static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0,  1,  4,  5,  2, 3, 6,  7,
                                                            10, 11, 14, 15, 8, 9, 12, 13};
-/* The rank of each block in this order. */
+/* The rank of each block in NEAR_EACH_OTHER. */
 static const unsigned char RANK_OF_BLOCK[TILE_BLOCKS] = {0,  1,  4, 5, 2,  3,  6,  7,
                                                          12, 13, 8, 9, 14, 15, 10, 11};
 
-/* The given blocks in which something may be seen, one bit each at the block's rank; bits: the pixels of each
- * block in which it may. All blocks are tested before the first is shaded: about half of them show nothing,
- * which the processor cannot predict, and mixed with shading, loads would wait for these tests. */
+/* The blocks among `blocks` in which something may be seen: one bit each, at the block's rank in the packing
+ * order. bits: for each block, the pixels in which something may be seen. All blocks are tested before the
+ * first is shaded: about half of them show nothing, which the processor cannot predict; tests between
+ * shadings would stall its loads. */
 LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *patches, int patch_count,
                                      uint32_t blocks, const float *pixels, uint16_t bits[TILE_BLOCKS]) {
   uint32_t ranks = 0;

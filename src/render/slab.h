@@ -46,8 +46,9 @@ typedef struct shade_light {
   float color[3];    /* color * intensity */
   int inverse_square;
   int shadowed;
-  float path;                       /* parallel: sheet spacing / |l.h|; else sheet spacing */
-  const shadow_lookup *lookup;      /* where shadowed: the light that reaches a sample */
+  float path; /* of the light through the slab: parallel: sheet spacing / |l.h|; else the sheet spacing, which
+                 samples divide by their own |l.h| */
+  const shadow_lookup *lookup;      /* of a light with shadows: the light that reaches a sample */
   const sublight_lookup *sublights; /* [sublight_count]; if any, a sample gets the mean of their light */
   int sublight_count, channels;
   light_texture texture;  /* the picture that the light projects */
@@ -58,13 +59,14 @@ typedef struct shade_light {
 } shade_light;
 
 typedef struct shade_job {
-  sheet_rays rays;       /* image pixels -> frame space, in the middle between the two sheets */
-  float through[3];      /* parallel: from one sheet to the next along the eye's rays */
-  float towards_eye[3];  /* parallel: unit direction to the eye */
-  float eye[3];          /* frame space; parallel: where depth is 0 */
-  float normal[3];       /* h */
-  float path;            /* parallel: sheet spacing / |w.h|; perspective: sheet spacing */
-  int sheet;             /* k: the slab lies between sheets k-1 and k */
+  sheet_rays rays;      /* image pixels -> frame space, in the middle between the two sheets */
+  float through[3];     /* parallel: from one sheet to the next along the eye's rays */
+  float towards_eye[3]; /* parallel: unit direction to the eye */
+  float eye[3];         /* frame space; parallel: where depth is 0 */
+  float normal[3];      /* h */
+  float path; /* of the eye's ray through the slab: parallel: sheet spacing / |w.h|; perspective: the sheet
+                 spacing, which pixels divide by their own |w.h| */
+  int sheet;  /* k: the slab lies between sheets k-1 and k */
   float height, spacing; /* of sheet k above the first, and to sheet k-1; frame units */
   int back_to_front;
   const shade_light *lights;
@@ -74,8 +76,8 @@ typedef struct shade_job {
   int channels;     /* of light attenuation: 1 or 3 */
 } shade_job;
 
-/* Bytes of scratch memory for a patch: for one block and for the up to sixteen slabs that the samples are
- * packed into (pack_lanes.h). */
+/* Bytes of scratch memory for a patch: room for a block, and for up to sixteen slabs into which samples are
+ * packed (pack_lanes.h). */
 enum { SHADE_SCRATCH_BYTES = 17 * 1472 };
 
 /* The slab before the current sheet, in one tile. */

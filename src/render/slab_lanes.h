@@ -93,7 +93,7 @@ LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *pat
   return way;
 }
 
-/* Step 13 for one volume: the sums over a part of its way through the slab, as if it had no box. */
+/* Step 13 for one volume: sums over a part of its way through the slab; ignores its box. */
 LANES_INLINE void classify_way(block_density *d, covered_span part) {
   const classifier *classifier = d->patch->volume->classifier;
   table_coordinate a = coordinate_of_density(classifier, d->way.first),
@@ -104,7 +104,7 @@ LANES_INLINE void classify_way(block_density *d, covered_span part) {
   d->sums = sums_of_way(classifier, a, b);
 }
 
-/* The extinction's centre on the way, 0 at `before` to 1 at `after`. */
+/* The extinction's centre of gravity on the way: 0 at `before`, 1 at `after`. */
 LANES_INLINE lanes centre_of_way(const block_density *d) {
   way_means m = means_of_way(d->before, d->after, &d->sums);
   return m.from_a / (m.from_a + m.from_b);
@@ -134,8 +134,8 @@ typedef struct block_slab {
   block_geometry geometry; /* its position: where the slab is seen on average, and lit */
   covered_span part;       /* from where the first volume that is seen begins to where the last one ends */
   lanes place;             /* where in the slab the position lies, 0 (first sheet) to 1 */
-  lanes_int joined;        /* lanes where some of several volumes fill less than `part` */
-  lanes centre;            /* there: the extinction's centre in the slab, 0 to 1 */
+  lanes_int joined;        /* lanes where one of several volumes fills less than `part` */
+  lanes centre;            /* in joined lanes: the extinction's centre of gravity in the slab, 0 to 1 */
   lanes total, depth;      /* extinction averaged over the slab; optical depth */
   lanes left;              /* exp(-depth) */
   lanes opacity;           /* 0 where nothing is seen */
@@ -236,7 +236,7 @@ LANES_INLINE void find_normals(block_density *densities, int count) {
     if (densities[i].there && densities[i].patch->volume->visible) find_normal(&densities[i]);
 }
 
-/* A block's pixels in which something may be seen, one bit each. alpha: of the pixels so far. */
+/* A block's pixels in which something may be seen, one bit each. alpha: of the pixels before the slab. */
 LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *patches, int patch_count,
                                        int block, const float *alpha) {
   lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < OPAQUE,
@@ -284,9 +284,9 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
       slab->joined |= densities[i].way.part.length < slab->part.length;
 }
 
-/* Step 13 for several volumes. Each volume's extinction is that of its own box's part of the slab; where it
- * is seen, and the light that it absorbs, are found over the part that all boxes cover together. So one
- * volume that is cut into boxes looks as before. */
+/* Step 13 for several volumes. Each volume's extinction is that of the part of the slab in its own box. The
+ * position at which it is seen, and the light that it absorbs, are found over the part that all boxes cover
+ * together: a volume that is cut into several boxes then looks as before. */
 LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
   join_parts(densities, count, slab);
   int joined = lanes_bits(slab->joined) != 0;
@@ -328,7 +328,7 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   block_geometry *g = &slab->geometry;
   *g = geometry_of_block(job, slab->u, slab->v);
   slab->depth = lanes_keep(slab->seen,
-                           slab->total * g->path); /* lanes without a pixel have a path of their own */
+                           slab->total * g->path); /* without a pixel, a lane's path is arbitrary */
   slab->left = lanes_exp_negative(slab->depth);
   slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
   lanes u = seen_part(slab->depth, slab->left);
@@ -340,7 +340,7 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
 }
 
 /* Steps 12 and 13 for a slab that slab_of_block() set up. Returns the pixels in which something is visible,
- * one bit each; if there are none, of the results only the opacity, 0, is set. */
+ * one bit each. If there are none, the opacity, 0, is the only result that is set. */
 LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   classify_slab(densities, count, slab);
   uint32_t bits = lanes_bits(slab->seen);

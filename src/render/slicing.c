@@ -43,7 +43,7 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   return h;
 }
 
-/* The least cosine of the angle between the slicing axis and a near light's rays to the content. */
+/* The least cosine of the angle between the slicing axis and the rays of a near light to the content. */
 static const double FLATTEST = 0.2;
 
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
@@ -80,9 +80,9 @@ static vec3 lean_towards(vec3 h, vec3 axis, double fraction) {
   return vec3_normalise(vec3_add(vec3_scale(h, 1 - fraction), vec3_scale(axis, fraction)));
 }
 
-/* The slicing axis of one light. Where the half-way vector's sheets are not crossed by all rays of a near
- * light, the axis leans towards the middle of the light's rays, no further than they need: it then moves
- * without a jump as the light does. False where no such sheets serve both the light and the eye. */
+/* The slicing axis of one light. Where some rays of a near light do not cross the half-way vector's sheets,
+ * the axis leans towards the middle of the light's rays, no further than needed: it then moves without a jump
+ * as the light does. False where no sheets serve both the light and the eye. */
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
   *h = slicing_axis(frame, settings, source->direction, back_to_front);

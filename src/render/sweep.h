@@ -117,9 +117,11 @@ void hl_sweep_end(sweep *sweep);
 
 /* The bytes that hl_sweep_begin would hold. */
 typedef struct sweep_bytes {
-  uint64_t buffers;              /* the lights' shadow buffers, which the renderer keeps */
-  uint64_t memory[FRAME_LIGHTS]; /* what shadow methods keep; sweeps use it in turn */
-  uint64_t passing; /* what the sweep releases; without light textures and the lists of splatted voxels */
+  uint64_t buffers; /* the lights' shadow buffers, which the renderer keeps between frames */
+  uint64_t
+      memory[FRAME_LIGHTS]; /* memory that shadow methods keep between frames; the sweeps use it in turn */
+  uint64_t
+      passing; /* memory that ends with the sweep; without light textures and the lists of splatted voxels */
 } sweep_bytes;
 
 /* The sweep's context, scene, frame, geometry, grids and channels must be set. points: room for the corners

@@ -15,7 +15,7 @@ static int list_tiles(const occupancy *occupancy, int sheet, uint32_t *list) {
   return count;
 }
 
-/* The clock is read at one tile in 32, at other tiles on each sheet: enough to measure how a stage's time
+/* The clock is read at one tile in 32, each sheet at other tiles: enough to measure how a stage's time
  * divides. */
 static bool is_timed(size_t tile, int sheet) {
   return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0;

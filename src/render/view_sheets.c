@@ -7,15 +7,15 @@ enum { ENTRY_FLOATS = 2 * TILE_PIXELS };
 
 #define NO_ENTRY UINT32_MAX
 
-/* Whether some box cuts anything visible: rays then need their entries. */
+/* Whether some box cuts anything visible: rays must then know where they enter and leave it. */
 static bool any_cut(const sheet_content *content) {
   bool any = false;
   for (int g = 0; g < content->volume_count; g++) any = any || content->grids[g].cut;
   return any;
 }
 
-/* A patch's entries: where its rays enter the box and leave it. One task has a patch at a time. Rows of
- * entries are used one after the other, so that only patches that need one touch memory. */
+/* A patch's entries: where its rays enter and leave the box. One task at a time uses a patch. Rows of entries
+ * are handed out in order, so that only as much memory is touched as patches ask for. */
 static const float *entries_of(view_sheets *sheets, slab_place place) {
   uint32_t *entry = &sheets->entry_of[place.patch];
   if (*entry != NO_ENTRY) return sheets->entries + *entry * (size_t)ENTRY_FLOATS;
@@ -41,8 +41,8 @@ static hl_status sort_voxels(view_sheets *sheets, hl_error *error) {
   return status;
 }
 
-/* Several sheets of a tile are filled in one go, while the tile's voxels are in the cache: as many sheets as
- * a run has slabs, or two where the sheets would take more than BUNDLE_BYTES. */
+/* Several sheets of a tile are filled in one go, while the tile's voxels are in the cache: one for each slab
+ * of a run, or two where so many would take more than BUNDLE_BYTES. */
 enum { BUNDLE_BYTES = 1 << 24, LARGE_BUNDLE = RUN_SLABS, SMALL_BUNDLE = 2 };
 _Static_assert(RUN_SLABS % SMALL_BUNDLE == 0, "a bundle lies within a run");
 
@@ -51,7 +51,8 @@ static int bundle_of_patches(size_t patches) {
                                                                                     : SMALL_BUNDLE;
 }
 
-/* After the patches are counted. Entries come last: memory that no patch asks for is never touched. */
+/* Called after the patches are counted. The entries lie at the end of the block: memory that no patch asks
+ * for is never touched. */
 static void lay_out(view_sheets *sheets, hl_layout *layout) {
   size_t patches = sheets->occupancy.patch_count, grids = (size_t)sheets->content->volume_count;
   sheets->bundle = bundle_of_patches(patches);

@@ -47,15 +47,15 @@ typedef struct view_sheets {
   double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's: 0 */
   occupancy occupancy;
   voxel_lists *lists;    /* owned; [grids]; splat only */
-  int bundle;            /* sheets that are filled in one go; a divisor of RUN_SLABS */
-  int ring;              /* bundle + 1: sheets that are kept; sheet k at k % ring */
-  void *memory;          /* lent by the reserve: all arrays that follow */
+  int bundle;            /* number of sheets that are filled in one go; a divisor of RUN_SLABS */
+  int ring;              /* number of sheets that are kept: bundle + 1; sheet k at k % ring */
+  void *memory;          /* borrowed from the reserve; holds all arrays below */
   float *density;        /* [patches][ring][256], block-major */
   kept_patch *kept;      /* [patches][ring]; what is in density */
   fill_source *sources;  /* [ring][grids] */
   slab_run *runs;        /* [grids]; the run of the last slab */
   patch_run *patch_runs; /* [patches] */
-  /* where a box cuts anything visible; else null */
+  /* the next two: only where a box cuts anything visible; else null */
   uint32_t *entry_of;   /* [patches]; its row of entries; NO_ENTRY where none was asked for */
   box_rays *box_rays;   /* [grids] */
   float *entries;       /* [patches][2][256], used up to entry_count: where rays enter a box and leave it */

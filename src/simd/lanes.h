@@ -256,7 +256,7 @@ LANES_INLINE void lanes_store_short_int(uint16_t *p, lanes_int v) {
   lanes_short narrow = __builtin_convertvector(v, lanes_short);
   memcpy(p, &narrow, sizeof narrow);
 }
-/* v: not negative; rounded, and at most 65535. */
+/* Rounds to whole numbers of 16 bits, at most 65535. v: not negative. */
 LANES_INLINE void lanes_store_short(uint16_t *p, lanes v) {
   lanes_store_short_int(p, lanes_truncate(lanes_min(v, lanes_set(65535.0f)) + 0.5f));
 }
@@ -358,7 +358,7 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index);
-  __m512 of_lanes[4], columns[4]; /* of the lanes k, 4 + k, 8 + k and 12 + k */
+  __m512 of_lanes[4], columns[4]; /* of_lanes[k]: the numbers of lanes k, 4 + k, 8 + k and 12 + k */
   for (int k = 0; k < 4; k++) {
     __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(table + offsets.at[k]));
     four = _mm512_insertf32x4(four, _mm_loadu_ps(table + offsets.at[4 + k]), 1);
@@ -372,7 +372,7 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
   lanes_store_offsets(&offsets, index);
   for (int half = 0; half < 2; half++) {
     const int32_t *at = offsets.at + 8 * half;
-    __m256 of_lanes[4]; /* of the lanes k and 4 + k */
+    __m256 of_lanes[4]; /* of_lanes[k]: the numbers of lanes k and 4 + k */
     for (int k = 0; k < 4; k++)
       of_lanes[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(table + at[k])),
                                          _mm_loadu_ps(table + at[4 + k]), 1);
@@ -395,7 +395,7 @@ LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lane
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index * 4);
-  __m512 columns[2][4]; /* in each half four lanes' values of the first rows and then of the second */
+  __m512 columns[2][4]; /* of four lanes in each half: the first rows' values, then the second rows' */
   for (int half = 0; half < 2; half++) {
     const int32_t *at = offsets.at + 8 * half;
     __m512 pairs[4];
