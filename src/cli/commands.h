@@ -4,11 +4,12 @@
 
 #include "options.h"
 
-extern const cli_command render_command; /* render.c */
-extern const cli_command info_command;   /* info.c */
-extern const cli_command diff_command;   /* diff.c */
-extern const cli_command bench_command;  /* bench.c */
-extern const cli_command make_command;   /* make.c */
-extern const cli_command view_command;   /* view.c */
+extern const cli_command render_command;  /* render.c */
+extern const cli_command info_command;    /* info.c */
+extern const cli_command diff_command;    /* diff.c */
+extern const cli_command bench_command;   /* bench.c */
+extern const cli_command make_command;    /* make.c */
+extern const cli_command view_command;    /* view.c */
+extern const cli_command animate_command; /* animate.c */
 
 #endif

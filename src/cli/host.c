@@ -36,9 +36,8 @@ void host_clear_bar(cli_host *host) {
   host->drawn = false;
 }
 
-static void on_progress(void *user_data, const char *stage, double fraction) {
+void host_draw_bar(cli_host *host, double fraction, const char *text) {
   enum { WIDTH = 32 };
-  cli_host *host = user_data;
   double now = clock_seconds();
   if (!host->bar || (host->drawn && now - host->drawn_at < 0.1)) return;
   if (!(fraction > 0)) fraction = 0;
@@ -47,11 +46,18 @@ static void on_progress(void *user_data, const char *stage, double fraction) {
   int filled = (int)(fraction * WIDTH);
   memset(full, '#', sizeof full);
   memset(rest, '.', sizeof rest);
-  fprintf(stderr, "\r\033[K%s%.*s%s%.*s %3d %%  %s %s", host->color ? "\033[36m" : "", filled, full,
-          host->color ? "\033[0m" : "", WIDTH - filled, rest, (int)(100 * fraction), stage, host->subject);
+  fprintf(stderr, "\r\033[K%s%.*s%s%.*s %3d %%  %s", host->color ? "\033[36m" : "", filled, full,
+          host->color ? "\033[0m" : "", WIDTH - filled, rest, (int)(100 * fraction), text);
   fflush(stderr);
   host->drawn = true;
   host->drawn_at = now;
+}
+
+static void on_progress(void *user_data, const char *stage, double fraction) {
+  cli_host *host = user_data;
+  char text[80];
+  snprintf(text, sizeof text, "%s %s", stage, host->subject);
+  if (!host->own_bar) host_draw_bar(host, fraction, text);
 }
 
 static void on_log(void *user_data, hl_log_level level, const char *message) {

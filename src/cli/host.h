@@ -10,8 +10,9 @@
 
 typedef struct cli_host {
   hl_context *context;
-  bool quiet; /* no warnings, no bar, no summary */
-  bool bar;   /* stderr is a terminal that can redraw a line */
+  bool quiet;   /* no warnings, no bar, no summary */
+  bool bar;     /* stderr is a terminal that can redraw a line */
+  bool own_bar; /* the command draws it: the library's calls are parts of a longer run */
   bool color;
   bool drawn;              /* a bar is on the line now */
   double drawn_at;         /* seconds; bars are redrawn ten times a second at most */
@@ -34,6 +35,9 @@ typedef struct cli_host_options {
  * not move until host_close(). */
 int host_open(const cli_host_options *options, cli_host *host);
 void host_close(cli_host *host);
+
+/* Draws a bar with a text beside it, ten times a second at most, where there is a terminal. */
+void host_draw_bar(cli_host *host, double fraction, const char *text);
 
 /* Removes the progress bar, so that a line can be printed. */
 void host_clear_bar(cli_host *host);

@@ -1,0 +1,38 @@
+/* cli/animate.h - shared by the files of `halflight animate`. */
+#ifndef HL_CLI_ANIMATE_H
+#define HL_CLI_ANIMATE_H
+
+#include "film/film.h"
+#include "host.h"
+
+/* The numbered pictures of a film, in a folder: "turn-frames/0000.png". */
+typedef struct animate_frames {
+  cli_host *host;
+  const film *film;
+  const char *folder;
+  bool opaque; /* for a film, which has no transparent pixels */
+  int digits;  /* of a picture's number */
+  int done;    /* pictures that are there, of those that this run looks after */
+  int rendered;
+} animate_frames;
+
+/* The path of a picture; path: [size]. */
+void animate_frame_path(const animate_frames *frames, int frame, char *path, size_t size);
+
+/* Whether the picture is there, made of the frame's own scene. */
+bool animate_frame_is_there(const animate_frames *frames, int frame);
+
+/* Renders the pictures that are not there yet: each `parts`-th, from number `part` (from 0) on. Draws the bar
+ * with an estimate of what is left. Returns the exit code. */
+int animate_render(animate_frames *frames, int part, int parts);
+
+/* Whether all pictures of the film are there. */
+bool animate_is_complete(const animate_frames *frames);
+
+/* Joins the pictures to a film. Returns the exit code. */
+int animate_join(const animate_frames *frames, const char *path, double frames_per_second);
+
+/* Removes the film's pictures, and the folder if it is empty then. */
+void animate_remove_frames(const animate_frames *frames);
+
+#endif

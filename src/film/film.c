@@ -1,0 +1,223 @@
+/* film/film.c - the scenes of a film's frames.
+ *
+ * The scene's text is parsed once. A frame is a copy of it with the keys' values written in, read again by
+ * the library, which checks it like any other scene; then the camera is turned.
+ */
+#define _GNU_SOURCE
+#include "film.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include "keys.h"
+
+enum turn { TURN_AZIMUTH, TURN_ELEVATION, TURN_ROLL, TURN_ZOOM, TURN_COUNT };
+static const char *const turn_paths[TURN_COUNT] = {"camera.azimuth", "camera.elevation", "camera.roll",
+                                                   "camera.zoom"};
+
+struct film {
+  hl_context *context;
+  const hl_scene *scene; /* borrowed */
+  json_t *text;          /* owned; the scene's */
+  film_key *keys;        /* owned; [key_count] */
+  size_t key_count;
+  int turntable, frames;
+};
+
+static hl_status no_memory(hl_error *error) {
+  snprintf(error->message, sizeof error->message, "out of memory for the film");
+  return HL_ERROR_MEMORY;
+}
+
+/* Which turn of the camera a path names; -1: it names a key of the scene. */
+static int turn_of(const char *path) {
+  for (int t = 0; t < TURN_COUNT; t++)
+    if (strcmp(path, turn_paths[t]) == 0) return t;
+  return -1;
+}
+
+/* ---- numbers in the scene's text ---- */
+
+/* The member of an object or element of an array that `name` tells; null: there is none. */
+static json_t *step_into(json_t *at, const char *name) {
+  if (json_is_object(at)) return json_object_get(at, name);
+  size_t digits = strspn(name, "0123456789");
+  if (!json_is_array(at) || digits == 0 || digits > 9 || name[digits] != '\0') return NULL;
+  return json_array_get(at, strtoul(name, NULL, 10));
+}
+
+/* Whole numbers stay whole where the scene has one. (The program's own writer of JSON has a json_integer().)
+ */
+static json_t *number_like(const json_t *before, double value) {
+  return json_is_integer(before) ? json_pack("I", (json_int_t)llround(value)) : json_real(value);
+}
+
+/* Writes a value where the path leads. A key that an object lacks is added: the scene has its default there,
+ * and the library refuses what is no key. */
+static hl_status write_value(json_t *root, const char *path, double value, hl_error *error) {
+  char *names = strdup(path), *rest = names, *name;
+  if (names == NULL) return no_memory(error);
+  json_t *at = root;
+  while ((name = strsep(&rest, ".")) != NULL && rest != NULL && at != NULL) at = step_into(at, name);
+  json_t *before = at != NULL ? step_into(at, name) : NULL;
+  bool good = before != NULL ? json_is_number(before) : json_is_object(at) && name[0] != '\0';
+  int written = -1;
+  if (good && json_is_object(at)) written = json_object_set_new(at, name, number_like(before, value));
+  else if (good) written = json_array_set_new(at, strtoul(name, NULL, 10), number_like(before, value));
+  if (!good)
+    snprintf(error->message, sizeof error->message,
+             "%s: the scene has no number there: `halflight render SCENE --print-scene` shows its keys",
+             path);
+  free(names);
+  if (!good) return HL_ERROR_ARGUMENT;
+  return written == 0 ? HL_OK : no_memory(error);
+}
+
+static hl_status read_frame(const film *f, json_t *text, int frame, hl_scene **scene, hl_error *error) {
+  hl_status status = HL_OK;
+  for (size_t k = 0; status == HL_OK && k < f->key_count; k++)
+    if (turn_of(f->keys[k].path) < 0)
+      status = write_value(text, f->keys[k].path, film_key_value(&f->keys[k], frame), error);
+  if (status != HL_OK) return status;
+  char *written = json_dumps(text, JSON_COMPACT);
+  if (written == NULL) return no_memory(error);
+  status = hl_scene_from_json_like(f->context, written, strlen(written), NULL, "scene", f->scene, scene,
+                                   error);
+  free(written);
+  return status;
+}
+
+/* ---- the camera ---- */
+
+/* At zoom 2 what was an inch across is two. */
+static void zoom(hl_camera *camera, double factor) {
+  if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height /= factor;
+  else
+    for (int k = 0; k < 3; k++)
+      camera->position[k] = camera->target[k] + (camera->position[k] - camera->target[k]) / factor;
+}
+
+/* given: the turns that keys ask for. */
+static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
+                             const hl_scene_description *description, hl_error *error) {
+  hl_view view;
+  double *angles[] = {&view.azimuth_deg, &view.elevation_deg, &view.roll_deg};
+  bool turns = f->turntable > 0;
+  hl_status status = hl_view_of_camera(description, &view);
+  if (status == HL_OK && f->turntable > 0) view.azimuth_deg += 360.0 * frame / f->turntable;
+  for (size_t k = 0; status == HL_OK && k < f->key_count; k++) {
+    int turn = turn_of(f->keys[k].path);
+    double value = film_key_value(&f->keys[k], frame);
+    if (turn == TURN_ZOOM && !(value >= 1e-6 && value <= 1e6)) status = HL_ERROR_ARGUMENT;
+    else if (turn == TURN_ZOOM) zoom(camera, value);
+    else if (turn >= 0) *angles[turn] = value, turns = true;
+  }
+  if (status == HL_OK && turns) status = hl_camera_turn(&view, camera);
+  if (status != HL_OK && error->message[0] == '\0')
+    snprintf(error->message, sizeof error->message,
+             "frame %d: the camera cannot be turned so: zoom is from 1e-6 to 1e6", frame);
+  return status;
+}
+
+static bool camera_turns(const film *f) {
+  bool turns = f->turntable > 0;
+  for (size_t k = 0; k < f->key_count; k++) turns |= turn_of(f->keys[k].path) >= 0;
+  return turns;
+}
+
+hl_status film_scene(const film *f, int frame, hl_scene **scene, hl_error *error) {
+  json_t *text = json_deep_copy(f->text);
+  hl_scene *read = NULL;
+  *scene = NULL;
+  hl_status status = text != NULL ? read_frame(f, text, frame, &read, error) : no_memory(error);
+  json_decref(text);
+  if (status != HL_OK) return status;
+  if (!camera_turns(f)) {
+    *scene = read;
+    return HL_OK;
+  }
+  hl_scene_description description = *hl_scene_describe(read);
+  status = turn_camera(f, frame, &description.camera, hl_scene_describe(read), error);
+  if (status == HL_OK) status = hl_scene_create(f->context, &description, scene, error);
+  hl_scene_release(read);
+  return status;
+}
+
+/* ---- the film ---- */
+
+static hl_status read_keys(film *f, const film_options *options, hl_error *error) {
+  hl_status status = HL_OK;
+  f->keys = calloc(options->key_count + 1, sizeof *f->keys);
+  if (f->keys == NULL) return no_memory(error);
+  for (; status == HL_OK && f->key_count < options->key_count; f->key_count++) {
+    status = film_key_read(options->keys[f->key_count], &f->keys[f->key_count], error);
+    for (size_t k = 0; status == HL_OK && k < f->key_count; k++)
+      if (strcmp(f->keys[k].path, f->keys[f->key_count].path) == 0) {
+        snprintf(error->message, sizeof error->message, "%s: it has two keys: join them by commas",
+                 f->keys[k].path);
+        status = HL_ERROR_ARGUMENT;
+      }
+  }
+  return status;
+}
+
+static int count_frames(const film *f, const film_options *options) {
+  if (options->frames > 0) return options->frames;
+  int frames = options->turntable;
+  for (size_t k = 0; k < f->key_count; k++) {
+    int last = f->keys[k].frames[f->keys[k].count - 1] + 1;
+    if (last > frames) frames = last;
+  }
+  return frames;
+}
+
+static hl_status parse_scene(film *f, hl_error *error) {
+  char *text = NULL;
+  hl_status status = hl_scene_to_json(f->context, f->scene, &text, error);
+  if (status != HL_OK) return status;
+  f->text = json_loads(text, 0, NULL);
+  hl_text_release(f->context, text);
+  return f->text != NULL ? HL_OK : no_memory(error);
+}
+
+/* A mistake in a key shows before the first frame is rendered. */
+static hl_status try_frame(const film *f, int frame, hl_error *error) {
+  hl_scene *scene = NULL;
+  hl_status status = film_scene(f, frame, &scene, error);
+  hl_scene_release(scene);
+  return status;
+}
+
+hl_status film_create(const film_options *options, film **result, hl_error *error) {
+  film *f = calloc(1, sizeof *f);
+  *result = NULL;
+  if (f == NULL) return no_memory(error);
+  *f = (film){.context = options->context, .scene = options->scene, .turntable = options->turntable};
+  hl_status status = read_keys(f, options, error);
+  if (status == HL_OK) f->frames = count_frames(f, options);
+  if (status == HL_OK && (f->frames < 1 || f->frames > FILM_MOST_FRAMES)) {
+    snprintf(error->message, sizeof error->message, "a film has 1 to %d frames", (int)FILM_MOST_FRAMES);
+    status = HL_ERROR_ARGUMENT;
+  }
+  if (status == HL_OK) status = parse_scene(f, error);
+  if (status == HL_OK) status = try_frame(f, 0, error);
+  if (status == HL_OK) status = try_frame(f, f->frames - 1, error);
+  if (status == HL_OK) *result = f;
+  else film_destroy(f);
+  return status;
+}
+
+void film_destroy(film *f) {
+  if (f == NULL) return;
+  for (size_t k = 0; k < f->key_count; k++) film_key_release(&f->keys[k]);
+  free(f->keys);
+  json_decref(f->text);
+  free(f);
+}
+
+int film_frames(const film *f) { return f->frames; }

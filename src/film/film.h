@@ -1,0 +1,34 @@
+/* film/film.h - a film: one scene, in which some numbers change from frame to frame.
+ *
+ * A key's path names a number of the scene's file: keys of objects and numbers of elements, with points
+ * between ("volumes.0.transfer_function.opacity.2.1"). Four more paths turn the camera as the options of
+ * `halflight render` do: camera.azimuth, camera.elevation and camera.roll in degrees, camera.zoom as a factor
+ * of the scene's own.
+ */
+#ifndef HL_FILM_FILM_H
+#define HL_FILM_FILM_H
+
+#include <halflight/halflight.h>
+
+typedef struct film film;
+
+typedef struct film_options {
+  hl_context *context;
+  const hl_scene *scene;
+  const char *const *keys; /* [key_count]: "PATH=FRAME:VALUE,..." */
+  size_t key_count;
+  int turntable; /* frames of a whole turn about the picture's vertical axis; 0: none */
+  int frames;    /* 0: those of the turn, or until the last key's last frame */
+} film_options;
+
+/* Makes a film; fails where keys cannot be read or no number lies at their paths (HL_ERROR_ARGUMENT), or
+ * where the scene of the first or last frame is refused. Destroy it with film_destroy(), null is allowed. */
+hl_status film_create(const film_options *options, film **result, hl_error *error);
+void film_destroy(film *f);
+
+int film_frames(const film *f);
+
+/* The scene of a frame, from 0, with the volumes of the film's scene; owned by the caller. */
+hl_status film_scene(const film *f, int frame, hl_scene **scene, hl_error *error);
+
+#endif

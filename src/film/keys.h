@@ -1,0 +1,25 @@
+/* film/keys.h - values over time: what `--key PATH=FRAME:VALUE,...` says. */
+#ifndef HL_FILM_KEYS_H
+#define HL_FILM_KEYS_H
+
+#include <halflight/halflight.h>
+
+enum { FILM_MOST_FRAMES = 1000000, FILM_MOST_POINTS = 1000 };
+
+/* A value that goes through points, linearly from one to the next; before the first and after the last it
+ * stays. */
+typedef struct film_key {
+  char *path;     /* owned; "camera.azimuth", "lights.0.intensity": a scene's keys and numbers of elements */
+  int *frames;    /* owned; [count], rising */
+  double *values; /* owned; [count] */
+  size_t count;   /* at least 1 */
+} film_key;
+
+/* Reads "PATH=FRAME:VALUE,FRAME:VALUE,...". HL_ERROR_ARGUMENT, with a line that names the place, where the
+ * text is no key. Call film_key_release() even after a failure. */
+hl_status film_key_read(const char *text, film_key *key, hl_error *error);
+void film_key_release(film_key *key);
+
+double film_key_value(const film_key *key, int frame);
+
+#endif

@@ -1,0 +1,199 @@
+/* film/movie.c - runs ffmpeg: its options for each kind of film, the pipe into it, its messages. */
+#define _GNU_SOURCE
+#include "movie.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+enum { MOST_WORDS = 48, MOST_CODEC_WORDS = 12 };
+
+struct movie {
+  char *path, *unfinished; /* owned */
+  int pipe;                /* into ffmpeg; -1: closed */
+  FILE *messages;          /* what ffmpeg says */
+  pid_t child;             /* 0: it has ended */
+};
+
+const char *const movie_extensions[] = {".mp4", ".mov", ".mkv", ".webm", ".gif", NULL};
+
+/* Players expect an even size, half the resolution of colour, and to be told that the colours are sRGB's. */
+#define FOR_PLAYERS                                                                                     \
+  "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=in_range=pc:out_range=tv:out_color_matrix=bt709,format=yuv420p," \
+  "setparams=color_primaries=bt709:color_trc=iec61966-2-1:colorspace=bt709"
+#define H264 "-c:v", "libx264", "-crf", "16", "-preset", "medium"
+
+static const struct kind {
+  const char *muxer, *filter, *codec[MOST_CODEC_WORDS];
+} kinds[] = {
+    {"mp4", FOR_PLAYERS, {H264, "-movflags", "+faststart"}},
+    {"mov", FOR_PLAYERS, {H264, "-movflags", "+faststart"}},
+    {"matroska", FOR_PLAYERS, {H264}},
+    {"webm", FOR_PLAYERS, {"-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0", "-row-mt", "1"}},
+    {"gif",
+     "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_scale=4",
+     {NULL}},
+};
+
+static const struct kind *kind_of(const char *path) {
+  const char *dot = strrchr(path, '.');
+  for (int k = 0; dot != NULL && movie_extensions[k] != NULL; k++)
+    if (strcasecmp(dot, movie_extensions[k]) == 0) return &kinds[k];
+  return NULL;
+}
+
+bool movie_available(void) {
+  const char *folders = getenv("PATH");
+  char path[PATH_MAX];
+  for (const char *at = folders; at != NULL && *at != '\0';) {
+    int length = (int)strcspn(at, ":");
+    snprintf(path, sizeof path, "%.*s/ffmpeg", length, at);
+    if (length > 0 && access(path, X_OK) == 0) return true;
+    at += length + (at[length] == ':');
+  }
+  return false;
+}
+
+static hl_status fail_io(hl_error *error, const char *path, const char *what) {
+  snprintf(error->message, sizeof error->message, "%.300s: %.600s", path, what);
+  return HL_ERROR_IO;
+}
+
+/* Words of ffmpeg's command line; words: [MOST_WORDS]. */
+static void command_line(const struct kind *kind, const char *rate, const char *file, const char **words) {
+  const char *const first[] = {
+      "ffmpeg",     "-hide_banner", "-nostdin",   "-loglevel", "error", "-y",     "-f",  "image2pipe",
+      "-c:v",       "png",          "-framerate", rate,        "-i",    "pipe:0", "-an", "-filter_complex",
+      kind->filter, "-r",           rate};
+  const char *const last[] = {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", kind->muxer, file};
+  size_t count = 0;
+  for (size_t w = 0; w < sizeof first / sizeof *first; w++) words[count++] = first[w];
+  for (size_t w = 0; w < MOST_CODEC_WORDS && kind->codec[w] != NULL; w++) words[count++] = kind->codec[w];
+  for (size_t w = 0; w < sizeof last / sizeof *last; w++) words[count++] = last[w];
+  words[count] = NULL;
+}
+
+/* ffmpeg runs in a group of its own: Ctrl-C ends it by us, with its file. */
+static int spawn(movie *m, const char **words, int input) {
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  int problem = posix_spawn_file_actions_init(&actions);
+  if (problem != 0) return problem;
+  if ((problem = posix_spawnattr_init(&attributes)) == 0) {
+    sigset_t usual;
+    sigemptyset(&usual);
+    sigaddset(&usual, SIGPIPE);
+    posix_spawnattr_setsigdefault(&attributes, &usual);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+    posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, fileno(m->messages), STDERR_FILENO);
+    problem = posix_spawnp(&m->child, words[0], &actions, &attributes, (char *const *)words, environ);
+    if (problem != 0) m->child = 0;
+    posix_spawnattr_destroy(&attributes);
+  }
+  posix_spawn_file_actions_destroy(&actions);
+  return problem;
+}
+
+static hl_status start(movie *m, double frames_per_second, hl_error *error) {
+  const char *words[MOST_WORDS];
+  char rate[40];
+  int ends[2];
+  snprintf(rate, sizeof rate, "%d/1000", (int)(1000 * frames_per_second + 0.5));
+  command_line(kind_of(m->path), rate, m->unfinished, words);
+  if (m->messages == NULL || pipe2(ends, O_CLOEXEC) != 0) return fail_io(error, m->path, strerror(errno));
+  m->pipe = ends[1];
+  int problem = spawn(m, words, ends[0]);
+  close(ends[0]);
+  if (problem == 0) return HL_OK;
+  snprintf(error->message, sizeof error->message, "ffmpeg cannot be run: %s", strerror(problem));
+  return problem == ENOENT ? HL_ERROR_UNSUPPORTED : HL_ERROR_IO;
+}
+
+hl_status movie_begin(const char *path, double frames_per_second, movie **result, hl_error *error) {
+  movie *m = calloc(1, sizeof *m);
+  *result = NULL;
+  if (m == NULL || kind_of(path) == NULL) {
+    free(m);
+    snprintf(error->message, sizeof error->message, "%s", m == NULL ? "out of memory" : "no kind of film");
+    return m == NULL ? HL_ERROR_MEMORY : HL_ERROR_ARGUMENT;
+  }
+  m->pipe = -1;
+  m->path = strdup(path);
+  m->messages = tmpfile();
+  hl_status status = HL_OK;
+  if (m->path == NULL || asprintf(&m->unfinished, "%s.%d.unfinished", path, (int)getpid()) < 0) {
+    m->unfinished = NULL;
+    snprintf(error->message, sizeof error->message, "out of memory");
+    status = HL_ERROR_MEMORY;
+  }
+  if (status == HL_OK) status = start(m, frames_per_second, error);
+  if (status == HL_OK) *result = m;
+  else movie_abandon(m);
+  return status;
+}
+
+hl_status movie_add(movie *m, const unsigned char *png, size_t length, hl_error *error) {
+  while (length > 0) {
+    ssize_t taken = write(m->pipe, png, length);
+    if (taken < 0 && errno == EINTR) continue;
+    if (taken < 0) { /* it has ended too early: its messages say why */
+      hl_status status = movie_end(m, error);
+      return status == HL_OK ? HL_ERROR_IO : status;
+    }
+    png += taken;
+    length -= (size_t)taken;
+  }
+  return HL_OK;
+}
+
+/* Waits for ffmpeg, which ends when the pipe is closed; whether it was content. */
+static bool wait_for_end(movie *m) {
+  int how = 0;
+  if (m->pipe >= 0) close(m->pipe);
+  m->pipe = -1;
+  while (m->child > 0 && waitpid(m->child, &how, 0) < 0 && errno == EINTR) continue;
+  m->child = 0;
+  return WIFEXITED(how) && WEXITSTATUS(how) == 0;
+}
+
+static void release(movie *m) {
+  if (m->messages != NULL) fclose(m->messages);
+  free(m->path);
+  free(m->unfinished);
+  free(m);
+}
+
+hl_status movie_end(movie *m, hl_error *error) {
+  char said[400] = "ffmpeg has failed";
+  hl_status status = HL_OK;
+  bool good = wait_for_end(m);
+  if (!good) {
+    rewind(m->messages);
+    if (fgets(said, sizeof said, m->messages) != NULL) said[strcspn(said, "\n")] = '\0';
+    status = fail_io(error, m->path, said);
+  } else if (rename(m->unfinished, m->path) != 0) status = fail_io(error, m->path, strerror(errno));
+  if (status != HL_OK) unlink(m->unfinished);
+  release(m);
+  return status;
+}
+
+void movie_abandon(movie *m) {
+  if (m == NULL) return;
+  if (m->child > 0) kill(m->child, SIGKILL);
+  wait_for_end(m);
+  if (m->unfinished != NULL) unlink(m->unfinished);
+  release(m);
+}

@@ -1,0 +1,10 @@
+# Numbers of the scene lie on the line between their keys, and stay at the ends; whole numbers stay whole.
+halflight make rings --size 24 --quiet
+halflight render rings.nrrd --size 16x16 --sheet-spacing 4 --print-scene >scene.json
+halflight animate scene.json --key lights.0.intensity=1:1,3:2 --key lights.0.angular_diameter_deg=0:0,4:20 \
+  --key image.exposure=0:-1,4:1 --key render.light_samples=0:1,4:8 --key volumes.0.material.diffuse=0:0.5 --quiet -o out
+for frame in 0 1 2 3 4; do
+  tool png-scene out/000$frame.png >frame.json
+  tool json frame.json '[d["lights"][0]["intensity"], d["lights"][0]["angular_diameter_deg"], d["image"].get("exposure", 0),
+    d["render"]["light_samples"], d["volumes"][0]["material"]["diffuse"]]'
+done
