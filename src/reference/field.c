@@ -84,7 +84,7 @@ static inline void find_taps(const reference_volume *volume, vec3 point, bool sl
     int64_t last = (int64_t)volume->grid->dimension[axis] - 1;
     double inside = p[axis] > -0.5 ? p[axis] : -0.5;
     if (inside > (double)last + 0.5) inside = (double)last + 0.5;
-    int64_t base = (int64_t)(inside + 1) - 1; /* the floor, as inside + 1 is positive */
+    int64_t base = (int64_t)(inside + 1) - 1; /* rounded down, as inside + 1 is positive */
     double t = inside - (double)base, *weight = found->weight[axis], *slope = found->slope[axis];
     for (int tap = 0; tap < 4; tap++) found->voxel[axis][tap] = clamp_voxel(base - 1 + tap, last);
     switch (volume->kernel) {
@@ -145,7 +145,7 @@ vec3 hl_reference_gradient(const reference_volume *volume, vec3 point) {
   vec3 stored = {weigh(volume, &at, at.slope[0], at.weight[1], at.weight[2]),
                  weigh(volume, &at, at.weight[0], at.slope[1], at.weight[2]),
                  weigh(volume, &at, at.weight[0], at.weight[1], at.slope[2])};
-  /* df/dworld = (dindex/dworld)^T df/dindex */
+  /* Derived, by the chain rule: df/dworld = (dindex/dworld)^T df/dindex. */
   return vec3_scale(mat3_apply(volume->gradient_to_world, stored), volume->grid->value_scale);
 }
 

@@ -56,8 +56,8 @@ static void add_volume(const reference_volume *volume, vec3 position, vec3 forwa
   }
 }
 
-/* The edge of a pixel at unit depth (of an orthographic picture, anywhere): the picture's height over its
- * pixels, height = 2 tan(fovy / 2) (derived). */
+/* The edge of a pixel at unit depth; in an orthographic picture, at any depth. Derived: the picture's height
+ * divided by its number of pixels, where height = 2 tan(fovy / 2) at unit depth. */
 static double pixel_edge(const hl_scene_description *scene) {
   bool orthographic = scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
   return (orthographic ? scene->camera.height : 2 * tan(scene->camera.fovy_deg * HL_PI / 360)) /

@@ -20,8 +20,9 @@ typedef struct attenuate_volume {
 } attenuate_volume;
 
 typedef struct attenuate_job {
-  sheet_rays rays;       /* light pixels -> frame space */
-  float path;            /* parallel light: sheet spacing / |l.h|; point light: sheet spacing */
+  sheet_rays rays; /* light pixels -> frame space */
+  float path; /* parallel light: sheet spacing / |l.h|; point light: the sheet spacing, which pixels divide by
+                 their own |l.h| */
   float height, spacing; /* of the sheet above the first, and to the one before; frame units */
   const attenuate_volume *volumes;
   int volume_count;

@@ -32,7 +32,7 @@ typedef struct emission_job {
   float *to;
   size_t stride;
   int count;
-  const ptrdiff_t *offset; /* [count]; from a pixel to the one that is weighed */
+  const ptrdiff_t *offset; /* [count]; from a pixel to each of its taps */
   const float *weight;     /* [count] */
 } emission_job;
 typedef void emission_tile_function(const emission_job *job, int tile_x, int tile_y);

@@ -18,7 +18,7 @@ static void bound_points(const view *unit, const light_source *source, const vec
     double uv[2];
     bool in_front = hl_view_project(unit, points[i], uv);
     for (int axis = 0; axis < 2; axis++) {
-      if (!in_front) { /* the point lies beside or behind a near light: take the greatest bounds */
+      if (!in_front) { /* the point lies beside or behind a near light: the buffer gets the greatest bounds */
         low[axis] = -WIDEST;
         high[axis] = WIDEST;
         continue;
@@ -77,9 +77,9 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
   return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
 }
 
-/* Makes pixels a little smaller, so that, borders aside, the middles of the first and the last pixel lie just
- * inside the bounds: light along a box's face is then not mixed with light that passes outside. The fraction
- * of a pixel up to which bounds are too thin for it; pixels of soft shadows are not fitted either. */
+/* Makes pixels a little smaller, so that the middles of the first and the last pixel lie just inside the
+ * bounds (borders aside): light along a box's face is then not mixed with light that passes outside. Not done
+ * where the bounds are thinner than this fraction of a pixel, nor for soft shadows. */
 static const double LEAST_FITTED = 0.25;
 
 static pixel_row row_between(double low, double size, double pixel) {

@@ -85,8 +85,8 @@ void hl_light_shadow_end(light_shadow *shadow) {
  * and three quarters of a voxel. SHADOW_PIXEL_PER_IMAGE_PIXEL is for buffers that are blurred. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
-/* Cubic convolution on pixels larger by this fraction of a voxel is as exact as bilinear look-ups on the
- * others. */
+/* Look-ups by cubic convolution, on pixels that are larger by this fraction of a voxel, are as exact as
+ * bilinear look-ups. */
 static const double CUBIC_LARGER = 1.0 / 8;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
@@ -110,7 +110,7 @@ double hl_sharp_pixel(const shadow_setup *setup, bool cubic) {
 
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic) {
   const light_source *source = setup->source;
-  /* a pixel on the sheets is narrower seen along the light: as large as a hard shadow's there */
+  /* seen along the light, a pixel on the sheets is narrower: made as large as a hard shadow's pixel there */
   double slant = source->parallel ? fabs(vec3_dot(source->direction, setup->sheets->normal)) : 1;
   return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * setup->middle_pixel,
               hl_shadow_pixel(setup, cubic) / sqrt(fmax(slant, 0.5)));

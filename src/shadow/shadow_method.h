@@ -102,15 +102,15 @@ typedef struct shadow_layouts {
 struct shadow_method {
   const char *name;
   size_t state_bytes; /* of light_shadow.state, zeros before plan */
-  int first_slab;     /* for a near light within a slab: 0: the slab's part beyond the light casts shadows; 1:
-                         shadows begin     with the next slab */
+  int first_slab; /* for a near light within a slab. 0: the part of this slab beyond the light casts shadows;
+                     1: shadows begin with the next slab */
   void (*plan)(light_shadow *shadow);
   hl_status (*check)(const light_shadow *shadow, hl_error *error);
   void (*lay_out)(light_shadow *shadow, shadow_layouts *layouts);
   hl_status (*begin)(light_shadow *shadow, hl_error *error);
   void (*before_shading)(light_shadow *shadow, int sheet);
   void (*before_slab)(light_shadow *shadow, int sheet);
-  /* Finds buffer->tile_lit of a tile; null: the sweep does. One task has a tile. */
+  /* Finds buffer->tile_lit of a tile. Null: the sweep finds it itself. One task at a time has a tile. */
   void (*find_lit)(light_shadow *shadow, size_t tile);
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
   void (*after_tile)(light_shadow *shadow, size_t tile);

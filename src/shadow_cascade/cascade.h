@@ -78,10 +78,11 @@ typedef struct cascade_level {
       greatest_fraction;             /* the boxes' fractions: means along rows and columns, the greatest */
   cascade_field sum[2][HL_CHANNELS]; /* sum of all groups up to one of this level, for a recent receiver */
   int newest;                        /* which of the two sums includes the newest group */
-  bool filled;           /* the sum includes a group of this level; else see the next farther level */
-  double sum_omega;      /* omega of the newest group in the sum */
-  double owed[2];        /* excess variance of the sum along rows and columns, pixels of the buffer squared */
-  bool renewed;          /* the sum must be made again */
+  bool filled; /* the sum includes a group of this level; if not, the sum of the next farther level is used */
+  double sum_omega; /* omega of the newest group in the sum */
+  double owed[2]; /* variance that the sum is blurred too much already, along rows and columns; pixels of the
+                     buffer squared */
+  bool renewed;   /* the sum must be made again */
   cascade_field scratch; /* for sums from farther levels; not on level 0 */
   cascade_field mean[2]
                     [HL_CHANNELS]; /* with an emission image: one group's absorbed and thin light, averaged */

@@ -64,7 +64,7 @@ typedef struct field_emission_job {
   field_pixel *to;
   size_t stride;
   int count;
-  const ptrdiff_t *offset; /* [count]; from a pixel to the one that is weighed */
+  const ptrdiff_t *offset; /* [count]; from a pixel to each of its taps */
   const float *weight;     /* [count] */
 } field_emission_job;
 /* Returns whether any pixel of the tile is more than zero. */

@@ -127,7 +127,7 @@ LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x
   const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
   const field_pixel *far = y & 1 ? near + stride : near - stride;
   lanes coarse = lanes_add_scaled(0.25f * lanes_load_short(far), lanes_load_short(near),
-                                  0.75f); /* from the pixel before the tile's first */
+                                  0.75f); /* from the coarse pixel before the tile on */
   lanes own = __builtin_shufflevector(coarse, coarse, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8);
   lanes other = __builtin_shufflevector(coarse, coarse, 0, 2, 1, 3, 2, 4, 3, 5, 4, 6, 5, 7, 6, 8, 7, 9);
   return lanes_add_scaled(0.25f * other, own, 0.75f);
@@ -156,7 +156,8 @@ static int double_tile(const field_job *job, int tile_x, int tile_y) {
 
 enum { EMISSION_ROWS = 4 };
 
-/* Weighs a few neighbouring rows of sixteen pixels at once, which hide each other's latency. */
+/* Weighs a few neighbouring rows of sixteen pixels at once: while one waits for memory, the processor works
+ * on the others. */
 LANES_INLINE void weigh_rows(const emission_job *job, const float *from, lanes sum[EMISSION_ROWS]) {
   for (int row = 0; row < EMISSION_ROWS; row++) sum[row] = lanes_set(0);
   for (int tap = 0; tap < job->count; tap++) {

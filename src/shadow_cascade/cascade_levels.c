@@ -4,16 +4,17 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* The most chunks of a sweep, and the number that is enough; the thickness up to which chunks may grow to be
- * no more than enough, and the least thickness, pixels of omega. */
+/* GREATEST_CHUNKS: the most chunks of a sweep. ENOUGH_CHUNKS: to stay below this number, chunks grow, at most
+ * to THICK_CHUNK. LEAST_CHUNK: the least thickness of a chunk. Thickness in pixels of omega. */
 static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.15;
 
 /* The least number of chunks between a receiver and a level's groups: level 0 keeps three groups, level 1
  * two, every other level five. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
 
-/* The scale of a level: its narrowest penumbra is at least one and a half of its pixels wide, as resampling's
- * blur is taken off the penumbra (resampled_by), and four with an emission image, where it is not. */
+/* The scale of a level: the narrowest penumbra on it is at least one and a half of its pixels wide, as the
+ * blur by resampling is taken off the penumbra (resampled_by); with an emission image, where the blur is not
+ * taken off, at least four pixels. */
 static int level_scale(const soft_cascade *cascade, int level) {
   double penumbra = cascade->chunk * chunks_before(level) * cascade->least_fraction,
          own = cascade->emission == NULL ? 1.5 : 4;

@@ -162,15 +162,16 @@ static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets,
   return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
 
-/* The reach of a sum whose field `b` is still to be doubled, from `scale` on. */
+/* The reach of a sum (pixels around the tiles that are read) where its field `b` is still to be doubled, from
+ * `scale` on. */
 static int reach_at(const cascade_sum *sum, int scale) {
   int doubling = hl_cascade_doubling_reach(scale, sum->level->scale);
   return sum->reach == READ_EVERYWHERE ? sum->reach : sum->reach + doubling;
 }
 
-/* Finds a sum whose b, one channel of what the groups up to a level absorbed, may lie on a level much farther
- * than a does: b is blurred, and brought nearer level by level. Blurs are done at the farther level, where
- * they are cheap. */
+/* Makes a sum of a and b, one channel of what the groups up to a level absorbed. b may lie on a much farther
+ * level than a: it is blurred there, where blurs are cheap, and doubled level by level until it is as fine as
+ * a. */
 static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) {
   const cascade_level *from = sum.level_b;
   if (from->scale == sum.level->scale) {
@@ -275,7 +276,8 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
-    /* until the level is due again, receivers move on by a period less one chunk: take the middle one */
+    /* between two renewals of this level, receivers move on by a period less one chunk: the sum is made for
+     * the middle one */
     double served = receiver + cascade->chunk * (double)(period - 1) / 2;
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
@@ -337,7 +339,7 @@ static void refill_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* The least variance worth a blur, pixels squared: a third of a bilinear look-up's. */
+/* The least variance that is worth a blur, pixels squared: a third of the variance of a bilinear look-up. */
 static const double LEAST_VARIANCE = 0.05;
 
 /* Finds cascade->absorbed for receivers around omega = receiver, where it is read; false if nothing is in the
@@ -381,7 +383,8 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
   const cascade_crew crew = {shadow->setup.pool, shadow->setup.functions->cascade, &cascade->reads};
   cascade->chunk_start = omega;
   find_reads(cascade, occupancy, sheets, sheet);
-  bool any = find_shade(cascade, omega + cascade->chunk, &crew); /* of the chunks before the one that ends */
+  /* made from the chunks before the one that ends */
+  bool any = find_shade(cascade, omega + cascade->chunk, &crew);
   push_chunk(cascade, shadow->buffer, omega, &crew);
   refill_buffer(cascade, shadow->buffer, any, &crew);
   begin_chunk(cascade);

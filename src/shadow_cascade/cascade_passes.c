@@ -48,7 +48,7 @@ typedef struct add_task {
   cascade_sum sum;
   field_job job;
   field_tile_function *function;
-  bool doubled; /* b is coarser: a of zeros may be left out */
+  bool doubled; /* b is coarser than the output; an `a` of zeros may then be left out */
 } add_task;
 
 /* Whether a sum is all zeros in a row of tiles, from x0 to x1, both included. */

@@ -49,8 +49,8 @@ static double width_between(const soft_paper *soft, double from, double to) {
   return soft->size * (1 / near - 1 / far) / soft->pixel;
 }
 
-/* The widest box that a sweep of these sheets can need, pixels. The first convolution comes after two
- * sheets. */
+/* The widest box that the sheets of a sweep can need, pixels. The first convolution comes after two sheets.
+ */
 static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
   double first = sheets->first, spacing = sheets->spacing;
   double widest = width_between(soft, first, first + 2 * spacing);

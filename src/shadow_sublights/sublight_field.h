@@ -27,9 +27,9 @@ typedef struct sublight_job {
   const slab_rows *rows; /* [slab_tiles_y][slab_tiles_x] */
   int slab_tiles_x, slab_tiles_y;
   float slab_width, slab_height; /* pixels; around them are up to 32 pixels of ones */
-  float scale[2],
-      shift[2]; /* continuous pixel coordinates u and v of the slab: scale * the sub-light's + shift */
-  int half[2];  /* shift in half pixels, rounded */
+  float scale[2], shift[2];      /* maps a pixel (u, v) of the sub-light to the slab: scale * pixel + shift;
+                                    continuous coordinates */
+  int half[2];                   /* shift in half pixels, rounded */
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows stride apart */
   size_t stride;                              /* a tile's margin on either side */
   int tiles_x;

@@ -106,7 +106,7 @@ LANES_INLINE lanes slab_row(const row_taps *taps, const float *const copies[2]) 
   return sum;
 }
 
-/* The slab's tiles under a row of pixels. */
+/* The tiles of the slab that lie under a row of a sub-light's pixels. */
 LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, int *first, int *last) {
   *first = taps->half[0] >> 5;
   *last = taps->half[LANES - 1] >> 5;
@@ -215,8 +215,8 @@ LANES_INLINE int copy_of_shift(const sublight_job *job) {
   return (job->half[0] & 1) + 2 * (job->half[1] & 1);
 }
 
-/* Of the slab's sixteen rows from `top` on, in the columns of a tile: those below 1 somewhere, one bit each.
- */
+/* Of the sixteen rows of the slab from `top` on, those with a pixel below 1 in a tile's columns: one bit
+ * each. */
 LANES_INLINE uint32_t rows_from(const sublight_job *job, int tile_x, int top, int copy) {
   const slab_rows *tile = job->rows + tile_x;
   int y = top >> 4, down = top & (TILE - 1);

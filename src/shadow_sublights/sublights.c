@@ -33,7 +33,8 @@ static void view_of_sublight(const light_shadow *shadow, int i, view *view, int 
  * ROWS_BEYOND rows that look-ups may read after the last. */
 enum { ROWS_BEYOND = 7 };
 static void lay_out_planes(sublights *sublights) {
-  sublights->stride = (size_t)(sublights->tiles_x + 3) / 2 * 2 * TILE; /* whole lines of the cache */
+  /* rows of pixels fill whole lines of the cache */
+  sublights->stride = (size_t)(sublights->tiles_x + 3) / 2 * 2 * TILE;
   sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
 
@@ -378,8 +379,8 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
  * on two pixels on either side. */
 enum { BLOCK_SPARE = 2 };
 
-/* The rows, or columns, of a sub-light's blocks under each of the four rows, or columns, of blocks of a
- * slab's tile. */
+/* For each of the four rows (or columns) of blocks of a slab's tile: the rows (or columns) of a sub-light's
+ * blocks under it. */
 typedef struct blocks_under {
   int first[TILE / BLOCK], last[TILE / BLOCK];
 } blocks_under;

@@ -28,7 +28,7 @@ typedef struct sublight {
   bool reaches;           /* the sub-light lies before the slab */
   bool shifted;           /* the job's scale is 1 */
   sublight_map near, far; /* for the first and the last slab of the next run */
-  bool comes;             /* the sub-light lies within the next run: it reaches its last slab only */
+  bool comes; /* the sub-light lies within the next run: it casts shadows in the run's last slab only */
 } sublight;
 
 typedef struct sublights {
