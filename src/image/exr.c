@@ -124,7 +124,7 @@ static hl_status check_channels(exr_reading *reading) {
   return HL_OK;
 }
 
-/* Makes the picture, if its claimed size can be true. */
+/* Makes the picture, unless the file is too short for the size that its header claims. */
 static hl_status make_image(exr_reading *reading) {
   exr_result_t result = exr_get_data_window(reading->file, 0, &reading->window);
   uint64_t chunk_bytes = 0;

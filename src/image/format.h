@@ -31,7 +31,7 @@ typedef struct hl_image_format {
   hl_status (*decode)(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                       hl_image **image, hl_error *error);
 
-  /* Reads the header only. For a broken header no size is known; decode then reports the error. */
+  /* Reads the header only. Leaves size->known false for a broken header; decode then reports the error. */
   hl_image_claim (*claim)(const unsigned char *bytes, size_t length);
 
   bool holds_layers; /* encode writes the layers too */

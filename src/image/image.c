@@ -13,8 +13,8 @@
 
 enum { ROWS_BETWEEN_QUESTIONS = 64 };
 
-/* Clears the pixels row by row; false: cancelled. The system gives memory as it is first touched, a gigabyte
- * or two a second. */
+/* Clears the pixels row by row; false: cancelled. Worth checking for: the system provides memory when it is
+ * first touched, only a gigabyte or two a second. */
 static bool clear_rows(hl_context *context, float *rows, size_t row_floats, size_t count) {
   for (size_t y = 0; y < count; y++) {
     if (y % ROWS_BETWEEN_QUESTIONS == ROWS_BETWEEN_QUESTIONS - 1 && hl_cancelled(context)) return false;

@@ -10,8 +10,8 @@
 
 #include "core/memory.h"
 
-/* Newton's step for r^5 = value; seven from this guess reach double precision for value in [0.008, 1.02],
- * where the guess is at most 31 % off and each step squares the error. */
+/* One of Newton's steps for r^5 = value. Seven steps from this first guess reach double precision for values
+ * in [0.008, 1.02]: the guess is at most 31 % off, and each step squares the error. */
 static double fifth_root(double value, double guess) {
   double r = guess;
   for (int step = 0; step < 7; step++) {

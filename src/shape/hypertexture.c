@@ -50,7 +50,8 @@ static int64_t cell(double x) {
 }
 
 double hl_noise_at(const hl_noise *noise, vec3 p) {
-  if (!(fabs(p.x) + fabs(p.y) + fabs(p.z) < 0x1p50)) return 0; /* so far out, all doubles are integers */
+  /* so far out, all doubles are whole numbers, where noise is 0 */
+  if (!(fabs(p.x) + fabs(p.y) + fabs(p.z) < 0x1p50)) return 0;
   int64_t cx = cell(p.x), cy = cell(p.y), cz = cell(p.z);
   double x = p.x - (double)cx, y = p.y - (double)cy, z = p.z - (double)cz;
   double u = fade(x), v = fade(y), w = fade(z);

@@ -1,4 +1,4 @@
-/* shape/presets.c - ready-made shapes, as texts that hl_volume_from_shapes() reads. */
+/* shape/presets.c - ready-made shapes, each a JSON text that hl_volume_from_shapes() reads. */
 #include <halflight/shape.h>
 
 #include <string.h>

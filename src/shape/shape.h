@@ -54,7 +54,8 @@ typedef struct hl_hypertexture {
   double
       amplitude; /* depth by which the surface recedes where the pattern's value is 1; negative: it grows */
   double soft;   /* length over which the density falls from 1 to 0; 0: HL_SHAPE_EDGE voxels */
-  int strands;   /* fur: the pattern's value at the nearest point of the surface holds along the normal */
+  int strands;   /* fur: the pattern's value at the nearest point of the surface is used all along the normal
+                    there */
   hl_noise noise;
 } hl_hypertexture;
 

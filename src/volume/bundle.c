@@ -66,7 +66,7 @@ typedef struct folder_walk {
   hl_bundle *bundle;
   char root[PATH_MAX]; /* the folder without links, with a '/' at its end */
   char name[PATH_MAX]; /* the current entry, relative to the folder */
-  dev_t device;        /* of the folder: other file systems in it are not gone into */
+  dev_t device;        /* the folder's device: folders on other file systems are not searched */
   size_t files, depth; /* entries of all kinds so far */
 } folder_walk;
 

@@ -21,7 +21,7 @@ typedef struct hl_bundle {
   const unsigned char
       *memory; /* borrowed; [memory_size]: the content of the archive, or of the only file; null: in files */
   size_t memory_size;
-  hl_bundle_entry *entries; /* owned; [count], sorted by name; of folders: after hl_bundle_list */
+  hl_bundle_entry *entries; /* owned; [count], sorted by name; a folder's are found by hl_bundle_list */
   size_t count, capacity;
   size_t links_passed; /* symbolic links that lead out of the folder or to folders */
 } hl_bundle;
@@ -37,7 +37,7 @@ hl_status hl_bundle_open_zip(hl_context *context, const char *path, const void *
                              hl_bundle *bundle, hl_error *error);
 void hl_bundle_close(hl_bundle *bundle);
 
-/* Finds a folder's files; once. An archive's are known. */
+/* Finds a folder's files. Call it once; an archive's files are known without it. */
 hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error);
 
 /* Opens the file of an entry. quiet: as for hl_source_open. May be called from several threads. */

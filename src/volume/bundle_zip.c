@@ -41,7 +41,7 @@ static hl_status read_exactly(const hl_bundle *bundle, hl_source *source, uint64
   return status == HL_OK && got < count ? fail_damaged(bundle, error) : status;
 }
 
-/* Finds the end record, the last one in the file: its comment may follow it. */
+/* Finds the end record: the last record of the file, which only a comment may follow. */
 static hl_status find_end(const hl_bundle *bundle, hl_source *source, uint64_t *at, hl_error *error) {
   enum { TAIL = END_BYTES + COMMENT_MOST };
   uint64_t size = hl_source_size(source), begin = size > TAIL ? size - TAIL : 0;
@@ -79,7 +79,8 @@ static hl_status find_directory(const hl_bundle *bundle, hl_source *source, uint
   return HL_OK;
 }
 
-/* The zip64 extra field holds those of size, packed size and position that did not fit, in this order. */
+/* The zip64 extra field holds the numbers that did not fit 32 bits, in this order: size, packed size,
+ * position. */
 static void take_extra(const unsigned char *extra, size_t length, hl_bundle_entry *entry) {
   for (size_t n = 0; n + 4 <= length;) {
     size_t bytes = u16(extra + n + 2);

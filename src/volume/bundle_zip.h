@@ -1,4 +1,4 @@
-/* volume/bundle_zip.h - between bundle.c and bundle_zip.c. */
+/* volume/bundle_zip.h - functions that bundle.c and bundle_zip.c need of each other. */
 #ifndef HL_VOLUME_BUNDLE_ZIP_H
 #define HL_VOLUME_BUNDLE_ZIP_H
 

@@ -205,8 +205,8 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
   return HL_OK;
 }
 
-/* The block sizes must add up to the size that the file states elsewhere; this also bounds the number of
- * blocks. */
+/* The blocks' sizes must add up to the array's size, which the file states elsewhere; this also bounds the
+ * number of blocks. */
 static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
                                    uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;

@@ -1,7 +1,7 @@
 /* volume/dicom.c - DICOM: folders, archives and discs of slices, single files, series of frames.
  *
- * The parts are in dicom/: elements and header read a file, set finds the series of all files, stack orders
- * the frames of one, frame decodes a frame, voxels makes the volume. */
+ * The steps are in dicom/: elements.c and header.c read a file's header, set.c finds the series among all
+ * files, stack.c orders the frames of one series, frame.c decodes a frame, voxels.c makes the volume. */
 #define _GNU_SOURCE
 #include <string.h>
 
@@ -42,7 +42,7 @@ static void tell_damage(const hl_dicom_set *set) {
            set->bundle->links_passed);
 }
 
-/* Gives the request the list of series, for the volume. */
+/* Copies the request's list of series to the volume. */
 static hl_status list_series(const hl_dicom_set *set, size_t chosen, hl_load_request *request,
                              hl_error *error) {
   size_t count = set->series_count;
@@ -77,7 +77,7 @@ static hl_status load_series(hl_dicom_set *set, hl_load_request *request, hl_vol
   return status;
 }
 
-/* strict: the bundle is one file, which must be read. */
+/* strict: the bundle is a single file, and an error to read it is reported. */
 static hl_status load_files(hl_bundle *bundle, bool strict, hl_load_request *request, bool *claimed,
                             hl_volume **volume, hl_error *error) {
   hl_dicom_set set;
@@ -131,7 +131,7 @@ static hl_status load_directory(hl_bundle *one, hl_load_request *request, hl_vol
   return status;
 }
 
-/* The rest of a stream that is no plain file, in one block. */
+/* Reads the rest of a stream that is no plain file into one block. */
 static hl_status read_whole(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error) {
   size_t capacity = 0, got = 1;
   for (*length = 0; got > 0; *length += got) {

@@ -81,7 +81,7 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   return HL_OK;
 }
 
-/* One of `count` things of a kind; by default the first. */
+/* Chooses one of `count` times, channels or levels; the first by default. */
 static hl_status choose_step(const char *path, const char *kind, int wanted, size_t count, int *chosen,
                              hl_error *error) {
   if (wanted >= 0 && (size_t)wanted >= count && count <= 1)
@@ -113,7 +113,7 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
   return status;
 }
 
-/* Refuses numbers that the file does not have. */
+/* Refuses a number that is out of range. */
 static hl_status check_steps(const hl_load_request *request, const char *path, hl_error *error) {
   const hl_selection *selection = &request->selection;
   int unused;

@@ -27,8 +27,8 @@ typedef struct hl_load_request {
   hl_series_entry *series_list; /* owned; [series_count]: DICOM series */
   size_t series_count, chosen_series;
   bool more;              /* the file has arrays beyond HL_ARRAYS_MOST */
-  hl_selection selection; /* what there is of times, channels and levels, and what is read; counts are 1
-                             before the reader chooses */
+  hl_selection selection; /* how many times, channels and levels the file has, and which are read; the counts
+                             are 1 before the reader chooses */
   char array_told[1000], component_told[400],
       selection_told[600]; /* warnings that name the array, component, time and channel chosen by default; "":
                               none */
@@ -46,14 +46,14 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
 
 /* Chooses the component to read, and sets it in the payload, whose `components` and `block` are known: the
  * wanted component; else the only one; else the magnitude of vectors of two or three components; else the
- * first component. is_series: components are the time steps of each channel, of which the first is read by
- * default; their numbers are those of request->selection, or all are time steps. Refuses a time, a channel or
+ * first component. is_series: components are time steps, those of each channel together, as many as
+ * request->selection says, or all of one channel; the first is read by default. Refuses a time, a channel or
  * a level that request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 
-/* Chooses among the file's time steps and channels, and sets request->selection, but for its levels; refuses
- * a number that the file does not have. */
+/* Chooses a time step and a channel, and sets request->selection except for its levels; refuses a number that
+ * is out of range. */
 hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
                           hl_error *error);
 

@@ -99,7 +99,7 @@ static bool is_wanted(const vtk_header *header, const char *name, size_t compone
   return request->array != NULL ? strcmp(request->array, name) == 0 : components == 1;
 }
 
-/* An array's values come next: stop there if they are the volume. */
+/* The values of an array come next: stops there if it is the volume's array. */
 static hl_status meet_array(vtk_header *header, const char *name, const char *type_name, size_t components,
                             size_t tuples, hl_error *error) {
   hl_voxel_type type = HL_VOXEL_U8;

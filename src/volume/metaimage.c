@@ -200,7 +200,7 @@ static hl_status find_components(const meta_header *header, bool *is_series, hl_
   return HL_OK;
 }
 
-/* A LOCAL payload follows the header; another file may have a header of its own to pass over. */
+/* A LOCAL payload follows the header. Another file may begin with a header of its own, which is skipped. */
 static hl_status go_to_voxels(hl_stream **stream, const meta_header *header, const hl_payload *payload,
                               hl_error *error) {
   bool local = hl_text_equal(header->data_file, "LOCAL");

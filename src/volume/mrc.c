@@ -76,7 +76,8 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   hl_status status = hl_stream_read_all(stream, header->bytes, HEADER_BYTES, error);
   if (status != HL_OK) return status;
   bool little = is_possible(header->bytes, false), big = is_possible(header->bytes, true);
-  /* Both are possible only of sizes like 16777216; then the machine stamp decides: 0x11 is big-endian. */
+  /* Both byte orders are possible only for sizes like 16777216; then the machine stamp decides: 0x11 is big-
+   * endian. */
   header->big_endian = big && (!little || header->bytes[AT_MARK + 4] == 0x11);
   if (!little && !big) {
     int64_t mode = load_integer(header, AT_MODE);
@@ -94,7 +95,8 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   return HL_OK;
 }
 
-/* IMOD writes unsigned bytes as mode 0 too, and then its stamp, without the flag for signed ones. */
+/* IMOD writes unsigned bytes as mode 0, too. Its stamp tells such files; a flag in them marks bytes as
+ * signed. */
 static bool has_unsigned_bytes(const mrc_header *header) {
   enum { STAMP = 1146047817, SIGNED = 1 };
   return load_integer(header, AT_IMOD_STAMP) == STAMP && (load_integer(header, AT_IMOD_FLAGS) & SIGNED) == 0;
@@ -138,7 +140,7 @@ static hl_status read_stack(const mrc_header *header, const char *path, hl_paylo
   size_t rows;
   if (!hl_multiply(payload->grid.dimensions[0], payload->grid.dimensions[1], &rows) ||
       !hl_multiply(rows, (size_t)each, &payload->block))
-    payload->block = SIZE_MAX; /* the check of the grid refuses it */
+    payload->block = SIZE_MAX; /* too large on purpose: the check of the grid then refuses the file */
   return HL_OK;
 }
 
@@ -169,7 +171,8 @@ static void place_cell(const mrc_header *header, double step[3][3]) {
     for (int row = 0; row < 3; row++) step[axis][row] = length[axis] * unit[axis][row];
 }
 
-/* Which of X, Y, Z the file's columns, rows and sections follow; what is no order is X, Y, Z. */
+/* Which of X, Y, Z the file's columns, rows and sections follow; X, Y, Z where the header's numbers are no
+ * order of 1, 2, 3. */
 static void read_axes(const mrc_header *header, int axes[3]) {
   int seen = 0;
   for (int n = 0; n < 3; n++) {
@@ -208,7 +211,7 @@ static void place(const mrc_header *header, hl_volume_description *grid) {
 
 typedef struct nibble_stream {
   hl_stream base;
-  uint64_t columns, column; /* of a row; of the next voxel */
+  uint64_t columns, column; /* numbers in a row; index of the next one in it */
   unsigned char upper;      /* the voxel in the other half of the last byte */
 } nibble_stream;
 
@@ -276,7 +279,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Headers older than the mark "MAP", and damaged ones, so that load() says what is wrong with them. */
+/* Claims headers older than the mark "MAP", and damaged ones, so that load() says what is wrong with them. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   static const char *const endings[] = {".mrc", ".mrcs", ".map", ".ccp4", ".rec", ".ali", ".st"};
   const unsigned char *bytes;

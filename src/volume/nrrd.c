@@ -203,7 +203,7 @@ static hl_status read_origin(nrrd_header *header, const char *value, hl_error *e
   return HL_OK;
 }
 
-/* Other names of spaces say nothing about anatomy. */
+/* Names of other spaces say nothing about anatomy. */
 static hl_status read_space(nrrd_header *header, const char *value, hl_error *error) {
   (void)error;
   static const struct {
@@ -406,7 +406,7 @@ static void place_axis(const nrrd_axis *axis, double *spacing, double *first) {
   *first = isfinite(axis->minimum) ? axis->minimum + (axis->is_node ? 0 : *spacing / 2) : 0;
 }
 
-/* Axes that the file does not have get a unit step across the others. */
+/* Axes that the file does not have get a unit step, perpendicular to the others. */
 static void complete_axes(hl_volume_description *grid, int count) {
   if (count == 1) {
     vec3 across = vec3_perpendicular(vec3_normalise(vec3_of(grid->axis[0])));

@@ -81,8 +81,8 @@ static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, 
                         stream->cut_short ? ": the file is cut short" : ": correct its sizes or type");
 }
 
-/* Reads `count` values, after `done` earlier ones, into `raw`, and converts them into `place`; both may be
- * the same memory. */
+/* Reads `count` values into `raw`, and converts them into `place`; `done` values came before. Both may be the
+ * same memory. */
 static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                             void *raw, void *place, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
@@ -163,7 +163,7 @@ static void store_number(const hl_volume_description *grid, double value, size_t
   }
 }
 
-/* Reads the next number of a text, the number of value `done`. */
+/* Reads the next number of a text. done: how many came before. */
 static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index,
                                  void *voxels, hl_error *error) {
   double value;
@@ -210,7 +210,7 @@ static hl_status read_stage(hl_stream *stream, const hl_payload *payload, uint64
  * the components of a voxel lie side by side, and all voxels where components follow each other as a whole.
  * The magnitude is summed up in the voxels themselves, so that any order needs no more memory. */
 
-/* The next value's position in the file's order. */
+/* The position, in the file's order, of the value that comes next. */
 typedef struct component_place {
   size_t first; /* voxel of the block's first value */
   size_t component;
@@ -282,7 +282,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, v
       continue;
     }
     uint64_t left = (uint64_t)(count - place.first) *
-                    payload->components; /* an upper bound of the values left */
+                    payload->components; /* at most so many values are left */
     size_t wanted = left < STAGE_VOXELS ? (size_t)left : STAGE_VOXELS;
     if (payload->block - place.in_block < wanted && payload->block > 1)
       wanted = payload->block - place.in_block;

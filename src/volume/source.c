@@ -1,4 +1,5 @@
-/* volume/source.c - files by pread, memory, parts of them, and deflated data kept as far as inflated. */
+/* volume/source.c - bytes at any position: of files (by pread), of memory, of a part of either, of deflated
+ * data (inflated as far as needed, and kept). */
 #define _GNU_SOURCE
 #include "volume/source.h"
 
@@ -157,7 +158,7 @@ static hl_status grow(hl_source *source, uint64_t needed, hl_error *error) {
   return HL_OK;
 }
 
-/* One step of inflating, into the room that there is. */
+/* Inflates once, as far as the free room goes. */
 static hl_status inflate_more(hl_source *source, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -180,7 +181,7 @@ static hl_status inflate_more(hl_source *source, hl_error *error) {
   return HL_OK;
 }
 
-/* Inflates until `needed` bytes are known, or all are. */
+/* Inflates until `needed` bytes are known, or the data end. */
 static hl_status inflate_up_to(hl_source *source, uint64_t needed, hl_error *error) {
   if (needed > source->size) needed = source->size;
   hl_status status = HL_OK;
@@ -205,7 +206,7 @@ static hl_status peek_inflated(hl_source *source, uint64_t offset, size_t wanted
   *available = clip(source, offset, wanted);
   if (offset >= source->length) *available = 0;
   else if (source->length - offset < *available) *available = (size_t)(source->length - offset);
-  if (*available > 0) *bytes = source->inflated + offset; /* else the caller's empty block stays */
+  if (*available > 0) *bytes = source->inflated + offset; /* else *bytes stays at the caller's empty block */
   return status;
 }
 
@@ -223,7 +224,7 @@ hl_status hl_source_peek(hl_source *source, uint64_t offset, size_t wanted, cons
   if (source->below != NULL)
     return hl_source_peek(source->below, source->below_at + offset, *available, bytes, available, error);
   if (offset < source->window_begin || offset + *available > source->window_begin + source->window_length) {
-    /* Most headers are short: the first looks read little. */
+    /* the first reads are small, as most headers are short */
     size_t most = source->window_most > 0 ? 4 * source->window_most : FIRST_LOOK_BYTES;
     source->window_most = most < *available ? *available : most;
     if (source->window_most > HL_SOURCE_WINDOW_BYTES) source->window_most = HL_SOURCE_WINDOW_BYTES;

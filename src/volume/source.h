@@ -12,8 +12,8 @@ enum { HL_SOURCE_WINDOW_BYTES = 65536 };
 
 typedef struct hl_source hl_source;
 
-/* Opens a regular file. quiet: does not call the context's `reads` callback, which only the caller's thread
- * may do: for a file that was opened before, by other threads. */
+/* Opens a regular file. quiet: does not call the context's `reads` callback: for threads other than the
+ * caller's, which may not call it, and files that were opened before. */
 hl_status hl_source_open(hl_context *context, const char *path, bool quiet, hl_source **source,
                          hl_error *error);
 /* path: the name in error lines. The bytes must outlive the source. */
@@ -21,14 +21,14 @@ hl_status hl_source_of_memory(hl_context *context, const char *path, const void 
                               hl_source **source, hl_error *error);
 /* The bytes [begin, begin + count) of *source, which the new source replaces and owns. */
 hl_status hl_source_cut(hl_source **source, uint64_t begin, uint64_t count, hl_error *error);
-/* What the raw deflate data that begin at `begin` of *source hold, at most `limit` bytes; inflated as far as
- * they are asked for, and kept. The new source replaces *source and owns it. */
+/* The data that raw deflate data hold which begin at `begin` of *source: at most `limit` bytes, inflated when
+ * they are first needed, and kept. The new source replaces *source and owns it. */
 hl_status hl_source_inflate(hl_source **source, uint64_t begin, uint64_t limit, hl_error *error);
 void hl_source_close(hl_source *source); /* null is allowed */
 
 hl_context *hl_source_context(const hl_source *source);
 const char *hl_source_path(const hl_source *source);
-/* The length in bytes; of deflated data an upper bound. */
+/* The length in bytes; for deflated data an upper bound. */
 uint64_t hl_source_size(const hl_source *source);
 
 /* Shows up to `wanted` bytes (at most HL_SOURCE_WINDOW_BYTES) from `offset` on; fewer only at the end. They

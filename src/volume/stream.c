@@ -15,7 +15,7 @@ typedef struct file_stream {
   int descriptor; /* -1 until open */
   bool regular;
   uint64_t size, position;     /* length of a regular file, bytes */
-  const unsigned char *memory; /* borrowed; [size]: the content, instead of a file's; else null */
+  const unsigned char *memory; /* borrowed; [size]: the content, where it is in memory; else null */
 } file_stream;
 
 hl_stream *hl_stream_make(hl_context *context, size_t size, hl_stream *below) {

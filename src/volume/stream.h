@@ -31,7 +31,7 @@ struct hl_stream {
   void (*close)(hl_stream *stream); /* releases the owned memory of this kind of stream; may be null */
 };
 
-/* Opens a file. regular_only: refuse pipes and devices (files that are named by another file). */
+/* Opens a file. regular_only: refuses pipes and devices; for files that another file names. */
 hl_status hl_stream_open(hl_context *context, const char *path, bool regular_only, hl_stream **stream,
                          hl_error *error);
 /* Opens a file's content in the caller's memory, which must outlive the stream. path: its name in errors;

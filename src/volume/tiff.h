@@ -1,4 +1,4 @@
-/* volume/tiff.h - reads TIFF's pages: tiff_load.c, or tiff_absent.c in a build without libtiff. */
+/* volume/tiff.h - reads the pages of a TIFF file: tiff_load.c, or tiff_absent.c in builds without libtiff. */
 #ifndef HL_VOLUME_TIFF_H
 #define HL_VOLUME_TIFF_H
 

@@ -1,4 +1,4 @@
-/* volume/tiff_absent.c - TIFF files in a build without libtiff. */
+/* volume/tiff_absent.c - refuses TIFF files, in builds without libtiff. */
 #include "volume/tiff.h"
 
 hl_status hl_tiff_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {

@@ -65,7 +65,7 @@ static int on_error(TIFF *tiff, void *data, const char *module, const char *form
   return 1;
 }
 
-/* Tags of other programs are no matter; of the rest the first few are told. */
+/* Logs libtiff's first few warnings, except those about tags that it does not know. */
 static int on_warning(TIFF *tiff, void *data, const char *module, const char *format, va_list arguments) {
   (void)tiff, (void)module;
   tiff_file *file = data;
@@ -106,7 +106,8 @@ hl_status tiff_file_open(hl_context *context, const char *path, const void *byte
       options, limit > 0 && limit < LARGEST_ALLOCATION ? (tmsize_t)limit : LARGEST_ALLOCATION);
   TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, file);
   TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, file);
-  /* m: not mapped into memory; c: strips stay as they are; O: places of strips are read as they are needed */
+  /* m: the file is not mapped into memory; c: strips stay as they are; O: the positions of strips are read
+   * when they are needed */
   file->tiff = TIFFClientOpenExt(path, "rmcO", file, read_bytes, write_nothing, seek, close_nothing, size_of,
                                  NULL, NULL, options);
   TIFFOpenOptionsFree(options);
@@ -141,7 +142,7 @@ hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *er
 
 /* ---- pages ---- */
 
-/* The type that samples of so many bits are unpacked to; 0: none. */
+/* The voxel type that samples of this many bits are unpacked to; 0: none. */
 static hl_voxel_type type_of(unsigned format, unsigned bits) {
   bool is_signed = format == SAMPLEFORMAT_INT;
   if (format == SAMPLEFORMAT_IEEEFP)
@@ -226,8 +227,8 @@ hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
   uint16_t compression = COMPRESSION_NONE;
   TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
-  /* the most bytes that one byte can become: of deflate 1032 (zlib's own page), of LZW a code of 12 bits 4096
-   */
+  /* the most bytes that one compressed byte can become: 1032 for deflate (zlib's documentation), 4096 for
+   * LZW, by codes of 12 bits */
   double most = compression == COMPRESSION_NONE                                                  ? 1
                 : compression == COMPRESSION_PACKBITS                                            ? 64
                 : compression == COMPRESSION_LZW                                                 ? 4096 / 1.5
@@ -241,7 +242,7 @@ bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
 
 /* ---- voxels ---- */
 
-/* Unpacks `count` samples whose bits follow each other, the highest first, to the type's bytes. */
+/* Unpacks `count` samples that are stored bit after bit, the highest bit first, to samples of the type. */
 static void unpack_bits(const unsigned char *source, size_t count, const tiff_shape *shape,
                         unsigned char *samples) {
   size_t bytes = hl_voxel_type_bytes(shape->type), place = 0;
@@ -280,11 +281,11 @@ static void unpack_24(const unsigned char *source, size_t count, bool is_signed,
   }
 }
 
-/* What decoding a page's chunks needs. */
+/* A page that is being decoded, chunk by chunk. */
 typedef struct page_reading {
   tiff_file *file;
   const tiff_shape *shape;
-  int component; /* or HL_COMPONENT_MAGNITUDE */
+  int component; /* index of the wanted component, or HL_COMPONENT_MAGNITUDE */
   uint32_t chunk_width, chunk_height;
   bool tiled;
   size_t row_bytes, chunk_bytes; /* of a decoded chunk */
@@ -327,7 +328,7 @@ static void take_component(page_reading *r, const unsigned char *samples, unsign
   }
 }
 
-/* Takes a row of a decoded chunk. plane: the component of a chunk of one. */
+/* Takes over a row of a decoded chunk. plane: the component that the chunk holds, if it holds one only. */
 static void take_row(page_reading *r, const unsigned char *row, unsigned plane, size_t count, size_t first) {
   const tiff_shape *shape = r->shape;
   unsigned each = shape->planar ? 1 : shape->components;
@@ -349,7 +350,7 @@ static void take_row(page_reading *r, const unsigned char *row, unsigned plane, 
   }
 }
 
-/* Decodes chunk `index`; what is not in the file is 0. */
+/* Decodes chunk `index`; samples that the file does not contain are 0. */
 static hl_status decode(page_reading *r, uint32_t index, uint32_t rows, hl_error *error) {
   tiff_file *file = r->file;
   file->message[0] = 0;
@@ -395,7 +396,7 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
   return status;
 }
 
-/* The size of a chunk: refuses one whose rows libtiff counts otherwise. */
+/* The size of a chunk. Refuses a chunk if libtiff computes another length for its rows. */
 static hl_status measure_chunks(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   TIFF *tiff = r->file->tiff;

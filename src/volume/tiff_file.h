@@ -13,7 +13,7 @@
 typedef struct tiff_shape {
   uint32_t width, height;
   hl_voxel_type type;
-  unsigned bits;       /* of a sample in the file; unpacked to the type */
+  unsigned bits;       /* bits of a sample in the file */
   unsigned components; /* samples of a pixel */
   bool planar;         /* each component has chunks of its own */
 } tiff_shape;
@@ -38,18 +38,18 @@ void tiff_file_close(tiff_file *file);
 /* Fails with libtiff's own words. */
 hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *error);
 
-/* Makes the directory at an offset current; level: the level-th of its smaller pictures (0: itself). */
+/* Makes the directory at an offset current. level: which of its reduced pictures; 0: the directory itself. */
 hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *error);
 
-/* The current directory's shape; refuses what is not read. */
+/* The current directory's shape; fails if its kind of picture cannot be read. */
 hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error);
 bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b);
 
 /* Offsets of all directories, owned by the caller (hl_release). */
 hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error);
 
-/* Whether the current directory's chunks can hold a page of its shape, by their number of bytes and the best
- * that its compression can do. */
+/* Whether the current directory's chunks have enough bytes for a page of its shape, at the best ratio that
+ * its compression can reach. */
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
 
 /* Decodes the current directory's component, or HL_COMPONENT_MAGNITUDE, into width x height stored voxels. */

@@ -17,11 +17,11 @@
 #include "volume/tiff_plan.h"
 
 enum {
-  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read sooner than threads start */
+  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read before other threads would have started */
   FIRST_BYTES = 1 << 16
 };
 
-/* A file and the places of its directories. */
+/* A file and the offsets of its directories. */
 typedef struct stack_file {
   char *path;        /* owned */
   uint64_t *offsets; /* owned; [count] */
@@ -43,10 +43,10 @@ typedef struct stack_reading {
   size_t slice_bytes;
   /* of the threads */
   hl_pool *pool;
-  tiff_file *open;   /* owned; [threads]; each one's file */
-  uint32_t *opened;  /* owned; [threads]: which it is; UINT32_MAX: none */
-  hl_error *errors;  /* owned; [threads]: of its first slice that failed */
-  size_t *failed;    /* owned; [threads]: that slice; SIZE_MAX: none */
+  tiff_file *open;   /* owned; [threads]: the file that each thread has open */
+  uint32_t *opened;  /* owned; [threads]: that file's index; UINT32_MAX: none */
+  hl_error *errors;  /* owned; [threads]: the error of the thread's first slice that failed */
+  size_t *failed;    /* owned; [threads]: the index of that slice; SIZE_MAX: none */
   hl_status *status; /* owned; [threads] */
   atomic_size_t done, first_failed;
 } stack_reading;
@@ -61,7 +61,7 @@ static void read_resolution(tiff_file *file, double resolution[2]) {
   resolution[1] = isfinite((double)y) && y > 0 ? (double)y : 0;
 }
 
-/* Leaves out pages that are smaller pictures of others, and those of another shape. */
+/* Leaves out pages of another shape than the first, and pages that are reduced pictures of others. */
 static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stack_file *stack,
                                   hl_error *error) {
   size_t kept = 0, others = 0;
@@ -86,7 +86,7 @@ static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stac
   return status;
 }
 
-/* How many smaller resolutions each page has. */
+/* The number of reduced resolutions that every page has. */
 static size_t count_levels(tiff_file *file) {
   uint16_t count = 0;
   uint64_t *offsets = NULL;
@@ -101,8 +101,8 @@ static uint64_t volume_bytes(const stack_reading *r, const tiff_shape *shape) {
   return bytes;
 }
 
-/* Sets the level and the shape of its pages: the wanted one, else the finest that leaves half of the memory
- * limit. */
+/* Sets the level and the shape of its pages: the level that the caller wants, else the finest one that takes
+ * at most half of the memory limit. */
 static hl_status choose_level(stack_reading *r, tiff_file *file, uint64_t offset, hl_error *error) {
   hl_selection *selection = &r->request->selection;
   uint64_t limit = r->context->options.memory_limit;
@@ -188,7 +188,7 @@ static hl_status find_pages(stack_reading *r, size_t index, hl_error *error) {
   return status;
 }
 
-/* Every slice's page is there. */
+/* Checks that the file has the page of every slice. */
 static hl_status check_slices(const stack_reading *r, hl_error *error) {
   for (size_t z = 0; z < r->plan.slice_count; z++) {
     const tiff_slice *slice = &r->plan.slices[z];
@@ -219,7 +219,7 @@ static hl_status read_slice(stack_reading *r, size_t z, int worker, hl_error *er
     status = tiff_file_open(r->context, stack->path, first ? r->memory : NULL, first ? r->memory_size : 0,
                             true, file, error);
     if (status != HL_OK) r->opened[worker] = UINT32_MAX;
-    file->warnings = 1000; /* they were told when the pages were found */
+    file->warnings = 1000; /* no more warnings: they were logged when the pages were found */
   }
   tiff_shape shape;
   if (status == HL_OK) status = tiff_file_go(file, stack->offsets[slice->page], r->level, error);
@@ -248,7 +248,7 @@ static void slice_task(void *data, size_t z, int worker) {
   if (worker == 0) hl_progress(r->context, "load", (double)done / (double)r->plan.slice_count);
 }
 
-/* The error of the first slice that failed, whichever thread read it. */
+/* The error of the first slice that failed, among all threads'. */
 static hl_status find_failure(const stack_reading *r, int threads, hl_error *error) {
   for (int n = 0; n < threads; n++)
     if (r->failed[n] != SIZE_MAX && r->failed[n] == atomic_load(&r->first_failed)) {
@@ -305,7 +305,7 @@ static hl_status read_slices(stack_reading *r, hl_error *error) {
 
 /* ---- the volume ---- */
 
-/* The grid; axes that the file does not tell are as long as the first that it tells. */
+/* Describes the grid. An axis without a stated spacing takes the spacing of the first axis that has one. */
 static void describe(const stack_reading *r, hl_payload *payload) {
   hl_volume_description *grid = &payload->grid;
   double known = 1;
@@ -319,7 +319,7 @@ static void describe(const stack_reading *r, hl_payload *payload) {
   for (int axis = 0; axis < 3; axis++) {
     double step = (r->plan.spacing[axis] > 0 ? r->plan.spacing[axis] : known) * coarser[axis];
     grid->axis[axis][axis] = step;
-    /* voxels of lower levels are larger about the same corner */
+    /* voxels of reduced levels are larger, and share the corner of the grid */
     grid->origin[axis] = (step - step / coarser[axis]) / 2;
   }
   payload->components = r->shape.components;
@@ -357,7 +357,7 @@ static void release(stack_reading *r) {
   tiff_plan_release(&r->plan);
 }
 
-/* The whole of a pipe or of compressed data, since pages are read from several places. */
+/* Reads all of a pipe or of compressed data into memory, as pages are read in any order. */
 static hl_status read_whole(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error) {
   size_t capacity = 0, got = 1;
   hl_status status = HL_OK;

@@ -31,7 +31,7 @@ static hl_status make_slices(tiff_plan *plan, size_t count, const char *path, hl
 
 /* Adds a file; null: the first file itself. */
 static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl_error *error) {
-  /* a new file is mostly the last one again */
+  /* searched from the end, as a file is mostly the one added last */
   for (size_t n = plan->file_count; name != NULL && n-- > 1;)
     if (strcmp(plan->files[n], name) == 0) {
       *index = (uint32_t)n;
@@ -63,7 +63,8 @@ typedef struct ome_reader {
   char order[3];            /* "ZCT" in some order: the first changes fastest */
   bool in_pixels, done, is_planned;
   /* TiffData */
-  bool is_open, whole; /* its planes are not yet placed; to the last plane */
+  bool is_open, whole; /* is_open: the planes of the current TiffData are not placed yet; whole: they go on to
+                          the last plane */
   size_t first[3], count, page;
   size_t placed; /* planes of all of them */
   char file[NAME_BYTES];
@@ -74,14 +75,14 @@ static bool has_name(const hl_xml_tag *tag, const char *name) {
   return strcmp(colon != NULL ? colon + 1 : tag->name, name) == 0;
 }
 
-/* A whole number's attribute, or `other` where there is none. */
+/* The value of an attribute that is a whole number; `other` where it is missing. */
 static bool read_number(const hl_xml_tag *tag, const char *name, size_t other, size_t *number) {
   const char *text = hl_xml_attribute(tag, name);
   *number = other;
   return text == NULL || (hl_text_sizes(text, number, 1) == 1 && *number <= SIZE_MOST);
 }
 
-/* The length of a voxel in micrometres; 0: not told. */
+/* The length of a voxel in micrometres; 0: not stated. */
 static double read_length(const hl_xml_tag *tag, char axis) {
   static const struct {
     const char *names;
@@ -122,7 +123,7 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
   if (order != NULL && strlen(order) == 5 && strchr(order + 2, 'Z') != NULL &&
       strchr(order + 2, 'C') != NULL && strchr(order + 2, 'T') != NULL)
     memcpy(ome->order, order + 2, 3);
-  /* colours are samples of a pixel: their planes are one */
+  /* colours are the samples of a pixel: one page holds the planes of all of them */
   if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
   for (int axis = 0; axis < 3; axis++) ome->plan->spacing[axis] = read_length(tag, "XYZ"[axis]);
   ome->in_pixels = true;
@@ -131,7 +132,7 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
 
 static int axis_of(char letter) { return letter == 'Z' ? 0 : letter == 'C' ? 1 : 2; }
 
-/* The chosen time step and channel, and a list of slices. */
+/* Chooses the time step and the channel, and allocates the list of slices. */
 static hl_status begin_slices(ome_reader *ome, hl_error *error) {
   if (ome->is_planned) return HL_OK;
   ome->is_planned = true;
@@ -139,7 +140,7 @@ static hl_status begin_slices(ome_reader *ome, hl_error *error) {
   return status == HL_OK ? make_slices(ome->plan, ome->size[0], ome->path, error) : status;
 }
 
-/* Places the planes of a TiffData. */
+/* Places the planes that a TiffData element names. */
 static hl_status place_planes(ome_reader *ome, hl_error *error) {
   size_t at[3], total = ome->size[0] * ome->size[1] * ome->size[2], place = 0, factor = 1;
   uint32_t file = 0;
@@ -182,13 +183,13 @@ static hl_status begin_planes(ome_reader *ome, const hl_xml_tag *tag, hl_error *
   return tag->is_end ? place_planes(ome, error) : HL_OK;
 }
 
-/* A file beside the first one; a path could lead anywhere. */
+/* The name of a file beside the first one; names with a path are refused, as they could lead anywhere. */
 static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
   const char *name = hl_xml_attribute(tag, "FileName"), *slash = strrchr(ome->path, '/');
   if (name == NULL) return HL_OK;
   if (strchr(name, '/') != NULL || strlen(name) >= sizeof ome->file || name[0] == 0)
     return fail_ome(ome, "names a file that is not beside it", error);
-  /* the first file, under its own name */
+  /* the first file, named by its own name */
   if (strcmp(name, slash != NULL ? slash + 1 : ome->path) != 0) strcpy(ome->file, name);
   return HL_OK;
 }
@@ -202,7 +203,7 @@ static hl_status read_tag(ome_reader *ome, const hl_xml_tag *tag, hl_error *erro
   return HL_OK;
 }
 
-/* Without TiffData, or where pages lack, planes are the pages in order. */
+/* Where TiffData is absent or incomplete, planes are the pages in order. */
 static hl_status finish_ome(ome_reader *ome, hl_error *error) {
   if (!ome->in_pixels) return fail_ome(ome, "has no Pixels: is it a companion of another file?", error);
   hl_status status = begin_slices(ome, error);

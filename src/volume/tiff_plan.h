@@ -17,10 +17,10 @@ typedef struct tiff_plan {
   tiff_slice *slices; /* owned; [slice_count]; the chosen time step and channel, along z */
   size_t slice_count;
   char *
-      *files; /* owned; [file_count]; names beside the first file; files[0] is null: the first file itself */
+      *files; /* owned; [file_count]; names of files beside the first one; files[0] is null: the first file */
   size_t file_count;
   double spacing[3]; /* 0: not told */
-  bool is_told;      /* by OME-XML or ImageJ, not only by the pages */
+  bool is_told;      /* OME-XML or ImageJ's description states the order; else it is that of the pages */
 } tiff_plan;
 
 /* description: of the first page, or null. pages: of the first file; components: samples of a pixel.

@@ -25,7 +25,8 @@ typedef struct hl_array_entry {
   bool of_cells;
 } hl_array_entry;
 
-/* Time steps, channels and resolutions of a file, each at least 1, and those that are read. */
+/* The numbers of time steps, channels and resolutions of a file, each at least 1, and which of them are read.
+ */
 typedef struct hl_selection {
   size_t times, channels, levels;
   int time, channel, level;

@@ -297,8 +297,8 @@ static hl_status decode_array(hl_stream **stream, const vti_header *header, cons
              : read_length(*stream, header, promised, error);
 }
 
-/* The index of the active scalars at points; where points have no array of one component, of those at
- * cells. */
+/* The index of the active scalars at points; if no array at points has one component, of the active scalars
+ * at cells. */
 static int active_array(const vti_header *header) {
   if (header->active_points >= 0) return header->active_points;
   for (size_t n = 0; n < header->request->array_count; n++)

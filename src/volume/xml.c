@@ -80,7 +80,7 @@ static void resolve_entities(char *value) {
 
 static bool ends_name(char c) { return c == 0 || hl_is_space(c) || c == '=' || c == '/'; }
 
-/* Cuts name="value" at *cursor; false if it is malformed. */
+/* Splits name="value" off at *cursor, which moves past it; false if it is malformed. */
 static bool cut_attribute(char **cursor, hl_xml_tag *tag) {
   if (tag->attribute_count == HL_XML_ATTRIBUTES) return false;
   char *name = *cursor, *end = name;

@@ -13,7 +13,7 @@
 
 enum { REFERENCED_FILE = 0x00041500, NAME_BYTES = 512 };
 
-/* Whether `name` is there in the bundle's folder. */
+/* Whether the bundle's folder has a file of this name. */
 static bool is_there(const hl_bundle *bundle, const char *name) {
   char *path = hl_path_join(bundle->context, bundle->path, name);
   bool there = path != NULL && access(path, R_OK) == 0;
@@ -21,7 +21,8 @@ static bool is_there(const hl_bundle *bundle, const char *name) {
   return there;
 }
 
-/* DICOM\IM0001 to DICOM/IM0001, or dicom/im0001 where discs were copied so. */
+/* Turns DICOM\IM0001 into DICOM/IM0001, or into dicom/im0001 where the disc was copied with names in lower
+ * case. */
 static hl_status add_file(hl_bundle *bundle, char *name, hl_error *error) {
   for (char *c = name; *c != 0; c++)
     if (*c == '\\') *c = '/';

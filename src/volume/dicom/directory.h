@@ -4,8 +4,8 @@
 
 #include "volume/bundle.h"
 
-/* Lists the files that a DICOMDIR names, those that are there, as the bundle's entries. Another DICOM file
- * names none. */
+/* Adds the files that a DICOMDIR names and that exist to the bundle's entries. Adds nothing if the source is
+ * another kind of DICOM file. */
 hl_status hl_dicom_directory_read(hl_source **source, hl_bundle *bundle, hl_error *error);
 
 #endif

@@ -33,8 +33,8 @@ static bool is_long(uint16_t vr) {
   return false;
 }
 
-/* The sequences to read in files without value representations, which do not mark sequences of known length.
- */
+/* The sequences that are read in files without value representations: such files do not mark sequences of
+ * known length. */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
       0x52009229, 0x52009230,                         /* functional groups: shared, per frame */
@@ -104,7 +104,7 @@ static hl_status take_item(hl_dicom_reader *reader, bool *ended, hl_error *error
   return HL_OK;
 }
 
-/* Leaves items and sequences that end here, until an element comes next. */
+/* Leaves the items and sequences that end at the reader's position, until an element comes next. */
 static hl_status settle(hl_dicom_reader *reader, bool *ended, hl_error *error) {
   *ended = false;
   while (reader->depth > 0 && !*ended) {
@@ -167,7 +167,7 @@ hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool
       reader->level[reader->depth - 1].item_end = reader->at;
       continue;
     }
-    if (element->tag >> 16 == 0xfffe) { /* a delimiter without a beginning */
+    if (element->tag >> 16 == 0xfffe) { /* an end marker that nothing has begun */
       reader->at = element->offset;
       continue;
     }
@@ -179,7 +179,7 @@ hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool
     *found = true;
     bool pixels = element->tag == HL_DICOM_PIXEL_DATA || element->tag == 0x7fe00008 ||
                   element->tag == 0x7fe00009;
-    if (pixels && reader->depth == 0) reader->at = UINT64_MAX / 2; /* nothing after them is needed */
+    if (pixels && reader->depth == 0) reader->at = UINT64_MAX / 2; /* nothing after the pixels is needed */
     else if (element->length > hl_source_size(reader->source) ||
              element->offset > hl_source_size(reader->source) - element->length)
       return fail_at(reader, "the file is cut short: an element goes on beyond its end", error);
@@ -201,7 +201,8 @@ hl_status hl_dicom_text(hl_dicom_reader *reader, const hl_dicom_element *element
   return status;
 }
 
-/* Texts of numbers, with backslashes between them. An empty or wrong one is no number. */
+/* Reads numbers written as text, with backslashes between them, up to the first that is empty or malformed.
+ */
 static int parse_numbers(char *text, double *numbers, int most) {
   int count = 0;
   for (char *next = text; next != NULL && count < most; count++) {

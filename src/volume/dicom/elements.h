@@ -1,21 +1,21 @@
 /* volume/dicom/elements.h - the data elements of a DICOM file, one after the other.
  *
- * Sequences are gone into; an element's place is its own tag and those of the sequences around it. Source:
- * DICOM PS3.5, sections 7.1 (elements) and 7.5 (sequences). */
+ * The elements inside sequences are returned too: an element's place is its own tag and the tags of the
+ * sequences around it. Source: DICOM PS3.5, sections 7.1 (elements) and 7.5 (sequences). */
 #ifndef HL_VOLUME_DICOM_ELEMENTS_H
 #define HL_VOLUME_DICOM_ELEMENTS_H
 
 #include "volume/source.h"
 
 enum { HL_DICOM_DEPTH_MOST = 16, HL_DICOM_PIXEL_DATA = 0x7fe00010 };
-#define HL_DICOM_UNDEFINED UINT32_MAX /* the length of what a delimiter ends */
+#define HL_DICOM_UNDEFINED UINT32_MAX /* the length of a sequence or item that an end marker ends */
 
 /* Two letters, as in the file: HL_DICOM_VR('U', 'S'). */
 #define HL_DICOM_VR(a, b) ((uint16_t)((a) << 8 | (b)))
 
 typedef struct hl_dicom_element {
   uint32_t tag; /* group << 16 | element */
-  uint16_t vr;  /* 0: the file does not tell it */
+  uint16_t vr;  /* value representation; 0: the file does not state it */
   uint32_t length;
   uint64_t offset; /* of the value */
 } hl_dicom_element;
@@ -26,7 +26,7 @@ typedef struct hl_dicom_level {
   uint32_t item; /* the current one, from 0 */
   bool in_item, fragments;
   bool implicit;     /* how its items are written */
-  uint64_t end;      /* of the sequence; UINT64_MAX: a delimiter ends it */
+  uint64_t end;      /* position of the sequence's end; UINT64_MAX: an end marker ends it */
   uint64_t item_end; /* likewise */
 } hl_dicom_level;
 
@@ -38,15 +38,15 @@ typedef struct hl_dicom_reader {
   hl_dicom_level level[HL_DICOM_DEPTH_MOST];
 } hl_dicom_reader;
 
-/* Reads the next element that is no sequence. *found is false at the end of the file, and once the pixel data
- * of the file itself have been given. */
+/* Reads the next element that is no sequence. *found is false at the end of the file, and after the file's
+ * own pixel data. */
 hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool *found, hl_error *error);
 
 /* Copies a text without the blanks around it, cut to the buffer. */
 hl_status hl_dicom_text(hl_dicom_reader *reader, const hl_dicom_element *element, char *text, size_t size,
                         hl_error *error);
-/* Reads up to `most` numbers, binary ones of the type `vr` where the file does not tell it. *count: how many
- * there are; the rest of `numbers` stays. */
+/* Reads up to `most` numbers; binary numbers have the type `vr` in files that state none. *count: the number
+ * of values in the element; elements of `numbers` beyond it are left alone. */
 hl_status hl_dicom_numbers(hl_dicom_reader *reader, const hl_dicom_element *element, uint16_t vr,
                            double *numbers, int most, int *count, hl_error *error);
 

@@ -1,7 +1,8 @@
 /* volume/dicom/frame.c - from the bytes of a file to the values of a frame.
  *
- * Encapsulated pixel data (PS3.5, annex A.4) are items: a table of the frames' offsets, which may be empty,
- * then fragments. A file of one frame has all its fragments in it. */
+ * Encapsulated (compressed) pixel data are a list of items (PS3.5, annex A.4): a table of the frames'
+ * offsets, which may be empty, then fragments of frames. In a file of one frame, all fragments belong to it.
+ */
 #include "volume/dicom/frame.h"
 
 #include <stdlib.h>
@@ -37,7 +38,7 @@ static hl_status fail_short(const hl_source *source, uint64_t at, hl_error *erro
 
 /* ---- fragments ---- */
 
-/* Reads a fragment's header. *length: of its bytes; UINT64_MAX: there is none any more. */
+/* Reads a fragment's header. *length: the fragment's length in bytes; UINT64_MAX: no fragment is left. */
 static hl_status peek_fragment(hl_source *source, const hl_dicom_pixels *p, uint64_t at, uint64_t *length,
                                hl_error *error) {
   const unsigned char *bytes;
@@ -88,7 +89,8 @@ static hl_status begins_picture(hl_source *source, const hl_dicom_pixels *p, uin
   return status;
 }
 
-/* One fragment each, or else those that begin a picture begin a frame; the offsets' table may be wrong. */
+/* Finds where each frame begins, without the table of offsets, which may be wrong. With as many fragments as
+ * frames, each fragment is a frame; else every fragment that begins a picture begins a frame. */
 static hl_status place_frames(hl_source *source, hl_dicom_file *file, uint64_t begin, size_t fragments,
                               uint64_t end, hl_error *error) {
   size_t found = 0;
@@ -141,7 +143,7 @@ static hl_status read_fragments(hl_source *source, const hl_dicom_file *file, ui
     bytes += length;
   }
   if (status == HL_OK && bytes > hl_source_size(source)) status = fail_short(source, begin, error);
-  enum { SPARE = 16 }; /* bytes that decoders may look at beyond the end */
+  enum { SPARE = 16 }; /* bytes beyond the end that decoders may read */
   if (status == HL_OK)
     status = make_room(space->context, &space->packed, &space->packed_capacity, (size_t)bytes + SPARE, error);
   *total = 0;
@@ -207,7 +209,7 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
   uint64_t bytes = (uint64_t)count * size, at = p->offset;
   bool halved = p->is_halved && p->samples == 3 && size == 1;
   if (halved) bytes = 2 * (uint64_t)pixels;
-  if (p->encapsulated) { /* native pixels in fragments */
+  if (p->encapsulated) { /* pixels that are not compressed, but stored in fragments */
     hl_status status = read_fragments(source, file, index, space, &got, error);
     if (status == HL_OK && got < bytes) status = fail_short(source, at, error);
     if (status != HL_OK) return status;
@@ -219,7 +221,8 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
     } else at += index * bytes;
     hl_status status = make_room(space->context, &space->packed, &space->packed_capacity, (size_t)bytes + 2,
                                  error);
-    bool odd = p->big_endian && p->words && size == 1; /* bytes of swapped words: an even number of them */
+    bool odd = p->big_endian && p->words &&
+               size == 1; /* 8-bit pixels in swapped 16-bit words: an even number of bytes is read */
     if (status == HL_OK) status = hl_source_read(source, at, space->packed, (size_t)bytes + odd, &got, error);
     if (status == HL_OK && got < bytes) status = fail_short(source, at, error);
     if (status != HL_OK) return status;
@@ -235,7 +238,7 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
 
 /* ---- stored bits, signs, colours ---- */
 
-/* Moves the stored bits to the lowest, and their sign to the value's. */
+/* Shifts the stored bits down to bit 0, and extends the sign of signed values. */
 static void place_bits(const hl_dicom_pixels *p, size_t count, hl_dicom_workspace *space) {
   int shift = p->high + 1 - p->stored, bits = (int)space->value_bytes * 8;
   int spare = bits - p->stored;

@@ -1,6 +1,6 @@
-/* volume/dicom/header.c - one table of attributes, and what they come to.
+/* volume/dicom/header.c - reads a file's attributes by one table, and checks them.
  *
- * In: a file's elements. Out: its header; whether its frames can be read is checked here, before anything is
+ * In: a file's elements. Out: its header. Whether the frames can be read is checked here, before anything is
  * allocated for them. */
 #include "volume/dicom/header.h"
 
@@ -24,7 +24,8 @@ bool hl_dicom_has_mark(const unsigned char *bytes, size_t length) {
   return length >= PREAMBLE_BYTES + 4 && memcmp(bytes + PREAMBLE_BYTES, "DICM", 4) == 0;
 }
 
-/* Old files begin with the first element at once: of group 2 or 8, with a short value. */
+/* Whether the bytes look like a file without the mark "DICM": such files begin with an element of group 2 or
+ * 8 that has a short value. */
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   if (hl_dicom_has_mark(bytes, length)) return true;
   if (length < 16 || (bytes[0] != 2 && bytes[0] != 8) || bytes[1] != 0 || bytes[3] != 0) return false;
@@ -75,7 +76,7 @@ static hl_status read_meta(hl_dicom_header *header, hl_dicom_reader *reader, hl_
   }
 }
 
-/* Without a transfer syntax the first element tells how they are written. */
+/* Finds the transfer syntax of a file that states none, from its first element. */
 static hl_status guess_syntax(hl_dicom_reader *reader, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -112,9 +113,9 @@ hl_status hl_dicom_begin(hl_source **source, hl_dicom_header *header, hl_dicom_r
 
 typedef struct attribute {
   uint32_t tag;
-  uint16_t vr;      /* of its numbers, in files that do not tell it; 0: a text */
-  uint16_t numbers; /* so many; of a text: the bytes that are kept */
-  bool of_frame;    /* the place is in hl_dicom_frame, else in hl_dicom_header */
+  uint16_t vr;      /* type of its numbers in files that state none; 0: a text */
+  uint16_t numbers; /* how many numbers are kept; of a text: how many bytes */
+  bool of_frame;    /* `place` is an offset in hl_dicom_frame, else in hl_dicom_header */
   size_t place;
 } attribute;
 
@@ -294,7 +295,8 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   p->high = (int)high;
   p->is_signed = header->representation == 1;
   p->planar = header->planar == 1;
-  /* CT and PET store measured values; otherwise MONOCHROME1 shows the least value as white */
+  /* CT and PET store measured values, which are never inverted; in other pictures MONOCHROME1 means that the
+   * least value is white */
   bool measured = hl_text_equal(header->modality, "CT") || hl_text_equal(header->modality, "PT");
   p->inverted = hl_text_equal(header->photometric, "MONOCHROME1") && !measured;
   p->is_ybr = hl_text_starts(header->photometric, "YBR_FULL");
@@ -326,7 +328,7 @@ static hl_status take_pixels(const hl_dicom_reader *reader, const hl_dicom_eleme
   return HL_OK;
 }
 
-/* Frames that a file does not list one by one take what is said of all. */
+/* Frames without attributes of their own get the attributes of the whole file. */
 static void complete_frame(const hl_dicom_header *header, hl_dicom_frame *frame) {
   double *own = (double *)frame;
   const double *base = (const double *)&header->base;

@@ -2,7 +2,8 @@
 #include "core/error.h"
 #include "volume/dicom/codecs.h"
 
-/* The frame header's marker, SOF0 to SOF15, and its precision (T.81, B.2.2); 0: there is none. */
+/* The number n of the frame header's marker SOFn, 0 to 15, and its precision in bits (T.81, B.2.2); 0: there
+ * is no frame header. */
 static int find_process(const hl_dicom_packed *packed, int *bits) {
   const unsigned char *bytes = packed->bytes;
   for (size_t n = 2; n + 5 < packed->length;) {
@@ -59,7 +60,7 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed 
   hl_status status = hl_dicom_check_packed(packed, "JPEG", info->image_width, info->image_height,
                                            (size_t)info->num_components, info->data_precision, error);
   if (status != HL_OK) return status;
-  /* Without a marker that tells the colours, the file does. */
+  /* A marker in the JPEG data tells the colours; without such a marker, the DICOM file does. */
   bool told = info->saw_Adobe_marker || info->saw_JFIF_marker;
   if (info->num_components == 3 && !told) info->jpeg_color_space = p->is_ybr ? JCS_YCbCr : JCS_RGB;
   info->out_color_space = info->num_components == 3 ? JCS_RGB : JCS_GRAYSCALE;
@@ -91,7 +92,7 @@ static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *e
 
 #endif
 
-/* Samples of 8 bits where the file has room for 16, from the last on. */
+/* Widens samples of 8 bits to 16, in place, from the last to the first. */
 static void widen(const hl_dicom_pixels *p, void *values) {
   for (size_t n = p->rows * p->columns * p->samples; n > 0; n--)
     ((uint16_t *)values)[n - 1] = ((const unsigned char *)values)[n - 1];

@@ -13,8 +13,9 @@ typedef struct huffman_table {
   bool known;
   unsigned char values[256];
   int greatest[17];              /* the greatest code of each length; -1: there is none */
-  int first[17];                 /* code - first[length]: index of its value */
-  uint16_t look[1 << LOOK_BITS]; /* length << 8 | value; 0: a longer code */
+  int first[17];                 /* code - first[length] is the index of the code's value */
+  uint16_t look[1 << LOOK_BITS]; /* by the next LOOK_BITS bits: length << 8 | value of a code; 0: the code is
+                                    longer */
 } huffman_table;
 
 typedef struct component {
@@ -25,7 +26,7 @@ typedef struct decoder {
   const hl_dicom_packed *packed;
   const unsigned char *bytes;
   size_t length, at;
-  uint64_t bits; /* the next ones, from bit `bit_count` - 1 downwards */
+  uint64_t bits; /* the bits that come next: bit `bit_count` - 1 first, bit 0 last */
   int bit_count;
   size_t missing;                  /* bytes read beyond the end */
   int precision, predictor, shift; /* shift: the point transform */
@@ -135,7 +136,7 @@ static hl_status read_headers(decoder *d, hl_error *error) {
 
 /* ---- codes ---- */
 
-/* Fills the bits up to 32 at least; zeros after a marker or the end. */
+/* Fills `bits` up to at least 32 bits; with zeros after a marker or at the end. */
 static void fill(decoder *d) {
   while (d->bit_count <= 48) {
     unsigned byte = 0;
@@ -153,7 +154,7 @@ static unsigned peek(const decoder *d, int count) {
   return (unsigned)(d->bits >> (d->bit_count - count)) & ((1u << count) - 1);
 }
 
-/* A code's value; -1: there is no such code. 32 bits must be there. */
+/* Decodes one value; -1: no code begins with these bits. At least 32 bits must be in `bits`. */
 static int take_code(decoder *d, const huffman_table *table) {
   unsigned look = table->look[peek(d, LOOK_BITS)];
   if (look != 0) {
@@ -207,7 +208,8 @@ static int predict(int predictor, int a, int b, int c) {
   }
 }
 
-/* Decodes a row of `step` samples a pixel. above: the row before; null: there is none since the restart. */
+/* Decodes a row of samples that lie `step` samples apart. above: the row before; null: a restart came since.
+ */
 static bool take_row(decoder *d, const uint16_t *above, uint16_t *row) {
   size_t step = d->components;
   for (size_t x = 0; x < d->columns; x++)

@@ -1,7 +1,7 @@
-/* volume/dicom/rle.c - DICOM's run lengths (PS3.5, annex G).
+/* volume/dicom/rle.c - DICOM's run-length coding (PS3.5, annex G).
  *
- * A header of sixteen 32-bit numbers: how many segments, then where each begins. A segment holds one byte of
- * every pixel, the highest byte of a sample first, packed as PackBits. */
+ * A header of sixteen 32-bit numbers: the number of segments, then where each begins. A segment holds one
+ * byte of every pixel, compressed as PackBits does; the segment of a sample's highest byte comes first. */
 #include <string.h>
 
 #include "core/error.h"
@@ -11,7 +11,7 @@ enum { HEADER_BYTES = 64, SEGMENTS_MOST = 15 };
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
-/* Writes the segment's bytes `step` bytes apart, `count` of them; false: it ends too early. */
+/* Unpacks a segment to `count` bytes, `step` bytes apart; false: the segment ends too early. */
 static bool unpack(const unsigned char *bytes, size_t length, size_t count, size_t step, unsigned char *to) {
   size_t done = 0;
   for (size_t n = 0; done < count && n < length;) {

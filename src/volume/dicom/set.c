@@ -1,4 +1,4 @@
-/* volume/dicom/set.c - from files to series. */
+/* volume/dicom/set.c - reads the headers of all files and sorts the files into series. */
 #include "volume/dicom/set.h"
 
 #include <math.h>
@@ -66,7 +66,7 @@ static void list_series(const hl_dicom_set *set, char *text, size_t size) {
   if (set->series_count > NAMED && used < size) snprintf(text + used, size - used, "; ...");
 }
 
-/* How well the wanted text names a series: 3 by its UID, 2 by its number, 1 by its description. */
+/* How well a text names a series: 3: by its UID, 2: by its number, 1: by its description, 0: not at all. */
 static int match(const hl_dicom_series *series, const char *wanted) {
   double number;
   if (strcmp(series->uid, wanted) == 0) return 3;
@@ -80,7 +80,7 @@ static size_t largest(const hl_dicom_set *set) {
   for (size_t n = 0; n < set->series_count; n++) {
     const hl_dicom_series *series = &set->series[n];
     double size = (double)series->rows * (double)series->columns * (double)series->frames;
-    if (series->frames == 1) size *= 1e-6; /* a single picture is no volume */
+    if (series->frames == 1) size *= 1e-6; /* a single picture is chosen only if there are no stacks */
     if (size > most) {
       most = size;
       chosen = n;
@@ -123,7 +123,7 @@ hl_status hl_dicom_series_choose(const hl_dicom_set *set, const char *wanted, si
 
 /* ---- files ---- */
 
-/* If a file does not describe each frame, its frames follow each other along the normal. */
+/* Places the frames of a file that does not describe each: they follow each other along the normal. */
 static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_frame *frame) {
   *frame = index < header->frames_told ? header->frames[index] : header->base;
   frame->index = (uint32_t)index;
@@ -131,7 +131,7 @@ static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_fr
   double distance = (double)index * (header->slice_spacing > 0 ? header->slice_spacing
                                      : header->thickness > 0   ? header->thickness
                                                                : 1);
-  /* PS3.3, C.8.8.3.2: offsets that begin with 0 are from the first frame's position. */
+  /* PS3.3, C.8.8.3.2: where the first offset is 0, offsets count from the first frame's position. */
   if (index < header->offset_count) distance = header->offsets[index] - header->offsets[0];
   vec3 normal = vec3_cross(vec3_of(frame->orientation), vec3_of(frame->orientation + 3));
   frame->position[0] += distance * normal.x;
@@ -139,7 +139,7 @@ static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_fr
   frame->position[2] += distance * normal.z;
 }
 
-/* Holds what the header promises against the file's length, before anything is allocated for it. */
+/* Compares the size that the header promises with the file's length, before anything is allocated. */
 static hl_status check_length(const hl_source *source, const hl_dicom_header *header, hl_error *error) {
   const hl_dicom_pixels *p = &header->pixels;
   uint64_t size = hl_source_size(source), frames = (uint64_t)header->frame_count, needed;
@@ -169,7 +169,8 @@ static hl_status add_frames(hl_dicom_set *set, const hl_dicom_header *header, si
   return HL_OK;
 }
 
-/* The padding value as the pixels' own type has it (PS3.3, C.7.5.1.1.2), and the range's other end. */
+/* The padding value, converted to the pixels' own type (PS3.3, C.7.5.1.1.2), and the other end of the padding
+ * range. */
 static void take_padding(const hl_dicom_header *header, double padding[2]) {
   for (int n = 0; n < 2; n++) {
     double value = header->padding[n];

@@ -6,14 +6,14 @@
 #include "volume/dicom/header.h"
 
 typedef struct hl_dicom_file {
-  uint32_t entry, series; /* in the bundle; in the set */
+  uint32_t entry, series; /* index of the file in the bundle, and of its series in the set */
   hl_dicom_pixels pixels;
   double padding[2]; /* the range of values that stand for nothing; NAN: none */
   double slice_spacing, thickness, window[2];
   bool is_localizer, is_deflated;
   size_t frame_count;
-  uint64_t *frame_begins; /* owned; [frame_count + 1], positions of fragments; of encapsulated files of
-                             several frames, once found; else null */
+  uint64_t *frame_begins; /* owned; [frame_count + 1], positions of the frames' first fragments; null until
+                             they are found, and in files of one frame or without fragments */
 } hl_dicom_file;
 
 typedef struct hl_dicom_series {
@@ -31,10 +31,11 @@ typedef struct hl_dicom_set {
   hl_dicom_frame *frames;  /* owned; [frame_count] */
   size_t file_count, file_capacity, series_count, series_capacity, frame_count, frame_capacity;
   size_t damaged;         /* DICOM files that could not be read */
-  char first_damage[300]; /* why the first of them could not */
+  char first_damage[300]; /* error of the first damaged file */
 } hl_dicom_set;
 
-/* Reads the headers of all DICOM files in the bundle. strict: a file that cannot be read ends it. */
+/* Reads the headers of all DICOM files in the bundle. strict: fails at a file that cannot be read, instead of
+ * counting it as damaged. */
 hl_status hl_dicom_set_read(hl_context *context, const hl_bundle *bundle, bool strict, hl_dicom_set *set,
                             hl_error *error);
 void hl_dicom_set_release(hl_dicom_set *set);
@@ -43,10 +44,10 @@ void hl_dicom_set_release(hl_dicom_set *set);
 hl_status hl_dicom_series_choose(const hl_dicom_set *set, const char *wanted, size_t *chosen,
                                  hl_error *error);
 
-/* "3 CT \"Thorax\" 512 x 512 x 200": for a list. */
+/* A line for lists of series: "3 CT \"Thorax\" 512 x 512 x 200". */
 const char *hl_dicom_series_text(const hl_dicom_series *series, char *text, size_t size);
 
-/* Opens a file where its elements lie: inflated, where they are deflated. */
+/* Opens a file for reading its elements; inflates it if they are deflated. */
 hl_status hl_dicom_file_open(const hl_dicom_set *set, const hl_dicom_file *file, hl_source **source,
                              hl_error *error);
 

@@ -1,7 +1,8 @@
 /* volume/dicom/stack.c - which frames of a series are slices of one volume, their order and their distance.
  *
  * Source: DICOM PS3.3, C.7.6.2.1.1: voxel (i, j) of a frame lies at position + i * (column spacing) * row
- * direction + j * (row spacing) * column direction. Frames are ordered along the normal, row x column. */
+ * direction + j * (row spacing) * column direction. Frames are ordered along the normal: the cross product of
+ * row and column direction. */
 #include "volume/dicom/stack.h"
 
 #include <math.h>
@@ -25,8 +26,8 @@ typedef struct sorting {
   size_t count;
   vec3 row, column, normal;
   bool has_positions;
-  double tolerance; /* frames that are no farther apart lie at one place */
-  double *places;   /* owned; [place_count]: distances */
+  double tolerance; /* frames at most this far apart lie at the same position */
+  double *places;   /* owned; [place_count]: the frames' positions along the normal */
   size_t place_count;
 } sorting;
 
@@ -60,8 +61,8 @@ static bool same_grid(const sorting *s, const hl_dicom_frame *a, const hl_dicom_
   return true;
 }
 
-/* Keeps the largest set of frames of one size and orientation; localizers only where there is nothing else.
- */
+/* Keeps the largest set of frames that have one size and orientation. Localizers are left out unless the
+ * series has nothing else. */
 static hl_status keep_majority(sorting *s, hl_error *error) {
   enum { CLASSES = 64 };
   size_t size[CLASSES] = {0}, classes = 0, best = 0;
@@ -100,8 +101,8 @@ static int compare(double a, double b) {
   return a < b ? -1 : a > b;
 }
 
-/* Compares frames at the same position, which belong to different volumes: by the attributes that tell
- * volumes apart, the most reliable first. */
+/* Compares frames at the same position, which belong to different volumes, by the attributes in which such
+ * volumes differ; the most reliable attribute comes first. */
 static int by_volume(const hl_dicom_frame *a, const hl_dicom_frame *b) {
   const double of_a[] = {a->temporal,    a->echo,     a->b_value, a->trigger, a->segment,
                          a->acquisition, a->instance, a->file,    a->index};
@@ -130,7 +131,8 @@ static double pixel_spacing(const hl_dicom_frame *frame, int which) {
   return frame->spacing[which] > 0 && isfinite(frame->spacing[which]) ? frame->spacing[which] : 1;
 }
 
-/* The distance of slices that a file states; for a single slice, or where positions are missing. */
+/* The distance between slices that the file states. Used for a single slice, or where positions are missing.
+ */
 static double stated_spacing(const sorting *s, bool *known) {
   const hl_dicom_file *file = file_of(s, s->frames[0].frame);
   *known = true;
@@ -154,7 +156,7 @@ static void find_axes(sorting *s) {
   s->normal = vec3_normalise(vec3_cross(s->row, s->column));
 }
 
-/* Sorts the frames, by position where there are positions, else by their numbers. */
+/* Sorts the frames by their positions, or by their numbers where positions are missing. */
 static void sort(sorting *s) {
   if (s->has_positions) {
     for (size_t n = 0; n < s->count; n++)
@@ -174,14 +176,14 @@ static void sort(sorting *s) {
            known ? " mm" : " (a pixel's width)");
 }
 
-/* The end of the run of frames that lie at one place. */
+/* One past the last of the frames that lie at the same position as frame `begin`. */
 static size_t end_of_place(const sorting *s, size_t begin) {
   size_t end = begin + 1;
   while (end < s->count && s->frames[end].distance - s->frames[begin].distance <= s->tolerance) end++;
   return end;
 }
 
-/* How many frames most places have. */
+/* The most common number of frames at one position. */
 static size_t usual_count(const sorting *s) {
   enum { MOST = 4096 };
   static const size_t none = 1;
@@ -206,7 +208,8 @@ static int by_volume_alone(const void *a, const void *b) {
   return by_volume(((const placed_frame *)a)->frame, ((const placed_frame *)b)->frame);
 }
 
-/* Gathers the frames of each place; those beyond the usual number are left out, and places with fewer. */
+/* Gathers the frames of each position. Positions with fewer frames than usual are left out, and so are frames
+ * beyond the usual number. */
 static hl_status gather_places(sorting *s, hl_dicom_stack *stack, hl_error *error) {
   size_t times = usual_count(s), doubled = 0, incomplete = 0;
   if (times == 0) return hl_fail_memory(error, 1 << 14, "a list of slices");
@@ -244,7 +247,7 @@ static int compare_doubles(const void *a, const void *b) {
   return compare(*(const double *)a, *(const double *)b);
 }
 
-/* The median distance between neighbours; 0 without memory. */
+/* The median distance between neighbouring positions; 0 if memory is short. */
 static double median_step(const sorting *s) {
   size_t count = s->place_count - 1;
   double *steps = hl_allocate(s->set->context, count, sizeof *steps), median;
@@ -256,7 +259,8 @@ static double median_step(const sorting *s) {
   return median;
 }
 
-/* Whether all places lie at whole multiples of one step, near `step`; *slices: how many steps and one. */
+/* Whether all positions are whole multiples of one step, which is close to `step`, away from the first.
+ * *slices: the number of steps plus one. */
 static bool is_even(const sorting *s, double step, size_t *slices) {
   const double TOLERANCE = 0.05; /* of a step */
   double span = s->places[s->place_count - 1] - s->places[0], steps = 0;
@@ -271,7 +275,7 @@ static bool is_even(const sorting *s, double step, size_t *slices) {
   return true;
 }
 
-/* Puts slices at even distances between the places. */
+/* Puts slices at even distances from the first to the last position. */
 static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *stack) {
   double first = s->places[0], span = s->places[s->place_count - 1] - first;
   for (size_t n = 0, place = 0; n < count; n++) {
@@ -320,7 +324,7 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
 
 static void put(vec3 v, double to[3]) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-/* Tells where slices do not lie on the line from the first to the last. */
+/* Warns if slices do not lie on the line from the first to the last slice. */
 static void check_line(const sorting *s, const hl_dicom_stack *stack) {
   size_t last = s->place_count - 1;
   double span = s->places[last] - s->places[0], worst = 0;

@@ -8,10 +8,10 @@
 #include "volume/dicom/set.h"
 #include "volume/volume.h"
 
-/* A slice of the grid lies between two places where frames are, or at one. */
+/* A slice of the grid: at a position that has frames, or interpolated between two such positions. */
 typedef struct hl_dicom_slice {
-  size_t place;  /* the one before, or at it */
-  double weight; /* of the place after; 0: the slice is at `place` */
+  size_t place;  /* index of the position at the slice or before it */
+  double weight; /* weight of the next position's frame; 0: the slice lies at `place` */
 } hl_dicom_slice;
 
 typedef struct hl_dicom_stack {

@@ -1,8 +1,8 @@
-/* volume/dicom/voxels.c - decodes slices on all processors, applies each one's rescaling, fills gaps.
+/* volume/dicom/voxels.c - decodes slices on several threads, rescales their values, fills gaps.
  *
- * Where all slices have one rescaling, voxels stay integers, and it becomes the volume's value_scale and
- * value_offset. Where it differs, as in PET, values are computed and kept as floats. Voxels of the padding
- * value become NAN: if a slice has any, all integers become floats in the end. */
+ * Where all slices have the same slope and intercept, voxels stay integers, and the two become the volume's
+ * value_scale and value_offset. Where they differ, as in PET, values are computed and kept as floats. Voxels
+ * of the padding value become NAN: if any slice has some, all integers become floats at the end. */
 #include "volume/dicom/voxels.h"
 
 #include <math.h>
@@ -22,9 +22,10 @@ typedef struct reading {
   size_t time;   /* the frame to take at each place */
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
-  bool as_floats;                      /* values are computed; else they are stored as they are */
-  bool swaps_floats;                   /* (unused by integers) */
-  double slope, intercept, padding[2]; /* of all slices, where as_floats is false */
+  bool as_floats;    /* values are computed as floats; else stored values are kept */
+  bool swaps_floats; /* (unused by integers) */
+  double slope, intercept,
+      padding[2]; /* the same for all slices; slope and intercept only where as_floats is false */
   size_t slice_voxels, voxel_bytes;
   unsigned char *voxels; /* [slices][slice_voxels] of voxel_bytes */
   hl_pool *pool;
@@ -189,7 +190,7 @@ static void read_one(void *data, size_t index, int worker) {
   if (worker == 0) hl_progress(r->set->context, "load", (double)done / (double)r->stack->grid.dimensions[2]);
 }
 
-/* Integers to floats in the same block, from the last to the first, with padding as NAN. */
+/* Turns integers into floats in the same block, from the last to the first; padding becomes NAN. */
 static void widen(const reading *r, size_t count, void *voxels) {
   double bias = hl_voxel_type_bias(r->type);
   float *floats = voxels;

@@ -5,7 +5,7 @@
 #include "volume/dicom/stack.h"
 #include "volume/format.h"
 
-/* Decodes all slices of the wanted component or time, several at a time. */
+/* Decodes all slices of the wanted component or time step, in parallel. */
 hl_status hl_dicom_voxels_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
                                hl_volume **volume, hl_error *error);
 
