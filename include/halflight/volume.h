@@ -47,7 +47,8 @@ typedef struct hl_volume_description {
   double value_offset;       /* default 0 */
   const void *voxels;        /* voxel (0,0,0) */
   ptrdiff_t stride_bytes[3]; /* bytes from one voxel to the next along i, j, k; all 0: packed */
-  int borrow;     /* non-zero: packed u8, u16 and f32 voxels are not copied and must outlive the volume */
+  int borrow; /* non-zero: u8, u16 and f32 voxels are not copied and must outlive the volume, where those of a
+                 row adjoin; rows and slices may lie apart, in rising order, slices by 64 MiB at most */
   hl_space space; /* default unknown */
   /* Called once when the library no longer reads `voxels`: when the volume's last reference is released, by
    * the thread that does it, or before hl_volume_create() returns where voxels were copied. Not called where

@@ -1,8 +1,9 @@
 """Arrays as the library reads them: where voxels lie in memory, and where in the world.
 
-The library borrows packed voxels of uint8, uint16 and float32. Which index axis is called first, and from which
-end it is counted, is free, so every array whose voxels fill a block of memory is borrowed as it lies: C or
-Fortran order, transposed or flipped. Other arrays are copied once, by the library.
+The library borrows voxels of uint8, uint16 and float32 whose rows are packed; rows and slices may lie apart. Which
+index axis is called first, and from which end it is counted, is free, so every array is borrowed as it lies that has
+one axis along which voxels adjoin: C or Fortran order, transposed, flipped, a box cut out of a larger array, or every
+second slice. Other arrays are copied once, by the library.
 """
 from __future__ import annotations
 
@@ -100,20 +101,42 @@ def readable(array: np.ndarray[Any, Any], axes: str) -> np.ndarray[Any, Any]:
     return voxels
 
 
-def _as_it_lies(voxels: np.ndarray[Any, Any], place: Place) -> tuple[np.ndarray[Any, Any], Place]:
-    """Axes sorted by their strides, none counted backwards: packed wherever the voxels fill a block."""
-    origin, steps = list(place.origin), list(place.steps)
+class _Lying(NamedTuple):
+    """Voxels as the library reads them: [z][y][x] of its index axes, and bytes from one voxel to the next along x, y, z."""
+
+    voxels: np.ndarray[Any, Any]
+    place: Place
+    strides: tuple[int, int, int]
+
+
+def _strides(voxels: np.ndarray[Any, Any]) -> tuple[int, int, int]:
+    """Bytes along x, y, z; along axes of one voxel, where any number does, those of a block."""
+    found, block = [], voxels.itemsize
+    for size, stride in zip(voxels.shape[::-1], voxels.strides[::-1], strict=True):
+        found.append(stride if size > 1 else block)
+        block = max(block, abs(found[-1]) * size)
+    return found[0], found[1], found[2]
+
+
+def _as_it_lies(voxels: np.ndarray[Any, Any], place: Place) -> _Lying:
+    """Axes sorted by their strides, none counted backwards, where that lets the library borrow the voxels."""
+    if voxels.flags.c_contiguous:
+        return _Lying(voxels, place, _strides(voxels))
+    origin, steps, turned = list(place.origin), list(place.steps), voxels
     for n in range(3):
         axis = 2 - n  # of the array [z][y][x]
         if voxels.strides[axis] < 0 and voxels.shape[axis] > 1:
             origin = [o + s * (voxels.shape[axis] - 1) for o, s in zip(origin, steps[n], strict=True)]
             steps[n] = tuple(-s for s in steps[n])
-            voxels = np.flip(voxels, axis)
-    order = sorted(range(3), key=lambda axis: -voxels.strides[axis] if voxels.shape[axis] > 1 else 0)
-    lying = voxels.transpose(order)
-    if voxels.flags.c_contiguous or not lying.flags.c_contiguous:
-        return voxels, Place(tuple(origin), tuple(steps))
-    return lying, Place(tuple(origin), tuple(steps[2 - axis] for axis in reversed(order)))
+            turned = np.flip(turned, axis)
+    long = [axis for axis in range(3) if turned.shape[axis] > 1]  # axes of one voxel stay where they are
+    falling = iter(sorted(long, key=lambda axis: -turned.strides[axis]))
+    order = [next(falling) if axis in long else axis for axis in range(3)]
+    turned = turned.transpose(order)
+    strides = _strides(turned)
+    if strides[0] != turned.itemsize:  # the library copies them: as the caller counts them
+        return _Lying(voxels, place, _strides(voxels))
+    return _Lying(turned, Place(tuple(origin), tuple(steps[2 - axis] for axis in reversed(order))), strides)
 
 
 def make_volume(array: np.ndarray[Any, Any], axes: str, place: Place, space: int, owner: object) -> Any:
@@ -122,13 +145,14 @@ def make_volume(array: np.ndarray[Any, Any], axes: str, place: Place, space: int
         raise ValueError(f"the array has the shape {array.shape}: there is no voxel in it")
     voxels = readable(array, axes)
     kind = voxels.dtype.str[1:]
+    strides = _strides(voxels)
     if kind in _BORROWED:
-        voxels, place = _as_it_lies(voxels, place)
+        voxels, place, strides = _as_it_lies(voxels, place)
     description = ffi.new("hl_volume_description *")
     lib.hl_volume_description_defaults(description)
     description.type = _TYPES[kind]
     description.dimensions = voxels.shape[::-1]
-    description.stride_bytes = [0, 0, 0] if voxels.flags.c_contiguous else voxels.strides[::-1]
+    description.stride_bytes = strides
     description.origin, description.axis = place.origin, place.steps
     description.space = space
     description.voxels = ffi.cast("void *", voxels.__array_interface__["data"][0])

@@ -16,10 +16,8 @@ typedef struct tap_window {
   lanes_offsets offsets; /* bytes from voxels to tap (0,0,0) */
 } tap_window;
 
-LANES_INLINE const unsigned char *window_row(const grid *grid, hl_storage storage, const tap_window *window,
-                                             int y, int z) {
-  size_t row_bytes = (size_t)grid->dimension[0] * hl_storage_bytes(storage);
-  return window->voxels + ((size_t)z * (size_t)grid->dimension[1] + (size_t)y) * row_bytes;
+LANES_INLINE const unsigned char *window_row(const grid *grid, const tap_window *window, int y, int z) {
+  return window->voxels + (size_t)z * grid->slice_bytes + (size_t)y * grid->row_bytes;
 }
 
 /* The loops are not unrolled: they would outgrow the instruction cache and take a compiler minutes. */
@@ -32,7 +30,7 @@ LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_wind
     lanes plane = lanes_set(0);
 #pragma GCC unroll 1
     for (int y = 0; y < 4; y++)
-      plane = lanes_fma(sum_row(storage, window_row(grid, storage, window, y, z), &window->offsets, &along),
+      plane = lanes_fma(sum_row(storage, window_row(grid, window, y, z), &window->offsets, &along),
                         weight[1][y], plane);
     sum = lanes_fma(plane, weight[2][z], sum);
   }
@@ -119,14 +117,11 @@ LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uin
   for (int a = 0; a < 3; a++) reference[a] = cell[a][first];
   size_t bytes = hl_storage_bytes(grid->storage);
   tap_window window;
-  window.voxels = (const unsigned char *)grid->voxels +
-                  (((size_t)(reference[2] - 1) * (size_t)grid->dimension[1] + (size_t)(reference[1] - 1)) *
-                       (size_t)grid->dimension[0] +
-                   (size_t)(reference[0] - 1)) *
-                      bytes;
-  lanes_int offset = (cell[2] - reference[2]) * (grid->dimension[1] * grid->dimension[0]) +
-                     (cell[1] - reference[1]) * grid->dimension[0] + (cell[0] - reference[0]);
-  lanes_store_offsets(&window.offsets, (offset * (int32_t)bytes) & lanes_from_bits(active));
+  window.voxels = hl_grid_row(grid, reference[1] - 1, reference[2] - 1) + (size_t)(reference[0] - 1) * bytes;
+  lanes_int offset = (cell[2] - reference[2]) * (int32_t)grid->slice_bytes +
+                     (cell[1] - reference[1]) * (int32_t)grid->row_bytes +
+                     (cell[0] - reference[0]) * (int32_t)bytes;
+  lanes_store_offsets(&window.offsets, offset & lanes_from_bits(active));
   return window;
 }
 

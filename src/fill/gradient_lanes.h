@@ -17,7 +17,7 @@ LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_w
     lanes value = lanes_set(0), along_x = value, along_y = value;
 #pragma GCC unroll 1
     for (int y = 0; y < 4; y++) {
-      const unsigned char *row = window_row(grid, storage, window, y, z);
+      const unsigned char *row = window_row(grid, window, y, z);
       lanes plain = sum_row(storage, row, &window->offsets, &weights);
       along_x = lanes_fma(slope_row(storage, row, &window->offsets, &slopes), w->weight[1][y], along_x);
       along_y = lanes_fma(plain, w->slope[1][y], along_y);
@@ -58,9 +58,7 @@ static lanes3 slopes_of_taps(const grid *grid, const lanes_int cell[3], uint32_t
 /* Whether 32 bits hold the offset between any two voxels; in larger grids they hold offsets within a block.
  */
 LANES_INLINE int fits_offsets(const grid *grid) {
-  return (uint64_t)grid->dimension[0] * (uint64_t)grid->dimension[1] * (uint64_t)grid->dimension[2] *
-             hl_storage_bytes(grid->storage) <=
-         INT32_MAX;
+  return (uint64_t)grid->dimension[2] * grid->slice_bytes <= INT32_MAX;
 }
 
 static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uint32_t active,

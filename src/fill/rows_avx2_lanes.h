@@ -133,7 +133,7 @@ LANES_INLINE __m256i weigh_short_slice(const short_slice *slice, __m256i weights
 /* The weighted sums of all lanes' 64 taps. voxels, offsets: bytes to every lane's first tap. */
 LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets,
                                   const lanes weight[3][4]) {
-  size_t row_bytes = (size_t)grid->dimension[0] * 2, slice_bytes = row_bytes * (size_t)grid->dimension[1];
+  size_t row_bytes = grid->row_bytes, slice_bytes = grid->slice_bytes;
   row_weights weights = weights_of_row(HL_STORAGE_U16, weight[0]);
   __m256 sums[2];
 #pragma GCC unroll 1
@@ -156,7 +156,7 @@ LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels,
 
 LANES_INLINE lanes3 slopes_of_short_rows(const grid *grid, const unsigned char *voxels,
                                          const lanes_offsets *offsets, const tap_slope_weights *w) {
-  size_t row_bytes = (size_t)grid->dimension[0] * 2, slice_bytes = row_bytes * (size_t)grid->dimension[1];
+  size_t row_bytes = grid->row_bytes, slice_bytes = grid->slice_bytes;
   row_weights weights = weights_of_row(HL_STORAGE_U16, w->weight[0]);
   row_slopes slopes = slopes_of_row(HL_STORAGE_U16, w->slope[0]);
   lanes3 sum;

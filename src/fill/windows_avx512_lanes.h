@@ -47,10 +47,9 @@ LANES_INLINE void locate_window(const grid *grid, const int32_t low[3], voxel_wi
     window->shift = _mm512_set1_epi64(within * 8);
   } else {
     size_t voxel = hl_storage_bytes(grid->storage);
-    window->row_bytes = (size_t)grid->dimension[0] * voxel;
-    window->slice_bytes = (size_t)grid->dimension[1] * window->row_bytes;
-    window->first = (const unsigned char *)grid->voxels + (size_t)low[2] * window->slice_bytes +
-                    (size_t)low[1] * window->row_bytes + (size_t)low[0] * voxel;
+    window->row_bytes = grid->row_bytes;
+    window->slice_bytes = grid->slice_bytes;
+    window->first = hl_grid_row(grid, low[1], low[2]) + (size_t)low[0] * voxel;
   }
 }
 

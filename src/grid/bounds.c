@@ -66,7 +66,7 @@ static void reduce_row(const grid *grid, const float *least, const float *greate
 
 static void bound_brick_row(const brick_job *job, int32_t by, int32_t bz, float *least, float *greatest) {
   const grid *grid = job->grid;
-  size_t bytes = hl_storage_bytes(grid->storage), width = (size_t)grid->dimension[0];
+  size_t width = (size_t)grid->dimension[0];
   const void *rows[WINDOW * WINDOW];
   int row_count = 0;
   int32_t y0 = clamp_index((int64_t)by * HL_BRICK_CELLS - BEFORE, grid->dimension[1]);
@@ -74,9 +74,7 @@ static void bound_brick_row(const brick_job *job, int32_t by, int32_t bz, float 
   int32_t z0 = clamp_index((int64_t)bz * HL_BRICK_CELLS - BEFORE, grid->dimension[2]);
   int32_t z1 = clamp_index((int64_t)bz * HL_BRICK_CELLS + AFTER, grid->dimension[2]);
   for (int32_t z = z0; z <= z1; z++)
-    for (int32_t y = y0; y <= y1; y++)
-      rows[row_count++] = (const unsigned char *)grid->voxels +
-                          ((size_t)z * (size_t)grid->dimension[1] + (size_t)y) * width * bytes;
+    for (int32_t y = y0; y <= y1; y++) rows[row_count++] = hl_grid_row(grid, y, z);
   job->bound_rows(rows, row_count, width, least, greatest);
   size_t at = ((size_t)bz * (size_t)grid->brick_count[1] + (size_t)by) * (size_t)grid->brick_count[0];
   reduce_row(grid, least, greatest, at);
@@ -145,12 +143,10 @@ typedef struct cell_job {
 /* Bounds of one slice of voxels along x and y. slice: [2][cells y][cells x], low and high. */
 static void bound_slice(const cell_job *job, int32_t z, float *rows, float *padded, float *slice) {
   const grid *grid = job->grid;
-  size_t width = (size_t)grid->lookup[0].count[0], bytes = hl_storage_bytes(grid->storage);
+  size_t width = (size_t)grid->lookup[0].count[0];
   int32_t height = grid->dimension[1];
   for (int32_t y = 0; y < height; y++) {
-    const unsigned char *row = (const unsigned char *)grid->voxels +
-                               ((size_t)z * (size_t)height + (size_t)y) * (size_t)grid->dimension[0] * bytes;
-    job->functions->along(grid->storage, row, grid->dimension[0], job->smooth, padded,
+    job->functions->along(grid->storage, hl_grid_row(grid, y, z), grid->dimension[0], job->smooth, padded,
                           rows + 2 * (size_t)y * width, rows + (2 * (size_t)y + 1) * width);
   }
   for (int32_t f = 0; f < grid->lookup[0].count[1]; f++) {

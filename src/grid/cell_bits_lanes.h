@@ -78,18 +78,17 @@ LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[
 LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
                                float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
   const int32_t *count = grid->dimension;
-  size_t bytes = hl_storage_bytes(storage), row_bytes = (size_t)count[0] * bytes,
-         slice_bytes = row_bytes * (size_t)count[1];
+  size_t bytes = hl_storage_bytes(storage);
   int32_t x = brick[0] * HL_BRICK_CELLS - 2, y = brick[1] * HL_BRICK_CELLS - 2,
           z = brick[2] * HL_BRICK_CELLS - 2;
   int within = x >= 0 && x + BITS_ROW <= count[0];
   const unsigned char *voxels = (const unsigned char *)grid->voxels + (within ? (size_t)x * bytes : 0);
   for (int pair = 0; pair < BITS_ROWS / 2; pair++) {
     lanes v[CELL_BIT_TAPS], greatest[HL_BRICK_CELLS];
-    size_t first = (size_t)bits_voxel_at(y + 2 * pair, count[1]) * row_bytes;
-    size_t second = (size_t)bits_voxel_at(y + 2 * pair + 1, count[1]) * row_bytes;
+    size_t first = (size_t)bits_voxel_at(y + 2 * pair, count[1]) * grid->row_bytes;
+    size_t second = (size_t)bits_voxel_at(y + 2 * pair + 1, count[1]) * grid->row_bytes;
     for (int tap = 0; tap < CELL_BIT_TAPS; tap++) {
-      const unsigned char *slice = voxels + (size_t)bits_voxel_at(z + tap, count[2]) * slice_bytes;
+      const unsigned char *slice = voxels + (size_t)bits_voxel_at(z + tap, count[2]) * grid->slice_bytes;
       const unsigned char *const rows[2] = {slice + first, slice + second};
       v[tap] = (within ? bits_two_rows(storage, rows) : bits_two_held_rows(grid, x, y + 2 * pair, z + tap)) *
                sign;

@@ -36,7 +36,8 @@ typedef struct cell_lookup {
 typedef struct grid {
   void *memory;       /* owned; all arrays but the volume's voxels and the layers of cell_bounds */
   const void *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's, or
-                         finite_voxels */
+                         finite_voxels. Rows are packed */
+  size_t row_bytes, slice_bytes; /* of voxels: from row to row, and from slice to slice */
   /* u8 voxels once more, in columns eight voxels wide: eight rows of a column are 64 bytes in a line, so that
    * a window of 8x8 voxels comes from two columns by two loads (of 512 bits), and neighbouring windows come
    * from the same lines of the cache whichever way the sheets lie. Values are less 128, as signed numbers.
@@ -114,16 +115,20 @@ static inline void hl_brick_coordinates(const grid *grid, uint32_t brick, int32_
   b[2] = (int32_t)(brick / (uint32_t)grid->brick_count[0] / (uint32_t)grid->brick_count[1]);
 }
 
+/* The first voxel of a row. */
+static inline const unsigned char *hl_grid_row(const grid *grid, int64_t y, int64_t z) {
+  return (const unsigned char *)grid->voxels + (size_t)z * grid->slice_bytes + (size_t)y * grid->row_bytes;
+}
+
 /* The stored value of a voxel; beyond the grid's faces the border's values continue. */
 static inline float hl_stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
   int64_t at[3] = {x, y, z};
   for (int a = 0; a < 3; a++)
     at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
-  size_t index = ((size_t)at[2] * (size_t)grid->dimension[1] + (size_t)at[1]) * (size_t)grid->dimension[0] +
-                 (size_t)at[0];
-  if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)grid->voxels)[index];
-  if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)grid->voxels)[index];
-  return ((const float *)grid->voxels)[index];
+  const void *row = hl_grid_row(grid, at[1], at[2]);
+  if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)row)[at[0]];
+  if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)row)[at[0]];
+  return ((const float *)row)[at[0]];
 }
 
 #endif

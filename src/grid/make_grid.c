@@ -10,26 +10,29 @@
 
 /* ---- copies of voxels ---- */
 
-typedef struct replace_job {
-  const float *from;
-  float *to;
-  size_t slice; /* voxels */
-  float empty;
-} replace_job;
-
 static void replace_slice(void *data, size_t index, int worker) {
   (void)worker;
-  const replace_job *job = data;
-  for (size_t i = index * job->slice; i < (index + 1) * job->slice; i++)
-    job->to[i] = isfinite(job->from[i]) ? job->from[i] : job->empty;
+  const grid *grid = data;
+  size_t count_x = (size_t)grid->dimension[0], count_y = (size_t)grid->dimension[1];
+  float *to = grid->finite_voxels + index * count_x * count_y;
+  for (size_t y = 0; y < count_y; y++, to += count_x) {
+    const float *from = (const float *)(const void *)hl_grid_row(grid, (int64_t)y, (int64_t)index);
+    for (size_t x = 0; x < count_x; x++) to[x] = isfinite(from[x]) ? from[x] : grid->empty;
+  }
+}
+
+/* Where rows and slices of the voxels begin. */
+static void set_voxels(grid *grid, const void *voxels, size_t row_bytes, size_t slice_bytes) {
+  grid->voxels = voxels;
+  grid->row_bytes = row_bytes;
+  grid->slice_bytes = slice_bytes;
 }
 
 /* Copies f32 voxels, with empty in place of every non-finite one. */
-static void replace_nonfinite(hl_pool *pool, const hl_volume *volume, grid *grid) {
-  replace_job job = {volume->voxels, grid->finite_voxels, volume->dimension[0] * volume->dimension[1],
-                     grid->empty};
-  hl_pool_run(pool, volume->dimension[2], replace_slice, &job);
-  grid->voxels = grid->finite_voxels;
+static void replace_nonfinite(hl_pool *pool, grid *grid) {
+  hl_pool_run(pool, (size_t)grid->dimension[2], replace_slice, grid);
+  size_t row_bytes = (size_t)grid->dimension[0] * sizeof *grid->finite_voxels;
+  set_voxels(grid, grid->finite_voxels, row_bytes, (size_t)grid->dimension[1] * row_bytes);
 }
 
 /* Slices and columns lie an odd number of cache lines apart: at powers of two, all would share few of the
@@ -57,12 +60,12 @@ static void copy_slice(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = data;
   size_t count_x = (size_t)grid->dimension[0], count_y = (size_t)grid->dimension[1];
-  const unsigned char *rows = (const unsigned char *)grid->voxels + index * count_x * count_y;
+  const unsigned char *rows = hl_grid_row(grid, 0, (int64_t)index);
   unsigned char *column = grid->columns + index * grid->column_slice_bytes;
   for (size_t x = 0; x < count_x; x += GRID_COLUMN, column += grid->column_bytes) {
     size_t width = count_x - x < GRID_COLUMN ? count_x - x : GRID_COLUMN;
     for (size_t y = 0; y < count_y; y++) {
-      const unsigned char *from = rows + y * count_x + x;
+      const unsigned char *from = rows + y * grid->row_bytes + x;
       uint64_t voxels = 0;
       if (width == GRID_COLUMN) memcpy(&voxels, from, GRID_COLUMN);
       else memcpy(&voxels, from, width);
@@ -120,7 +123,7 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
                          const grid_source *source, grid *grid, hl_error *error) {
   const hl_volume *volume = source->volume->volume;
   *grid = (struct grid){0};
-  grid->voxels = volume->voxels;
+  set_voxels(grid, volume->voxels, volume->row_bytes, volume->slice_bytes);
   grid->value_scale = volume->value_scale;
   grid->value_offset = volume->value_offset;
   grid->empty = (float)((source->empty - volume->value_offset) / volume->value_scale);
@@ -131,7 +134,7 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
   set_size(volume, grid);
   hl_status status = allocate(context, functions, source, grid, error);
   if (status != HL_OK) return status;
-  if (grid->finite_voxels != NULL) replace_nonfinite(pool, volume, grid);
+  if (grid->finite_voxels != NULL) replace_nonfinite(pool, grid);
   if (grid->columns != NULL) hl_pool_run(pool, (size_t)grid->dimension[2], copy_slice, grid);
   status = hl_bricks_bound(context, pool, functions, grid, error);
   bool smooth = source->kernel->degree == HL_BSPLINE_DEGREE;

@@ -66,17 +66,13 @@ static float depth_of_float(const hl_seen *seen, float stored) {
   return seen->depth[bin] + (float)(at - bin) * (seen->depth[bin + 1] - seen->depth[bin]);
 }
 
-static float depth_at(const hl_seen *seen, size_t index) {
+static float depth_at(const hl_seen *seen, const void *row, ptrdiff_t i) {
   switch (seen->volume->storage) {
-    case HL_STORAGE_U8: return seen->depth[((const uint8_t *)seen->volume->voxels)[index]];
-    case HL_STORAGE_U16: return seen->depth[((const uint16_t *)seen->volume->voxels)[index]];
+    case HL_STORAGE_U8: return seen->depth[((const uint8_t *)row)[i]];
+    case HL_STORAGE_U16: return seen->depth[((const uint16_t *)row)[i]];
     case HL_STORAGE_F32: break;
   }
-  return depth_of_float(seen, ((const float *)seen->volume->voxels)[index]);
-}
-
-static size_t index_of(const hl_volume *volume, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k) {
-  return ((size_t)k * volume->dimension[1] + (size_t)j) * volume->dimension[0] + (size_t)i;
+  return depth_of_float(seen, ((const float *)row)[i]);
 }
 
 /* ---- cells and columns ---- */
@@ -88,13 +84,13 @@ static size_t cell_of(const hl_seen *seen, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k
 }
 
 static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
-  size_t row = index_of(seen->volume, 0, j, k);
+  const void *row = hl_volume_row(seen->volume, (size_t)j, (size_t)k);
   float *mean = &seen->mean[cell_of(seen, 0, j, k)];
   ptrdiff_t step = (ptrdiff_t)seen->step;
   for (ptrdiff_t i = seen->first[0]; i < seen->end[0];) {
     ptrdiff_t cell = i / step, end = (cell + 1) * step < seen->end[0] ? (cell + 1) * step : seen->end[0];
     float sum = 0;
-    for (; i < end; i++) sum += depth_at(seen, row + (size_t)i);
+    for (; i < end; i++) sum += depth_at(seen, row, i);
     mean[cell] += sum;
   }
 }
@@ -274,7 +270,7 @@ static float least_depth(const hl_seen *seen, size_t cell) {
 }
 
 /* The first voxel from `from` on towards `to` that counts; to + way: none. way is 1 or -1. */
-static ptrdiff_t first_that_counts(const hl_seen *seen, size_t row, size_t cells, ptrdiff_t from,
+static ptrdiff_t first_that_counts(const hl_seen *seen, const void *row, size_t cells, ptrdiff_t from,
                                    ptrdiff_t to, int way) {
   const ptrdiff_t step = (ptrdiff_t)seen->step;
   for (ptrdiff_t i = from; way * (to - i) >= 0;) {
@@ -286,13 +282,14 @@ static ptrdiff_t first_that_counts(const hl_seen *seen, size_t row, size_t cells
     }
     float least = least_depth(seen, cells + (size_t)cell);
     for (; i != next; i += way)
-      if (depth_at(seen, row + (size_t)i) >= least) return i;
+      if (depth_at(seen, row, i) >= least) return i;
   }
   return to + way;
 }
 
 bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first, ptrdiff_t *last) {
-  size_t row = index_of(seen->volume, 0, j, k), cells = cell_of(seen, 0, j, k);
+  const void *row = hl_volume_row(seen->volume, (size_t)j, (size_t)k);
+  size_t cells = cell_of(seen, 0, j, k);
   ptrdiff_t end = seen->end[0] - 1;
   *first = first_that_counts(seen, row, cells, seen->first[0], end, 1);
   if (*first > end) return false;

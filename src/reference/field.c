@@ -16,17 +16,17 @@ typedef struct taps {
   double slope[3][4]; /* derivative of weight by the point's coordinate */
 } taps;
 
-static inline double stored_at(const reference_volume *volume, hl_storage storage, size_t offset) {
-  const void *voxels = volume->grid->voxels;
-  if (storage == HL_STORAGE_U8) return ((const uint8_t *)voxels)[offset];
-  if (storage == HL_STORAGE_U16) return ((const uint16_t *)voxels)[offset];
-  float value = ((const float *)voxels)[offset];
+static inline double stored_at(const reference_volume *volume, hl_storage storage, const void *row,
+                               size_t i) {
+  if (storage == HL_STORAGE_U8) return ((const uint8_t *)row)[i];
+  if (storage == HL_STORAGE_U16) return ((const uint16_t *)row)[i];
+  float value = ((const float *)row)[i];
   return isfinite(value) ? (double)value : volume->empty_stored;
 }
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]) {
-  const size_t *n = volume->grid->dimension;
-  return stored_at(volume, volume->grid->storage, (voxel[2] * n[1] + voxel[1]) * n[0] + voxel[0]);
+  const void *row = hl_volume_row(volume->grid, voxel[1], voxel[2]);
+  return stored_at(volume, volume->grid->storage, row, voxel[0]);
 }
 
 /* The cubic B-spline at distances 1+t, t, 1-t, 2-t, and its derivative by t. */
@@ -108,14 +108,13 @@ static inline void find_taps(const reference_volume *volume, vec3 point, bool sl
 static inline double weigh_stored(const reference_volume *volume, hl_storage storage,
                                   const size_t voxel[3][4], const double *x, const double *y,
                                   const double *z) {
-  const size_t *n = volume->grid->dimension;
   double sum = 0;
   for (int k = 0; k < 4; k++) {
     double slice = 0;
     for (int j = 0; j < 4; j++) {
-      size_t row = (voxel[2][k] * n[1] + voxel[1][j]) * n[0];
+      const void *row = hl_volume_row(volume->grid, voxel[1][j], voxel[2][k]);
       double line = 0;
-      for (int i = 0; i < 4; i++) line += x[i] * stored_at(volume, storage, row + voxel[0][i]);
+      for (int i = 0; i < 4; i++) line += x[i] * stored_at(volume, storage, row, voxel[0][i]);
       slice += y[j] * line;
     }
     sum += z[k] * slice;

@@ -117,6 +117,8 @@ static hl_volume *make_volume(hl_context *context, const hl_volume_description *
   volume->space = description->space;
   volume->selection = (hl_selection){1, 1, 1, 0, 0, 0};
   volume->storage = hl_voxel_type_storage(description->type);
+  volume->row_bytes = volume->dimension[0] * hl_storage_bytes(volume->storage);
+  volume->slice_bytes = volume->row_bytes * volume->dimension[1];
   volume->value_scale = description->value_scale;
   volume->value_offset = description->value_offset -
                          description->value_scale * hl_voxel_type_bias(description->type);
@@ -182,22 +184,31 @@ static void copy_voxels(const hl_volume_description *description, const ptrdiff_
     }
 }
 
-static bool choose_strides(const hl_volume_description *description, ptrdiff_t stride[3]) {
+static void choose_strides(const hl_volume_description *description, ptrdiff_t stride[3]) {
   const ptrdiff_t *given = description->stride_bytes;
   ptrdiff_t packed[3] = {(ptrdiff_t)hl_voxel_type_bytes(description->type), 0, 0};
   packed[1] = packed[0] * (ptrdiff_t)description->dimensions[0];
   packed[2] = packed[1] * (ptrdiff_t)description->dimensions[1];
   bool is_packed = given[0] == 0 && given[1] == 0 && given[2] == 0;
   memcpy(stride, is_packed ? packed : given, sizeof packed);
-  return memcmp(stride, packed, sizeof packed) == 0;
 }
 
-/* Whether the voxels can be borrowed: their type is stored unchanged, and they are aligned for vector loads.
- */
-static bool can_borrow(const hl_volume_description *description) {
+/* Slices that lie this far apart at most are borrowed: sampling counts the bytes between a few of them in 32
+ * bits. */
+#define LARGEST_GAP ((ptrdiff_t)1 << 26)
+
+/* Whether the voxels can be borrowed: their type is stored unchanged, they are aligned for vector loads, rows
+ * are packed, and neither rows nor slices overlap. */
+static bool can_borrow(const hl_volume_description *description, const ptrdiff_t stride[3]) {
   hl_voxel_type type = description->type;
-  return (type == HL_VOXEL_U8 || type == HL_VOXEL_U16 || type == HL_VOXEL_F32) &&
-         (uintptr_t)description->voxels % hl_voxel_type_bytes(type) == 0;
+  ptrdiff_t bytes = (ptrdiff_t)hl_voxel_type_bytes(type);
+  ptrdiff_t row = bytes * (ptrdiff_t)description->dimensions[0];
+  if (type != HL_VOXEL_U8 && type != HL_VOXEL_U16 && type != HL_VOXEL_F32) return false;
+  if ((uintptr_t)description->voxels % (size_t)bytes != 0 || stride[0] != bytes) return false;
+  ptrdiff_t rows = (ptrdiff_t)description->dimensions[1];
+  if (stride[1] == row && stride[2] == row * rows) return true;
+  return stride[1] >= row && stride[1] % bytes == 0 && stride[2] <= LARGEST_GAP &&
+         stride[1] <= stride[2] / rows && stride[2] % bytes == 0;
 }
 
 hl_status hl_volume_create(hl_context *context, const hl_volume_description *description, hl_volume **volume,
@@ -219,11 +230,13 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
     return HL_ERROR_ARGUMENT;
   }
   ptrdiff_t stride[3];
-  bool packed = choose_strides(description, stride);
+  choose_strides(description, stride);
   hl_volume *made = make_volume(context, description);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a volume");
-  if (packed && description->borrow && can_borrow(description)) {
+  if (description->borrow && can_borrow(description, stride)) {
     made->voxels = description->voxels;
+    made->row_bytes = (size_t)stride[1];
+    made->slice_bytes = (size_t)stride[2];
     hl_status measured = finish_volume(made, subject, volume, error);
     if (measured != HL_OK) return measured;
     (*volume)->release = description->release;
@@ -245,6 +258,19 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   if (measured == HL_OK && description->release != NULL)
     description->release(description->release_data, description->voxels);
   return measured;
+}
+
+const void *hl_volume_piece(const hl_volume *volume, size_t first, size_t count, void *buffer) {
+  size_t bytes = hl_storage_bytes(volume->storage), width = volume->dimension[0];
+  if (hl_volume_is_packed(volume)) return (const unsigned char *)volume->voxels + first * bytes;
+  for (size_t done = 0; done < count;) {
+    size_t row = (first + done) / width, i = (first + done) % width;
+    size_t taken = width - i < count - done ? width - i : count - done;
+    const unsigned char *from = hl_volume_row(volume, row % volume->dimension[1], row / volume->dimension[1]);
+    memcpy((unsigned char *)buffer + done * bytes, from + i * bytes, taken * bytes);
+    done += taken;
+  }
+  return buffer;
 }
 
 void hl_volume_retain(hl_volume *volume) {
@@ -335,12 +361,12 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
 double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
     return NAN;
-  size_t index = (k * volume->dimension[1] + j) * volume->dimension[0] + i;
+  const void *row = hl_volume_row(volume, j, k);
   double stored = 0;
   switch (volume->storage) {
-    case HL_STORAGE_U8: stored = ((const uint8_t *)volume->voxels)[index]; break;
-    case HL_STORAGE_U16: stored = ((const uint16_t *)volume->voxels)[index]; break;
-    case HL_STORAGE_F32: stored = (double)((const float *)volume->voxels)[index]; break;
+    case HL_STORAGE_U8: stored = ((const uint8_t *)row)[i]; break;
+    case HL_STORAGE_U16: stored = ((const uint16_t *)row)[i]; break;
+    case HL_STORAGE_F32: stored = (double)((const float *)row)[i]; break;
   }
   return isfinite(stored) ? volume->value_scale * stored + volume->value_offset : NAN;
 }

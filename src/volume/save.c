@@ -24,6 +24,7 @@ typedef struct saving {
   hl_output output;
   bool compress;
   unsigned char *piece;  /* owned; PIECE voxels in the file's type, native byte order */
+  unsigned char *stored; /* owned; PIECE stored voxels of a volume whose rows do not adjoin, else null */
   unsigned char *packed; /* owned; [OUT_BYTES] */
   z_stream stream;
 } saving;
@@ -54,9 +55,10 @@ static void describe(const hl_volume *volume, hl_volume_description *grid) {
   grid->origin[2] = volume->index_to_world.offset.z;
 }
 
-static void convert_integers(const hl_volume *volume, size_t first, size_t count, unsigned char *piece) {
+static void convert_integers(const hl_volume *volume, const void *voxels, size_t count,
+                             unsigned char *piece) {
   size_t bytes = hl_storage_bytes(volume->storage);
-  const unsigned char *from = (const unsigned char *)volume->voxels + first * bytes;
+  const unsigned char *from = voxels;
   unsigned flip = (unsigned)hl_voxel_type_bias(volume->type); /* the sign bit of signed types */
   for (size_t n = 0; n < count; n++) {
     uint16_t wide = from[n];
@@ -67,13 +69,13 @@ static void convert_integers(const hl_volume *volume, size_t first, size_t count
   }
 }
 
-static void convert_values(const hl_volume *volume, size_t first, size_t count, unsigned char *piece) {
+static void convert_values(const hl_volume *volume, const void *voxels, size_t count, unsigned char *piece) {
   for (size_t n = 0; n < count; n++) {
     double stored = 0;
     switch (volume->storage) {
-      case HL_STORAGE_U8: stored = ((const uint8_t *)volume->voxels)[first + n]; break;
-      case HL_STORAGE_U16: stored = ((const uint16_t *)volume->voxels)[first + n]; break;
-      case HL_STORAGE_F32: stored = (double)((const float *)volume->voxels)[first + n]; break;
+      case HL_STORAGE_U8: stored = ((const uint8_t *)voxels)[n]; break;
+      case HL_STORAGE_U16: stored = ((const uint16_t *)voxels)[n]; break;
+      case HL_STORAGE_F32: stored = (double)((const float *)voxels)[n]; break;
     }
     float value = (float)(volume->value_scale * stored + volume->value_offset);
     memcpy(piece + 4 * n, &value, 4);
@@ -118,8 +120,9 @@ static hl_status write_voxels(saving *s, hl_error *error) {
   size_t total = hl_volume_voxel_count(volume);
   for (size_t first = 0; first < total; first += PIECE) {
     size_t count = total - first < PIECE ? total - first : PIECE;
-    if (s->grid.type == HL_VOXEL_F32) convert_values(volume, first, count, s->piece);
-    else convert_integers(volume, first, count, s->piece);
+    const void *voxels = hl_volume_piece(volume, first, count, s->stored);
+    if (s->grid.type == HL_VOXEL_F32) convert_values(volume, voxels, count, s->piece);
+    else convert_integers(volume, voxels, count, s->piece);
     put(s, count * hl_voxel_type_bytes(s->grid.type), first + count == total);
     hl_progress(volume->context, "write", (double)(first + count) / (double)total);
     if (hl_cancelled(volume->context))
@@ -150,7 +153,10 @@ static hl_status save(hl_context *context, saving *s, const char *path, bool nrr
   size_t piece_bytes = PIECE * hl_voxel_type_bytes(s->grid.type);
   s->piece = hl_allocate(context, piece_bytes, 1);
   s->packed = hl_allocate(context, OUT_BYTES, 1);
-  if (s->piece == NULL || s->packed == NULL) return hl_fail_memory(error, piece_bytes + OUT_BYTES, path);
+  if (!hl_volume_is_packed(s->volume))
+    s->stored = hl_allocate(context, PIECE, hl_storage_bytes(s->volume->storage));
+  if (s->piece == NULL || s->packed == NULL || (s->stored == NULL && !hl_volume_is_packed(s->volume)))
+    return hl_fail_memory(error, piece_bytes + OUT_BYTES, path);
   if (s->compress &&
       deflateInit2(&s->stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, GZIP_WINDOW, 8, Z_DEFAULT_STRATEGY) != Z_OK)
     return hl_fail_memory(error, 300000, "compression");
@@ -178,6 +184,7 @@ hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const cha
   hl_status status = raw ? check_raw_name(&s, path, error) : HL_OK;
   if (status == HL_OK) status = save(context, &s, path, nrrd, error);
   hl_release(context, s.piece);
+  hl_release(context, s.stored);
   hl_release(context, s.packed);
   return status;
 }

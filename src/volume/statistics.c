@@ -12,9 +12,9 @@
 #include "core/memory.h"
 
 enum { LANES = 8 };
-enum {
-  PIECE = 1 << 22
-}; /* voxels between two checks for cancellation: a few milliseconds; a multiple of LANES */
+/* Voxels between two checks for cancellation: a few milliseconds; and as many as are copied together where
+ * rows do not adjoin. Multiples of LANES. */
+enum { PIECE = 1 << 22, COPIED_PIECE = 1 << 16 };
 
 /* The range of stored values; low > high if no voxel is finite. */
 typedef struct tally {
@@ -41,17 +41,23 @@ static int bin_of(binning bins, double stored) {
 
 /* An iteration over the voxels, piece by piece; begins with piece 0. */
 typedef struct walk {
-  hl_context *context;
+  const hl_volume *volume;
+  void *buffer; /* owned by hl_volume_measure(); [COPIED_PIECE] stored values; null where the volume is packed
+                 */
   size_t count, first, piece; /* voxels; the current piece is [first, first + piece) */
+  const void *voxels;         /* of the current piece */
   bool cancelled;
 } walk;
 
 /* Moves to the next piece; false at the end and after cancellation. */
 static bool next_piece(walk *w) {
+  size_t most = w->buffer == NULL ? PIECE : COPIED_PIECE;
   w->first += w->piece;
-  w->piece = w->count - w->first < PIECE ? w->count - w->first : PIECE;
-  w->cancelled = w->piece > 0 && hl_cancelled(w->context);
-  return w->piece > 0 && !w->cancelled;
+  w->piece = w->count - w->first < most ? w->count - w->first : most;
+  w->cancelled = w->piece > 0 && hl_cancelled(w->volume->context);
+  if (w->piece == 0 || w->cancelled) return false;
+  w->voxels = hl_volume_piece(w->volume, w->first, w->piece, w->buffer);
+  return true;
 }
 
 static void count_u8(const uint8_t *voxels, size_t count, uint64_t *counts) {
@@ -69,12 +75,11 @@ static void count_u16(const uint16_t *voxels, size_t count, uint64_t *counts) {
 }
 
 /* Counts how often each stored value occurs; counts must be zeros before. False: cancelled. */
-static bool count_values(const hl_volume *volume, size_t count, uint64_t *counts) {
-  walk w = {.context = volume->context, .count = count};
+static bool count_values(const hl_volume *volume, void *buffer, uint64_t *counts) {
+  walk w = {.volume = volume, .buffer = buffer, .count = hl_volume_voxel_count(volume)};
   while (next_piece(&w)) {
-    if (volume->storage == HL_STORAGE_U8)
-      count_u8((const uint8_t *)volume->voxels + w.first, w.piece, counts);
-    else count_u16((const uint16_t *)volume->voxels + w.first, w.piece, counts);
+    if (volume->storage == HL_STORAGE_U8) count_u8(w.voxels, w.piece, counts);
+    else count_u16(w.voxels, w.piece, counts);
   }
   return !w.cancelled;
 }
@@ -116,8 +121,7 @@ static void tally_group(const float group[LANES], lanes_f32 *lanes) {
   }
 }
 
-static bool tally_f32(const hl_volume *volume, size_t count, tally *total) {
-  const float *voxels = volume->voxels;
+static bool tally_f32(const hl_volume *volume, void *buffer, tally *total) {
   lanes_f32 lanes = {.sum = {0}};
   float rest[LANES];
   for (int lane = 0; lane < LANES; lane++) {
@@ -125,12 +129,13 @@ static bool tally_f32(const hl_volume *volume, size_t count, tally *total) {
     lanes.high[lane] = -INFINITY;
     rest[lane] = NAN;
   }
-  size_t whole = count - count % LANES;
-  walk w = {.context = volume->context, .count = whole};
-  while (next_piece(&w))
-    for (size_t start = w.first; start < w.first + w.piece; start += LANES)
-      tally_group(voxels + start, &lanes);
-  memcpy(rest, voxels + whole, (count - whole) * sizeof *rest);
+  walk w = {.volume = volume, .buffer = buffer, .count = hl_volume_voxel_count(volume)};
+  while (next_piece(&w)) {
+    const float *voxels = w.voxels;
+    size_t whole = w.piece - w.piece % LANES;
+    for (size_t start = 0; start < whole; start += LANES) tally_group(voxels + start, &lanes);
+    memcpy(rest, voxels + whole, (w.piece - whole) * sizeof *rest); /* of the last piece alone */
+  }
   tally_group(rest, &lanes);
   *total = (tally){INFINITY, -INFINITY, 0, 0};
   for (int lane = 0; lane < LANES; lane++) {
@@ -166,31 +171,41 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   return HL_OK;
 }
 
-static bool measure_f32(hl_volume *volume, size_t count, tally *total) {
-  if (!tally_f32(volume, count, total)) return false;
+static bool measure_f32(hl_volume *volume, void *buffer, tally *total) {
+  if (!tally_f32(volume, buffer, total)) return false;
   if (total->finite == 0) return true;
   binning bins = make_binning(*total, volume->value_scale);
-  walk w = {.context = volume->context, .count = count};
-  while (next_piece(&w)) bin_f32((const float *)volume->voxels + w.first, w.piece, bins, volume->histogram);
+  walk w = {.volume = volume, .buffer = buffer, .count = hl_volume_voxel_count(volume)};
+  while (next_piece(&w)) bin_f32(w.voxels, w.piece, bins, volume->histogram);
   return !w.cancelled;
 }
 
+static bool measure_integers(hl_volume *volume, void *buffer, uint64_t *counts, tally *total) {
+  int values = volume->storage == HL_STORAGE_U8 ? 256 : 65536;
+  if (!count_values(volume, buffer, counts)) return false;
+  *total = tally_counts(counts, values);
+  bin_counts(counts, values, make_binning(*total, volume->value_scale), volume->histogram);
+  return true;
+}
+
 hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *error) {
-  size_t count = hl_volume_voxel_count(volume);
-  tally total;
-  bool finished;
-  memset(volume->histogram, 0, sizeof volume->histogram);
-  if (volume->storage == HL_STORAGE_F32) {
-    finished = measure_f32(volume, count, &total);
-  } else {
-    int values = volume->storage == HL_STORAGE_U8 ? 256 : 65536;
-    uint64_t *counts = hl_allocate_zeroed(volume->context, (size_t)values, sizeof *counts);
-    if (counts == NULL) return hl_fail_memory(error, (size_t)values * sizeof *counts, subject);
-    finished = count_values(volume, count, counts);
-    total = tally_counts(counts, values);
-    bin_counts(counts, values, make_binning(total, volume->value_scale), volume->histogram);
-    hl_release(volume->context, counts);
+  hl_context *context = volume->context;
+  bool packed = hl_volume_is_packed(volume), integers = volume->storage != HL_STORAGE_F32;
+  size_t values = volume->storage == HL_STORAGE_U8 ? 256 : integers ? 65536 : 1;
+  size_t piece = packed ? 0 : COPIED_PIECE * hl_storage_bytes(volume->storage);
+  uint64_t *counts = hl_allocate_zeroed(context, values, sizeof *counts);
+  void *buffer = packed ? NULL : hl_allocate(context, piece, 1);
+  if (counts == NULL || (buffer == NULL && !packed)) {
+    hl_release(context, counts);
+    hl_release(context, buffer);
+    return hl_fail_memory(error, values * sizeof *counts + piece, subject);
   }
+  memset(volume->histogram, 0, sizeof volume->histogram);
+  tally total;
+  bool finished = integers ? measure_integers(volume, buffer, counts, &total)
+                           : measure_f32(volume, buffer, &total);
+  hl_release(context, counts);
+  hl_release(context, buffer);
   if (!finished) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
   return record(volume, total, subject, error);
 }

@@ -44,8 +44,10 @@ struct hl_volume {
   atomic_int references;
   size_t dimension[3]; /* i, j, k */
   hl_storage storage;
-  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed */
-  void *owned_voxels; /* the block to hl_release; null if borrowed */
+  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed. Rows are packed; rows and slices of
+                         borrowed voxels may lie further apart than they are long */
+  size_t row_bytes, slice_bytes;                           /* from row to row, and from slice to slice */
+  void *owned_voxels;                                      /* the block to hl_release; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */
@@ -71,6 +73,21 @@ static inline size_t hl_storage_bytes(hl_storage storage) {
 static inline size_t hl_volume_voxel_count(const hl_volume *volume) {
   return volume->dimension[0] * volume->dimension[1] * volume->dimension[2];
 }
+
+/* Whether rows and slices adjoin. */
+static inline bool hl_volume_is_packed(const hl_volume *volume) {
+  size_t row = volume->dimension[0] * hl_storage_bytes(volume->storage);
+  return volume->row_bytes == row && volume->slice_bytes == row * volume->dimension[1];
+}
+
+/* The first voxel of a row. */
+static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_t k) {
+  return (const unsigned char *)volume->voxels + k * volume->slice_bytes + j * volume->row_bytes;
+}
+
+/* The stored values of `count` voxels from number `first` on ([k][j][i]): the volume's own where it is
+ * packed, else copied into buffer, which has room for them. */
+const void *hl_volume_piece(const hl_volume *volume, size_t first, size_t count, void *buffer);
 
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
  * hl_allocate that the volume takes over, also on failure. description: the grid, the type in the file, and

@@ -11,6 +11,7 @@
 
 #include "core/context.h"
 #include "reference_stage.h"
+#include "volume/volume.h"
 
 enum { MOST_SIDE = 96, MOST_FLOATS = MOST_SIDE * MOST_SIDE * 4 };
 
@@ -197,6 +198,64 @@ static void test_instruction_sets(void **state) {
                     hl_instruction_set_name((hl_instruction_set)set_index), index);
       stage_close(&set);
     }
+}
+
+/* The volume's voxels with gaps between rows and between slices, borrowed; *memory is for the caller to free.
+ * What lies in the gaps is not finite as a float; nothing follows the last row. */
+static hl_volume *with_gaps(hl_context *context, const hl_volume *volume, void **memory) {
+  const size_t *n = volume->dimension, bytes = hl_storage_bytes(volume->storage);
+  size_t row = (n[0] + 3) * bytes, slice = (n[1] + 2) * row, end = n[0] * bytes;
+  size_t whole = (n[2] - 1) * slice + (n[1] - 1) * row + end;
+  hl_volume_info info = {.struct_size = sizeof info};
+  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
+  hl_volume_description description;
+  hl_volume_description_defaults(&description);
+  description.type = volume->type;
+  description.value_scale = volume->value_scale;
+  description.value_offset = volume->value_offset;
+  description.voxels = *memory = memset(malloc(whole), 0xff, whole);
+  description.borrow = 1;
+  for (size_t a = 0; a < 3; a++) {
+    description.dimensions[a] = n[a];
+    description.stride_bytes[a] = (ptrdiff_t)(const size_t[]){bytes, row, slice}[a];
+    description.origin[a] = info.origin[a];
+    for (size_t b = 0; b < 3; b++) description.axis[a][b] = info.direction[b][a] * info.spacing[a];
+  }
+  for (size_t j = 0; j < n[1] * n[2]; j++)
+    memcpy((char *)*memory + j / n[1] * slice + j % n[1] * row, hl_volume_row(volume, j % n[1], j / n[1]),
+           end);
+  hl_volume *made = NULL;
+  assert_int_equal(hl_volume_create(context, &description, &made, NULL), HL_OK);
+  assert_ptr_equal(made->voxels, *memory);
+  return made;
+}
+
+/* Rows of borrowed voxels that lie apart give the bytes of packed ones. */
+static void test_rows_that_lie_apart(void **state) {
+  (void)state;
+  static float packed[MOST_FLOATS], apart[MOST_FLOATS];
+  static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
+  for (int n = 0; n < 3 * HL_INSTRUCTION_SET_AVX512_VBMI; n++) {
+    hl_instruction_set instructions = (hl_instruction_set)(HL_INSTRUCTION_SET_SCALAR + n / 3);
+    if (!hl_cpu_has_instruction_set(instructions)) continue;
+    stage set;
+    watch w;
+    open_watched(&set, &w, instructions);
+    build_setting(&set, 4);
+    add_noise(&set, 9, (vec3){-5, 1, 2}, types[n % 3]);
+    stage_render_sheets(&set, packed);
+    void *memory[STAGE_VOLUMES];
+    for (size_t v = 0; v < set.scene.volume_count; v++) {
+      hl_volume *old = set.volumes[v].volume;
+      set.volumes[v].volume = with_gaps(set.context, old, &memory[v]);
+      hl_volume_release(old);
+    }
+    stage_render_sheets(&set, apart);
+    assert_same(packed, apart, picture_floats(&set), "rows that lie apart", 4);
+    size_t count = set.scene.volume_count;
+    stage_close(&set);
+    for (size_t v = 0; v < count; v++) free(memory[v]);
+  }
 }
 
 /* Again with the same renderer, with a fresh one, and after another scene of another size has used its
@@ -445,6 +504,7 @@ int main(void) {
       cmocka_unit_test(test_threads),
       cmocka_unit_test(test_order_of_sheets),
       cmocka_unit_test(test_instruction_sets),
+      cmocka_unit_test(test_rows_that_lie_apart),
       cmocka_unit_test(test_history),
       cmocka_unit_test(test_sizes),
       cmocka_unit_test(test_small_pictures_are_averaged),

@@ -215,6 +215,58 @@ static void test_borrowed_voxels_are_not_copied(void **state) {
   hl_context_destroy(context);
 }
 
+/* A box cut out of a larger array: borrowed where its rows are packed; statistics and values are the box's.
+ */
+static void check_cut_box(hl_context *context, hl_voxel_type type, const void *whole, size_t bytes) {
+  enum { X = 7, Y = 5, Z = 6 };
+  hl_volume_description description = describe(4, 3, 2, type,
+                                               (const char *)whole + bytes * ((2 * Y + 1) * X + 2));
+  description.borrow = 1;
+  const ptrdiff_t stride[3] = {(ptrdiff_t)bytes, (ptrdiff_t)bytes * X, (ptrdiff_t)bytes * X * Y * 2};
+  memcpy(description.stride_bytes, stride, sizeof stride);
+  hl_volume *volume = NULL, *copy = NULL;
+  assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
+  assert_ptr_equal(volume->voxels, description.voxels);
+  for (size_t n = 0; n < 24; n++) {
+    size_t i = n % 4, j = n / 4 % 3, k = n / 12;
+    assert_true(hl_volume_value(volume, i, j, k) == (double)(((2 + 2 * k) * Y + 1 + j) * X + 2 + i));
+  }
+  description.borrow = 0;
+  assert_int_equal(hl_volume_create(context, &description, &copy, NULL), HL_OK);
+  assert_ptr_equal(copy->voxels, copy->owned_voxels);
+  assert_true(volume->minimum == 79 && volume->maximum == copy->maximum && volume->mean == copy->mean);
+  assert_memory_equal(volume->histogram, copy->histogram, sizeof copy->histogram);
+  hl_volume_release(copy);
+  hl_volume_release(volume);
+}
+
+static void test_rows_that_lie_apart_are_borrowed(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  static uint8_t bytes[210];
+  static uint16_t shorts[210];
+  static float floats[210];
+  for (int n = 0; n < 210; n++) bytes[n] = (uint8_t)n, shorts[n] = (uint16_t)n, floats[n] = (float)n;
+  check_cut_box(context, HL_VOXEL_U8, bytes, 1);
+  check_cut_box(context, HL_VOXEL_U16, shorts, 2);
+  check_cut_box(context, HL_VOXEL_F32, floats, 4);
+  /* Steps along a row, slices that overlap, and slices in falling order are copied. */
+  const ptrdiff_t others[][3] = {{2, 14, 70}, {1, 7, 7}, {1, 7, 0}, {1, 35, 7}, {1, 7, -35}};
+  for (size_t n = 0; n < sizeof others / sizeof *others; n++) {
+    hl_volume_description description = describe(3, 2, 2, HL_VOXEL_U8, bytes + 100);
+    description.borrow = 1;
+    memcpy(description.stride_bytes, others[n], sizeof others[n]);
+    hl_volume *volume = NULL;
+    assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
+    assert_ptr_equal(volume->voxels, volume->owned_voxels);
+    assert_true(hl_volume_value(volume, 2, 1, 1) ==
+                (double)(100 + 2 * others[n][0] + others[n][1] + others[n][2]));
+    hl_volume_release(volume);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void count_release(void *release_data, const void *voxels) {
   (void)voxels;
   ++*(int *)release_data;
@@ -431,6 +483,7 @@ int main(void) {
       cmocka_unit_test(test_types_and_strides),
       cmocka_unit_test(test_extremes_of_each_type),
       cmocka_unit_test(test_borrowed_voxels_are_not_copied),
+      cmocka_unit_test(test_rows_that_lie_apart_are_borrowed),
       cmocka_unit_test(test_borrowed_voxels_are_given_back),
       cmocka_unit_test(test_nonfinite_voxels),
       cmocka_unit_test(test_constant_volume),
