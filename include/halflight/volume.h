@@ -83,7 +83,7 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
                                                  hl_error *error);
 
 /* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk, NumPy .npy (axes [z][y][x]), MRC,
- * TIFF and DICOM files, and folders and zip archives of DICOM files.
+ * TIFF and DICOM files, and folders and zip archives of DICOM files or of Zarr arrays (OME-Zarr).
  * The format is recognised by the content, or by the name where the content has no mark. Of several arrays or
  * components one is read by default (hl_volume_load_options), and a warning says which. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume,
@@ -110,8 +110,8 @@ typedef struct hl_volume_load_options {
   const void *bytes; /* the file's content in memory, borrowed during the call: nothing is opened then, and
                         path is only its name. Default null */
   size_t byte_count;
-  const char
-      *series; /* DICOM: of several series this one: its number, UID or description; null: the largest */
+  const char *series; /* DICOM: of several series this one: its number, UID or description; null: the largest.
+                        OME-Zarr: of several images this one: its number, path or name; null: the first */
   int time, channel, level; /* of several time steps, channels or resolutions (0: the finest) this one, from 0
                                on; default HL_INDEX_DEFAULT */
 } hl_volume_load_options;

@@ -29,6 +29,7 @@ void hl_bundle_close(hl_bundle *bundle) {
   for (size_t n = 0; n < bundle->count; n++) hl_release(bundle->context, bundle->entries[n].name);
   hl_release(bundle->context, bundle->entries);
   hl_release(bundle->context, bundle->path);
+  hl_release(bundle->context, bundle->root);
   *bundle = (hl_bundle){.context = bundle->context};
 }
 
@@ -161,6 +162,47 @@ hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *e
   char *path = hl_path_join(bundle->context, bundle->path, entry->name);
   if (path == NULL) return hl_fail_memory(error, PATH_MAX, "a path");
   hl_status status = hl_source_open(bundle->context, path, quiet, source, error);
+  hl_release(bundle->context, path);
+  return status;
+}
+
+/* ---- a file of a known name ---- */
+
+hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error) {
+  if (bundle->is_archive || bundle->root != NULL) return HL_OK;
+  char real[PATH_MAX + 1];
+  if (realpath(bundle->path, real) == NULL)
+    return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", bundle->path, strerror(errno));
+  if (real[1] != 0) strcat(real, "/");
+  bundle->root = hl_copy_text(bundle->context, real);
+  return bundle->root != NULL ? HL_OK : hl_fail_memory(error, strlen(real), bundle->path);
+}
+
+static hl_status find_in_archive(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
+                                 hl_error *error) {
+  const hl_bundle_entry wanted = {.name = (char *)name};
+  if (bundle->count == 0) return HL_OK;
+  const hl_bundle_entry *entry = bsearch(&wanted, bundle->entries, bundle->count, sizeof wanted, by_name);
+  return entry != NULL ? hl_bundle_entry_open(bundle, entry, quiet, source, error) : HL_OK;
+}
+
+/* Whether a file is there, and no link on the way to it leads out of the folder. */
+static bool is_inside(const hl_bundle *bundle, const char *path) {
+  char real[PATH_MAX];
+  struct stat about;
+  return realpath(path, real) != NULL && strncmp(real, bundle->root, strlen(bundle->root)) == 0 &&
+         stat(real, &about) == 0 && S_ISREG(about.st_mode);
+}
+
+hl_status hl_bundle_find(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
+                         hl_error *error) {
+  *source = NULL;
+  if (bundle->is_archive) return find_in_archive(bundle, name, quiet, source, error);
+  if (name[0] == '/') return HL_OK;
+  char *path = hl_path_join(bundle->context, bundle->path, name);
+  if (path == NULL) return hl_fail_memory(error, PATH_MAX, "a path");
+  hl_status status = is_inside(bundle, path) ? hl_source_open(bundle->context, path, quiet, source, error)
+                                             : HL_OK;
   hl_release(bundle->context, path);
   return status;
 }

@@ -17,6 +17,8 @@ typedef struct hl_bundle_entry {
 typedef struct hl_bundle {
   hl_context *context;
   char *path; /* owned; of the folder or the archive */
+  char *root; /* owned; of a folder: its path without links, with a '/' at its end, set by
+                 hl_bundle_find_ready; else null */
   bool is_archive, is_file, listed;
   const unsigned char
       *memory; /* borrowed; [memory_size]: the content of the archive, or of the only file; null: in files */
@@ -43,5 +45,13 @@ hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error);
 /* Opens the file of an entry. quiet: as for hl_source_open. May be called from several threads. */
 hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
                                hl_source **source, hl_error *error);
+
+/* Prepares hl_bundle_find, which then may be called from several threads. */
+hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error);
+
+/* Opens the file of that name (relative, with '/'), which need not be listed; *source is null where there is
+ * none, or where a link leads out of the folder. */
+hl_status hl_bundle_find(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
+                         hl_error *error);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/convert.h"
 #include "volume/text.h"
 
 hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
@@ -111,6 +112,44 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
              time ? "\"time\" (--time)" : "", time && channel ? " and " : "",
              channel ? "\"channel\" (--channel)" : "");
   return status;
+}
+
+/* ---- levels ---- */
+
+/* UINT64_MAX on overflow. */
+static uint64_t level_bytes(const hl_level_size *level) {
+  uint64_t bytes = hl_storage_bytes(hl_voxel_type_storage(level->type));
+  for (int axis = 0; axis < 3; axis++)
+    if (__builtin_mul_overflow(bytes, level->dimensions[axis], &bytes)) return UINT64_MAX;
+  return bytes;
+}
+
+static size_t longest_side(const hl_level_size *level) {
+  size_t longest = 0;
+  for (int axis = 0; axis < 3; axis++)
+    if (level->dimensions[axis] > longest) longest = level->dimensions[axis];
+  return longest;
+}
+
+hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
+                          size_t count, hl_error *error) {
+  hl_selection *selection = &request->selection;
+  uint64_t limit = request->context->options.memory_limit;
+  selection->levels = count;
+  hl_status status = choose_step(path, "level", request->level, count, &selection->level, error);
+  if (status != HL_OK || request->level >= 0) return status;
+  size_t level = 0;
+  while (level + 1 < count && limit > 0 && level_bytes(&levels[level]) > limit / 2) level++;
+  bool for_memory = level > 0;
+  while (level + 1 < count && request->level_voxels > 0 &&
+         longest_side(&levels[level + 1]) >= request->level_voxels)
+    level++;
+  selection->level = (int)level;
+  if (level > 0)
+    hl_log(request->context, HL_LOG_WARNING,
+           "%.300s: level %zu of %zu is taken, %s: choose by \"level\" (--level)", path, level, count,
+           for_memory ? "which the memory limit leaves room for" : "which is enough for the picture");
+  return HL_OK;
 }
 
 /* Refuses a number that is out of range. */

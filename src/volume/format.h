@@ -19,6 +19,7 @@ typedef struct hl_load_request {
   int component;            /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
   double spacing[3];        /* world units; all 0: as in the file */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
+  size_t level_voxels;      /* of a pyramid: enough along the longest side; 0: as many as there are */
   const char *series;       /* DICOM: number, UID or description; null: choose */
   hl_array_entry *arrays;   /* owned; [array_count]; in the file's order */
   size_t array_count;
@@ -56,6 +57,17 @@ hl_status hl_component_choose(hl_load_request *request, const char *path, bool i
  * is out of range. */
 hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
                           hl_error *error);
+
+/* A level of a pyramid. */
+typedef struct hl_level_size {
+  size_t dimensions[3];
+  hl_voxel_type type;
+} hl_level_size;
+
+/* Sets request->selection's level among `count`, the finest first: the wanted one, else the finest that
+ * leaves half of the memory limit, and no finer than request->level_voxels asks for. */
+hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
+                          size_t count, hl_error *error);
 
 /* For formats of one array without a name: lists it and chooses the component. */
 hl_status hl_component_only(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,

@@ -14,5 +14,6 @@
   HL_FORMAT(npy)       \
   HL_FORMAT(tiff)      \
   HL_FORMAT(mrc)       \
+  HL_FORMAT(zarr)      \
   HL_FORMAT(dicom)     \
   HL_FORMAT(dat)

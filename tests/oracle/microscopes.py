@@ -5,10 +5,8 @@ usage: microscopes.py DUMP_VOLUME
 scripts/judges runs it where the judges are installed: mrcfile and tifffile. Exit 0: all agree; 1: some do not.
 """
 import itertools
-import json
 import os
 import struct
-import subprocess
 import sys
 import tempfile
 
@@ -16,27 +14,7 @@ import mrcfile
 import numpy as np
 import tifffile
 
-SHAPE = (5, 4, 3)  # k, j, i: unequal, so that no two axes can be confused
-
-
-class Case:
-    """A file, what dump_volume is to choose of it, and what the judge reads: voxels [k][j][i], origin, axes as columns."""
-
-    def __init__(self, path, voxels, origin=(0, 0, 0), axes=None, choice=None):
-        self.path, self.voxels, self.choice = path, np.asarray(voxels), choice
-        self.origin, self.axes = np.asarray(origin, float), np.eye(3) if axes is None else np.asarray(axes, float)
-
-
-def sample(kind, shape=SHAPE, seed=1):
-    random = np.random.default_rng(seed)
-    if np.dtype(kind).kind == "f":
-        voxels = random.normal(0, 1000, shape).astype(kind)
-        voxels.flat[7:10] = np.nan, np.inf, -np.inf
-        return voxels
-    limits = np.iinfo(kind)
-    voxels = random.integers(limits.min, limits.max, shape, dtype=kind, endpoint=True)
-    voxels.flat[:2] = limits.min, limits.max
-    return voxels
+from agreement import SHAPE, Case, run, sample
 
 
 # ---------------------------------------------------------------- MRC
@@ -208,47 +186,6 @@ def several_files(folder):
         read = tifffile.imread(os.path.join(folder, "m_0_0.ome.tif"))
         for time in range(2):
             yield Case(path, read[time], choice=(time, -1, -1, -1))
-
-
-# ---------------------------------------------------------------- comparison
-
-
-def differences(case, seen, voxels_path):
-    if seen["status"] != 0:
-        return [seen["error"]]
-    values = case.voxels.astype(np.float64)
-    if case.voxels.dtype.itemsize > 2 and case.voxels.dtype != np.float32:  # kept as float32
-        values = case.voxels.astype(np.float32).astype(np.float64)
-    spacing = np.linalg.norm(case.axes, axis=0)
-    checks = [("dimensions", seen["dimensions"], values.shape[::-1], 0),
-              ("spacing", seen["spacing"], spacing, 1e-6 * spacing.max()),
-              ("origin", seen["origin"], case.origin, 1e-6 * (1 + np.abs(case.origin).max())),
-              ("direction", seen["direction"], (case.axes / spacing).ravel(), 1e-6)]
-    lines = ["%s %s, expected %s" % (name, found, list(wanted)) for name, found, wanted, tolerance in checks
-             if len(found) != len(wanted) or np.abs(np.subtract(found, wanted)).max() > tolerance]
-    found = np.fromfile(voxels_path)
-    if found.size != values.size:
-        return lines + ["%d voxels, expected %d" % (found.size, values.size)]
-    found = found.reshape(values.shape)
-    finite = np.isfinite(values)
-    same = np.array_equal(finite, np.isfinite(found)) and np.allclose(
-        found[finite], values[finite], 2e-7 if case.choice and case.choice[-1] == -2 else 1e-7, 0)  # sums round three times
-    return lines if same else lines + ["voxels differ"]
-
-
-def run(program, name, cases):
-    failures, count = 0, 0
-    for case in cases:
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "voxels.f64")
-            named = case.path + ("#%d,%d,%d,%d" % case.choice if case.choice else "")
-            output = subprocess.run([program, named, path], check=True, capture_output=True, text=True).stdout
-            for difference in differences(case, json.loads(output), path):
-                print("%s: %s" % (named, difference))
-                failures += 1
-        count += 1
-    print("%s: %d volumes, %d differences" % (name, count, failures), flush=True)
-    return failures
 
 
 def main():

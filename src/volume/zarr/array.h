@@ -1,0 +1,48 @@
+/* volume/zarr/array.h - the metadata of a Zarr array, version 2 or 3: shape, chunks, type, codecs.
+ *
+ * Sources: the Zarr storage specification version 2 (`.zarray`), the Zarr core specification version 3
+ * (`zarr.json`) with its codecs `bytes`, `transpose`, `gzip`, `zstd`, `blosc`, `crc32c` and
+ * `sharding_indexed`. */
+#ifndef HL_VOLUME_ZARR_ARRAY_H
+#define HL_VOLUME_ZARR_ARRAY_H
+
+#include "volume/zarr/metadata.h"
+
+enum { HL_ZARR_AXES_MOST = 8, HL_ZARR_NAME_BYTES = 32, HL_ZARR_CHUNK_BYTES_MOST = 0x7fffffff };
+
+typedef enum hl_zarr_compressor {
+  HL_ZARR_RAW,
+  HL_ZARR_DEFLATE, /* zlib or gzip */
+  HL_ZARR_ZSTD,
+  HL_ZARR_BLOSC
+} hl_zarr_compressor;
+
+/* How a chunk's voxels become bytes. */
+typedef struct hl_zarr_codecs {
+  int order[HL_ZARR_AXES_MOST]; /* the array's axes as they lie in a chunk, the slowest first */
+  bool big_endian;
+  hl_zarr_compressor compressor;
+  int inner_checks, outer_checks; /* CRC32C sums (4 bytes each) behind the voxels, behind the packed bytes */
+} hl_zarr_codecs;
+
+typedef struct hl_zarr_array {
+  char folder[HL_ZARR_PATH_BYTES]; /* in the bundle; "" or ends with '/' */
+  int version;                     /* 2 or 3 */
+  int rank;
+  uint64_t shape[HL_ZARR_AXES_MOST], chunk[HL_ZARR_AXES_MOST]; /* [rank]; in voxels */
+  char axis_name[HL_ZARR_AXES_MOST][HL_ZARR_NAME_BYTES];       /* "": none */
+  hl_voxel_type type;
+  size_t chunk_bytes;    /* of a chunk's voxels */
+  unsigned char fill[8]; /* a voxel of missing chunks, native byte order */
+  hl_zarr_codecs codecs;
+  char separator;  /* in the names of chunks: '.' or '/' */
+  bool has_prefix; /* names of chunks begin with "c" */
+  /* shards: files of several chunks */
+  bool is_sharded;
+  uint64_t shard[HL_ZARR_AXES_MOST]; /* in chunks; 1 without shards */
+  uint64_t chunks_in_shard;
+  bool index_at_start;
+  int index_checks;
+} hl_zarr_array;
+
+#endif

@@ -1,0 +1,31 @@
+/* volume/zarr/chunk.h - unpacks chunks. */
+#ifndef HL_VOLUME_ZARR_CHUNK_H
+#define HL_VOLUME_ZARR_CHUNK_H
+
+#include "volume/zarr/array.h"
+
+/* A thread's memory for one chunk, packed and unpacked. Zeroed but for the first three members before its
+ * first use. */
+typedef struct hl_zarr_unpacker {
+  hl_context *context;
+  const char *path; /* for error lines */
+  const hl_zarr_array *array;
+  unsigned char *packed; /* owned; [capacity] */
+  size_t capacity;
+  unsigned char *voxels; /* owned; [array->chunk_bytes] and a check sum */
+  void *zstd;            /* owned; zstd's own memory */
+} hl_zarr_unpacker;
+
+void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker);
+
+/* Reads `length` bytes of the source from `offset` on and unpacks them; *voxels: [array->chunk_bytes], valid
+ * until the next call. */
+hl_status hl_zarr_chunk_read(hl_zarr_unpacker *unpacker, hl_source *source, uint64_t offset, uint64_t length,
+                             const unsigned char **voxels, hl_error *error);
+
+/* CRC32C of RFC 3720, section 12.1. */
+uint32_t hl_zarr_crc32c(const unsigned char *bytes, size_t length);
+/* Whether the last four of the bytes are the sum of those before them, least significant first. */
+bool hl_zarr_check_sum(const unsigned char *bytes, size_t length);
+
+#endif

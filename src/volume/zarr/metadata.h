@@ -1,0 +1,33 @@
+/* volume/zarr/metadata.h - the JSON files of a Zarr hierarchy. */
+#ifndef HL_VOLUME_ZARR_METADATA_H
+#define HL_VOLUME_ZARR_METADATA_H
+
+#include <jansson.h>
+
+#include "volume/format.h"
+
+enum { HL_ZARR_PATH_BYTES = 512, HL_ZARR_METADATA_BYTES_MOST = 4 << 20 };
+
+/* Reads the JSON object in folder + name; *object is null where there is no such file. The caller gives it
+ * back (json_decref). */
+hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, const char *name,
+                                json_t **object, hl_error *error);
+
+/* The attributes of the group or array in `folder`: of `zarr.json` or `.zattrs`; null where there are none.
+ */
+hl_status hl_zarr_attributes_read(const hl_bundle *bundle, const char *folder, json_t **attributes,
+                                  hl_error *error);
+
+/* OME-Zarr's part of the attributes: of 0.5 their "ome", of 0.4 they themselves. Borrowed. */
+const json_t *hl_zarr_ome(const json_t *attributes);
+
+/* "PATH/FOLDER...: WHAT" */
+__attribute__((format(printf, 5, 6))) hl_status hl_zarr_fail(const hl_bundle *bundle, const char *folder,
+                                                             hl_error *error, hl_status code,
+                                                             const char *format, ...);
+
+/* folder + name + '/' into `joined`; false if it is too long, or leads out of the folder ("..", "/"). "."
+ * and "" are the folder itself. */
+bool hl_zarr_join(char joined[HL_ZARR_PATH_BYTES], const char *folder, const char *name);
+
+#endif

@@ -1,0 +1,13 @@
+/* volume/zarr/series.h - the images of a collection: bioformats2raw's series, the fields of a plate's wells.
+ */
+#ifndef HL_VOLUME_ZARR_SERIES_H
+#define HL_VOLUME_ZARR_SERIES_H
+
+#include "volume/zarr/image.h"
+
+/* Lists the collection's images in the request, and sets `folder` to the one that the request names by its
+ * number (from 0), path or name, or to the first. *is_collection: false if `ome` is none. */
+hl_status hl_zarr_series_choose(const hl_bundle *bundle, const json_t *ome, hl_load_request *request,
+                                char folder[HL_ZARR_PATH_BYTES], bool *is_collection, hl_error *error);
+
+#endif
