@@ -58,9 +58,10 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
     vec3 across = vec3_add(vec3_scale(u, cos(turn)), vec3_scale(v, sin(turn)));
     sectors.axis[i] = vec3_add(vec3_scale(eye_direction, along), vec3_scale(across, sin(phi)));
   }
-  /* Derived: half the cosine between an axis and the direction across the eye's that lies midway between two
-   * axes. */
-  sectors.least = fmax(0.5 * cos(HL_PI / 6) * sin(phi), 0.1);
+  /* In every direction the cosine to some axis is at least 0.84 of the cosine between an axis and the
+   * direction across the eye's that lies midway between two axes (found over 200,000 directions, phi from 15
+   * to 45 degrees). A sector ends a little further from its axis, so that sectors fade into each other. */
+  sectors.least = 0.7 * cos(HL_PI / 6) * sin(phi);
   return sectors;
 }
 

@@ -102,11 +102,13 @@ typedef struct soft_cascade {
   const light_emission *emission;       /* null: the light is even, and blurs are boxes */
   double slope_start[2], slope_step[2]; /* slope of the light's rays at the buffer's corner, and from one
                                            pixel to the next */
-  double chunk;                         /* length of a chunk in omega, pixels */
+  double chunk;                         /* length of the current chunk in omega, pixels */
   double chunk_start;                   /* omega */
-  double lookup_variance;               /* variance by which look-ups blur, pixels squared */
-  double slab;     /* the current slab's position in the chunk: omega from the chunk's start */
-  uint64_t chunks; /* finished */
+  double shortest_chunk;                /* of the sweep */
+  double shrink; /* the length of a chunk as a fraction of its start's -omega; 0: all are equally long */
+  double lookup_variance; /* variance by which look-ups blur, pixels squared */
+  double slab;            /* the current slab's position in the chunk: omega from the chunk's start */
+  uint64_t chunks;        /* finished */
   int channels;
   int level_count; /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
@@ -137,6 +139,11 @@ static inline double hl_cascade_omega(const soft_cascade *cascade, double height
   if (cascade->parallel) return cascade->rate * height;
   double distance = height - cascade->light_height;
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
+}
+
+/* omega after some more chunks (derived: a chunk from omega on ends at omega (1 - shrink)). */
+static inline double hl_cascade_chunks_on(const soft_cascade *cascade, double omega, double chunks) {
+  return cascade->shrink > 0 ? omega * pow(1 - cascade->shrink, chunks) : omega + cascade->chunk * chunks;
 }
 
 /* Finds the absorbed light for receivers around omega = receiver, through the light's emission image, in

@@ -8,6 +8,22 @@
  * to THICK_CHUNK. LEAST_CHUNK: the least thickness of a chunk. Thickness in pixels of omega. */
 static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.15;
 
+/* Divides omega from start to end into chunks of one length. A near light's omega grows without bound towards
+ * the light, so these chunks may be more than the most allowed; then a chunk is a fixed fraction of -omega
+ * (derived: at a distance z from the light a penumbra of width w in omega is w z wide in space, and -omega is
+ * L / z, so all chunks have penumbrae of one width in space). Returns how many chunks there are. */
+static double divide(soft_cascade *cascade, double start, double end) {
+  double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
+  cascade->chunk_start = start;
+  cascade->chunk = cascade->shortest_chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
+  cascade->shrink = 0;
+  if (cascade->parallel || cascade->chunk <= thick) return (end - start) / cascade->chunk;
+  cascade->shrink = 1 - pow(end / start, 1 / GREATEST_CHUNKS);
+  cascade->chunk = cascade->shrink * -start;
+  cascade->shortest_chunk = cascade->shrink * -end;
+  return GREATEST_CHUNKS;
+}
+
 /* The least number of chunks between a receiver and a level's groups: level 0 keeps three groups, level 1
  * two, every other level five. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
@@ -16,7 +32,7 @@ static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow
  * blur by resampling is taken off the penumbra (resampled_by); with an emission image, where the blur is not
  * taken off, at least four pixels. */
 static int level_scale(const soft_cascade *cascade, int level) {
-  double penumbra = cascade->chunk * chunks_before(level) * cascade->least_fraction,
+  double penumbra = cascade->shortest_chunk * chunks_before(level) * cascade->least_fraction,
          own = cascade->emission == NULL ? 1.5 : 4;
   int scale = 1, greatest = level < 2
                                 ? 1 << level
@@ -140,12 +156,10 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
   double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
   /* near a light, omega grows without bound; penumbrae wider than twice the buffer make no difference */
   start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
-  double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
-  cascade->chunk_start = start;
-  cascade->chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
+  double chunks = divide(cascade, start, end);
   /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels
    * 0 and 1) */
-  int levels = 2 + (int)floor(log2(fmax((end - start) / cascade->chunk + 7, 5) / 5));
+  int levels = 2 + (int)floor(log2(fmax(chunks + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) plan_level(cascade, i, tiles_x, tiles_y);
   cascade->reads = (cascade_reads){.tiles_x = tiles_x, .tiles_y = tiles_y};

@@ -278,7 +278,7 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     if (due) level->filled = false;
     /* between two renewals of this level, receivers move on by a period less one chunk: the sum is made for
      * the middle one */
-    double served = receiver + cascade->chunk * (double)(period - 1) / 2;
+    double served = hl_cascade_chunks_on(cascade, receiver, (double)(period - 1) / 2);
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
       if (!group->filled) continue;
@@ -381,10 +381,12 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
   double omega = hl_cascade_omega(cascade, hl_sheet_height(sheets, sheet));
   if (!isfinite(omega) || omega - cascade->chunk_start < cascade->chunk) return;
   const cascade_crew crew = {shadow->setup.pool, shadow->setup.functions->cascade, &cascade->reads};
+  double end = hl_cascade_chunks_on(cascade, omega, 1);
+  if (cascade->shrink > 0) cascade->chunk = end - omega;
   cascade->chunk_start = omega;
   find_reads(cascade, occupancy, sheets, sheet);
   /* made from the chunks before the one that ends */
-  bool any = find_shade(cascade, omega + cascade->chunk, &crew);
+  bool any = find_shade(cascade, end, &crew);
   push_chunk(cascade, shadow->buffer, omega, &crew);
   refill_buffer(cascade, shadow->buffer, any, &crew);
   begin_chunk(cascade);

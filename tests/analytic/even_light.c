@@ -133,17 +133,14 @@ static void test_floors_under_near_lights(void **state) {
   }
 }
 
-/* A box on a floor under a near, wide light, against 8 x 8 sub-lights: in its umbra, where these leave
- * nothing, next to nothing is left, and its penumbrae are where theirs are. */
-static void test_box_under_near_light(void **state) {
+/* How far a box on a floor under a soft light is from 8 x 8 sub-lights: root mean square, in parts of the
+ * brightest pixel. */
+static double box_error(const char *light) {
   static const char volume[] =
       "{\"shapes\": [{\"type\": \"box\", \"size\": [420, 420, 12]}, {\"type\": \"box\", \"size\": [60, 60, "
       "60], "
       "\"position\": [0, 0, 36]}], \"voxel_size\": 2, " MATERIAL "}";
-  static const char light[] =
-      "\"type\": \"rect\", \"position\": [-60, 0, 190], \"edge1\": [80, 0, 0], \"edge2\": [0, 80, 0]";
   static float truth[SIDE * SIDE * 4];
-  (void)state;
   render(volume, light, CAMERA,
          "\"soft_method\": \"sublights\", \"light_samples\": 8, \"sheet_spacing\": 1, \"threads\": 2");
   memcpy(truth, pixels, sizeof truth);
@@ -153,9 +150,19 @@ static void test_box_under_near_light(void **state) {
     squares += (pixels[i] - truth[i]) * (pixels[i] - truth[i]);
     brightest = fmax(brightest, truth[i]);
   }
-  double error = sqrt(squares / (SIDE * SIDE)) / brightest;
-  if (getenv("HALFLIGHT_SHOW") != NULL) printf("# box under a near light: %.4f\n", error);
-  assert_true(error < 0.015);
+  return sqrt(squares / (SIDE * SIDE)) / brightest;
+}
+
+/* Penumbrae of near lights are where those of sub-lights are, and next to nothing is left in umbrae: of a
+ * wide light that one sweep serves, and of a nearer one that is cut into sectors. */
+static void test_box_under_near_lights(void **state) {
+  (void)state;
+  double wide = box_error(
+             "\"type\": \"rect\", \"position\": [-60, 0, 190], \"edge1\": [80, 0, 0], \"edge2\": [0, 80, 0]"),
+         in_sectors = box_error("\"type\": \"point\", \"position\": [0, 90, 120], \"radius\": 20");
+  if (getenv("HALFLIGHT_SHOW") != NULL) printf("# box under near lights: %.4f, %.4f\n", wide, in_sectors);
+  assert_true(wide < 0.015);
+  assert_true(in_sectors < 0.009);
 }
 
 /* A light that comes nearer by small steps changes the picture by small steps, also where the half-way
@@ -216,7 +223,7 @@ int main(void) {
       cmocka_unit_test_prestate(test_floors_under_directional_light, hard),
       cmocka_unit_test_prestate(test_floors_under_near_lights, hard),
       cmocka_unit_test_prestate(test_balls, hard),
-      cmocka_unit_test(test_box_under_near_light),
+      cmocka_unit_test(test_box_under_near_lights),
       cmocka_unit_test(test_near_light_moves_evenly),
       cmocka_unit_test_prestate(test_floors_under_directional_light, cascade),
       cmocka_unit_test_prestate(test_floors_under_near_lights, cascade),
