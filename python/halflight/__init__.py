@@ -22,11 +22,12 @@ from .render import Renderer, reference, render
 from .scene import Scene
 from .transfer import TransferFunction, presets
 from .volume import Info, Volume, info
+from .widget import show
 
 __version__ = _text_of(_lib.hl_version())
 
 __all__ = [
     "Camera", "Directional", "Disk", "HalflightWarning", "Image", "Info", "InputError", "Light", "Point", "Polygon",
     "Rect", "Renderer", "Scene", "Spot", "TransferFunction", "UnsupportedError", "Volume", "colormaps", "info",
-    "presets", "reference", "render",
+    "presets", "reference", "render", "show",
 ]

@@ -167,12 +167,12 @@ class Image:
         plain._pixels[...] = self._pixels
         return plain._handle
 
-    def encode(self, format: str = "png") -> bytes:
-        """The bytes of a "png", "exr" or "npy" file."""
+    def encode(self, format: str = "png", *, depth: int = 8) -> bytes:
+        """The bytes of a "png" (of 8 or 16 bits), "exr" or "npy" file."""
         choice("format", format, _FORMATS)
         data, length = ffi.new("unsigned char **"), ffi.new("size_t *")
         call(lib.hl_image_encode, context, self._handle if format == "exr" else self._plain(), format.encode(),
-             self._with_scene(self._options()), data, length)
+             self._with_scene(self._options(depth=depth)), data, length)
         try:
             return bytes(ffi.buffer(data[0], length[0]))
         finally:

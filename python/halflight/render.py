@@ -4,13 +4,13 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
 from . import _settings, arrays, transfer
 from ._library import call, context, ffi, lib, made, text_of
-from ._words import suggests
+from ._words import check_keywords, suggests
 from .camera import Camera
 from .image import Image, Pixels
 from .lights import Light
@@ -188,6 +188,52 @@ def _given(**words: Any) -> dict[str, Any]:
     return {word: value for word, value in words.items() if value is not None}
 
 
+class Asked(TypedDict, total=False):
+    """The keywords of `render` that say what is seen."""
+
+    spacing: arrays.Spacing
+    origin: Any
+    direction: Any
+    affine: Any
+    axes: str
+    cmap: Any
+    clim: Sequence[float]
+    opacity: Any
+    opacity_unit_distance: float
+    shade: bool | str
+    ambient: float
+    diffuse: float
+    specular: float
+    shininess: float
+    tf: Any
+    shadows: bool | str
+    lights: Light | Sequence[Light]
+    camera: Camera | str | tuple[float, float]
+    size: tuple[int, int]
+    background: Any
+    threads: int
+
+
+_PLACE = ("spacing", "origin", "direction", "affine", "axes")
+_MATERIAL = ("ambient", "diffuse", "specular", "shininess")
+_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads")
+_LOOK = ("cmap", "clim", "opacity", "opacity_unit_distance", "tf")
+
+
+def scene_for(volume: Source, **asked: Unpack[Asked]) -> Scene:
+    """The scene that `render` renders."""
+    check_keywords("halflight", asked, Asked.__annotations__)
+    words: dict[str, Any] = {**asked}
+    place, material, settings = ({word: words[word] for word in group if word in words}
+                                 for group in (_PLACE, _MATERIAL, _SETTINGS))
+    if (shade := words.get("shade")) is not None:
+        material["shading"] = ("phong" if shade else "flat") if isinstance(shade, (bool, np.bool_)) else shade
+    if isinstance(settings.get("shadows"), (bool, np.bool_)):
+        settings["shadows"] = "soft" if settings["shadows"] else "off"
+    look = tuple(map(words.get, _LOOK))
+    return _scene_of(volume, place, material, settings, look)  # type: ignore[arg-type]
+
+
 def _is_scene(volume: Any) -> bool:
     return isinstance(volume, (str, os.PathLike)) and os.fspath(volume).lower().endswith(".json")
 
@@ -256,15 +302,13 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
     >>> image.size
     (64, 48)
     """
-    place = _given(spacing=spacing, origin=origin, direction=direction, affine=affine, axes=axes)
-    shading = ("phong" if shade else "flat") if isinstance(shade, (bool, np.bool_)) else shade
-    material: Look = _given(ambient=ambient, diffuse=diffuse, specular=specular,  # type: ignore[assignment]
-                            shininess=shininess, shading=shading)
-    settings: Settings = _given(  # type: ignore[assignment]
-        shadows=("soft" if shadows else "off") if isinstance(shadows, (bool, np.bool_)) else shadows, lights=lights,
-        camera=camera, size=size, background=background, threads=threads)
+    asked: Asked = _given(  # type: ignore[assignment]
+        spacing=spacing, origin=origin, direction=direction, affine=affine, axes=axes, cmap=cmap, clim=clim,
+        opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
+        specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
+        background=background, threads=threads)
     with told(progress):
-        scene = _scene_of(volume, place, material, settings, (cmap, clim, opacity, opacity_unit_distance, tf))
+        scene = scene_for(volume, **asked)
     return Renderer().render(scene, layers=layers, progress=progress)
 
 

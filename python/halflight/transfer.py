@@ -122,6 +122,12 @@ def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, v
     return TransferFunction(function.opacity, points, function.unit_distance)
 
 
+def colormap_points(name: str) -> list[list[float]]:
+    """Rows [value, r, g, b] of one of the library's colormaps, over values from 0 to 1."""
+    points: list[list[float]] = function_from(_made(lib.hl_transfer_function_colormap, name.encode(), 0.0, 1.0)).color.tolist()
+    return points
+
+
 def spread(function: TransferFunction, clim: list[float], values: tuple[float, float]) -> TransferFunction:
     """Opacity and colours moved so that what was seen between two values is seen between those of `clim`.
 

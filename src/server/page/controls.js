@@ -13,6 +13,9 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+// Whether the keyboard is with the element, in a notebook's shadow tree too.
+export const isActive = (element) => element.getRootNode().activeElement === element;
+
 let identifiers = 0;
 const newId = () => `control-${++identifiers}`;
 
@@ -51,7 +54,7 @@ export function slider({ label, low, high, step = "any", unit = "", exponential 
     range.setAttribute("aria-valuetext", `${shortNumber(value)} ${unit}`.trim());
     const filled = (range.value - range.min) / (range.max - range.min);
     range.style.setProperty("--filled", `${100 * Math.min(Math.max(filled, 0), 1)}%`);
-    if (document.activeElement !== number) number.value = shortNumber(value);
+    if (!isActive(number)) number.value = shortNumber(value);
   }
   const name = make("label", { for: id, title }, label);
   return { element: row(name, range, make("span", { class: "measure" }, number, make("span", { class: "unit" }, unit))), update };

@@ -1,7 +1,6 @@
 // Out of the viewer: the picture, the scene, the command that renders it.
 
-import { fetchFrame } from "./api.js";
-import { button, make, row, section, select } from "./controls.js";
+import { button, isActive, make, row, section, select } from "./controls.js";
 
 const stem = (title) => title.replace(/\.(gz|json|nrrd|nhdr|nii|mha|mhd|vti|vtk|raw|npy|png)$/gi, "").replace(/\.nii$/i, "") || "picture";
 
@@ -19,7 +18,7 @@ function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-export function exportPanel(store, start, report) {
+export function exportPanel({ store, start, channel, report }) {
   const { element, body } = section("Save", false);
   const name = stem(start.title);
   let format = "png";
@@ -40,7 +39,7 @@ export function exportPanel(store, start, report) {
     report(`rendering ${image.width} × ${image.height} …`);
     try {
       const type = format === "exr" ? "exr" : "png";
-      const frame = await fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, lane: "-save" });
+      const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, lane: "-save" });
       if (frame !== null) download(frame.blob, `${name}.${type}`);
       report(frame === null ? "cancelled by another save" : `saved ${name}.${type}`);
     } catch (error) {
@@ -71,7 +70,7 @@ export function exportPanel(store, start, report) {
     make("p", { class: "facts" }, "The scene file renders to the same picture, byte for byte: ", make("code", {}, commandLine(start.title))));
   function update() {
     for (const [input, key] of [[width, "width"], [height, "height"]])
-      if (document.activeElement !== input && !input.value) input.placeholder = store.scene.image[key];
+      if (!isActive(input) && !input.value) input.placeholder = store.scene.image[key];
     kind.update();
   }
   update();

@@ -4,7 +4,6 @@
 // come, as large as keeps FRAMES_PER_SECOND. At rest a picture of full size follows, as fine as fits into half a
 // second; then the exact one, which is what `halflight render` makes of the same scene.
 
-import { fetchFrame } from "./api.js";
 import { worldHeight } from "./camera.js";
 import { length } from "./vector.js";
 
@@ -20,6 +19,7 @@ const rounded = (side) => Math.max(16, Math.round(side / 16) * 16);
 
 export class Frames {
   #store;
+  #channel;
   #canvas;
   #report;
   #changed = false;
@@ -31,9 +31,10 @@ export class Frames {
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
   // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
-  constructor(store, start, canvas, report) {
+  constructor({ store, start, channel }, canvas, report) {
     this.#voxels = start.volumes.map((volume) => Math.min(...volume.axes.map(length)));
     this.#store = store;
+    this.#channel = channel;
     this.#canvas = canvas;
     this.#report = report;
     store.listen(() => this.move());
@@ -72,7 +73,7 @@ export class Frames {
       this.#changed = false;
       const scene = this.#affordable(), began = performance.now();
       try {
-        const frame = await fetchFrame(scene, { quality: 80 });
+        const frame = await this.#channel.fetchFrame(scene, { quality: 80 });
         if (frame !== null) {
           await this.#show(frame.blob, scene.image);
           this.#learn(performance.now() - began);
@@ -133,7 +134,7 @@ export class Frames {
     const began = performance.now();
     const options = stage === "final" ? { format: "png" } : { quality: 92 };
     if (stage === "final") this.#tell("refining", scene, began, null);
-    const frame = await fetchFrame(scene, options);
+    const frame = await this.#channel.fetchFrame(scene, options);
     if (frame === null || generation !== this.#generation) return;
     await this.#show(frame.blob, scene.image);
     if (generation !== this.#generation) return;

@@ -1,8 +1,7 @@
 // The panel of a volume's transfer function: the drawing, the chosen point's numbers, colormaps and presets.
 
-import { completeScene } from "./api.js";
 import { hexOf, linearOf } from "./color.js";
-import { button, color, make, row, section, select, slider } from "./controls.js";
+import { button, color, isActive, make, row, section, select, slider } from "./controls.js";
 import { FunctionCanvas } from "./function_canvas.js";
 import { movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
 
@@ -35,8 +34,8 @@ function chosenPoint(canvas, get, set, range) {
   function update() {
     const { kind, row: chosen } = at();
     if (!chosen) return;
-    if (document.activeElement !== value) value.value = +chosen[0].toPrecision(5);
-    if (kind === "point" && document.activeElement !== opacity) opacity.value = +chosen[1].toPrecision(3);
+    if (!isActive(value)) value.value = +chosen[0].toPrecision(5);
+    if (kind === "point" && !isActive(opacity)) opacity.value = +chosen[1].toPrecision(3);
     if (kind === "stop") shade.value = hexOf(chosen.slice(1));
     opacityLabel.hidden = kind !== "point";
     shadeLabel.hidden = kind === "point";
@@ -57,13 +56,13 @@ function rangeRow(get, set) {
   }));
   function update() {
     rangeOf(get()).forEach((value, end) => {
-      if (document.activeElement !== inputs[end]) inputs[end].value = +value.toPrecision(5);
+      if (!isActive(inputs[end])) inputs[end].value = +value.toPrecision(5);
     });
   }
   return { element: row(make("span", { class: "name" }, "Range"), make("span", { class: "pair" }, inputs[0], "to", inputs[1])), update };
 }
 
-export function functionPanel(store, start, current, report) {
+export function functionPanel({ store, start, current, channel, report }) {
   const { element, body } = section("Transfer function");
   const volume = () => store.scene.volumes[current.volume];
   const get = () => volume().transfer_function;
@@ -79,7 +78,7 @@ export function functionPanel(store, start, current, report) {
       return name === "automatic" ? rest : { ...rest, transfer_function: { preset: name } };
     });
     try {
-      const complete = await completeScene({ ...store.scene, volumes });
+      const complete = await channel.completeScene({ ...store.scene, volumes });
       set(complete.volumes[current.volume].transfer_function, `preset ${name}`);
     } catch (error) {
       report(error.message);

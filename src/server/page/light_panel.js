@@ -31,7 +31,7 @@ function tabs(store, current, changed) {
   return { element, update };
 }
 
-export function lightPanel(store, current, overlay) {
+export function lightPanel({ store, current, overlay }) {
   const { element, body } = section("Lights");
   const light = () => store.scene.lights[current.light];
   const change = (name, set) => store.changeLight(current.light, name, set);
@@ -87,7 +87,7 @@ export function lightPanel(store, current, overlay) {
   return { element, update };
 }
 
-export function shadowPanel(store) {
+export function shadowPanel({ store }) {
   const { element, body } = section("Shadows");
   const render = () => store.scene.render;
   const kind = segments({

@@ -36,7 +36,7 @@ export class Overlay {
   chosenLight = 0;
   onChooseLight = () => {};
 
-  constructor(svg, store, start) {
+  constructor(svg, { store, start }) {
     this.#svg = svg;
     this.#store = store;
     this.#start = start;
@@ -116,7 +116,8 @@ export class Overlay {
       this.#lights.replaceChildren();
       return;
     }
-    const focused = this.#lights.contains(document.activeElement) ? document.activeElement.dataset.light : undefined;
+    const active = this.#svg.getRootNode().activeElement;
+    const focused = this.#lights.contains(active) ? active.dataset.light : undefined;
     if (this.#lights.childElementCount !== lights.length + 1) {
       const rim = make("svg:circle", { class: "light-sphere" });
       this.#lights.replaceChildren(rim, ...lights.map((_, l) => this.#makeHandle(l)));

@@ -10,8 +10,9 @@ const MOUSE = [
   ["wheel, or right drag", "zoom"], ["one finger", "turn"], ["two fingers", "pan, zoom and roll"],
 ];
 
-// actions: what keys other than those of the camera do, by name.
-export function installShortcuts(store, area, actions) {
+// keyboard: the element or document whose keys are meant; area: the picture's; actions: what keys other than those of
+// the camera do, by name.
+export function installShortcuts(store, keyboard, area, actions) {
   const move = (change) => () => store.setCamera(change(store.scene.camera));
   const keys = [
     ["ArrowLeft", "←", "turn left", move((c) => turn(c, -STEP, 0))],
@@ -39,7 +40,7 @@ export function installShortcuts(store, area, actions) {
     ["?", "?", "this sheet", actions.help],
   ];
   const byKey = new Map(keys.map(([key, , , action]) => [key, action]));
-  document.addEventListener("keydown", (event) => {
+  keyboard.addEventListener("keydown", (event) => {
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
       if (event.shiftKey) store.redo();
       else store.undo();

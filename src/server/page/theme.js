@@ -10,16 +10,14 @@ function stored() {
   }
 }
 
-function apply(theme) {
-  document.documentElement.dataset.theme = theme;
-}
-
-// Returns the function that changes from one to the other.
-export function installTheme(changed) {
-  const light = matchMedia("(prefers-color-scheme: light)");
-  apply(stored() ?? (light.matches ? "light" : "dark"));
+// root: the viewer's element, which carries the theme. Returns the function that changes from one to the other.
+export function installTheme(root, changed) {
+  const apply = (theme) => { root.dataset.theme = theme; };
+  const notebook = document.body.dataset.jpThemeLight; // JupyterLab tells its own theme
+  const light = notebook !== undefined ? notebook === "true" : matchMedia("(prefers-color-scheme: light)").matches;
+  apply(stored() ?? (light ? "light" : "dark"));
   return () => {
-    const theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    const theme = root.dataset.theme === "dark" ? "light" : "dark";
     apply(theme);
     try {
       localStorage.setItem(KEY, theme);

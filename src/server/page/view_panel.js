@@ -4,7 +4,7 @@ import { lookAlong, withType } from "./camera.js";
 import { hexOf, linearOf } from "./color.js";
 import { button, color, make, row, section, segments, slider } from "./controls.js";
 
-export function viewPanel(store, resetCamera) {
+export function viewPanel({ store, frameEverything }) {
   const { element, body } = section("View", false);
   const look = (axis, sign) => store.setCamera(lookAlong(store.scene.camera, axis, sign));
   const sides = make("span", { class: "buttons" }, ...[0, 1, 2].flatMap((axis) => [1, -1].map((sign) =>
@@ -22,7 +22,7 @@ export function viewPanel(store, resetCamera) {
     set: (stops) => store.change("exposure", (scene) => ({ ...scene, image: { ...scene.image, exposure: Math.abs(stops) < 0.03 ? 0 : stops } })),
   });
   body.append(row(make("span", { class: "name" }, "From"), sides),
-    row("", button("frame everything", resetCamera)), projection.element, background.element, exposure.element);
+    row("", button("frame everything", frameEverything)), projection.element, background.element, exposure.element);
   const update = () => { for (const part of [projection, background, exposure]) part.update(); };
   update();
   return { element, update };

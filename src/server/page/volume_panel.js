@@ -28,7 +28,7 @@ function clipRow(axis, box, get, set) {
   return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, text), update };
 }
 
-export function volumePanel(store, start, current, chooseVolume) {
+export function volumePanel({ store, start, current, overlay, chooseVolume }) {
   const { element, body } = section("Volume", false);
   const volume = () => store.scene.volumes[current.volume];
   const change = (name, set) => store.changeVolume(current.volume, name, set);
@@ -66,6 +66,7 @@ export function volumePanel(store, start, current, chooseVolume) {
     update();
   }
   const update = () => parts.forEach((part) => part.update());
+  element.addEventListener("toggle", () => { overlay.showsBox = element.open; });
   build();
   return { element, update, rebuild: build };
 }

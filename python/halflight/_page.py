@@ -1,0 +1,41 @@
+"""The viewer's page as one module for notebooks: its files, which import each other, joined in their order."""
+from __future__ import annotations
+
+import functools
+import re
+from importlib.resources import files
+
+_IMPORT = re.compile(r'^import \{([^}]*)\} from "\./(\w+)\.js";\n', re.M)
+_EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.M)
+
+
+def _read(name: str) -> str:
+    return (files("halflight") / "page" / name).read_text(encoding="utf-8")
+
+
+def _add(name: str, joined: dict[str, str]) -> None:
+    """The file after those that it imports: a function that returns what it exports."""
+    if name in joined:
+        return
+    text = _read(f"{name}.js")
+    uses = _IMPORT.findall(text)
+    for _, used in uses:
+        _add(used, joined)
+    given = "".join(f"const {{{names}}} = ${used};\n" for names, used in uses)
+    exported = ", ".join(_EXPORT.findall(text))
+    body = _EXPORT.sub("", _IMPORT.sub("", text))
+    joined[name] = f"const ${name} = (() => {{\n{given}{body}\nreturn {{ {exported} }};\n}})();\n"
+
+
+@functools.cache
+def module() -> str:
+    """JavaScript: the widget's module, as anywidget wants it."""
+    joined: dict[str, str] = {}
+    _add("widget", joined)
+    return "".join(joined.values()) + "export default { render: $widget.render };\n"
+
+
+@functools.cache
+def style() -> str:
+    """CSS."""
+    return _read("style.css")

@@ -1,0 +1,243 @@
+"""The viewer in a notebook: `show`.
+
+The browser's end of the channel is src/server/page/widget.js. Messages from there ask for frames; each is answered
+by one message with the picture in its buffer. Frames are rendered by a thread of the widget's own, so that a newer
+request can cancel the one under way.
+"""
+from __future__ import annotations
+
+import io
+import json
+import queue
+import threading
+import time
+from typing import Any, Unpack
+
+import numpy as np
+
+from . import _page
+from ._library import call, context, ffi, lib, made, names, text_of
+from .image import Image
+from .render import Asked, Renderer, Source, scene_for
+from .scene import Scene
+from .transfer import colormap_points
+from .volume import Volume
+
+__all__ = ["show"]
+
+_MOST_PIXELS = 64 << 20
+
+
+class _OutdatedError(Exception):
+    """Nobody waits for the frame any more."""
+
+
+def _with_files(scene: Scene, names_of_files: list[str | None]) -> Scene:
+    """The scene with other names of its volumes' files; None: no file."""
+    description = ffi.new("hl_scene_description *", lib.hl_scene_describe(scene._handle)[0])
+    volumes = ffi.new("hl_scene_volume[]", description.volume_count)
+    ffi.memmove(volumes, description.volumes, ffi.sizeof(volumes))
+    keep = [None if name is None else ffi.new("char[]", name.encode()) for name in names_of_files]
+    for volume, name in zip(volumes, keep, strict=True):
+        volume.file = ffi.NULL if name is None else name
+    description.volumes = volumes
+    return Scene._of(made(lib.hl_scene_create, "hl_scene", lib.hl_scene_release, context, description))
+
+
+class _Named:
+    """A scene whose volumes can be named in its text, those of arrays too: "array 0" stands for one."""
+
+    def __init__(self, scene: Scene) -> None:
+        struct = lib.hl_scene_describe(scene._handle)
+        self.files = [None if one.file == ffi.NULL else text_of(one.file)
+                      for one in struct.volumes[0:struct.volume_count]]
+        shapes = [one.shapes != ffi.NULL for one in struct.volumes[0:struct.volume_count]]
+        names_of_files = [f"array {n}" if file is None and not shape else file
+                          for n, (file, shape) in enumerate(zip(self.files, shapes, strict=True))]
+        self.scene = _with_files(scene, names_of_files)
+
+    def read(self, text: str) -> Scene:
+        """The scene of a text, with these volumes; no file is opened."""
+        raw = text.encode()
+        return Scene._of(made(lib.hl_scene_from_json_like, "hl_scene", lib.hl_scene_release, context, raw, len(raw),
+                              ffi.NULL, b"scene", self.scene._handle))
+
+    def restored(self, text: str) -> Scene:
+        """The scene of a text, with arrays as arrays."""
+        return _with_files(self.read(text), self.files)
+
+
+def _described(volume: Volume) -> dict[str, Any]:
+    info = volume.info()
+    struct = ffi.new("hl_volume_info *")
+    struct.struct_size = ffi.sizeof("hl_volume_info")
+    if lib.hl_volume_get_info(volume._handle, struct) != lib.HL_OK:
+        raise RuntimeError("the volume is not known")
+    return {"type": info.type, "dimensions": list(struct.dimensions), "origin": info.origin.tolist(),
+            "axes": (info.direction * info.spacing).T.tolist(), "range": list(info.range), "space": info.space,
+            "histogram": [int(count) for count in info.histogram]}
+
+
+def _start(scene: Scene, title: str) -> dict[str, Any]:
+    """What the page is told first, as the program's server tells it."""
+    return {"title": title, "scene": json.loads(scene.to_json()), "volumes": [_described(one) for one in scene.volumes],
+            "presets": names(lib.hl_preset_name),
+            "colormaps": {name: colormap_points(name) for name in names(lib.hl_colormap_name)}}
+
+
+def _jpeg(image: Image, quality: int) -> tuple[str, bytes]:
+    """For a moment's look: a JPEG where Pillow is installed, else a PNG."""
+    codes = image.to_srgb8(background=image.scene.background if image.scene.background != "transparent" else "black")
+    try:
+        from PIL import Image as Pillow
+    except ImportError:
+        return "image/png", image.encode("png")
+    place = io.BytesIO()
+    Pillow.fromarray(np.ascontiguousarray(codes[..., :3])).save(place, "jpeg", quality=quality)
+    return "image/jpeg", place.getvalue()
+
+
+def _encoded(image: Image, asked: dict[str, Any]) -> tuple[str, bytes]:
+    if asked["format"] == "jpeg":
+        return _jpeg(image, min(max(int(asked["quality"]), 10), 100))
+    if asked["format"] == "exr":
+        return "image/x-exr", image.encode("exr")
+    return "image/png", image.encode("png", depth=16 if asked["depth"] == 16 else 8)
+
+
+class _Frames(threading.Thread):
+    """Answers what the page asks, in turn; frames of which a newer one is asked for are not rendered."""
+
+    def __init__(self, named: _Named, title: str, send: Any) -> None:
+        super().__init__(name="halflight.show", daemon=True)
+        self.named, self.title, self.send = named, title, send
+        self.asked: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
+        self.newest: dict[tuple[str, str], int] = {}
+        self.renderer = Renderer()
+
+    def ask(self, message: dict[str, Any]) -> None:
+        if message["kind"] == "frame":
+            self.newest[self._lane(message)] = message["number"]
+        self.asked.put(message)
+
+    @staticmethod
+    def _lane(message: dict[str, Any]) -> tuple[str, str]:
+        return str(message["view"]), str(message.get("lane", ""))
+
+    def run(self) -> None:
+        while (message := self.asked.get()) is not None:
+            answer = {"view": message["view"], "number": message["number"]}
+            buffers: list[bytes] = []
+            try:
+                found, buffers = getattr(self, f"_do_{message['kind']}")(message)
+                answer |= found
+            except _OutdatedError:
+                pass
+            except Exception as problem:  # the page shows it; the thread goes on
+                answer["problem"] = str(problem)
+            self.send(answer, buffers)
+
+    def _do_start(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
+        return {"text": json.dumps(_start(self.named.scene, self.title))}, []
+
+    def _do_complete(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
+        return {"text": self.named.read(message["scene"]).to_json()}, []
+
+    def _do_frame(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
+        lane = self._lane(message)
+
+        def stop_if_outdated(*_: object) -> None:
+            if self.newest[lane] != message["number"]:
+                raise _OutdatedError
+
+        stop_if_outdated()
+        began = time.monotonic()
+        scene = self.named.read(message["scene"])
+        if scene.size[0] * scene.size[1] > _MOST_PIXELS:
+            raise ValueError(f"{scene.size[0]} x {scene.size[1]} pixels are more than the viewer's {_MOST_PIXELS}")
+        read = time.monotonic()
+        image = self.renderer.render(scene, progress=stop_if_outdated)
+        rendered = time.monotonic()
+        kind, content = _encoded(image, message)
+        times = {"read": 1e3 * (read - began), "render": 1e3 * (rendered - read),
+                 "encode": 1e3 * (time.monotonic() - rendered)}
+        return {"type": kind, "times": times}, [content]
+
+
+def _make_class() -> Any:
+    """The widget's class; made late, as anywidget is wanted in notebooks alone."""
+    try:
+        import anywidget
+        import traitlets
+    except ImportError:
+        raise ImportError("halflight.show() needs anywidget: pip install anywidget") from None
+
+    class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
+        """A viewer of one scene."""
+
+        _esm = _page.module()
+        sheet = traitlets.Unicode(_page.style()).tag(sync=True)
+        height = traitlets.Int(560).tag(sync=True)
+
+        def __init__(self, scene: Scene, title: str, height: int) -> None:
+            super().__init__(height=height)
+            self._named = _Named(scene)
+            self._text = self._named.scene.to_json()
+            self._frames = _Frames(self._named, title, self.send)
+            self._frames.start()
+            self.on_msg(self._on_message)
+
+        def _on_message(self, _: object, message: dict[str, Any], __: object) -> None:
+            if message["kind"] == "arrived":
+                self._text = message["scene"]
+            elif message["kind"] in ("start", "complete", "frame"):
+                self._frames.ask(message)
+
+        @property
+        def scene(self) -> Scene:
+            """The scene that the page shows now."""
+            return self._named.restored(self._text)
+
+        def close(self) -> None:
+            """End the widget and its thread."""
+            self._frames.asked.put(None)
+            super().close()
+
+    return Viewer
+
+
+_classes: list[Any] = []
+
+
+def show(volume: Source, *, height: int = 560, title: str | None = None, **asked: Unpack[Asked]) -> Any:
+    """A viewer in a notebook: turn the volume, drag its lights, edit its transfer function.
+
+    Needs anywidget (``pip install anywidget``); frames come through the notebook's own connection, so that it works
+    in JupyterLab, VS Code and Colab and behind a hub. Pillow, where it is installed, makes moving pictures smaller.
+
+    Parameters
+    ----------
+    volume : path, array, Volume, Scene or an object that has an array
+        As for `render`.
+    height : int
+        Of the viewer, in pixels of the page.
+    title : str, optional
+        What stands above the picture.
+    **asked
+        The keywords of `render` that say what is seen: `cmap`, `tf`, `shadows`, `lights`, `camera`, ...
+
+    Returns
+    -------
+    anywidget.AnyWidget
+        Its ``scene`` is the `Scene` that a person has arrived at.
+    """
+    if not _classes:
+        _classes.append(_make_class())
+    scene = scene_for(volume, **asked)
+    return _classes[0](scene, title if title is not None else _title_of(volume), height)
+
+
+def _title_of(volume: Source) -> str:
+    if isinstance(volume, str):
+        return volume.rsplit("/", 1)[-1]
+    return f"{type(volume).__name__}"

@@ -1,0 +1,154 @@
+// The viewer: the picture, what lies over it, and the panels beside it, in any element of a page or a notebook.
+
+import { exportPanel } from "./export.js";
+import { Frames } from "./frames.js";
+import { functionPanel } from "./function_panel.js";
+import { lightPanel, shadowPanel } from "./light_panel.js";
+import { Overlay } from "./overlay.js";
+import { Pointer } from "./pointer.js";
+import { helpSheet, installShortcuts } from "./shortcuts.js";
+import { Store } from "./store.js";
+import { installTheme } from "./theme.js";
+import { viewPanel } from "./view_panel.js";
+import { volumePanel } from "./volume_panel.js";
+
+// One file each; in the order of the side bar.
+const PANELS = [functionPanel, lightPanel, shadowPanel, volumePanel, viewPanel, exportPanel];
+
+const MARKUP = `
+  <div class="viewer">
+    <header>
+      <h1>Halflight</h1>
+      <span id="title"></span>
+      <nav aria-label="Tools">
+        <button id="undo" type="button" title="Undo (ctrl + z)">Undo</button>
+        <button id="redo" type="button" title="Redo (ctrl + shift + z)">Redo</button>
+        <button id="reset" type="button" title="Frame everything (r)">Frame</button>
+        <button id="show-lights" type="button" title="The lights' handles (l)">Lights</button>
+        <button id="theme" type="button" title="Dark or light (t)">Theme</button>
+        <button id="sidebar" type="button" title="The side bar (b)">Panels</button>
+        <button id="show-help" type="button" title="Mouse, fingers and keys (?)" aria-label="Help">?</button>
+      </nav>
+    </header>
+    <main>
+      <div id="view" tabindex="0" role="application" aria-label="The picture. Arrow keys turn, plus and minus zoom, question mark lists all keys.">
+        <canvas id="picture" width="16" height="16"></canvas>
+        <svg id="overlay" xmlns="http://www.w3.org/2000/svg"></svg>
+        <p id="message" role="status" hidden></p>
+      </div>
+      <footer>
+        <span id="stage" data-stage="refining">loading</span>
+        <span id="statistics"></span>
+      </footer>
+    </main>
+    <aside id="panels" aria-label="Settings"></aside>
+    <dialog id="help" aria-labelledby="help-title"></dialog>
+  </div>`;
+
+const MOST_SIDE = 4096; // pixels of the picture
+const MESSAGE_TIME = 5000; // milliseconds
+
+// Returns the function that shows a line over the picture for a while.
+function messageBox(box) {
+  let timer = 0;
+  return (text) => {
+    box.textContent = text;
+    box.hidden = false;
+    clearTimeout(timer);
+    timer = setTimeout(() => { box.hidden = true; }, MESSAGE_TIME);
+  };
+}
+
+const STAGES = { moving: "moving", settled: "refining", refining: "refining", final: "final" };
+
+// What the line at the bottom says of a frame.
+function showFrame(find, report, frame) {
+  const stage = find("stage");
+  if (frame.error) {
+    stage.textContent = "failed";
+    stage.dataset.stage = "failed";
+    report(frame.error.message === "Failed to fetch" ? "The viewer has ended: start it again." : frame.error.message);
+    return;
+  }
+  stage.textContent = STAGES[frame.stage];
+  stage.dataset.stage = STAGES[frame.stage];
+  if (frame.bytes === 0) return;
+  const seconds = frame.milliseconds < 1000 ? `${Math.round(frame.milliseconds)} ms` : `${(frame.milliseconds / 1000).toFixed(1)} s`;
+  find("statistics").textContent = `${frame.width} × ${frame.height} · sheets ${+frame.spacing.toPrecision(2)} voxels · ${seconds} · ${Math.ceil(frame.bytes / 1024)} KiB`;
+}
+
+// The picture's size follows the window's.
+function followSize(store, area) {
+  const measure = () => {
+    const density = Math.min(devicePixelRatio || 1, 2);
+    const [width, height] = [area.clientWidth, area.clientHeight].map((side) => Math.min(Math.max(Math.round(side * density), 16), MOST_SIDE));
+    const { image } = store.scene;
+    if (image.width !== width || image.height !== height)
+      store.change("size", (scene) => ({ ...scene, image: { ...scene.image, width, height } }));
+  };
+  new ResizeObserver(measure).observe(area);
+  measure();
+}
+
+// What is seen fits again, from the same side: only the distance and the target are the program's choice.
+async function frameEverything({ store, channel, report }) {
+  const { camera, ...rest } = store.scene;
+  try {
+    const complete = await channel.completeScene({ ...rest, camera: { type: camera.type, ...(camera.fovy_deg ? { fovy_deg: camera.fovy_deg } : {}) } });
+    store.setCamera(complete.camera);
+  } catch (error) {
+    report(error.message);
+  }
+}
+
+// What keys and buttons do besides moving the camera.
+function actionsOf(viewer, find, root, update) {
+  const { store, overlay } = viewer;
+  return {
+    reset: viewer.frameEverything,
+    lights: () => { overlay.showsLights = !overlay.showsLights; update(); },
+    shadows: () => {
+      const kinds = ["off", "hard", "soft"];
+      store.changeRender("shadows", kinds[(kinds.indexOf(store.scene.render.shadows) + 1) % 3]);
+    },
+    statistics: () => { find("statistics").hidden = !find("statistics").hidden; },
+    sidebar: () => { root.classList.toggle("bare"); },
+    theme: installTheme(root, () => { update(); overlay.draw(); }),
+    help: () => find("help").showModal(),
+  };
+}
+
+// Fills an empty element with a viewer. channel: how pictures are asked for (http_channel.js); start: what is open;
+// keyboard: where its keys are listened to. Returns { store, frames, overlay }.
+export function mount(element, channel, start, keyboard = element) {
+  element.innerHTML = MARKUP;
+  const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
+  const store = new Store(start.scene), report = messageBox(find("message"));
+  const viewer = { store, start, channel, report, current: { volume: 0, light: 0 } };
+  find("title").textContent = start.title;
+  followSize(store, find("view"));
+  viewer.overlay = new Overlay(find("overlay"), viewer);
+  viewer.frameEverything = () => frameEverything(viewer);
+  viewer.chooseVolume = (index) => {
+    viewer.current.volume = index;
+    panels.forEach((panel) => panel.rebuild?.());
+  };
+  const panels = PANELS.map((panel) => panel(viewer));
+  find("panels").append(...panels.map((panel) => panel.element));
+  const update = () => {
+    panels.forEach((panel) => panel.update());
+    find("undo").disabled = !store.canUndo;
+    find("redo").disabled = !store.canRedo;
+  };
+  store.listen((_, name) => { if (name !== "camera") update(); });
+  const frames = new Frames(viewer, find("picture"), (frame) => showFrame(find, report, frame));
+  new Pointer(find("view"), store);
+  const actions = actionsOf(viewer, find, root, update);
+  helpSheet(find("help"), installShortcuts(store, keyboard, find("view"), actions));
+  const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, sidebar: actions.sidebar };
+  for (const [id, action] of Object.entries(buttons)) find(id).addEventListener("click", action);
+  viewer.overlay.showsLights = true;
+  update();
+  frames.move();
+  return { store, frames, overlay: viewer.overlay };
+}

@@ -1,0 +1,82 @@
+// The viewer in a notebook: an anywidget (anywidget.dev), whose frames come through the widget's own channel. The Python
+// package joins this file and those that it imports to one module (python/halflight/_page.py); the other end of the
+// channel is python/halflight/widget.py.
+
+import { mount } from "./viewer.js";
+
+const TELL_AFTER = 150; // milliseconds without a change, after which Python is told the scene
+
+class WidgetChannel {
+  #model;
+  #view = Math.random().toString(36).slice(2); // several views of one widget share its messages
+  #number = 0;
+  #waiting = new Map(); // by number: what to do with the answer
+
+  constructor(model) {
+    this.#model = model;
+    this.listen = (message, buffers) => this.#answered(message, buffers);
+    model.on("msg:custom", this.listen);
+  }
+
+  close() {
+    this.#model.off("msg:custom", this.listen);
+  }
+
+  #answered({ view, number, ...answer }, buffers) {
+    const finish = view === this.#view ? this.#waiting.get(number) : undefined;
+    this.#waiting.delete(number);
+    finish?.(answer, buffers);
+  }
+
+  #ask(kind, content) {
+    const number = ++this.#number;
+    this.#model.send({ kind, view: this.#view, number, ...content });
+    return new Promise((resolve, reject) => {
+      this.#waiting.set(number, (answer, buffers) => {
+        if (answer.problem) reject(new Error(answer.problem));
+        else resolve({ ...answer, buffers });
+      });
+    });
+  }
+
+  tell(scene) {
+    this.#model.send({ kind: "arrived", view: this.#view, number: 0, scene: JSON.stringify(scene) });
+  }
+
+  async start() {
+    return JSON.parse((await this.#ask("start", {})).text);
+  }
+
+  async completeScene(scene) {
+    return JSON.parse((await this.#ask("complete", { scene: JSON.stringify(scene) })).text);
+  }
+
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, lane = "" } = {}) {
+    const { type, times, buffers } = await this.#ask("frame", { scene: JSON.stringify(scene), format, quality, depth, lane });
+    if (type === undefined) return null; // cancelled
+    return { blob: new Blob(buffers, { type }), times };
+  }
+}
+
+export async function render({ model, el }) {
+  const channel = new WidgetChannel(model), sheet = new CSSStyleSheet(), cell = document.createElement("div");
+  const place = document.createElement("div"), shadow = place.attachShadow({ mode: "open" });
+  // JupyterLab's own keys and menu are not meant here.
+  place.setAttribute("data-lm-suppress-shortcuts", "true");
+  place.setAttribute("data-jp-suppress-context-menu", "true");
+  sheet.replaceSync(model.get("sheet"));
+  shadow.adoptedStyleSheets = [sheet];
+  cell.className = "halflight-cell";
+  cell.style.height = `${model.get("height")}px`;
+  shadow.append(cell);
+  el.append(place);
+  const start = await channel.start();
+  const viewer = mount(cell, channel, start);
+  el.halflight = viewer; // for the browser's console, and for tests
+  let timer = 0;
+  viewer.store.listen(() => {
+    clearTimeout(timer);
+    timer = setTimeout(() => channel.tell(viewer.store.scene), TELL_AFTER);
+  });
+  return () => channel.close();
+}

@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""halflight.show() in a real JupyterLab: its frames, its scene, and that it turns as the page does.
+
+usage: notebook.py BUILD
+JupyterLab and anywidget come from PyPI into a virtual environment of the build folder, once; where they cannot be had,
+the test is skipped.
+"""
+import json
+import os
+import pathlib
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "viewer"))
+from browser import Browser  # noqa: E402  (the folder is added above)
+
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+PACKAGES = ("jupyterlab>=4", "anywidget>=0.9", "numpy", "pillow", "cffi")
+CELLS = ["""import numpy, halflight
+z, y, x = numpy.mgrid[-1:1:32j, -1:1:32j, -1:1:32j]
+ball = numpy.exp(-6 * ((x - 0.3) ** 2 + y**2 + 1.5 * z**2)).astype(numpy.float32)
+widget = halflight.show(ball, shadows="soft", size=(64, 64), height=420)
+widget""",
+         """import hashlib
+scene = widget.scene
+picture = halflight.Renderer().render(scene)
+print("PIXELS", hashlib.sha256(picture.to_srgb8().tobytes()).hexdigest(), scene.volumes[0])"""]
+PANEL = "[...globalThis.jupyterapp?.shell.widgets('main') ?? []].find((w) => w.context?.path === 'show.ipynb')"
+checks = 0
+
+
+def check(condition, what):
+    global checks
+    checks += 1
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+def skip(reason):
+    print(reason)
+    sys.exit(77)
+
+
+def environment():
+    """The virtual environment's folder of programs."""
+    folder = BUILD / "jupyter"
+    if not (folder / "bin" / "jupyter-lab").exists():
+        made = subprocess.run([sys.executable, "-m", "venv", folder], capture_output=True, text=True)
+        if made.returncode != 0:
+            skip("python3-venv is not installed")
+        got = subprocess.run([folder / "bin" / "pip", "install", "--quiet", *PACKAGES], capture_output=True, text=True)
+        if got.returncode != 0:
+            shutil.rmtree(folder)
+            skip("JupyterLab cannot be had from PyPI")
+    return folder / "bin"
+
+
+def packages():
+    """The Python package as it is installed."""
+    stage = BUILD / "notebook-stage"
+    subprocess.run(["meson", "install", "-C", BUILD, "--quiet", "--no-rebuild", "--destdir", stage, "--tags", "python-runtime"],
+                   check=True, capture_output=True)
+    return next(path.parent for path in stage.rglob("halflight/__init__.py"))
+
+
+def free_port():
+    with socket.socket() as any_socket:
+        any_socket.bind(("127.0.0.1", 0))
+        return any_socket.getsockname()[1]
+
+
+class Lab:
+    """A JupyterLab with one notebook."""
+
+    def __init__(self, programs, folder):
+        notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": {"kernelspec": {"name": "python3", "display_name": "Python 3"}},
+                    "cells": [{"cell_type": "code", "id": f"cell-{n}", "metadata": {}, "outputs": [], "execution_count": None, "source": text}
+                              for n, text in enumerate(CELLS)]}
+        (pathlib.Path(folder) / "show.ipynb").write_text(json.dumps(notebook))
+        port = free_port()
+        self.url = f"http://127.0.0.1:{port}/lab/tree/show.ipynb?token=test"
+        own = {"PYTHONPATH": str(packages().parent), "HOME": folder, "JUPYTER_CONFIG_DIR": folder + "/config", "JUPYTER_DATA_DIR": folder + "/data",
+               "JUPYTER_RUNTIME_DIR": folder + "/run", "IPYTHONDIR": folder + "/ipython"}
+        self.process = subprocess.Popen(
+            [programs / "jupyter-lab", "--no-browser", f"--port={port}", "--IdentityProvider.token=test", "--allow-root",
+             "--LabApp.expose_app_in_browser=True", "--ServerApp.root_dir=" + folder, "--LabApp.news_url=None",
+             "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"],
+            env={**os.environ, **own}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self._wait(port)
+
+    def _wait(self, port):
+        for _ in range(600):
+            try:
+                urllib.request.urlopen(f"http://127.0.0.1:{port}/api?token=test", timeout=2)
+                return
+            except OSError:
+                time.sleep(0.1)
+        sys.exit("FAILED: JupyterLab does not start")
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait(20)
+
+
+def run_cell(browser, number):
+    browser.run(f"""(async () => {{
+      const panel = {PANEL};
+      await panel.context.ready; await panel.sessionContext.ready;
+      jupyterapp.shell.activateById(panel.id);
+      panel.content.activeCellIndex = {number};
+      await jupyterapp.commands.execute('notebook:run-cell');
+    }})()""", timeout=120)
+
+
+VIEWER = "[...document.querySelectorAll('*')].find((e) => e.halflight)?.halflight"
+
+
+def pixels(browser):
+    """SHA-256 of the pixels on the screen."""
+    return browser.run(f"""(() => {{
+      const host = [...document.querySelectorAll('*')].find((e) => e.halflight);
+      const canvas = host.firstElementChild.shadowRoot.querySelector('#picture');
+      const {{ data }} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+      return crypto.subtle.digest('SHA-256', data).then((hash) =>
+        [...new Uint8Array(hash)].map((byte) => byte.toString(16).padStart(2, '0')).join(''));
+    }})()""")
+
+
+def view_box(browser):
+    return browser.run("""(() => { const host = [...document.querySelectorAll('*')].find((e) => e.halflight);
+      const b = host.firstElementChild.shadowRoot.querySelector('#view').getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()""")
+
+
+def output(browser):
+    return browser.run("[...document.querySelectorAll('.jp-OutputArea-output')].map((o) => o.textContent).find((t) => t.includes('PIXELS')) ?? ''")
+
+
+chromium = shutil.which("chromium")
+if chromium is None:
+    skip("chromium is not installed")
+programs = environment()
+with tempfile.TemporaryDirectory() as folder, Browser(chromium, (1280, 900)) as browser:
+    lab = Lab(programs, folder)
+    try:
+        browser.open(lab.url)
+        browser.wait(f"{PANEL}?.context.isReady === true", timeout=120)
+        run_cell(browser, 0)
+        browser.wait(f"({VIEWER})?.frames.statistics.stage === 'final'", timeout=90)
+        first = pixels(browser)
+        if len(sys.argv) > 2:
+            browser.screenshot(sys.argv[2])
+        x, y, width, height = view_box(browser)
+        browser.drag([x + 60, y + height - 60], [x + 160, y + height - 90])
+        browser.wait(f"({VIEWER}).frames.statistics.stage === 'final'", timeout=60)
+        turned = pixels(browser)
+        check(turned != first, "a drag turns the volume")
+        run_cell(browser, 1)
+        browser.wait("[...document.querySelectorAll('.jp-OutputArea-output')].some((o) => o.textContent.includes('PIXELS'))", timeout=60)
+        told = output(browser)
+        check(turned in told, f"widget.scene is what is seen, pixel for pixel: {turned} {told}")
+        check("32x32x32 float32>" in told, f"its volume is the array again: {told}")
+        if len(sys.argv) > 2:
+            browser.screenshot(sys.argv[2])
+        problems = browser.problems
+        check(problems == [], f"the console has errors: {problems}")
+        print(f"{checks} checks passed; frames: {browser.run(f'({VIEWER}).frames.statistics')}")
+    finally:
+        lab.close()

@@ -1,0 +1,89 @@
+"""The viewer in a notebook, without a notebook: its module, its frames, its scene."""
+import io
+import json
+import queue
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import halflight
+from halflight import _page, widget
+
+ARRAY = (np.indices((12, 12, 12)).sum(axis=0) % 7 * 36).astype(np.uint8)
+
+
+def frames_of(scene):
+    answers = queue.Queue()
+    thread = widget._Frames(widget._Named(scene), "title", lambda content, buffers: answers.put((content, buffers)))
+    thread.start()
+    return thread, answers
+
+
+def ask(thread, answers, **message):
+    thread.ask({"view": "v", "number": 1, **message})
+    return answers.get(timeout=60)
+
+
+def test_module_is_one_file_that_imports_nothing():
+    module = _page.module()
+    assert module.count("\nexport ") == 1
+    assert "\nimport " not in module
+    assert module.endswith("export default { render: $widget.render };\n")
+    assert ".halflight-cell" in _page.style()
+
+
+def test_frames_are_those_of_the_scene():
+    scene = halflight.Scene(ARRAY, size=(48, 32), shadows="soft")
+    thread, answers = frames_of(scene)
+    start = json.loads(ask(thread, answers, kind="start")[0]["text"])
+    assert start["volumes"][0]["dimensions"] == [12, 12, 12]
+    assert start["scene"]["volumes"][0]["file"] == "array 0"
+    assert "viridis" in start["colormaps"]
+    told, (png,) = ask(thread, answers, kind="frame", number=2, scene=json.dumps(start["scene"]), format="png", depth=8,
+                       quality=80)
+    assert told["type"] == "image/png"
+    image = halflight.Renderer().render(scene)
+
+
+    assert np.array_equal(np.asarray(Image.open(io.BytesIO(png)).convert("RGBA")), image.to_srgb8())
+    thread.asked.put(None)
+
+
+def test_newer_frames_cancel():
+    scene = halflight.Scene(ARRAY, size=(32, 32))
+    thread, answers = frames_of(scene)
+    thread.newest["v", ""] = 9
+    thread.asked.put({"kind": "frame", "view": "v", "number": 8, "scene": "", "format": "png"})
+    told, buffers = answers.get(timeout=60)
+    assert "type" not in told and "problem" not in told and buffers == []
+    thread.asked.put(None)
+
+
+def test_mistakes_are_answered():
+    thread, answers = frames_of(halflight.Scene(ARRAY, size=(32, 32)))
+    for text in ("", "{", '{"halflight": 1, "volumes": [{"file": "/etc/passwd"}]}'):
+        told, _ = ask(thread, answers, kind="complete", scene=text)
+        assert told["problem"]
+    thread.asked.put(None)
+
+
+def test_scene_comes_back_with_its_arrays():
+    scene = halflight.Scene(ARRAY, size=(32, 32))
+    named = widget._Named(scene)
+    text = named.scene.to_json().replace('"width": 32', '"width": 40')
+    back = named.restored(text)
+    assert back.size == (40, 32)
+    assert np.array_equal(halflight.Renderer().render(back.replace(size=(32, 32))), halflight.Renderer().render(scene))
+    with pytest.raises(ValueError, match="file"):
+        back.to_json()
+
+
+def test_show_says_what_it_needs(monkeypatch):
+    import sys
+    monkeypatch.setitem(sys.modules, "anywidget", None)
+    monkeypatch.setattr(widget, "_classes", [])
+    with pytest.raises(ImportError, match="pip install anywidget"):
+        halflight.show(ARRAY)
+    with pytest.raises(TypeError, match="did you mean 'shadows'"):
+        widget.scene_for(ARRAY, shadow="hard")
