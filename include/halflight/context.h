@@ -74,8 +74,8 @@ typedef struct hl_context_options {
   void (*log)(void *user_data, hl_log_level level, const char *message);
   /* fraction in [0,1] of the named stage ("load", "prepare", "render", "write"). */
   void (*progress)(void *user_data, const char *stage, double fraction);
-  /* Asked every few milliseconds; a non-zero answer makes the running call return HL_ERROR_CANCELLED soon:
-   * within a tenth of a second up to 4096 x 4096 pixels and 512^3 voxels. */
+  /* Asked every few milliseconds. A non-zero answer makes the running call return HL_ERROR_CANCELLED soon:
+   * within a tenth of a second, for pictures up to 4096 x 4096 pixels and volumes up to 512^3 voxels. */
   int (*cancelled)(void *user_data);
   uint64_t memory_limit;              /* bytes held through this context at once; 0: no limit */
   hl_instruction_set instruction_set; /* an unsupported choice is refused */

@@ -31,10 +31,10 @@ typedef struct hl_render_statistics {
   /* wall-clock seconds per stage; the light's fill includes its composite into the shadow buffer. The image
    * is filled and shaded in one stage, whose time is split as the threads spent it. */
   double seconds_sort, seconds_fill_image, seconds_fill_light, seconds_shade, seconds_soften;
-  double seconds_composite_light; /* the part of seconds_fill_light that is classification and
-                                     composite */
+  double seconds_composite_light; /* the part of seconds_fill_light that is spent on classification and
+                                     compositing */
   uint64_t pixels_filled_image,
-      pixels_filled_light; /* sheet pixels reconstructed, those for finding hidden blocks included */
+      pixels_filled_light; /* sheet pixels reconstructed, including those for finding hidden blocks */
   uint64_t pixels_skipped_image, pixels_skipped_light; /* in occupied places, but already opaque or dark */
 } hl_render_statistics;
 

@@ -32,7 +32,7 @@ typedef enum hl_light_type {
 } hl_light_type;
 
 typedef enum hl_shadows {
-  HL_SHADOWS_DEFAULT = 0, /* a light's: as the render settings say */
+  HL_SHADOWS_DEFAULT = 0, /* of a light: as the render settings say */
   HL_SHADOWS_OFF = 1,
   HL_SHADOWS_HARD = 2,
   HL_SHADOWS_SOFT = 3
@@ -91,7 +91,8 @@ typedef struct hl_light {
   hl_falloff falloff;
   hl_shadows shadows;
   hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */
-  hl_light_emission emission; /* on the light itself; copied with its pixels; not beside a texture */
+  hl_light_emission emission; /* the image on the light's own surface; copied with its pixels; a light has
+                                 this or a texture, not both */
 } hl_light;
 
 typedef struct hl_opacity_point {
@@ -126,10 +127,11 @@ typedef struct hl_scene_volume {
   const char *name;   /* may be null */
   const char *file;   /* where the voxels came from, for hl_scene_to_json; may be null */
   const char *shapes; /* or the text that the voxels were made from (hl_volume_from_shapes); may be null */
-  const char *array; /* the hl_volume_load_options that the file was read with, for hl_scene_to_json: null, */
-  int component;     /* HL_COMPONENT_DEFAULT and 0 are the defaults */
+  const char *array;  /* options that the file was read with (hl_volume_load_options), for hl_scene_to_json;
+                         may be null */
+  int component;      /* likewise; HL_COMPONENT_DEFAULT and 0 are the defaults */
   double spacing[3];
-  const char *series; /* of hl_volume_load_options too; may be null */
+  const char *series; /* likewise: hl_volume_load_options.series; may be null */
   hl_volume *volume;  /* retained by the scene */
   double scale;       /* transform: scale, then rotate, then translate */
   double rotate_axis[3];
@@ -146,13 +148,13 @@ typedef struct hl_scene_volume {
   int time, channel, level; /* of the file (hl_volume_load_options), for hl_scene_to_json; default
                                HL_INDEX_DEFAULT */
   double anisotropy; /* g of Henyey and Greenstein's phase function, by which a medium scatters light; above
-                        0: onwards, below: back; default 0: evenly */
+                        0: mostly onwards, below 0: mostly back; default 0: evenly */
 } hl_scene_volume;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
 typedef enum hl_kernel { HL_KERNEL_BSPLINE = 0, HL_KERNEL_GAUSSIAN = 1, HL_KERNEL_LINEAR = 2 } hl_kernel;
 typedef enum hl_reconstruction {
-  HL_RECONSTRUCTION_AUTO = 0, /* gather: the faster one wherever both were measured */
+  HL_RECONSTRUCTION_AUTO = 0, /* gather; the faster method of the two wherever both were measured */
   HL_RECONSTRUCTION_SPLAT = 1,
   HL_RECONSTRUCTION_GATHER = 2
 } hl_reconstruction;
@@ -284,26 +286,27 @@ typedef enum hl_side {
 } hl_side;
 
 /* The view from a side. up: of any length; null: by the file's anatomy, or else a guess from the voxels.
- * Without anatomy, +x is to the right in the view from the front (where up is along x: +y), so that the front
- * is at -y where z is up. A scene without a camera gets hl_camera_frame_view() of the automatic side. */
+ * Without anatomy, the view from the front has +x to its right (+y where up is along x); so where z is up,
+ * the front is at -y. A scene without a camera gets hl_camera_frame_view() of the automatic side. */
 HL_API HL_WARN_UNUSED hl_status hl_view_choose(const hl_scene_description *description, hl_side side,
                                                const double up[3], hl_view *view, hl_error *error);
 
-/* The view of the description's camera, with roll 0. view->up is the camera's up vector, or the axis of the
- * world from which that was made perpendicular to the line of sight. Fails where position and target are the
- * same. */
+/* The view of the description's camera, with roll 0. view->up is the camera's up vector; where that vector
+ * was made perpendicular to the line of sight from an axis of the world, it is this axis. Fails where
+ * position and target are the same. */
 HL_API HL_WARN_UNUSED hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *view);
 
 /* Places the camera so that the visible voxels of all volumes fill the picture and are in its middle, with
  * room for turning: at zoom 1 nothing leaves the picture while the camera turns about view->up
- * (hl_camera_turn). It may leave it in other turns, if room for these would fill this view to less than four
- * fifths. camera->type and fovy_deg are kept. Fails where zoom is not from 1e-6 to 1e6, the view or the field
- * of view is impossible, or there is no volume (HL_ERROR_ARGUMENT), and for lack of memory. */
+ * (hl_camera_turn). Turns about other axes get room as well, unless it would shrink this view to less than
+ * four fifths of the picture. camera->type and fovy_deg are kept. Fails where zoom is not from 1e-6 to 1e6,
+ * the view or the field of view is impossible, or there is no volume (HL_ERROR_ARGUMENT), and for lack of
+ * memory. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description *description,
                                                      const hl_view *view, double zoom, hl_camera *camera,
                                                      hl_error *error);
 
-/* Turns the camera about its target to a view, at the distance that it has. */
+/* Turns the camera about its target to a view; the distance to the target is kept. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *camera);
 
 /* Places the camera so that the visible voxels of all volumes fill the picture, without room for turning.

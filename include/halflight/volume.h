@@ -105,15 +105,15 @@ typedef struct hl_volume_load_options {
                          else the first */
   int component; /* from 0 on, or an HL_COMPONENT_ value; default HL_COMPONENT_DEFAULT. Volumes of a series
                     (time) are components too */
-  double spacing[3]; /* distance of voxels along i, j, k, world units, in place of the file's; all 0
-                        (default): the file's */
+  double spacing[3]; /* distance of voxels along i, j, k, world units, instead of the file's own; all 0
+                        (default): the file's own */
   const void *bytes; /* the file's content in memory, borrowed during the call: nothing is opened then, and
                         path is only its name. Default null */
   size_t byte_count;
-  const char *series; /* DICOM: of several series this one: its number, UID or description; null: the largest.
-                        OME-Zarr: of several images this one: its number, path or name; null: the first */
-  int time, channel, level; /* of several time steps, channels or resolutions (0: the finest) this one, from 0
-                               on; default HL_INDEX_DEFAULT */
+  const char *series; /* the one to read of several. DICOM: a series' number, UID or description; null: the
+                         largest. OME-Zarr: an image's number, path or name; null: the first */
+  int time, channel, level; /* the time step, channel and resolution (0: the finest) to read of several, from
+                               0 on; default HL_INDEX_DEFAULT */
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);
@@ -140,10 +140,10 @@ typedef struct hl_volume_array {
   size_t struct_size; /* set by the caller */
   const char *name;   /* "" where the format has no names; the volume's */
   size_t components;  /* values per voxel, or volumes of a series */
-  hl_voxel_type type; /* 0: of a kind that is not read */
+  hl_voxel_type type; /* 0: a type that cannot be read */
   int of_cells;       /* VTK: values between the points */
   int chosen;         /* the volume was read from this array */
-  int component;      /* of the chosen array: the component that was read, or HL_COMPONENT_MAGNITUDE */
+  int component; /* of the chosen array: index of the component that was read, or HL_COMPONENT_MAGNITUDE */
 } hl_volume_array;
 
 /* How many arrays the file has (those beyond 256 are not listed); 0: the volume came from memory or
@@ -172,7 +172,7 @@ typedef struct hl_volume_series {
   int chosen;                               /* the volume was read from this series */
 } hl_volume_series;
 
-/* How many series there were; 0: the volume came from elsewhere. */
+/* The number of series in the input; 0: the volume came from other files or from memory. */
 HL_API size_t hl_volume_series_count(const hl_volume *volume);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_series(const hl_volume *volume, size_t index,
                                                      hl_volume_series *series);

@@ -198,7 +198,7 @@ static int count_digits(int frames) {
   return digits;
 }
 
-/* The film from its pictures, if all of them are there. */
+/* Joins the pictures to a film, if all of them are there. */
 static int finish(const animate_job *job, const animate_frames *frames) {
   double rate = job->values[ANIMATE_FPS].given ? job->values[ANIMATE_FPS].number[0] : 30;
   const int count = film_frames(job->film);

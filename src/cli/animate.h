@@ -12,7 +12,7 @@ typedef struct animate_frames {
   const char *folder;
   bool opaque; /* for a film, which has no transparent pixels */
   int digits;  /* of a picture's number */
-  int done;    /* pictures that are there, of those that this run looks after */
+  int done;    /* number of pictures that are there already, among those that this run renders */
   int rendered;
 } animate_frames;
 
@@ -22,8 +22,8 @@ void animate_frame_path(const animate_frames *frames, int frame, char *path, siz
 /* Whether the picture is there, made of the frame's own scene. */
 bool animate_frame_is_there(const animate_frames *frames, int frame);
 
-/* Renders the pictures that are not there yet: each `parts`-th, from number `part` (from 0) on. Draws the bar
- * with an estimate of what is left. Returns the exit code. */
+/* Renders the pictures that are missing: every `parts`-th one, beginning with number `part` (from 0). Draws
+ * the bar, with an estimate of the time that is left. Returns the exit code. */
 int animate_render(animate_frames *frames, int part, int parts);
 
 /* Whether all pictures of the film are there. */

@@ -75,7 +75,7 @@ static void describe_time(double seconds, char *text, size_t size) {
   else snprintf(text, size, "%ld s", whole);
 }
 
-/* wanted: pictures that this run looks after; seconds: that the rendered ones took. */
+/* wanted: number of pictures that this run renders in all; seconds: time that those rendered so far took. */
 static void draw_bar(const animate_frames *frames, int wanted, double seconds) {
   char text[80], left[40];
   if (frames->rendered == 0) {

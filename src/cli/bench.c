@@ -256,7 +256,8 @@ static const bench_run *first_measured(const bench_result *result) {
   return &result->run[setting];
 }
 
-/* Milliseconds; stage: also WHOLE_FRAME or PROCESSOR. NAN where the setting is not supported. */
+/* Milliseconds of one stage; stage may also be WHOLE_FRAME or PROCESSOR. NAN where the setting is not
+ * supported. */
 static double median_ms(const bench_run *run, int frames, int stage) {
   double *values = run->supported ? malloc((size_t)frames * sizeof *values) : NULL;
   if (values == NULL) return NAN;

@@ -12,7 +12,7 @@ typedef struct cli_host {
   hl_context *context;
   bool quiet;   /* no warnings, no bar, no summary */
   bool bar;     /* stderr is a terminal that can redraw a line */
-  bool own_bar; /* the command draws it: the library's calls are parts of a longer run */
+  bool own_bar; /* the command draws the bar itself: each call of the library is a part of a longer run */
   bool color;
   bool drawn;              /* a bar is on the line now */
   double drawn_at;         /* seconds; bars are redrawn ten times a second at most */
@@ -27,7 +27,7 @@ typedef struct cli_host_options {
   const char *subject;
   uint64_t memory_limit; /* bytes; 0: the machine's memory */
   hl_instruction_set instruction_set;
-  bool (*cancelled)(void); /* asked, besides for signals, by the thread that renders; or null */
+  bool (*cancelled)(void); /* may be null; else asked, in addition to signals, on the thread that renders */
   const char *data_folder; /* null: HALFLIGHT_DATA, or ../shared/data */
 } cli_host_options;
 

@@ -156,8 +156,8 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   return finish_stdout();
 }
 
-/* Sixteen bars. Their lengths are logarithmic: there are often a thousand times as many voxels of air as of
- * anything else. */
+/* Prints a histogram of sixteen bars. Their lengths are logarithmic: there are often a thousand times as many
+ * voxels of air as of anything else. */
 static void print_histogram(const hl_volume_info *info) {
   enum { BARS = 16, LONGEST = 40, BINS = HL_HISTOGRAM_BINS / BARS };
   uint64_t count[BARS] = {0}, most = 0, total = 0;

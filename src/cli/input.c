@@ -69,7 +69,7 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
   long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   if (limit == 0 && pages > 0 && page_bytes > 0) limit = (uint64_t)pages * (uint64_t)page_bytes / 2;
   enum { LONGEST_SCENE = 16 << 20 }; /* bytes; the library reads no longer scene */
-  enum { TELLING = 65536 };          /* bytes at the beginning that are enough to tell the kind */
+  enum { TELLING = 65536 };          /* bytes at the beginning of an input that suffice to tell its kind */
   bool ended = false, scene = false;
   int exit_code = EXIT_CODE_OK;
   while (exit_code == EXIT_CODE_OK && !ended) {
@@ -110,7 +110,8 @@ static int open_standard_input(cli_input *input, uint64_t limit) {
   return open_pipe(input, STDIN_FILENO, limit);
 }
 
-/* An ordinary file; of a missing one (descriptor < 0) the error comes from the reader. */
+/* Opens an input that is an ordinary file: finds out its kind, and reads pictures. Where it is missing
+ * (descriptor < 0), a later reader reports the error. */
 static int open_file(cli_input *input, int descriptor, uint64_t limit) {
   unsigned char first[1024];
   ssize_t got = descriptor >= 0 ? pread(descriptor, first, sizeof first, 0) : 0;

@@ -59,14 +59,14 @@ extern const cli_choice input_magnitudes[];
 /* The order in which a subcommand's table has these options. */
 enum input_reading { READ_ARRAY, READ_COMPONENT, READ_SERIES, READ_TIME, READ_CHANNEL, READ_LEVEL };
 
-/* Finds out the kind of an input, by its name or, where that does not tell, by its first bytes; reads pipes
+/* Finds out the kind of an input, by its name or, if the name does not tell, by its first bytes; reads pipes
  * and pictures into memory. limit: the most bytes to hold; 0: half of the machine's memory. Returns the exit
  * code; call input_close() even after a failure. */
 int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
-/* The load options that --array and the options after it (enum input_reading) and --spacing ask for; spacing
- * null: the command does not have it. */
+/* The load options that the options of enum input_reading and --spacing ask for. spacing null: the command
+ * does not have --spacing. */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
 /* Reads an input that is a volume. options: without bytes, which are the input's; null: the defaults. */

@@ -210,8 +210,8 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-/* Finds out, for the report, which kind of data a bare volume was taken for, where the transfer function was
- * chosen by that. */
+/* Finds out, for the report, which kind of data a bare volume was taken for; only if its transfer function
+ * was chosen by this kind. */
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));

@@ -68,10 +68,10 @@ extern const cli_option render_options[RENDER_OPTION_COUNT];
 /* Refuses options that contradict each other. */
 int render_check_options(const cli_value *values);
 
-/* Loads the operands into one scene: a scene file, a picture that carries a scene, or one volume or more;
- * *bare: they are volumes. Several volumes share one world, each with its own look, and are named like their
- * files without folder and extensions, with "-2" and so on appended where a name is taken. Returns the exit
- * code. */
+/* Loads the operands into one scene: a scene file, a picture that carries a scene, or one or more volumes;
+ * *bare: they are volumes. Several volumes share one world, and each keeps its own look. They are named like
+ * their files without folder and extensions; "-2" and so on is appended to names that are taken. Returns the
+ * exit code. */
 int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
                        hl_scene **scene);
 

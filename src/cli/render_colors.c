@@ -123,8 +123,8 @@ static int load_function(cli_host *host, const char *name, const hl_volume *volu
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 
-/* The range of values from where opacity first rises above zero to where it last falls to zero, within the
- * volume's values. */
+/* The range of values that have opacity: from where opacity first rises above zero to where it last falls to
+ * zero, cut to the volume's values. */
 static void visible_range(const hl_volume *volume, const hl_transfer_function *function, double range[2]) {
   hl_volume_info info = {.struct_size = sizeof info};
   range[0] = 0;
@@ -196,7 +196,7 @@ void render_release_function(hl_transfer_function *function) {
   free((void *)function->color);
 }
 
-/* Gives a function the points of another one; where `loaded` has no opacity, the function keeps its own. */
+/* Gives a function the points of `loaded`. Its own opacity is kept if `loaded` has none. */
 static int replace(const hl_transfer_function *loaded, hl_transfer_function *function) {
   hl_transfer_function old = *function, copy;
   hl_transfer_function both = *loaded;

@@ -53,8 +53,8 @@ static void change_projection(const cli_value *values, hl_camera *camera) {
   camera->fovy_deg = values[RENDER_FOVY].number[0];
 }
 
-/* The view to change: the one of the scene's camera, of a bare volume the automatic one; or the one that
- * --view and --up ask for. */
+/* The view to change: the one that --view and --up ask for; without them the view of the scene's camera, or
+ * the automatic view of a bare volume. */
 static int choose_view(const scene_change *change, hl_view *view) {
   const cli_value *values = change->values, *up = &values[RENDER_UP];
   hl_error error = {0};
@@ -83,7 +83,7 @@ static bool turn_view(const cli_value *values, hl_view *view) {
          view->roll_deg != before.roll_deg;
 }
 
-/* Frames the camera before it turns it: then all frames of a turn have one target and one distance. */
+/* Frames the camera before it is turned: then all frames of a turn have the same target and distance. */
 static int change_camera(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;

@@ -1,5 +1,5 @@
-/* cli/suggest.c - suggestions for an unknown name: known names spelled alike, and the names of the same thing
- * here for words of ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba and plotting libraries. */
+/* cli/suggest.c - suggestions for an unknown name: known names that are spelled alike, and this program's
+ * names for words of ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba and plotting libraries. */
 #include "suggest.h"
 
 #include <stdbool.h>

@@ -88,7 +88,7 @@ typedef struct view_job {
 
 /* ---- the scene ---- */
 
-/* The absolute path of a file, owned by the caller; of what is no file the same text. */
+/* The absolute path of a file, owned by the caller. A text that names no file is copied as it is. */
 static char *absolute_path(const char *file) {
   char *path = strncmp(file, "/dev/", 5) == 0 ? NULL : realpath(file, NULL);
   return path != NULL ? path : strdup(file);
@@ -96,7 +96,7 @@ static char *absolute_path(const char *file) {
 
 enum { MOST_PATHS = 1024 };
 
-/* Absolute paths that a description borrows. */
+/* The absolute paths that a changed description borrows. */
 typedef struct path_list {
   char *paths[MOST_PATHS];
   size_t count;
@@ -160,7 +160,7 @@ static bool has_screen(void) {
   return (x11 != NULL && x11[0] != '\0') || (wayland != NULL && wayland[0] != '\0');
 }
 
-/* The browser's messages go nowhere; whether it opens is the user's to see, who has the URL. */
+/* The browser's messages are discarded. If it does not open, the user sees as much, and has the URL. */
 static void open_browser(const char *url) {
   char *arguments[] = {"xdg-open", (char *)url, NULL};
   posix_spawn_file_actions_t actions;
@@ -188,7 +188,7 @@ static void on_ready(void *user_data, const char *url) {
 
 /* ---- the command ---- */
 
-/* INPUT's name, and how many follow it. */
+/* The name of the first INPUT, and how many more there are. */
 static void make_title(char **inputs, char *title, size_t size) {
   size_t count = 0;
   while (inputs[count] != NULL) count++;

@@ -52,7 +52,7 @@ typedef struct file_reading {
   size_t length, capacity;
 } file_reading;
 
-/* Enlarges the block once only one free byte is left: the terminating zero. */
+/* Enlarges the block once only one free byte is left, which is kept for the terminating zero. */
 static hl_status make_room(file_reading *file, hl_error *error) {
   if (file->length + 1 < file->capacity) return HL_OK;
   if (file->judge != NULL) {

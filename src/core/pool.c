@@ -29,8 +29,8 @@ enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 /* Time between two calls of the cancel callback while a job runs: far less than a person notices, far more
  * than a call takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
-/* The clock is read again after this many calls, or sooner where so many calls may take longer than this
- * time. */
+/* The clock is read again after this many calls, or after fewer where so many calls may take longer than
+ * NANOSECONDS_BETWEEN_READINGS. */
 static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
 enum { MOST_UNREAD = 15 };
 
@@ -72,8 +72,9 @@ struct hl_pool {
   pthread_cond_t wake; /* generation or stop changed */
   /* used by the calling thread only */
   _Alignas(64) int64_t asked,
-      read;             /* last call of the cancel callback and last reading of the clock, nanoseconds */
-  int readings, unread; /* calls between two readings of the clock: in all, and still to come */
+      read; /* last call of the cancel callback and last reading of the clock, nanoseconds */
+  int readings,
+      unread; /* number of calls from one reading of the clock to the next, and how many of these are left */
 };
 
 static inline void relax(void) {
@@ -96,7 +97,8 @@ bool hl_pool_cancelled(hl_pool *pool) {
   return true;
 }
 
-/* The clock is read seldom where calls follow each other quickly. */
+/* Whether it is time to call the cancel callback. Reads the clock seldom where calls follow each other
+ * quickly. */
 static bool is_time_to_ask(hl_pool *pool) {
   if (pool->unread > 0) {
     pool->unread--;

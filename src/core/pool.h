@@ -40,7 +40,7 @@ void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 /* Whether to stop. Polls the cancel callback; for the calling thread, between runs. */
 bool hl_pool_cancelled(hl_pool *pool);
 
-/* Whether to stop, for a function whose single index takes long. Cheap; only worker 0 polls the cancel
+/* Whether to stop; for functions that spend long on a single index. Cheap; only worker 0 polls the cancel
  * callback. */
 bool hl_pool_stops(hl_pool *pool, int worker);
 

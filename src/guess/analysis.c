@@ -14,10 +14,10 @@
 #include "core/memory.h"
 #include "guess/sample.h"
 
-#define BINS   32    /* of the histogram whose shape is judged */
+#define BINS   32    /* bins of the histogram by whose shape the kind of data is judged */
 #define ROUGH  0.65  /* roughness (hl_roughness) between simulations below and turbulence or noise above */
 #define SMOOTH 0.18  /* roughness below any scanner's */
-#define FOG    0.4   /* least roughness of smoke on fine grids (on 200 to 320 voxels: 0.50 to 0.58) */
+#define FOG    0.4   /* least roughness of smoke on fine grids; 0.50 to 0.58 measured on 200 to 320 voxels */
 #define NOISY  1.2   /* roughness above any simulated turbulence's; white noise has 1.7 */
 #define TAIL   0.005 /* fraction of the voxels below `lower`, and of those above `upper` */
 #define FLOOR  0.002 /* least mean of the background, as a fraction of top */
@@ -27,8 +27,8 @@ typedef struct distances {
   size_t count;
 } distances;
 
-/* The distances of a sorted sample's values from the background, ascending; values on its other side count as
- * 0. */
+/* The distances of a sample's values from the background, ascending. A value on the other side of the
+ * background counts as distance 0. */
 static void measure(const float *values, size_t count, double background, double direction, float *distance) {
   for (size_t n = 0; n < count; n++) {
     size_t from = direction > 0 ? n : count - 1 - n;
@@ -73,7 +73,8 @@ static bool is_continuous(const hl_sample *sample) {
   return levels > 256;
 }
 
-/* True if more than two fifths of the objects' voxels have about one value, like the body of a cloud. */
+/* True if more than two fifths of the objects' voxels have about the same value, as in the body of a cloud.
+ */
 static bool has_one_body(const distances *d, double low, double high) {
   double counts[BINS], sum = 0, most = 0;
   shape_of(d, low, high, counts);
@@ -141,8 +142,8 @@ static spread spread_of(const hl_sample *sample, double background) {
   return s;
 }
 
-/* True if the volume is a flow: its values fill the grid and are smooth, or rough with a single peak; a
- * scanner's have noise and several peaks. distance: scratch, [sample->count]. */
+/* True if the volume is a flow: its values fill the grid and are smooth, or are rough but have a single peak
+ * in their histogram; a scanner's data have noise and several peaks. distance: scratch, [sample->count]. */
 static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode,
                     float *distance) {
   if (!s->fills || !is_floating(volume) || !is_continuous(sample)) return false;
@@ -175,9 +176,9 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-/* True if objects have values on both sides of the background and thin out away from it on both, which values
- * on both sides of the data value 0 need not. Otherwise the commonest value is a material, and air has low
- * values. */
+/* True if objects have values on both sides of the background, fewer the farther from it. Values on both
+ * sides of the data value 0 are not enough: in such data the commonest value may be a material, while air has
+ * low values. */
 static bool has_lobes(const hl_sample *sample, const spread *s, double background, float *distance) {
   double above = s->high - background, below = background - s->low;
   if (!(fmin(above, below) > 0.25 * fmax(above, below))) return false;

@@ -25,19 +25,20 @@ typedef enum hl_data_kind {
 typedef struct hl_data_analysis {
   hl_data_kind kind;
   double background;
-  double direction;    /* +1: objects have values above the background; -1: below */
-  double faint;        /* distance at which objects may begin */
-  double solid;        /* distance beyond which voxels surely belong to objects */
-  double dense;        /* distance that divides the objects into two materials */
-  double dense_share;  /* of the voxels beyond solid: the fraction beyond dense */
-  double top;          /* distance that almost no voxel exceeds */
-  double mean;         /* mean distance of the voxels beyond faint */
-  double depth;        /* voxel edges across the objects: cube root of their number of voxels */
-  double common;       /* fraction of the voxels within two fifths of lower and upper from the middle */
-  double zeroed;       /* fraction of the voxels that have exactly the background's value */
-  double filled;       /* fraction of the voxels beyond solid */
-  double middle;       /* the commonest data value */
-  double lower, upper; /* differences from the middle, down and up, that hardly any voxel exceeds */
+  double direction;   /* +1: objects have values above the background; -1: below */
+  double faint;       /* distance at which objects may begin */
+  double solid;       /* distance beyond which voxels surely belong to objects */
+  double dense;       /* distance that divides the objects into two materials */
+  double dense_share; /* of the voxels beyond solid: the fraction beyond dense */
+  double top;         /* distance that almost no voxel exceeds */
+  double mean;        /* mean distance of the voxels beyond faint */
+  double depth;       /* voxel edges across the objects: cube root of their number of voxels */
+  double common;      /* fraction of the voxels whose value is within two fifths of lower and upper around the
+                         middle */
+  double zeroed;      /* fraction of the voxels that have exactly the background's value */
+  double filled;      /* fraction of the voxels beyond solid */
+  double middle;      /* the commonest data value */
+  double lower, upper;           /* differences from the middle, down and up, that hardly any voxel exceeds */
   double labels[HL_MOST_LABELS]; /* ascending data values, without the background */
   size_t label_count;
 } hl_data_analysis;

@@ -28,7 +28,7 @@ typedef struct exposure {
   double intensity[MOST_LIGHTS];
   double step;  /* world units */
   double empty; /* a value of the invisible surroundings */
-  double flat;  /* gradients up to this, in values per world unit, are no surface's */
+  double flat;  /* gradients up to this, in values per world unit, belong to no surface */
   double opacity[TABLE], color[TABLE][3]; /* over the volume's range */
 } exposure;
 
@@ -93,7 +93,8 @@ static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, dou
   part[0] = 0, part[1] = INFINITY;
   for (int a = 0; a < 3; a++) {
     double s = (low[a] - origin[a]) / direction[a], t = (high[a] - origin[a]) / direction[a];
-    part[0] = fmax(part[0], fmin(s, t)); /* fmax and fmin ignore the NaN of a ray within a face's plane */
+    /* where a ray lies in a face's plane, s or t is NaN, which fmax and fmin ignore */
+    part[0] = fmax(part[0], fmin(s, t));
     part[1] = fmin(part[1], fmax(s, t));
   }
   return part[1] > part[0] && isfinite(part[1]);

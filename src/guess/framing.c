@@ -16,8 +16,8 @@
 #define OVER 1.04
 /* A view replaces an earlier one if it is wider by this factor. */
 #define WIDER 1.04
-/* How far the middle of the visible voxels may be from the picture's, as a fraction of its sides, where the
- * turn then needs less room. */
+/* A turn may move the middle of the visible voxels away from the picture's middle, by at most this fraction
+ * of its sides, where this saves room. */
 #define ASIDE 0.012
 
 enum { TURNS = 36, HALVINGS = 48, SECTIONS = 12 };
@@ -39,17 +39,17 @@ static double reach(const frame_job *job, vec3 along, double tangent) {
   return hl_outline_reach(job->outline, along, job->forward, tangent);
 }
 
-/* The depth of the nearest eye that has the outline between two sides of the picture. Derived: all points lie
- * between the plane x = ex + t (z - ez) and its mirror image, so ex - t ez >= l and -ex - t ez >= r, the
- * reaches to the two sides; together ez <= -(l + r) / (2 t), with ex = (l - r) / 2. */
+/* The depth of the nearest eye that sees the outline between two opposite sides of the picture. Derived: all
+ * points lie between the plane x = ex + t (z - ez) and its mirror image, so ex - t ez >= l and -ex - t ez >=
+ * r, the reaches to the two sides; together ez <= -(l + r) / (2 t), with ex = (l - r) / 2. */
 
 static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
   return -(reach(job, along, tangent) + reach(job, vec3_scale(along, -1), tangent)) / 2 / tangent;
 }
 
-/* The eye's coordinate along `along`, at this depth, that puts the outline in the middle. Derived: both sides
- * are then seen at the same tangent t, for which this depth is the nearest possible; it grows with t, so t is
- * found by halving. */
+/* The eye's coordinate along `along`, at this depth, that puts the outline in the middle. Derived: then both
+ * sides are seen at the same tangent t, and this depth is that of the nearest eye for t (see above); it
+ * grows with t, so t is found by halving. */
 static double middle_from(const frame_job *job, vec3 along, double greatest, double depth) {
   double low = 0, high = greatest;
   for (int n = 0; n < HALVINGS && greatest > 0; n++) {
@@ -196,7 +196,8 @@ static hl_status begin(const hl_scene_description *description, double zoom, con
   return hl_outline_find(description, outline, error);
 }
 
-/* The eye's distance from the target; in parallel projection, where any would do, well before the outline. */
+/* The eye's distance from the target. In parallel projection, where the distance does not change the picture,
+ * the eye is placed well before the outline. */
 static double distance_to(const frame_job *job, const frame_place *place, double depth, double extent,
                           double zoom) {
   double wide = fmax(place->half_height, place->half_height * job->aspect);

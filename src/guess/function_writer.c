@@ -66,8 +66,8 @@ void hl_write_field(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * (top - a->solid), 0.25, 0.92);
 }
 
-/* One side of a flow: common values are clear, rare ones dense. Rows: fraction of the way from the middle to
- * the end of the values, optical depth. */
+/* The opacities on one side of a flow's middle: common values are clear, rare ones dense. Rows: fraction of
+ * the way from the middle to the end of the values, optical depth. */
 static void add_rare(hl_function_writer *w, double reach, int side) {
   static const double rarity[][2] = {{0.4, 0}, {0.6, 0.5}, {0.8, 3}, {1, 20}};
   enum { STEPS = sizeof rarity / sizeof *rarity };
@@ -126,7 +126,7 @@ void hl_write_labels(hl_function_writer *w) {
   for (size_t n = 0; n <= last; n++) {
     double label = a->labels[n], before = n > 0 ? a->labels[n - 1] : label - 1,
            after = n < last ? a->labels[n + 1] : label + 1;
-    if (before < 0 && label > 0) before = 0; /* 0 is no label, but a value of the volume */
+    if (before < 0 && label > 0) before = 0; /* 0 is a value of the volume, though no label */
     if (label < 0 && after > 0) after = 0;
     double color[3];
     label_color(n, color);

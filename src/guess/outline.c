@@ -30,7 +30,7 @@ static hl_status add(hl_outline *outline, vec3 point, double radius, hl_error *e
   return HL_OK;
 }
 
-/* One side of a slice's convex hull: ends of rows, with rising j. */
+/* One side of a slice's convex hull: the ends of rows, in the order of rising j. */
 typedef struct chain {
   ptrdiff_t *i, *j; /* owned */
   int count;
@@ -170,13 +170,15 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
 
 enum { BINS = 4096 };
 
-/* The least opacity per voxel edge of the six neighbours; that of a neighbour outside the grid is 0. */
+/* The least opacity per voxel edge among the six neighbours of a voxel; a neighbour outside the grid has 0.
+ */
 static double least_opacity_around(const hl_volume *volume, const hl_transfer_function *function,
                                    const size_t at[3]) {
   double least = 1;
   for (int n = 0; n < 6; n++) {
     size_t next[3] = {at[0], at[1], at[2]};
-    next[n / 2] += n % 2 == 0 ? 1 : (size_t)-1; /* below 0: outside, as beyond the end */
+    /* a negative index becomes a large one: outside of the grid, like one beyond its end */
+    next[n / 2] += n % 2 == 0 ? 1 : (size_t)-1;
     least = fmin(least,
                  hl_transfer_function_opacity(function, hl_volume_value(volume, next[0], next[1], next[2])));
   }
@@ -223,8 +225,8 @@ hl_status hl_transfer_function_seen_range(const hl_volume *volume, const hl_tran
   double sum = high > low ? count_seen(volume, function, low, high, counts) : 0;
   if (!(sum > 0)) return HL_OK;
   double first = quantile(counts, sum, TAIL, low, high), last = quantile(counts, sum, 1 - TAIL, low, high);
-  if (last - first <
-      100 * (high - low) / BINS) { /* outliers took nearly all bins: once more between the ends */
+  /* a few outliers left nearly all bins empty: the bins are laid again, between the ends found so far */
+  if (last - first < 100 * (high - low) / BINS) {
     double bin = (high - low) / BINS, near[BINS] = {0};
     low = fmax(low, first - bin), high = fmin(high, last + bin);
     sum = count_seen(volume, function, low, high, near);

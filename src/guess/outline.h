@@ -18,8 +18,8 @@ typedef struct hl_outline {
 hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error);
 void hl_outline_release(hl_outline *outline);
 
-/* *thinned: the points that reach farthest in 400 directions; in any other direction they reach as far as all
- * points but for half a per cent of the extent. */
+/* *thinned: the points that reach farthest in 400 directions. In any other direction they reach as far as all
+ * points do, less half a per cent of the extent at most. */
 hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error);
 
 /* The greatest of p . along - tangent p . forward over all points of all balls; along is perpendicular to

@@ -34,8 +34,8 @@ double hl_quantile(const float *ascending, size_t count, double fraction);
  * Bickel and Fruehwirth 2006). */
 double hl_mode(const float *ascending, size_t count);
 
-/* The threshold with the greatest variance between the two classes that it makes (Otsu 1979), of the values
- * above `above`. */
+/* The threshold (of values greater than `above`) with the greatest variance between the two classes that it
+ * makes (Otsu 1979). */
 double hl_threshold_otsu(const float *ascending, size_t count, double above);
 
 /* The threshold with the least cross entropy between the values and the means of the two classes that it

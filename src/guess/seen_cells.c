@@ -51,7 +51,7 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
   }
   for (size_t p = 0; p < seen->function->opacity_count; p++) {
     double bin = (seen->function->opacity[p].value - seen->low) * seen->scale;
-    for (int side = -1; side <= 1; side++) /* a point on the border of two bins bends both */
+    for (int side = -1; side <= 1; side++) /* a point on the border between two bins makes both bend */
       if (bin + side * 1e-6 >= 0 && bin + side * 1e-6 < BINS) seen->bends[(int)(bin + side * 1e-6)] = 1;
   }
   return HL_OK;
@@ -95,7 +95,7 @@ static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
   }
 }
 
-/* How many voxels of a cell were looked at along an axis; at least 1. */
+/* The number of voxels of a cell that are examined along an axis; at least 1. */
 static double looked_at(const hl_seen *seen, int axis, int cell) {
   ptrdiff_t step = (ptrdiff_t)seen->step, stride = axis == 0 ? 1 : (ptrdiff_t)seen->stride,
             begin = seen->first[axis];
@@ -264,12 +264,12 @@ void hl_seen_release(hl_seen *seen) {
   hl_release(context, seen->mean);
 }
 
-/* The least depth per length of a voxel that counts; in a seen cell half the cell's mean is enough. */
+/* The least depth per length with which a voxel counts; in a seen cell, half of the cell's mean is enough. */
 static float least_depth(const hl_seen *seen, size_t cell) {
   return seen->kind[cell] == HL_SEEN ? fminf(seen->faint, seen->mean[cell] / 2) : seen->faint;
 }
 
-/* The first voxel from `from` on towards `to` that counts; to + way: none. way is 1 or -1. */
+/* The first voxel that counts, from `from` on towards `to`; to + way if there is none. way is 1 or -1. */
 static ptrdiff_t first_that_counts(const hl_seen *seen, const void *row, size_t cells, ptrdiff_t from,
                                    ptrdiff_t to, int way) {
   const ptrdiff_t step = (ptrdiff_t)seen->step;

@@ -16,11 +16,11 @@ typedef struct hl_seen {
   const hl_volume *volume;
   ptrdiff_t first[3], end[3]; /* voxels inside the volume's box */
   size_t step;                /* voxels along each edge of a cell */
-  size_t stride;              /* from one row that is looked at to the next, along y and z */
+  size_t stride;              /* from one examined row to the next, along y and z */
   int size[3];                /* cells */
-  float *depth; /* owned; optical depth per length of the world: of each stored whole number, else of each
-                   bin's low end */
-  const hl_transfer_function *function; /* evaluated itself in bins where it bends */
+  float *depth; /* owned; optical depth per world length, for each stored whole number; for floats, for the
+                   low end of each bin */
+  const hl_transfer_function *function; /* for floats: evaluated in bins where it bends */
   double low, scale;                    /* bin = (value - low) * scale; of floats */
   unsigned char *bends;                 /* owned; [bins]; of floats */
   unsigned char *kind;                  /* owned; [size[2]][size[1]][size[0]]; HL_SEEN_... */
@@ -39,8 +39,8 @@ bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first
 /* ---- bodies: marked places of a lattice that are connected by their faces ---- */
 
 typedef struct hl_bodies {
-  uint32_t *body;   /* owned; [size[2]][size[1]][size[0]]; 0: not marked; else 1 to count */
-  uint32_t *places; /* owned; [count + 1]; how many places a body has */
+  uint32_t *body;   /* owned; [size[2]][size[1]][size[0]]; number of the body, from 1 to count; 0: none */
+  uint32_t *places; /* owned; [count + 1]; each body's number of places */
   uint32_t count;
   uint32_t largest; /* the body with the most places, the first of equals; 0: there is none */
 } hl_bodies;

@@ -1,7 +1,6 @@
 /* guess/view.c - which way is up in a volume whose file does not tell, and views from a side.
  *
- * Only the default camera follows from it, never a coordinate.
- */
+ * Only the default camera depends on these guesses, never a coordinate. */
 #include "guess/view.h"
 
 #include <stdlib.h>
@@ -16,8 +15,8 @@
 
 #define LATTICE       5e5 /* the most voxels to look at */
 #define BEND          3   /* distance, in places of the lattice, over which relief is measured */
-#define BODY_AT_LEAST 0.4 /* fraction of all solid places from which the largest body decides alone */
-#define CLEARLY       1.1 /* by this factor a side must have more relief to be turned to the eye */
+#define BODY_AT_LEAST 0.4 /* fraction of all solid places from which on the largest body decides alone */
+#define CLEARLY       1.1 /* a side turned to the eye must have this many times the other one's relief */
 
 /* The objects on a coarse lattice. */
 typedef struct shape {
@@ -76,7 +75,8 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
       }
 }
 
-/* Keeps the largest connected body alone (not a board beside it), unless it is one of many small ones. */
+/* Keeps the largest connected body alone, without a board beside it, say; unless it is one of many small
+ * ones. */
 static hl_status forget_others(hl_context *context, shape *s, hl_error *error) {
   hl_bodies bodies;
   hl_status status = hl_bodies_find(context, s->solid, s->size, &bodies, error);
@@ -106,7 +106,7 @@ static bool measure(shape *s) {
   return total > 0;
 }
 
-/* *any: whether there is any object. */
+/* *any: whether the volume shows any object. */
 static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s, bool *any,
                             hl_error *error) {
   hl_context *context = volume->context;
@@ -137,7 +137,8 @@ static double bluntness(const shape *s, int axis, int end) {
   return sum / slices / greatest;
 }
 
-/* How much the objects are like their mirror image: places in both over places in either. */
+/* How similar the objects are to their mirror image: the number of places in both, divided by the number of
+ * places in either. */
 static double symmetry(const shape *s, int axis) {
   double both = 0, either = 0;
   int n[3];
@@ -180,8 +181,8 @@ static int up_of(const shape *s, const hl_volume *volume) {
   return sideways ? -2 : 3; /* rows of pictures run downwards */
 }
 
-/* Places from one end of an axis to the first solid one in the row (u, v) of the other two axes; -1: there is
- * none. */
+/* The number of places from one end of an axis to the first solid place, in the row (u, v) of the other two
+ * axes; -1: the row has none. */
 static int depth_at(const shape *s, int axis, int end, int u, int v) {
   int n[3];
   n[(axis + 1) % 3] = u;

@@ -24,10 +24,11 @@ typedef struct hl_upright {
 } hl_upright;
 
 /* Finds out which way is up in a volume whose file has no anatomy. Where the file turns the grid against the
- * world, z is up. In smoke, which comes from computer graphics, y is. Scanned objects stand on their bottom
- * or are cut off there; where they do not, y points down if they are symmetric along z alone, as heads and
- * vessels are from left to right. Otherwise z is up. The azimuth is that of the three-quarter view whose
- * sides have the most relief, so that heads show their faces. Fails for lack of memory and when cancelled. */
+ * world, z is up. In smoke, which comes from computer graphics, y is up. Scanned objects stand on their
+ * bottom, or a face of the grid cuts them off there: the opposite way is up. Without a bottom, y points down
+ * for objects that are symmetric along z alone, as heads and vessels are from left to right. Otherwise z is
+ * up. The azimuth is that of the three-quarter view whose sides have the most relief, so that heads show
+ * their faces. Fails for lack of memory and when cancelled. */
 
 hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis,
                            hl_upright *upright, hl_error *error);

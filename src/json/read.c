@@ -51,7 +51,7 @@ hl_status hl_json_parse(const char *text, size_t length, const char *name, json_
   if (status != HL_OK) return status;
   *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
-  /* without memory for its first buffer jansson gives neither a reason nor a line */
+  /* jansson gives neither a reason nor a line where it has no memory for its first buffer */
   if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1)
     return hl_fail_memory(error, length, name);
   return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line,

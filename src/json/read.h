@@ -21,7 +21,7 @@ typedef struct hl_json_reader {
   const char *folder; /* where relative paths start; may be null */
   hl_error *error;
   const hl_scene_description
-      *like;       /* only its volumes and images are known, and no file is opened; or null */
+      *like;       /* no file is opened: volumes and images are those of this scene; or null */
   char place[400]; /* JSON pointer of the value being read */
 } hl_json_reader;
 

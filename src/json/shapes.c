@@ -234,7 +234,7 @@ static hl_status read_form(hl_json_reader *reader, const json_t *value, hl_shape
 
 static hl_status read_list(reading *r, const json_t *value);
 
-/* Reads the shapes of one of "groups", where errors then point to. */
+/* Reads the shapes of a named group. Errors point to "groups". */
 static hl_status read_named_group(reading *r, const char *name) {
   hl_json_reader *reader = r->reader;
   const json_t *members = json_object_get(r->groups, name);

@@ -86,7 +86,7 @@ json_t *hl_json_expand_shapes(const json_t *shapes, const json_t *groups) {
   return expand_list(shapes, groups, 0, &left);
 }
 
-/* True if the text says all that the tree holds: without memory, jansson leaves keys out and reports success.
+/* True if the text holds all of the tree: without memory, jansson leaves keys out and still reports success.
  */
 static bool says(const char *text, const json_t *root) {
   json_t *again = text != NULL ? json_loads(text, 0, NULL) : NULL;

@@ -155,7 +155,8 @@ static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume 
   return HL_OK;
 }
 
-/* Reads the function that points, colormap and unit_distance then change. */
+/* Reads the function that `value` starts from: a preset, a file or the automatic one. Points, colormap and
+ * unit_distance then change it. */
 static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                             hl_transfer_function *function) {
   const hl_volume *volume = subject.volume;

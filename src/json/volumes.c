@@ -305,7 +305,8 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
   char *path = path_of(reader, file);
-  bool there = path == NULL || access(path, F_OK) == 0; /* without memory, loading tells */
+  /* without memory, loading the file reports the error */
+  bool there = path == NULL || access(path, F_OK) == 0;
   hl_release(reader->context, path);
   return there;
 }

@@ -6,11 +6,10 @@
 
 #include "volume/volume.h"
 
-#define STEEP 89.5 /* degrees: steeper views lie too near the view's up for a camera's up */
-#define LEVEL 1e-6 /* sine of the angle that a horizon may be off by */
-#define ANGLE_STEPS \
-  1e9               /* per degree: angles found from a camera's rounded coordinates are rounded to these */
-#define OBLIQUE 0.9 /* cosine: an axis nearer to up than this is no front */
+#define STEEP       89.5 /* degrees: steeper views lie too near the view's up for a camera's up */
+#define LEVEL       1e-6 /* sine of an angle: a horizon is level if it leans by no more */
+#define ANGLE_STEPS 1e9  /* steps of a degree that angles found from a camera's rounded coordinates get */
+#define OBLIQUE     0.9  /* cosine: an axis that is closer than this to up cannot be the front */
 
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward) {
   vec3 sight = vec3_subtract(vec3_of(camera->target), vec3_of(camera->position));
@@ -50,7 +49,7 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
   memcpy(direction, &way, sizeof way);
 }
 
-/* Anatomy holds while a volume is not turned in the scene. */
+/* Anatomy counts only for volumes that the scene does not turn. */
 hl_space hl_scene_space(const hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++)
     if (description->volumes[v].volume->space != HL_SPACE_UNKNOWN &&
@@ -76,7 +75,7 @@ void hl_view_about(const hl_scene_description *description, vec3 given_up, hl_vi
                     .elevation_deg = HL_VIEW_ELEVATION};
 }
 
-/* Right of the view's front, for who looks at it. */
+/* The view's right, as seen by someone who looks at its front. */
 static vec3 right_of_front(const hl_view *view) {
   return vec3_cross(vec3_of(view->up), vec3_of(view->front));
 }
@@ -123,8 +122,9 @@ hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
   return HL_OK;
 }
 
-/* Which way is up for a camera: along its up vector, unless that was made perpendicular to the sight from an
- * axis of the world: of those with which the picture is level the first of z, y, x and their opposites. */
+/* Which way is up for a camera: its up vector, unless that was made perpendicular to the line of sight from
+ * an axis of the world. Then it is this axis: the first of z, y, x and their opposites for which the picture
+ * is level. */
 static vec3 upright_of(const hl_camera *camera) {
   static const vec3 axes[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
   vec3 right, up, forward, given = vec3_normalise(vec3_of(camera->up));

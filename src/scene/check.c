@@ -32,7 +32,7 @@ static hl_status check_camera(const hl_camera *camera, hl_error *error) {
 
 /* ---- checks of several parts together: distances beside voxels, brightness ---- */
 
-/* A length or a distance that floats must hold beside voxels. */
+/* Checks a length or a distance that floats must hold beside voxels. */
 static hl_status check_reach(const hl_checker *check, const char *key, double length,
                              const hl_frame_space *space) {
   if (length <= HL_LIMIT_REACH * space->unit) return HL_OK;

@@ -98,7 +98,7 @@ mat3 hl_light_spread(const hl_light *light, vec3 facing) {
   return add(spread, add(unit, outer(normal, normal), -1), radius * radius / 4);
 }
 
-/* Unit, right and up for who looks against the normal. */
+/* Unit vectors to the right and upwards, as seen by someone who looks against the normal. */
 static void upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up) {
   *right = vec3_cross(vec3_normalise(wanted_up), normal);
   if (!(vec3_length(*right) > 1e-3)) *right = vec3_cross((vec3){0, 1, 0}, normal);

@@ -38,7 +38,7 @@ typedef struct emission_plane {
   vec3 right, up; /* from there to the middles of its right and top edges */
 } emission_plane;
 
-/* facing: unit, the way light leaves a sphere or comes from a directional light. */
+/* facing: unit, from the light to the content; for spheres and directional lights. */
 emission_plane hl_emission_plane(const hl_light *light, vec3 facing);
 
 /* The image coordinates of an offset in the plane: s along right and t along up, each from -1 to 1 within the

@@ -14,9 +14,7 @@
   1e14 /* of a volume from the origin: a camera that frames it stands within HL_LIMIT_LENGTH */
 #define HL_LIMIT_INTENSITY \
   1e35 /* large, for light that falls off with the square of distances in nanometres */
-#define HL_LIMIT_BRIGHTNESS                                                                                 \
-  1e20 /* of a light at the distance of the smallest voxel edge; products with materials and sums still fit \
-          floats */
+#define HL_LIMIT_BRIGHTNESS    1e20 /* of a light, a voxel's edge away; sums and products still fit floats */
 #define HL_LIMIT_REACH         1e12 /* distances and lengths, in smallest voxel edges */
 #define HL_LIMIT_TEXTURE_VALUE 1e6
 #define HL_LIMIT_VOXEL_VALUE   1e36 /* differences and sums of such values still fit floats */

@@ -56,8 +56,8 @@ void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double hi
   }
 }
 
-/* A value that voxels of this histogram bin really have, as far as that can be told: integers are integers,
- * and the outermost bins hold the extreme values. */
+/* A value that voxels of this histogram bin may really have: a whole number for integers, the extreme values
+ * in the outermost bins. */
 static double typical_value(const hl_volume *volume, int bin) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS;
   if (bin == 0) return volume->minimum;

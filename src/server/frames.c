@@ -1,9 +1,8 @@
-/* server/frames.c - pages and their frames: which one renders, which ones are outdated.
+/* server/frames.c - pages and their frames: which page renders, which frames are outdated.
  *
- * Each page has a renderer of its own, which keeps what does not change from frame to frame. A frame with a
- * higher number makes those of the page before it outdated: the one that is being rendered stops at the
- * library's next question, those that wait for it are not begun.
- */
+ * Each page has a renderer of its own, which keeps what does not change from frame to frame. A frame makes
+ * all frames of its page with lower numbers outdated: one that is being rendered stops at its next check for
+ * cancellation, and those that wait are not begun. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,7 +46,7 @@ void pages_end(server *s) {
 
 /* ---- pages ---- */
 
-/* The page of this name, or the one that gives way to it; null: all are at work. */
+/* The page of this name, or else the idle page that is replaced by it; null: all pages are busy. */
 static server_page *find_page(server *s, const char *name) {
   server_page *best = NULL;
   for (int p = 0; p < MOST_PAGES; p++) {
@@ -58,7 +57,7 @@ static server_page *find_page(server *s, const char *name) {
   return best;
 }
 
-/* The page, held until leave_page(); null: all are at work. */
+/* The page of this name, in use until leave_page(); null: all pages are busy. */
 static server_page *enter_page(server *s, const char *name, unsigned long long number) {
   pthread_mutex_lock(&s->pages_lock);
   server_page *page = find_page(s, name);
@@ -91,7 +90,7 @@ static void refuse(server_answer *answer, unsigned status, const char *type, con
   snprintf(answer->problem, sizeof answer->problem, "%s", error->message);
 }
 
-/* 204: nobody waits for this frame any more. */
+/* Status 204: nobody waits for this frame any more. */
 static void fail_frame(server_answer *answer, hl_status status, const hl_error *error) {
   if (status == HL_ERROR_CANCELLED) answer->status = 204;
   else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL)

@@ -1,11 +1,11 @@
-/* server/guard.c - who may ask: the checks that every request passes before its body is read. */
+/* server/guard.c - whether a request is allowed: checks that every request passes before its body is read. */
 #define _GNU_SOURCE
 #include <string.h>
 #include <strings.h>
 
 #include "parts.h"
 
-/* Digits alone, up to five. */
+/* Whether the text is up to five digits and nothing else. */
 static bool is_port(const char *text) {
   size_t digits = strspn(text, "0123456789");
   return digits >= 1 && digits <= 5 && text[digits] == '\0';

@@ -12,7 +12,8 @@
 enum {
   TOKEN_DIGITS = 32,
   PAGE_NAME_LENGTH = 32,
-  MOST_PAGES = 8,            /* that keep a renderer; the one that was idle for longest makes room */
+  MOST_PAGES =
+      8, /* pages that keep a renderer; a new page takes the place of the one that was idle for longest */
   MOST_CONNECTIONS = 64,     /* at once */
   IDLE_SECONDS = 20,         /* after which a silent connection is closed */
   MOST_BODY_BYTES = 4 << 20, /* of a scene's text */
@@ -37,7 +38,7 @@ typedef struct server_page {
   char name[PAGE_NAME_LENGTH + 1]; /* "": free */
   pthread_mutex_t rendering;       /* held while a frame of the page is rendered */
   hl_renderer *renderer;           /* owned; under `rendering` */
-  atomic_ullong newest;            /* the highest number of a frame that was asked for */
+  atomic_ullong newest;            /* the highest number of a requested frame */
   int users;                       /* requests that hold the page; under server.pages_lock */
   unsigned long long last_use;     /* under server.pages_lock */
 } server_page;
@@ -51,20 +52,21 @@ typedef struct server {
   unsigned long long uses;
 } server;
 
-/* An answer: either bytes or text, with the status of HTTP. */
+/* An answer: bytes or a text, with its HTTP status. */
 typedef struct server_answer {
   unsigned status;
   const char *type;
   const void *borrowed; /* valid as long as the server; or null */
   size_t length;
-  unsigned char *bytes;                                /* owned: hl_bytes_release(); or null */
-  char *text;                                          /* owned: hl_text_release(); or null */
-  unsigned char *from_malloc;                          /* owned: free(); or null */
-  char problem[1000];                                  /* where none of them is given */
-  double seconds_read, seconds_render, seconds_encode; /* of a frame; all 0: not one */
+  unsigned char *bytes;       /* owned: hl_bytes_release(); or null */
+  char *text;                 /* owned: hl_text_release(); or null */
+  unsigned char *from_malloc; /* owned: free(); or null */
+  char problem[1000];         /* an error line, where neither bytes nor text are given */
+  double seconds_read, seconds_render,
+      seconds_encode; /* seconds of a frame's steps; all 0: the answer is no frame */
 } server_answer;
 
-/* What a frame's request asks for. */
+/* The parameters of a request for a frame. */
 typedef struct frame_request {
   const char *page;
   unsigned long long number;
@@ -88,13 +90,12 @@ char *describe_start(const server_options *options);
 unsigned char *encode_jpeg(const uint8_t *rgba, int width, int height, int quality, size_t *length);
 
 /* guard.c */
-/* Whether a Host header names this machine's own address: 127.0.0.1, localhost or [::1], with any port, so
- * that a tunnel may end at another one. Pages of foreign names that lead here are refused by it. */
+/* Whether a Host header names this machine's own address: 127.0.0.1, localhost or [::1]. Any port will do, as
+ * a tunnel may end at another one. Refuses pages of other host names that resolve to this machine. */
 bool host_is_local(const char *host);
-/* Whether an Origin header (null: absent) is the page's own. */
+/* Whether an Origin header is that of the server's own page, or absent (null). */
 bool origin_is_own(const char *origin, const char *host);
-/* The rest of a path after "/TOKEN/"; null where the token is another one. Takes equally long for all wrong
- * tokens. */
+/* The rest of a path after "/TOKEN/"; null if the token is wrong. Takes equally long for all wrong tokens. */
 const char *path_after_token(const char *path, const char *token);
 
 /* requests.c: libmicrohttpd's callbacks are set up for a server that listens on a socket. */

@@ -9,9 +9,9 @@
 
 #include "parts.h"
 
-/* A request whose body arrives. */
+/* A request whose body is still arriving. */
 typedef struct request {
-  bool refused; /* it was answered before its body was read */
+  bool refused; /* it was refused before its body was read */
   const char *path;
   char *body; /* owned; [length] */
   size_t length, capacity;
@@ -19,7 +19,8 @@ typedef struct request {
 
 static const char plain[] = "text/plain; charset=utf-8";
 
-/* What every answer says: it is for this page alone, and the page runs nothing but its own files. */
+/* Adds the headers of every answer: nothing is cached or shared, and the page runs nothing but its own files.
+ */
 static const char *const headers[][2] = {
     {"Content-Security-Policy",
      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
@@ -86,7 +87,7 @@ static const char *query(struct MHD_Connection *connection, const char *name) {
   return MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
 }
 
-/* The status of a refusal with its line, or 0. */
+/* The HTTP status of a refused request, with its error line; 0: the request is allowed. */
 static unsigned check(const server *s, struct MHD_Connection *connection, const char *method, const char *url,
                       request *r, const char **line) {
   const char *host = header(connection, "Host"), *length = header(connection, "Content-Length");
@@ -107,7 +108,7 @@ static unsigned check(const server *s, struct MHD_Connection *connection, const 
 
 /* ---- bodies ---- */
 
-/* False: it is too large. Without memory the body counts as too large. */
+/* Appends a piece of the body. False: the body is too large, or there is no memory for it. */
 static bool collect(request *r, const char *bytes, size_t count) {
   if (count > MOST_BODY_BYTES - r->length) return false;
   if (r->length + count > r->capacity) {
@@ -148,8 +149,7 @@ static void answer_get(const server *s, const char *path, server_answer *answer)
   answer_problem(answer, 404, "there is nothing here\n");
 }
 
-/* A whole number of the query between low and high, or standard where it is absent; -1: it is something else.
- */
+/* A whole number of the query, from low to high; `standard` if it is absent, -1 if it is anything else. */
 static long long query_number(struct MHD_Connection *connection, const char *name, long long low,
                               long long high, long long standard) {
   const char *text = query(connection, name);
@@ -189,7 +189,7 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
   else answer_frame(s, &wanted, answer);
 }
 
-/* Answers a request that is complete. A connection is not idle while its picture is made. */
+/* Answers a complete request. The connection does not count as idle while its picture is made. */
 static enum MHD_Result answer(server *s, struct MHD_Connection *connection, const char *method,
                               const request *r) {
   server_answer a = {0};
@@ -209,7 +209,7 @@ static enum MHD_Result answer(server *s, struct MHD_Connection *connection, cons
   return send_answer(s, connection, &a);
 }
 
-/* Called when the headers have come, for each piece of the body, and at its end. */
+/* libmicrohttpd calls this after the headers, for each piece of the body, and at its end. */
 static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connection, const char *url,
                                   const char *method, const char *version, const char *upload,
                                   size_t *upload_size, void **own) {
@@ -227,7 +227,7 @@ static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connec
   if (*upload_size > 0) {
     bool taken = !r->refused && collect(r, upload, *upload_size);
     *upload_size = 0;
-    return taken ? MHD_YES : MHD_NO; /* what was announced as small enough and is not: the connection ends */
+    return taken ? MHD_YES : MHD_NO; /* a body larger than its header announced: the connection ends */
   }
   r->path = path_after_token(url, s->token);
   return r->refused || r->path == NULL ? MHD_NO : answer(s, connection, method, r);

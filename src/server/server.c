@@ -16,7 +16,7 @@
 
 #include "parts.h"
 
-/* A socket that listens on 127.0.0.1; -1, and a line in problem, where there is none to be had. */
+/* A socket that listens on 127.0.0.1; -1, with an error line in `problem`, if there is none. */
 static int listen_on(int port, char *problem, size_t size) {
   enum { WAITING_CONNECTIONS = 64 };
   const int yes = 1;
@@ -64,7 +64,7 @@ static bool serve(server *s, int listening, char *problem, size_t size) {
   snprintf(url, sizeof url, "http://127.0.0.1:%d/%s/", port_of(listening), s->token);
   s->options.ready(s->options.user_data, url);
   wait_for_stop(&s->options);
-  MHD_stop_daemon(daemon); /* frames that are being rendered stop: they are outdated */
+  MHD_stop_daemon(daemon); /* frames that are being rendered stop, as they are outdated now */
   return true;
 }
 

@@ -28,7 +28,8 @@ typedef struct server_options {
   void (*ready)(void *user_data, const char *url); /* called once, when requests are answered */
 } server_options;
 
-/* Serves until options->stopped() says so. False, with one line in problem, where it could not begin. */
+/* Serves until options->stopped() returns true. False, with an error line in `problem`, if it could not
+ * begin. */
 bool server_run(const server_options *options, char *problem, size_t problem_size);
 
 /* For the context's `cancelled` callback: whether the frame that this thread renders is no longer wanted. */

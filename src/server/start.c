@@ -1,4 +1,5 @@
-/* server/start.c - what a page is told first: the scene, its volumes, and what there is to choose from. */
+/* server/start.c - the text that a page loads first: the scene, its volumes, and lists of presets and
+ * colormaps. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,7 +54,7 @@ static void put_volume(FILE *out, const hl_scene_volume *volume) {
   fputs("]}", out);
 }
 
-/* Each as rows of value, r, g, b over values from 0 to 1. */
+/* Writes each colormap as rows of value, r, g, b over values from 0 to 1. */
 static void put_colormaps(FILE *out, hl_context *context) {
   fputs("\"colormaps\":{", out);
   for (size_t c = 0; hl_colormap_name(c) != NULL; c++) {

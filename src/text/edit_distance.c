@@ -7,7 +7,7 @@
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* Three rows of the usual table suffice. */
+/* Three rows of the dynamic programme's table suffice. */
 int hl_edit_distance(const char *a, const char *b) {
   int rows[3][HL_EDIT_LONGEST + 1];
   int length_a = (int)strnlen(a, HL_EDIT_LONGEST), length_b = (int)strnlen(b, HL_EDIT_LONGEST);
@@ -36,7 +36,7 @@ int hl_edit_distance(const char *a, const char *b) {
 const char *hl_nearest_name(const char *name, const char *const *names) {
   const char *nearest = NULL;
   int length = (int)strnlen(name, HL_EDIT_LONGEST),
-      allowed = length * 2 / 5; /* two letters of five may be wrong */
+      allowed = length * 2 / 5; /* a name is near enough if at most two letters of five are wrong */
   int best = 1 + (allowed < 2 && length > 2 ? 2 : allowed);
   for (size_t n = 0; names[n] != NULL; n++) {
     int distance = hl_edit_distance(name, names[n]);
