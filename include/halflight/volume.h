@@ -124,9 +124,29 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const c
                                                     const hl_volume_load_options *options, hl_volume **volume,
                                                     hl_error *error);
 
-/* Writes .nrrd (gzip), .raw or .raw.gz, by the name's ending; the name of a raw file must state size and
- * type, as for reading. Data values are kept: as integers of 8 or 16 bits where the volume holds such without
- * a scale, else as float. The file appears whole or not at all. */
+/* How a volume is written. */
+typedef struct hl_volume_save_options {
+  size_t struct_size; /* set by hl_volume_save_options_defaults() */
+  hl_voxel_type type; /* 0 (default): the volume's own where it holds all data values and the format has it;
+                         else the next integers that do; else float */
+  size_t begin[3],
+      end[3];    /* the voxels begin[a] <= index < end[a] along axis a; end 0 (default): to the last */
+  size_t shrink; /* a written voxel is the mean over shrink^3 voxels, of the finite ones; default 1 */
+} hl_volume_save_options;
+
+HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);
+
+/* Writes .nrrd (gzip), .nii, .nii.gz, .mha (zlib), .vti, .mrc, .mrc.gz, .raw or .raw.gz, by the name's
+ * ending; the name of a raw file must state size and type, as for reading. Data values and placement are
+ * kept: NIfTI's and MetaImage's worlds are turned into their anatomical spaces, and a grid that MRC cannot
+ * hold is refused. Values are rounded to the nearest where the type holds whole numbers; warnings tell how
+ * many were beyond its range or not finite (these become 0), and what of the placement the format has no
+ * words for. options: null: the defaults. The file appears whole or not at all. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume,
+                                                    const char *path, const hl_volume_save_options *options,
+                                                    hl_error *error);
+
+/* hl_volume_save_with() the defaults. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path,
                                                hl_error *error);
 

@@ -6,6 +6,7 @@
 
 extern const cli_command render_command;  /* render.c */
 extern const cli_command info_command;    /* info.c */
+extern const cli_command convert_command; /* convert.c */
 extern const cli_command diff_command;    /* diff.c */
 extern const cli_command bench_command;   /* bench.c */
 extern const cli_command make_command;    /* make.c */

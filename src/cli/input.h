@@ -7,6 +7,7 @@
 #ifndef HL_CLI_INPUT_H
 #define HL_CLI_INPUT_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "host.h"
@@ -54,6 +55,12 @@ typedef struct cli_input {
   INPUT_OPTION_INDEX(      \
       "level",             \
       "of several resolutions this one; 0 is the finest\n(default: the finest that fits into memory)")
+#define INPUT_OPTION_SPACING                                                                          \
+  {                                                                                                   \
+    .name = "spacing", .kind = OPTION_NUMBERS, .argument = "SX,SY,SZ",                                \
+    .help = "distance of voxels in world units (default: the\nfile's)", .count = 3, .separator = ',', \
+    .low = 0, .above = true, .high = INFINITY                                                         \
+  }
 extern const cli_choice input_magnitudes[];
 
 /* The order in which a subcommand's table has these options. */

@@ -30,7 +30,7 @@ static const cli_option make_options[MAKE_OPTION_COUNT] = {
                      .kind = OPTION_TEXT,
                      .argument = "VOLUME",
                      .group = "Options",
-                     .help = "file to write: .nrrd, .raw or .raw.gz (default: SHAPE's\nname with .nrrd in "
+                     .help = "file to write, of a format of convert (default: SHAPE's\nname with .nrrd in "
                              "the current folder)"},
     [MAKE_SIZE] = {.name = "size",
                    .kind = OPTION_NUMBERS,

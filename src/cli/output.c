@@ -14,7 +14,8 @@
 #include "message.h"
 
 const char *const picture_extensions[] = {".png", ".exr", ".npy", NULL};
-const char *const volume_extensions[] = {".nrrd", ".raw", ".raw.gz", NULL};
+const char *const volume_extensions[] = {".nrrd", ".nii",    ".nii.gz", ".mha",    ".vti",
+                                         ".mrc",  ".mrc.gz", ".raw",    ".raw.gz", NULL};
 
 const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
@@ -42,7 +43,7 @@ static int check_folder(const char *path) {
 
 /* Refuses a path that ends in none of the extensions. */
 static int check_extension(const char *path, const char *const *extensions) {
-  char list[80] = "";
+  char list[120] = "";
   size_t used = 0;
   for (int i = 0; extensions[i] != NULL; i++) {
     if (has_extension(path, extensions[i])) return EXIT_CODE_OK;
@@ -50,7 +51,7 @@ static int check_extension(const char *path, const char *const *extensions) {
     if (used < sizeof list)
       used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", before, extensions[i]);
   }
-  return fail(EXIT_CODE_USAGE, "--output: '%s' must end in %s", path, list);
+  return fail(EXIT_CODE_USAGE, "OUT: '%s' must end in %s", path, list);
 }
 
 int output_check(const char *path, const char *const *extensions, char *const *inputs, int input_count) {
@@ -62,8 +63,7 @@ int output_check(const char *path, const char *const *extensions, char *const *i
     for (int i = 0; i < input_count; i++)
       if (stat(inputs[i], &about_input) == 0 && about.st_dev == about_input.st_dev &&
           about.st_ino == about_input.st_ino)
-        return fail(EXIT_CODE_USAGE, "--output: '%s' is the input '%s': choose another name", path,
-                    inputs[i]);
+        return fail(EXIT_CODE_USAGE, "OUT: '%s' is the input '%s': choose another name", path, inputs[i]);
   } else if (errno == ENAMETOOLONG) {
     return fail(EXIT_CODE_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
   }
@@ -123,7 +123,6 @@ int read_files_protect(const cli_read_files *read, const char *path, const char 
     return fail(EXIT_CODE_FAILURE, "out of memory for the names of the files that were read");
   for (size_t i = 0; i < read->count; i++)
     if (about.st_dev == read->files[i].device && about.st_ino == read->files[i].inode)
-      return fail(EXIT_CODE_USAGE, "--output: '%s' is a file that '%s' needs: choose another name", path,
-                  reader);
+      return fail(EXIT_CODE_USAGE, "OUT: '%s' is a file that '%s' needs: choose another name", path, reader);
   return EXIT_CODE_OK;
 }

@@ -133,15 +133,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_TIME] = INPUT_OPTION_TIME,
     [RENDER_CHANNEL] = INPUT_OPTION_CHANNEL,
     [RENDER_LEVEL] = INPUT_OPTION_LEVEL,
-    [RENDER_SPACING] = {.name = "spacing",
-                        .kind = OPTION_NUMBERS,
-                        .argument = "SX,SY,SZ",
-                        .help = "distance of voxels in world units (default: the\nfile's)",
-                        .count = 3,
-                        .separator = ',',
-                        .low = 0,
-                        .above = true,
-                        .high = INFINITY},
+    [RENDER_SPACING] = INPUT_OPTION_SPACING,
 
     [RENDER_LOOK] =
         {.name = "look",

@@ -25,7 +25,7 @@ typedef struct meta_header {
   hl_voxel_type type; /* 0: not yet stated */
   size_t channels, header_bytes;
   bool header_is_rest; /* HeaderSize -1: the voxels are the last bytes of the file */
-  bool big_endian, compressed, text;
+  bool big_endian, compressed, text, is_anatomical;
   double slope, intercept;
   char data_file[NAME_BYTES];
 } meta_header;
@@ -128,6 +128,8 @@ static hl_status read_key(meta_header *header, const char *key, const char *valu
   } else if (hl_text_equal(key, "HeaderSize")) {
     header->header_is_rest = hl_text_equal(value, "-1");
     sound = header->header_is_rest || hl_text_sizes(value, &header->header_bytes, 1) == 1;
+  } else if (hl_text_equal(key, "AnatomicalOrientation")) {
+    header->is_anatomical = value[0] != 0 && strchr(value, '?') == NULL;
   } else if (hl_text_equal(key, "ObjectType")) {
     sound = hl_text_equal(value, "Image");
   }
@@ -175,6 +177,8 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
     }
   }
   grid->type = header->type;
+  /* ITK's world, whichever way the voxels lie in it */
+  grid->space = header->is_anatomical ? HL_SPACE_LPS : HL_SPACE_UNKNOWN;
   grid->value_scale = header->slope;
   grid->value_offset = header->intercept;
 }

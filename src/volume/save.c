@@ -1,11 +1,12 @@
-/* volume/save.c - writes a volume to a file: NRRD with gzip, or bare voxels whose file name states size and
- * type.
+/* volume/save.c - writes a volume, or a box of it, to a file: rows of data values, through a type, a packing
+ * and a format (writer.h).
  *
- * Data values are kept: integers of 8 and 16 bits without a scale are written unchanged, everything else as
- * float. The file appears complete or not at all, and the same volume gives the same bytes. */
+ * The file appears complete or not at all, and the same volume gives the same bytes. One row is held at a
+ * time. */
 #define _GNU_SOURCE
+#include <errno.h>
+#include <math.h>
 #include <string.h>
-#include <strings.h>
 #include <zlib.h>
 
 #include "core/context.h"
@@ -14,99 +15,218 @@
 #include "volume/convert.h"
 #include "volume/raw.h"
 #include "volume/volume.h"
+#include "volume/writer.h"
 
-enum { PIECE = 1 << 16, OUT_BYTES = 1 << 18, GZIP_WINDOW = 15 + 16 /* zlib.h: largest window, gzip */ };
+enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 /* zlib.h: largest window; added for gzip */ };
 
 /* How the voxels are written. */
 typedef struct saving {
+  hl_context *context;
   const hl_volume *volume;
-  hl_volume_description grid; /* type is the file's */
+  const hl_writer *writer;
+  size_t begin[3], end[3], shrink; /* the box, voxels; each written voxel is the mean of shrink^3 */
+  hl_volume_description grid;      /* as written */
   hl_output output;
-  bool compress;
-  unsigned char *piece;  /* owned; PIECE voxels in the file's type, native byte order */
-  unsigned char *stored; /* owned; PIECE stored voxels of a volume whose rows do not adjoin, else null */
+  bool packs;            /* bytes go through the stream now */
+  double *sums;          /* owned; [grid.dimensions[0]]: of data values */
+  uint32_t *counts;      /* owned; [grid.dimensions[0]]: finite voxels in each sum */
+  unsigned char *row;    /* owned; [grid.dimensions[0]] voxels of the written type */
   unsigned char *packed; /* owned; [OUT_BYTES] */
+  uint64_t clamped,
+      holes; /* voxels beyond the type's range; not finite, where the type has no such numbers */
   z_stream stream;
 } saving;
 
-/* The file's voxel type: the stored type where stored values equal data values, else float. */
-static hl_voxel_type file_type(const hl_volume *volume) {
-  double bias = hl_voxel_type_bias(volume->type);
-  bool whole = volume->value_scale == 1 && volume->value_offset == -bias;
-  switch (volume->type) {
-    case HL_VOXEL_U8:
-    case HL_VOXEL_I8:
-    case HL_VOXEL_U16:
-    case HL_VOXEL_I16: return whole ? volume->type : HL_VOXEL_F32;
-    default: return HL_VOXEL_F32;
-  }
+/* ---- the type ---- */
+
+/* The range of whole numbers that a type holds; floats: false. */
+static bool whole_range(hl_voxel_type type, double *low, double *high) {
+  bool is_signed = type == HL_VOXEL_I8 || type == HL_VOXEL_I16 || type == HL_VOXEL_I32 ||
+                   type == HL_VOXEL_I64;
+  if (type == HL_VOXEL_F16 || type == HL_VOXEL_F32 || type == HL_VOXEL_F64) return false;
+  double span = ldexp(1, 8 * (int)hl_voxel_type_bytes(type));
+  *low = is_signed ? -span / 2 : 0;
+  *high = *low + span - 1;
+  if (*high == *low + span) *high = nextafter(*high, 0); /* 64 bits: the greatest double below */
+  return true;
 }
 
-static void describe(const hl_volume *volume, hl_volume_description *grid) {
-  hl_volume_description_defaults(grid);
-  memcpy(grid->dimensions, volume->dimension, sizeof grid->dimensions);
-  grid->type = file_type(volume);
+static bool holds(hl_voxel_type type, double least, double greatest) {
+  double low, high;
+  return whole_range(type, &low, &high) && least >= low && greatest <= high;
+}
+
+/* The data values are whole numbers, all finite: they come from integers, scaled by whole numbers. */
+static bool is_whole(const hl_volume *volume) {
+  double low, high;
+  return whole_range(volume->type, &low, &high) && volume->value_scale == floor(volume->value_scale) &&
+         volume->value_offset == floor(volume->value_offset);
+}
+
+/* The first type that the format holds and that holds all data values: the volume's own, else the next larger
+ * integers, else floats. */
+static hl_voxel_type choose_type(const hl_volume *volume, const hl_writer *writer) {
+  const hl_voxel_type candidates[] = {volume->type, HL_VOXEL_I16, HL_VOXEL_U16, HL_VOXEL_I32, HL_VOXEL_U32};
+  for (size_t n = 0; is_whole(volume) && n < sizeof candidates / sizeof *candidates; n++)
+    if ((writer->types & 1u << candidates[n]) != 0 && holds(candidates[n], volume->minimum, volume->maximum))
+      return candidates[n];
+  return HL_VOXEL_F32;
+}
+
+static hl_status set_type(saving *s, hl_voxel_type wanted, const char *path, hl_error *error) {
+  s->grid.type = wanted != 0 ? wanted : choose_type(s->volume, s->writer);
+  if (hl_voxel_type_bytes(s->grid.type) == 0)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: there is no voxel type %d", path, (int)wanted);
+  if ((s->writer->types & 1u << s->grid.type) != 0) return HL_OK;
+  char list[200] = "";
+  size_t used = 0;
+  for (int type = HL_VOXEL_U8; type <= HL_VOXEL_F16; type++)
+    if ((s->writer->types & 1u << type) != 0)
+      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "",
+                               hl_voxel_type_name((hl_voxel_type)type));
+  return hl_fail(error, HL_ERROR_ARGUMENT, "%s: %s files hold no %s: choose one of %s", path,
+                 s->writer->ending, hl_voxel_type_name(s->grid.type), list);
+}
+
+/* ---- the box ---- */
+
+static hl_status set_box(saving *s, const hl_volume_save_options *options, const char *path,
+                         hl_error *error) {
+  const size_t *size = s->volume->dimension;
+  s->shrink = options->shrink > 0 ? options->shrink : 1;
+  for (int axis = 0; axis < 3; axis++) {
+    s->begin[axis] = options->begin[axis];
+    s->end[axis] = options->end[axis] > 0 ? options->end[axis] : size[axis];
+    if (s->begin[axis] >= s->end[axis] || s->end[axis] > size[axis])
+      return hl_fail(error, HL_ERROR_ARGUMENT, "%s: voxels %zu to %zu along axis %c: there are %zu, from 0",
+                     path, s->begin[axis], s->end[axis], "ijk"[axis], size[axis]);
+    size_t voxels = s->end[axis] - s->begin[axis];
+    s->grid.dimensions[axis] = voxels / s->shrink + (voxels % s->shrink != 0);
+  }
+  return HL_OK;
+}
+
+/* A written voxel lies at the middle of the voxels whose mean it is (of as many as there are elsewhere, where
+ * the box ends before). */
+static void place_box(saving *s) {
+  const hl_volume *volume = s->volume;
+  vec3 origin = volume->index_to_world.offset;
   for (int axis = 0; axis < 3; axis++) {
     vec3 step = mat3_column(volume->index_to_world.linear, axis);
-    grid->axis[axis][0] = step.x, grid->axis[axis][1] = step.y, grid->axis[axis][2] = step.z;
+    double before = (double)s->begin[axis] + ((double)s->shrink - 1) / 2;
+    origin = vec3_add(origin, vec3_scale(step, before));
+    step = vec3_scale(step, (double)s->shrink);
+    memcpy(s->grid.axis[axis], (const double[3]){step.x, step.y, step.z}, sizeof s->grid.axis[axis]);
   }
-  grid->origin[0] = volume->index_to_world.offset.x;
-  grid->origin[1] = volume->index_to_world.offset.y;
-  grid->origin[2] = volume->index_to_world.offset.z;
+  memcpy(s->grid.origin, (const double[3]){origin.x, origin.y, origin.z}, sizeof s->grid.origin);
+  s->grid.space = volume->space;
 }
 
-static void convert_integers(const hl_volume *volume, const void *voxels, size_t count,
-                             unsigned char *piece) {
-  size_t bytes = hl_storage_bytes(volume->storage);
-  const unsigned char *from = voxels;
-  unsigned flip = (unsigned)hl_voxel_type_bias(volume->type); /* the sign bit of signed types */
-  for (size_t n = 0; n < count; n++) {
-    uint16_t wide = from[n];
-    if (bytes == 2) memcpy(&wide, from + 2 * n, 2);
-    wide = (uint16_t)(wide ^ flip);
-    if (bytes == 2) memcpy(piece + 2 * n, &wide, 2);
-    else piece[n] = (unsigned char)wide;
+/* ---- rows ---- */
+
+static double stored_value(hl_storage storage, const void *row, size_t index) {
+  switch (storage) {
+    case HL_STORAGE_U8: return ((const uint8_t *)row)[index];
+    case HL_STORAGE_U16: return ((const uint16_t *)row)[index];
+    default: return (double)((const float *)row)[index];
   }
 }
 
-static void convert_values(const hl_volume *volume, const void *voxels, size_t count, unsigned char *piece) {
-  for (size_t n = 0; n < count; n++) {
-    double stored = 0;
-    switch (volume->storage) {
-      case HL_STORAGE_U8: stored = ((const uint8_t *)voxels)[n]; break;
-      case HL_STORAGE_U16: stored = ((const uint16_t *)voxels)[n]; break;
-      case HL_STORAGE_F32: stored = (double)((const float *)voxels)[n]; break;
+/* Adds the row (j, k) of the volume to the sums; begins them where it is the first. */
+static void add_row(saving *s, size_t j, size_t k) {
+  const hl_volume *volume = s->volume;
+  const void *row = hl_volume_row(volume, j, k);
+  for (size_t i = s->begin[0], n = 0; i < s->end[0]; n++)
+    for (size_t last = i + s->shrink; i < last && i < s->end[0]; i++) {
+      double value = volume->value_scale * stored_value(volume->storage, row, i) + volume->value_offset;
+      if (s->shrink > 1 && !isfinite(value)) continue;
+      s->sums[n] += value;
+      s->counts[n]++;
     }
-    float value = (float)(volume->value_scale * stored + volume->value_offset);
-    memcpy(piece + 4 * n, &value, 4);
+}
+
+/* The data values of row (j, k) as written, in `sums`: means over the finite voxels; NAN where there are
+ * none. */
+static void make_row(saving *s, size_t j, size_t k) {
+  size_t count = s->grid.dimensions[0];
+  memset(s->sums, 0, count * sizeof *s->sums);
+  memset(s->counts, 0, count * sizeof *s->counts);
+  size_t j0 = s->begin[1] + j * s->shrink, k0 = s->begin[2] + k * s->shrink;
+  for (size_t z = k0; z < k0 + s->shrink && z < s->end[2]; z++)
+    for (size_t y = j0; y < j0 + s->shrink && y < s->end[1]; y++) add_row(s, y, z);
+  for (size_t n = 0; n < count; n++)
+    if (s->counts[n] != 1) s->sums[n] = s->counts[n] > 0 ? s->sums[n] / s->counts[n] : NAN;
+}
+
+/* The nearest IEEE 754 binary16, ties to even: as _Float16, which not every compiler has. */
+static uint16_t half_of(double value) {
+  uint16_t sign = signbit(value) ? 0x8000 : 0;
+  double size = fabs(value);
+  if (isnan(value)) return 0x7e00;
+  if (size >= 65520) return (uint16_t)(sign | 0x7c00);
+  int exponent;
+  frexp(size,
+        &exponent); /* size = f 2^exponent, f from 0.5 to 1: 11 bits, the last worth 2^(exponent - 11) */
+  int last = exponent - 11 > -24 ? exponent - 11 : -24;
+  double units = nearbyint(ldexp(size, -last)); /* at most 2048; below 1024 only for subnormals */
+  int biased = last + 24; /* the exponent field of numbers with 1024 units or more, less one */
+  return (uint16_t)(sign | (units < 1024 ? (unsigned)units
+                                         : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));
+}
+
+/* A value for a type of whole numbers: the nearest, within the type's range; 0 for those that are not
+ * finite. */
+static double whole_value(saving *s, double value, double low, double high) {
+  if (!isfinite(value)) s->holes++;
+  if (!isfinite(value)) return 0;
+  value = floor(value + 0.5);
+  if (value >= low && value <= high) return value;
+  s->clamped++;
+  return value < low ? low : high;
+}
+
+#define STORE(type)                                         \
+  do {                                                      \
+    type stored = (type)value;                              \
+    memcpy(to + n * sizeof stored, &stored, sizeof stored); \
+  } while (0)
+
+static void convert_row(saving *s) {
+  unsigned char *to = s->row;
+  double low = 0, high = 0;
+  bool whole = whole_range(s->grid.type, &low, &high);
+  for (size_t n = 0; n < s->grid.dimensions[0]; n++) {
+    double value = whole ? whole_value(s, s->sums[n], low, high) : s->sums[n];
+    switch (s->grid.type) {
+      case HL_VOXEL_U8: STORE(uint8_t); break;
+      case HL_VOXEL_I8: STORE(int8_t); break;
+      case HL_VOXEL_U16: STORE(uint16_t); break;
+      case HL_VOXEL_I16: STORE(int16_t); break;
+      case HL_VOXEL_U32: STORE(uint32_t); break;
+      case HL_VOXEL_I32: STORE(int32_t); break;
+      case HL_VOXEL_U64: STORE(uint64_t); break;
+      case HL_VOXEL_I64: STORE(int64_t); break;
+      case HL_VOXEL_F32: STORE(float); break;
+      case HL_VOXEL_F64: STORE(double); break;
+      case HL_VOXEL_F16: {
+        uint16_t half = half_of(value);
+        memcpy(to + 2 * n, &half, sizeof half);
+        break;
+      }
+    }
   }
 }
 
-static void write_header(saving *s) {
-  const hl_volume_description *grid = &s->grid;
-  const uint16_t one = 1;
-  bool little = *(const unsigned char *)&one == 1;
-  fprintf(s->output.file, "NRRD0004\ntype: %s\ndimension: 3\nspace dimension: 3\nsizes: %zu %zu %zu\n",
-          grid->type == HL_VOXEL_F32 ? "float" : hl_voxel_type_name(grid->type), grid->dimensions[0],
-          grid->dimensions[1], grid->dimensions[2]);
-  fprintf(s->output.file, "space directions:");
-  for (int axis = 0; axis < 3; axis++)
-    fprintf(s->output.file, " (%.17g,%.17g,%.17g)", grid->axis[axis][0], grid->axis[axis][1],
-            grid->axis[axis][2]);
-  fprintf(s->output.file, "\nspace origin: (%.17g,%.17g,%.17g)\n", grid->origin[0], grid->origin[1],
-          grid->origin[2]);
-  if (hl_voxel_type_bytes(grid->type) > 1) fprintf(s->output.file, "endian: %s\n", little ? "little" : "big");
-  fprintf(s->output.file, "encoding: gzip\n\n");
-}
+/* ---- bytes ---- */
 
 /* Short writes are found by hl_output_commit(). */
-static void put(saving *s, size_t bytes, bool last) {
-  if (!s->compress) {
-    fwrite(s->piece, 1, bytes, s->output.file);
+static void put(saving *s, const void *bytes, size_t count, bool last) {
+  if (!s->packs) {
+    fwrite(bytes, 1, count, s->output.file);
     return;
   }
-  s->stream.next_in = s->piece;
-  s->stream.avail_in = (uInt)bytes;
+  s->stream.next_in = (unsigned char *)bytes;
+  s->stream.avail_in = (uInt)count;
   do {
     s->stream.next_out = s->packed;
     s->stream.avail_out = OUT_BYTES;
@@ -115,76 +235,146 @@ static void put(saving *s, size_t bytes, bool last) {
   } while (s->stream.avail_out == 0);
 }
 
-static hl_status write_voxels(saving *s, hl_error *error) {
-  const hl_volume *volume = s->volume;
-  size_t total = hl_volume_voxel_count(volume);
-  for (size_t first = 0; first < total; first += PIECE) {
-    size_t count = total - first < PIECE ? total - first : PIECE;
-    const void *voxels = hl_volume_piece(volume, first, count, s->stored);
-    if (s->grid.type == HL_VOXEL_F32) convert_values(volume, voxels, count, s->piece);
-    else convert_integers(volume, voxels, count, s->piece);
-    put(s, count * hl_voxel_type_bytes(s->grid.type), first + count == total);
-    hl_progress(volume->context, "write", (double)(first + count) / (double)total);
-    if (hl_cancelled(volume->context))
-      return hl_fail(error, HL_ERROR_CANCELLED, "%s: stopped", s->output.path);
+static hl_status write_rows(saving *s, hl_error *error) {
+  const size_t *n = s->grid.dimensions;
+  size_t bytes = n[0] * hl_voxel_type_bytes(s->grid.type);
+  for (size_t k = 0; k < n[2]; k++) {
+    for (size_t j = 0; j < n[1]; j++) {
+      make_row(s, j, k);
+      convert_row(s);
+      put(s, s->row, bytes, k + 1 == n[2] && j + 1 == n[1]);
+    }
+    hl_progress(s->context, "write", (double)(k + 1) / (double)n[2]);
+    if (hl_cancelled(s->context)) return hl_fail(error, HL_ERROR_CANCELLED, "%s: stopped", s->output.path);
   }
   return HL_OK;
 }
+
+static hl_status state_size(saving *s, size_t at, hl_error *error) {
+  if (fseek(s->output.file, (long)at, SEEK_SET) != 0)
+    return hl_fail(error, HL_ERROR_IO, "%s: cannot be written: %s", s->output.path, strerror(errno));
+  fprintf(s->output.file, "%-*llu", HL_WRITER_SIZE_CHARACTERS, (unsigned long long)s->stream.total_out);
+  return HL_OK;
+}
+
+static hl_status write_file(saving *s, const char *path, hl_error *error) {
+  hl_written_header header = {.end = NULL};
+  hl_status status = s->writer->make_header(path, &s->grid, &header, error);
+  if (status == HL_OK) status = hl_output_begin(s->context, path, &s->output, error);
+  if (status != HL_OK) return status;
+  s->packs = s->writer->packing == HL_PACKING_GZIP_ALL;
+  put(s, header.bytes, header.length, false);
+  s->packs = s->writer->packing != HL_PACKING_NONE;
+  status = write_rows(s, error);
+  if (status == HL_OK && header.end != NULL) fputs(header.end, s->output.file);
+  if (status == HL_OK && header.size_at > 0) status = state_size(s, header.size_at, error);
+  if (status == HL_OK) return hl_output_commit(&s->output, error);
+  hl_output_abort(&s->output);
+  return status;
+}
+
+static hl_status begin_packing(saving *s, hl_error *error) {
+  int window = ZLIB_WINDOW + (s->writer->packing == HL_PACKING_ZLIB_VOXELS ? 0 : GZIP);
+  if (s->writer->packing == HL_PACKING_NONE ||
+      deflateInit2(&s->stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, window, 8, Z_DEFAULT_STRATEGY) == Z_OK)
+    return HL_OK;
+  return hl_fail_memory(error, 300000, "compression");
+}
+
+static hl_status save(saving *s, const char *path, hl_error *error) {
+  hl_context *context = s->context;
+  size_t count = s->grid.dimensions[0], bytes = sizeof *s->sums + sizeof *s->counts + 8;
+  s->sums = hl_allocate(context, count, sizeof *s->sums);
+  s->counts = hl_allocate(context, count, sizeof *s->counts);
+  s->row = hl_allocate(context, count, hl_voxel_type_bytes(s->grid.type));
+  s->packed = hl_allocate(context, OUT_BYTES, 1);
+  if (s->sums == NULL || s->counts == NULL || s->row == NULL || s->packed == NULL)
+    return hl_fail_memory(error, count * bytes + OUT_BYTES, path);
+  hl_status status = begin_packing(s, error);
+  if (status != HL_OK) return status;
+  status = write_file(s, path, error);
+  if (s->writer->packing != HL_PACKING_NONE) deflateEnd(&s->stream);
+  return status;
+}
+
+/* ---- the whole ---- */
 
 /* Only the file's name states the size and type of bare voxels. */
 static hl_status check_raw_name(const saving *s, const char *path, hl_error *error) {
   hl_payload payload;
   const size_t *n = s->grid.dimensions;
   bool named = hl_raw_name(path, &payload);
-  if (named && payload.grid.type == s->grid.type && !payload.big_endian &&
-      memcmp(payload.grid.dimensions, n, sizeof payload.grid.dimensions) == 0)
+  if (strncmp(s->writer->ending, ".raw", 4) != 0 ||
+      (named && payload.grid.type == s->grid.type && !payload.big_endian &&
+       memcmp(payload.grid.dimensions, n, sizeof payload.grid.dimensions) == 0))
     return HL_OK;
   return hl_fail(error, HL_ERROR_ARGUMENT,
                  "%s: bare voxels are read by their name: put _%zux%zux%zu_%s before .raw, or write .nrrd",
                  path, n[0], n[1], n[2], hl_voxel_type_name(s->grid.type));
 }
 
-static bool ends_in(const char *path, const char *extension) {
-  size_t length = strlen(path), tail = strlen(extension);
-  return length > tail && strcasecmp(path + length - tail, extension) == 0;
+static bool has_place(const hl_volume_description *grid) {
+  hl_volume_description plain;
+  hl_volume_description_defaults(&plain);
+  return memcmp(grid->axis, plain.axis, sizeof plain.axis) != 0 ||
+         memcmp(grid->origin, plain.origin, sizeof plain.origin) != 0;
 }
 
-static hl_status save(hl_context *context, saving *s, const char *path, bool nrrd, hl_error *error) {
-  size_t piece_bytes = PIECE * hl_voxel_type_bytes(s->grid.type);
-  s->piece = hl_allocate(context, piece_bytes, 1);
-  s->packed = hl_allocate(context, OUT_BYTES, 1);
-  if (!hl_volume_is_packed(s->volume))
-    s->stored = hl_allocate(context, PIECE, hl_storage_bytes(s->volume->storage));
-  if (s->piece == NULL || s->packed == NULL || (s->stored == NULL && !hl_volume_is_packed(s->volume)))
-    return hl_fail_memory(error, piece_bytes + OUT_BYTES, path);
-  if (s->compress &&
-      deflateInit2(&s->stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, GZIP_WINDOW, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    return hl_fail_memory(error, 300000, "compression");
-  hl_status status = hl_output_begin(context, path, &s->output, error);
-  if (status == HL_OK) {
-    if (nrrd) write_header(s);
-    status = write_voxels(s, error);
-    if (status == HL_OK) status = hl_output_commit(&s->output, error);
-    else hl_output_abort(&s->output);
-  }
-  if (s->compress) deflateEnd(&s->stream);
+/* Tells what the file cannot hold. */
+static void tell_losses(const saving *s, const char *path) {
+  hl_context *context = s->context;
+  const char *loses = s->writer->loses, *type = hl_voxel_type_name(s->grid.type);
+  if (loses != NULL && strcmp(loses, "place") == 0 && has_place(&s->grid))
+    hl_log(context, HL_LOG_WARNING, "%s: bare voxels have no spacing, origin and directions: they are lost",
+           path);
+  else if (loses != NULL && s->grid.space != HL_SPACE_UNKNOWN)
+    hl_log(context, HL_LOG_WARNING, "%s: %s files do not tell that their world is %s: remember it", path,
+           s->writer->ending, hl_space_name(s->grid.space));
+  if (s->clamped > 0)
+    hl_log(context, HL_LOG_WARNING,
+           "%s: %llu values are beyond the range of %s, and are written as its least or greatest", path,
+           (unsigned long long)s->clamped, type);
+  if (s->holes > 0)
+    hl_log(context, HL_LOG_WARNING,
+           "%s: %llu values are not finite, and are written as 0: %s has no such numbers", path,
+           (unsigned long long)s->holes, type);
+}
+
+void hl_volume_save_options_defaults(hl_volume_save_options *options) {
+  if (options != NULL) *options = (hl_volume_save_options){.struct_size = sizeof *options, .shrink = 1};
+}
+
+hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, const char *path,
+                              const hl_volume_save_options *options, hl_error *error) {
+  if (context == NULL || volume == NULL || path == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_save: null context, volume or path");
+  hl_volume_save_options chosen;
+  hl_volume_save_options_defaults(&chosen);
+  if (options == NULL) options = &chosen;
+  if (options->struct_size != sizeof *options)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "%s: the options are not filled: call hl_volume_save_options_defaults() first", path);
+  saving s = {.context = context, .volume = volume, .writer = hl_writer_for(path)};
+  if (s.writer == NULL)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "%s: volumes are written as .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .mrc.gz, .raw or .raw.gz: "
+        "end the name so",
+        path);
+  hl_volume_description_defaults(&s.grid);
+  hl_status status = set_box(&s, options, path, error);
+  if (status == HL_OK) status = set_type(&s, options->type, path, error);
+  if (status == HL_OK) place_box(&s);
+  if (status == HL_OK) status = check_raw_name(&s, path, error);
+  if (status == HL_OK) status = save(&s, path, error);
+  if (status == HL_OK) tell_losses(&s, path);
+  hl_release(context, s.sums);
+  hl_release(context, s.counts);
+  hl_release(context, s.row);
+  hl_release(context, s.packed);
   return status;
 }
 
 hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path, hl_error *error) {
-  if (context == NULL || volume == NULL || path == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_save: null context, volume or path");
-  bool nrrd = ends_in(path, ".nrrd"), packed = ends_in(path, ".raw.gz"),
-       raw = packed || ends_in(path, ".raw");
-  if (!nrrd && !raw)
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "%s: volumes are written as .nrrd, .raw or .raw.gz: end the name so", path);
-  saving s = {.volume = volume, .compress = nrrd || packed};
-  describe(volume, &s.grid);
-  hl_status status = raw ? check_raw_name(&s, path, error) : HL_OK;
-  if (status == HL_OK) status = save(context, &s, path, nrrd, error);
-  hl_release(context, s.piece);
-  hl_release(context, s.stored);
-  hl_release(context, s.packed);
-  return status;
+  return hl_volume_save_with(context, volume, path, NULL, error);
 }

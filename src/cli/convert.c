@@ -1,0 +1,176 @@
+/* cli/convert.c - `halflight convert IN OUT`: a volume, or a box of it, in another format, type or
+ * resolution. */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "host.h"
+#include "input.h"
+#include "output.h"
+
+enum convert_option {
+  CONVERT_CROP,
+  CONVERT_SHRINK,
+  CONVERT_TYPE,
+  CONVERT_ARRAY,
+  CONVERT_COMPONENT,
+  CONVERT_SERIES,
+  CONVERT_TIME,
+  CONVERT_CHANNEL,
+  CONVERT_LEVEL,
+  CONVERT_SPACING,
+  CONVERT_MAX_MEMORY,
+  CONVERT_QUIET,
+  CONVERT_OPTION_COUNT
+};
+
+static const cli_choice types[] = {
+    {"uint8", HL_VOXEL_U8},    {"int8", HL_VOXEL_I8},     {"uint16", HL_VOXEL_U16},  {"int16", HL_VOXEL_I16},
+    {"uint32", HL_VOXEL_U32},  {"int32", HL_VOXEL_I32},   {"uint64", HL_VOXEL_U64},  {"int64", HL_VOXEL_I64},
+    {"float16", HL_VOXEL_F16}, {"float32", HL_VOXEL_F32}, {"float64", HL_VOXEL_F64}, {NULL, 0}};
+
+static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
+    [CONVERT_CROP] = {.name = "crop",
+                      .kind = OPTION_TEXT,
+                      .argument = "AXIS=A:B",
+                      .group = "Options",
+                      .help = "keep voxels A to B - 1 along AXIS, i, j or k, from 0;\n"
+                              "repeatable (i=10:200, k=:50, j=20:)",
+                      .repeatable = true},
+    [CONVERT_SHRINK] = {.name = "shrink",
+                        .kind = OPTION_NUMBERS,
+                        .argument = "N",
+                        .help = "the means of boxes of N x N x N voxels",
+                        .count = 1,
+                        .whole = true,
+                        .low = 1,
+                        .high = 65536},
+    [CONVERT_TYPE] = {.name = "type",
+                      .kind = OPTION_CHOICE,
+                      .argument = "TYPE",
+                      .help =
+                          "uint8, int8, ... uint64, int64, float16, float32 or\nfloat64; whole numbers are "
+                          "rounded (default: the volume's\nown, or the next that holds its values)",
+                      .choices = types},
+    [CONVERT_ARRAY] = INPUT_OPTION_ARRAY("What of IN"),
+    [CONVERT_COMPONENT] = INPUT_OPTION_COMPONENT,
+    [CONVERT_SERIES] = INPUT_OPTION_SERIES,
+    [CONVERT_TIME] = INPUT_OPTION_TIME,
+    [CONVERT_CHANNEL] = INPUT_OPTION_CHANNEL,
+    [CONVERT_LEVEL] = INPUT_OPTION_LEVEL,
+    [CONVERT_SPACING] = INPUT_OPTION_SPACING,
+    [CONVERT_MAX_MEMORY] =
+        {.name = "max-memory",
+         .kind = OPTION_BYTES,
+         .argument = "BYTES",
+         .group = "How it runs",
+         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [CONVERT_QUIET] = {.name = "quiet",
+                       .kind = OPTION_SWITCH,
+                       .help = "no progress bar, no warnings, no summary"},
+};
+
+/* Reads a number of voxels, if there is one, and moves *text past it. */
+static bool read_index(const char **text, size_t *index) {
+  size_t length = strspn(*text, "0123456789");
+  if (length > 9) return false;
+  if (length > 0) *index = strtoul(*text, NULL, 10);
+  *text += length;
+  return true;
+}
+
+/* Reads --crop's boxes into the options; indices are checked with the volume. */
+static int read_crop(const cli_value *crop, hl_volume_save_options *options) {
+  for (int n = 0; n < crop->count; n++) {
+    const char *text = crop->texts[n], *at = text + 2;
+    int axis = text[0] >= 'i' && text[0] <= 'k' && text[1] == '=' ? text[0] - 'i' : -1;
+    bool good = axis >= 0 && read_index(&at, &options->begin[axis]) && *at++ == ':' &&
+                read_index(&at, &options->end[axis]) && *at == '\0';
+    if (!good)
+      return fail(EXIT_CODE_USAGE,
+                  "--crop: '%s' is not AXIS=A:B: write i=10:200 for the voxels 10 to 199 along i", text);
+  }
+  return EXIT_CODE_OK;
+}
+
+static int read_options(const cli_value *values, hl_volume_save_options *options) {
+  hl_volume_save_options_defaults(options);
+  if (values[CONVERT_SHRINK].given) options->shrink = (size_t)values[CONVERT_SHRINK].number[0];
+  if (values[CONVERT_TYPE].given) options->type = (hl_voxel_type)values[CONVERT_TYPE].choice;
+  return read_crop(&values[CONVERT_CROP], options);
+}
+
+/* The box is inside the volume: here, so that the error names the option. */
+static int check_crop(const cli_value *crop, const hl_volume_save_options *options, const hl_volume *volume) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume, &info) != HL_OK) return EXIT_CODE_OK;
+  for (int n = 0; n < crop->count; n++) {
+    int axis = crop->texts[n][0] - 'i';
+    size_t size = info.dimensions[axis], end = options->end[axis] > 0 ? options->end[axis] : size;
+    if (options->begin[axis] >= end || end > size)
+      return fail(EXIT_CODE_USAGE, "--crop: '%s': the volume has %zu voxels along %c, 0 to %zu",
+                  crop->texts[n], size, "ijk"[axis], size - 1);
+  }
+  return EXIT_CODE_OK;
+}
+
+static void report(const char *output, double seconds) { say("%s: written in %.2f s", output, seconds); }
+
+static int convert(cli_host *host, const cli_value *values, char **operands,
+                   const hl_volume_save_options *options) {
+  double started = clock_seconds();
+  cli_input input = {0};
+  hl_volume *volume = NULL;
+  hl_error error = {0};
+  hl_volume_load_options load;
+  input_load_options(&values[CONVERT_ARRAY], &values[CONVERT_SPACING], &load);
+  int exit_code = input_open(operands[0], values[CONVERT_MAX_MEMORY].bytes, &input);
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = input_load_volume(host->context, &input, &load, &volume, &error);
+    if (status != HL_OK) exit_code = host_fail(host, PHASE_READ, status, &error);
+  }
+  host_clear_bar(host);
+  if (exit_code == EXIT_CODE_OK) exit_code = check_crop(&values[CONVERT_CROP], options, volume);
+  if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, operands[1], operands[0]);
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = hl_volume_save_with(host->context, volume, operands[1], options, &error);
+    host_clear_bar(host);
+    if (status != HL_OK) exit_code = host_fail(host, PHASE_CHANGE, status, &error);
+    else if (!host->quiet) report(operands[1], clock_seconds() - started);
+  }
+  input_close(&input);
+  hl_volume_release(volume);
+  return exit_code;
+}
+
+static int run_convert(const cli_value *values, char **operands) {
+  hl_volume_save_options options;
+  int exit_code = read_options(values, &options);
+  if (exit_code == EXIT_CODE_OK) exit_code = output_check(operands[1], volume_extensions, operands, 1);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  cli_host host = {0};
+  cli_host_options host_options = {.quiet = values[CONVERT_QUIET].given,
+                                   .progress = true,
+                                   .subject = base_name(operands[0]),
+                                   .memory_limit = values[CONVERT_MAX_MEMORY].bytes};
+  exit_code = host_open(&host_options, &host);
+  if (exit_code == EXIT_CODE_OK) exit_code = convert(&host, values, operands, &options);
+  host_close(&host);
+  return exit_code;
+}
+
+const cli_command convert_command = {
+    .name = "convert",
+    .operands = "IN OUT",
+    .operand_count = 2,
+    .summary = "write a volume in another format, type, part or resolution",
+    .description =
+        "Writes the volume IN (any that render reads) to OUT: .nrrd, .nii, .nii.gz, .mha, .vti, .mrc,\n"
+        ".mrc.gz, or .raw and .raw.gz, whose names state size and type (x_256x256x128_uint8.raw). Values\n"
+        "and placement are kept; a warning says what OUT's format has no words for.",
+    .options = convert_options,
+    .option_count = CONVERT_OPTION_COUNT,
+    .run = run_convert,
+};

@@ -1,0 +1,308 @@
+/* volume/writer.c - headers of the formats that volumes are written in.
+ *
+ * In: the grid of a volume. Out: the bytes before the voxels, native byte order. NIfTI's world is
+ * right-anterior-superior and MetaImage's left-posterior-superior: grids of another anatomical space are
+ * turned by half a turn about z, so that each voxel stays where it is in the body. */
+#define _GNU_SOURCE
+#include "volume/writer.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/error.h"
+#include "volume/convert.h"
+
+#define TYPE(name) (1u << HL_VOXEL_##name)
+enum {
+  PLAIN_TYPES = TYPE(U8) | TYPE(I8) | TYPE(U16) | TYPE(I16) | TYPE(U32) | TYPE(I32) | TYPE(U64) | TYPE(I64) |
+                TYPE(F32) | TYPE(F64),
+  ALL_TYPES = PLAIN_TYPES | TYPE(F16),
+  MRC_TYPES = TYPE(I8) | TYPE(I16) | TYPE(U16) | TYPE(F16) | TYPE(F32)
+};
+
+static bool is_little(void) {
+  const uint16_t one = 1;
+  return *(const unsigned char *)&one == 1;
+}
+
+__attribute__((format(printf, 2, 3))) static void add(hl_written_header *header, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  int length = vsnprintf((char *)header->bytes + header->length, sizeof header->bytes - header->length,
+                         format, arguments);
+  va_end(arguments);
+  header->length += (size_t)length;
+}
+
+static void put_word(hl_written_header *header, size_t at, int value) {
+  int16_t word = (int16_t)value;
+  memcpy(header->bytes + at, &word, sizeof word);
+}
+static void put_integer(hl_written_header *header, size_t at, size_t value) {
+  uint32_t integer = (uint32_t)value;
+  memcpy(header->bytes + at, &integer, sizeof integer);
+}
+static void put_real(hl_written_header *header, size_t at, double value) {
+  float real = (float)value;
+  memcpy(header->bytes + at, &real, sizeof real);
+}
+
+/* The place of a grid in a world whose x and y point the other way. */
+static void turn(hl_volume_description *grid) {
+  for (int row = 0; row < 2; row++) {
+    grid->origin[row] = -grid->origin[row];
+    for (int axis = 0; axis < 3; axis++) grid->axis[axis][row] = -grid->axis[axis][row];
+  }
+}
+
+/* Brings a grid into the space that a format's world is, if the grid tells its own. */
+static void bring_into(hl_space wanted, hl_volume_description *grid) {
+  if (grid->space == HL_SPACE_LAS) { /* only x differs from RAS */
+    grid->origin[0] = -grid->origin[0];
+    for (int axis = 0; axis < 3; axis++) grid->axis[axis][0] = -grid->axis[axis][0];
+    grid->space = HL_SPACE_RAS;
+  }
+  if (grid->space != HL_SPACE_UNKNOWN && grid->space != wanted) turn(grid);
+}
+
+static void find_steps(const hl_volume_description *grid, double length[3], double unit[3][3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    length[axis] = vec3_length(vec3_of(grid->axis[axis]));
+    for (int row = 0; row < 3; row++) unit[axis][row] = grid->axis[axis][row] / length[axis];
+  }
+}
+
+/* ---- NRRD ---- */
+
+static const char *nrrd_type(hl_voxel_type type) {
+  return type == HL_VOXEL_F32 ? "float" : type == HL_VOXEL_F64 ? "double" : hl_voxel_type_name(type);
+}
+
+static hl_status make_nrrd(const char *path, const hl_volume_description *grid, hl_written_header *header,
+                           hl_error *error) {
+  static const char *const spaces[] = {[HL_SPACE_RAS] = "right-anterior-superior",
+                                       [HL_SPACE_LPS] = "left-posterior-superior",
+                                       [HL_SPACE_LAS] = "left-anterior-superior"};
+  (void)path, (void)error;
+  add(header, "NRRD0004\ntype: %s\ndimension: 3\n", nrrd_type(grid->type));
+  if (grid->space == HL_SPACE_UNKNOWN) add(header, "space dimension: 3\n");
+  else add(header, "space: %s\n", spaces[grid->space]);
+  add(header, "sizes: %zu %zu %zu\nspace directions:", grid->dimensions[0], grid->dimensions[1],
+      grid->dimensions[2]);
+  for (int axis = 0; axis < 3; axis++)
+    add(header, " (%.17g,%.17g,%.17g)", grid->axis[axis][0], grid->axis[axis][1], grid->axis[axis][2]);
+  add(header, "\nspace origin: (%.17g,%.17g,%.17g)\n", grid->origin[0], grid->origin[1], grid->origin[2]);
+  if (hl_voxel_type_bytes(grid->type) > 1) add(header, "endian: %s\n", is_little() ? "little" : "big");
+  add(header, "encoding: gzip\n\n");
+  return HL_OK;
+}
+
+/* ---- MetaImage ---- */
+
+static hl_status make_metaimage(const char *path, const hl_volume_description *given,
+                                hl_written_header *header, hl_error *error) {
+  static const char *const types[] = {
+      [HL_VOXEL_U8] = "MET_UCHAR",       [HL_VOXEL_I8] = "MET_CHAR",       [HL_VOXEL_U16] = "MET_USHORT",
+      [HL_VOXEL_I16] = "MET_SHORT",      [HL_VOXEL_U32] = "MET_UINT",      [HL_VOXEL_I32] = "MET_INT",
+      [HL_VOXEL_U64] = "MET_ULONG_LONG", [HL_VOXEL_I64] = "MET_LONG_LONG", [HL_VOXEL_F32] = "MET_FLOAT",
+      [HL_VOXEL_F64] = "MET_DOUBLE"};
+  hl_volume_description grid = *given;
+  double length[3], unit[3][3];
+  (void)path, (void)error;
+  bring_into(HL_SPACE_LPS, &grid);
+  find_steps(&grid, length, unit);
+  add(header, "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = %s\n",
+      is_little() ? "False" : "True");
+  add(header, "CompressedData = True\nCompressedDataSize = ");
+  header->size_at = header->length;
+  add(header, "%*s\nTransformMatrix =", HL_WRITER_SIZE_CHARACTERS, "");
+  for (int axis = 0; axis < 3; axis++)
+    for (int row = 0; row < 3; row++) add(header, " %.17g", unit[axis][row]);
+  add(header, "\nOffset = %.17g %.17g %.17g\nCenterOfRotation = 0 0 0\n", grid.origin[0], grid.origin[1],
+      grid.origin[2]);
+  /* From right, front and foot to left, back and head: MetaIO's name of LPS. */
+  if (grid.space != HL_SPACE_UNKNOWN) add(header, "AnatomicalOrientation = RAI\n");
+  add(header, "ElementSpacing = %.17g %.17g %.17g\nDimSize = %zu %zu %zu\n", length[0], length[1], length[2],
+      grid.dimensions[0], grid.dimensions[1], grid.dimensions[2]);
+  add(header, "ElementType = %s\nElementDataFile = LOCAL\n", types[grid.type]);
+  return HL_OK;
+}
+
+/* ---- NIfTI-1: its header, nifti1.h of the NIfTI Data Format Working Group ---- */
+
+static hl_status make_nifti(const char *path, const hl_volume_description *given, hl_written_header *header,
+                            hl_error *error) {
+  enum {
+    DIM = 40,
+    DATATYPE = 70,
+    BITPIX = 72,
+    PIXDIM = 76,
+    VOX_OFFSET = 108,
+    SCL_SLOPE = 112,
+    XYZT_UNITS = 123,
+    SFORM_CODE = 254,
+    SROW = 280,
+    MAGIC = 344,
+    HEADER_BYTES = 348,
+    MILLIMETRES = 2,
+    SCANNER = 1
+  };
+  static const int codes[] = {
+      [HL_VOXEL_U8] = 2,    [HL_VOXEL_I8] = 256, [HL_VOXEL_U16] = 512,  [HL_VOXEL_I16] = 4,
+      [HL_VOXEL_U32] = 768, [HL_VOXEL_I32] = 8,  [HL_VOXEL_U64] = 1280, [HL_VOXEL_I64] = 1024,
+      [HL_VOXEL_F32] = 16,  [HL_VOXEL_F64] = 64};
+  hl_volume_description grid = *given;
+  for (int axis = 0; axis < 3; axis++)
+    if (grid.dimensions[axis] > INT16_MAX)
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "%s: NIfTI holds %d voxels along an axis, not %zu: write .nrrd", path, INT16_MAX,
+                     grid.dimensions[axis]);
+  bring_into(HL_SPACE_RAS, &grid);
+  header->length = HEADER_BYTES + 4; /* four zeros: no extensions */
+  put_integer(header, 0, HEADER_BYTES);
+  put_word(header, DIM, 3);
+  put_word(header, DATATYPE, codes[grid.type]);
+  put_word(header, BITPIX, 8 * (int)hl_voxel_type_bytes(grid.type));
+  put_real(header, PIXDIM, 1);
+  put_real(header, VOX_OFFSET, HEADER_BYTES + 4);
+  put_real(header, SCL_SLOPE, 1);
+  header->bytes[XYZT_UNITS] = grid.space != HL_SPACE_UNKNOWN ? MILLIMETRES : 0;
+  put_word(header, SFORM_CODE, SCANNER);
+  for (int axis = 0; axis < 3; axis++) {
+    put_word(header, DIM + 2 + 2 * (size_t)axis, (int)grid.dimensions[axis]);
+    put_real(header, PIXDIM + 4 + 4 * (size_t)axis, vec3_length(vec3_of(grid.axis[axis])));
+    for (int row = 0; row < 3; row++)
+      put_real(header, SROW + 16 * (size_t)row + 4 * (size_t)axis, grid.axis[axis][row]);
+    put_real(header, SROW + 16 * (size_t)axis + 12, grid.origin[axis]);
+  }
+  for (size_t more = 3; more < 7; more++) put_word(header, DIM + 2 + 2 * more, 1);
+  memcpy(header->bytes + MAGIC, "n+1", 4);
+  return HL_OK;
+}
+
+/* ---- VTK's image data ---- */
+
+static hl_status make_vti(const char *path, const hl_volume_description *grid, hl_written_header *header,
+                          hl_error *error) {
+  static const char *const types[] = {
+      [HL_VOXEL_U8] = "UInt8",   [HL_VOXEL_I8] = "Int8",    [HL_VOXEL_U16] = "UInt16",
+      [HL_VOXEL_I16] = "Int16",  [HL_VOXEL_U32] = "UInt32", [HL_VOXEL_I32] = "Int32",
+      [HL_VOXEL_U64] = "UInt64", [HL_VOXEL_I64] = "Int64",  [HL_VOXEL_F32] = "Float32",
+      [HL_VOXEL_F64] = "Float64"};
+  const size_t *n = grid->dimensions;
+  double length[3], unit[3][3];
+  char extent[100];
+  (void)path, (void)error;
+  find_steps(grid, length, unit);
+  snprintf(extent, sizeof extent, "0 %zu 0 %zu 0 %zu", n[0] - 1, n[1] - 1, n[2] - 1);
+  add(header,
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"%s\" "
+      "header_type=\"UInt64\">\n",
+      is_little() ? "LittleEndian" : "BigEndian");
+  add(header,
+      "  <ImageData WholeExtent=\"%s\" Origin=\"%.17g %.17g %.17g\" Spacing=\"%.17g %.17g %.17g\" "
+      "Direction=\"",
+      extent, grid->origin[0], grid->origin[1], grid->origin[2], length[0], length[1], length[2]);
+  for (int row = 0; row < 3; row++)
+    for (int axis = 0; axis < 3; axis++) add(header, "%s%.17g", row + axis > 0 ? " " : "", unit[axis][row]);
+  add(header, "\">\n    <Piece Extent=\"%s\">\n      <PointData Scalars=\"values\">\n", extent);
+  add(header, "        <DataArray type=\"%s\" Name=\"values\" format=\"appended\" offset=\"0\"/>\n",
+      types[grid->type]);
+  add(header, "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _");
+  uint64_t bytes = (uint64_t)n[0] * n[1] * n[2] * hl_voxel_type_bytes(grid->type);
+  memcpy(header->bytes + header->length, &bytes, sizeof bytes);
+  header->length += sizeof bytes;
+  header->end = "\n  </AppendedData>\n</VTKFile>\n";
+  return HL_OK;
+}
+
+/* ---- MRC2014 (Cheng et al., J. Struct. Biol. 192, 2015, table 1) ---- */
+
+/* A cell lies with a along X and b in the plane of X and Y: whether the grid's axes do. */
+static bool is_cell(const hl_volume_description *grid) {
+  const double(*axis)[3] = grid->axis;
+  double flat = 1e-6 * vec3_length(vec3_of(axis[0]));
+  return axis[0][0] > 0 && axis[1][1] > 0 && axis[2][2] > 0 && fabs(axis[0][1]) < flat &&
+         fabs(axis[0][2]) < flat && fabs(axis[1][2]) < flat;
+}
+
+static double degrees_between(const double a[3], const double b[3]) {
+  double cosine = vec3_dot(vec3_of(a), vec3_of(b)) / (vec3_length(vec3_of(a)) * vec3_length(vec3_of(b)));
+  return cosine == 0 ? 90 : acos(cosine) * 180 / acos(-1);
+}
+
+static hl_status make_mrc(const char *path, const hl_volume_description *grid, hl_written_header *header,
+                          hl_error *error) {
+  enum {
+    MODE = 12,
+    INTERVALS = 28,
+    CELL = 40,
+    ANGLES = 52,
+    AXES = 64,
+    DMIN = 76,
+    GROUP = 88,
+    VERSION = 108,
+    ORIGIN = 196,
+    MARK = 208,
+    STAMP = 212,
+    HEADER_BYTES = 1024,
+    VOLUME = 1
+  };
+  static const int modes[] = {
+      [HL_VOXEL_I8] = 0, [HL_VOXEL_I16] = 1, [HL_VOXEL_F32] = 2, [HL_VOXEL_U16] = 6, [HL_VOXEL_F16] = 12};
+  if (!is_cell(grid))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: the volume's axes are turned in its world, which MRC cannot tell: write .nrrd, .nii, "
+                   ".mha or .vti",
+                   path);
+  header->length = HEADER_BYTES;
+  for (size_t axis = 0; axis < 3; axis++) {
+    double length = vec3_length(vec3_of(grid->axis[axis])) * (double)grid->dimensions[axis];
+    put_integer(header, 4 * axis, grid->dimensions[axis]);
+    put_integer(header, INTERVALS + 4 * axis, grid->dimensions[axis]);
+    put_real(header, CELL + 4 * axis, length);
+    put_real(header, ANGLES + 4 * axis,
+             degrees_between(grid->axis[(axis + 1) % 3], grid->axis[(axis + 2) % 3]));
+    put_integer(header, AXES + 4 * axis, axis + 1);
+    put_real(header, ORIGIN + 4 * axis, grid->origin[axis]);
+  }
+  put_integer(header, MODE, (size_t)modes[grid->type]);
+  put_real(header, DMIN + 4, -1); /* least 0, greatest -1, mean -2 and deviation -1: not told */
+  put_real(header, DMIN + 8, -2);
+  put_real(header, DMIN + 140, -1);
+  put_integer(header, GROUP, VOLUME);
+  put_integer(header, VERSION, 20140);
+  memcpy(header->bytes + MARK, "MAP ", 4);
+  memset(header->bytes + STAMP, is_little() ? 0x44 : 0x11, 2);
+  return HL_OK;
+}
+
+static hl_status make_raw(const char *path, const hl_volume_description *grid, hl_written_header *header,
+                          hl_error *error) {
+  (void)path, (void)grid, (void)header, (void)error;
+  return HL_OK;
+}
+
+static const hl_writer writers[] = {
+    {".nrrd", HL_PACKING_GZIP_VOXELS, PLAIN_TYPES, make_nrrd, NULL},
+    {".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL},
+    {".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL},
+    {".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL},
+    {".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space"},
+    {".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space"},
+    {".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space"},
+    {".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place"},
+    {".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place"},
+};
+
+const hl_writer *hl_writer_for(const char *path) {
+  size_t length = strlen(path);
+  for (size_t n = 0; n < sizeof writers / sizeof *writers; n++) {
+    size_t tail = strlen(writers[n].ending);
+    if (length > tail && strcasecmp(path + length - tail, writers[n].ending) == 0) return &writers[n];
+  }
+  return NULL;
+}
