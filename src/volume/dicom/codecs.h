@@ -20,6 +20,7 @@ typedef struct hl_dicom_packed {
 
 hl_status hl_dicom_decode_rle(const hl_dicom_packed *packed, void *values, hl_error *error);
 hl_status hl_dicom_decode_jpeg(const hl_dicom_packed *packed, void *values, hl_error *error);
+hl_status hl_dicom_decode_jpeg_extended(const hl_dicom_packed *packed, void *values, hl_error *error);
 hl_status hl_dicom_decode_jpeg_lossless(const hl_dicom_packed *packed, void *values, hl_error *error);
 hl_status hl_dicom_decode_jpeg_ls(const hl_dicom_packed *packed, void *values, hl_error *error);
 hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values, hl_error *error);

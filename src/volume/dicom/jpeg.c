@@ -1,4 +1,5 @@
-/* volume/dicom/jpeg.c - JPEG frames: the lossless process by jpeg_lossless.c, those of 8 bits by libjpeg. */
+/* volume/dicom/jpeg.c - JPEG frames: the lossless process by jpeg_lossless.c, 12 bits by jpeg_extended.c, 8
+ * bits by libjpeg. */
 #include "core/error.h"
 #include "volume/dicom/codecs.h"
 
@@ -102,10 +103,7 @@ hl_status hl_dicom_decode_jpeg(const hl_dicom_packed *packed, void *values, hl_e
   int bits = 0, process = find_process(packed, &bits);
   if (process == 0xc3) return hl_dicom_decode_jpeg_lossless(packed, values, error);
   if (process == 0) return hl_dicom_fail_packed(packed, "JPEG", "it has no frame header", error);
-  if (bits != 8)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: its pixels are lossy JPEG of %d bits, which is not read: of 8 bits is", packed->path,
-                   bits);
+  if (bits != 8) return hl_dicom_decode_jpeg_extended(packed, values, error);
   hl_status status = decode(packed, values, error);
   if (status == HL_OK && packed->pixels->allocated > 8) widen(packed->pixels, values);
   *packed->is_rgb = true;

@@ -1,22 +1,11 @@
 /* volume/dicom/jpeg_lossless.c - lossless JPEG with Huffman codes, process 14: no library of Debian reads it.
  *
- * Source: ITU-T T.81. Markers: annex B. Codes: annexes C and F.2.2. Prediction: annex H. */
-#include <string.h>
-
+ * Source: ITU-T T.81, annex H. */
 #include "core/error.h"
 #include "core/memory.h"
-#include "volume/dicom/codecs.h"
+#include "volume/dicom/jpeg_codes.h"
 
-enum { COMPONENTS_MOST = 3, TABLES = 4, LOOK_BITS = 9 };
-
-typedef struct huffman_table {
-  bool known;
-  unsigned char values[256];
-  int greatest[17];              /* the greatest code of each length; -1: there is none */
-  int first[17];                 /* code - first[length] is the index of the code's value */
-  uint16_t look[1 << LOOK_BITS]; /* by the next LOOK_BITS bits: length << 8 | value of a code; 0: the code is
-                                    longer */
-} huffman_table;
+enum { COMPONENTS_MOST = 3 };
 
 typedef struct component {
   int id, table;
@@ -24,15 +13,10 @@ typedef struct component {
 
 typedef struct decoder {
   const hl_dicom_packed *packed;
-  const unsigned char *bytes;
-  size_t length, at;
-  uint64_t bits; /* the bits that come next: bit `bit_count` - 1 first, bit 0 last */
-  int bit_count;
-  size_t missing;                  /* bytes read beyond the end */
+  hl_jpeg_reader reader;
   int precision, predictor, shift; /* shift: the point transform */
   size_t rows, columns, components, restart;
   component component[COMPONENTS_MOST];
-  huffman_table table[TABLES];
 } decoder;
 
 static hl_status refuse(const decoder *d, const char *why, hl_error *error) {
@@ -40,39 +24,6 @@ static hl_status refuse(const decoder *d, const char *why, hl_error *error) {
 }
 
 /* ---- headers ---- */
-
-/* T.81, figures C.1 and C.2: codes of each length follow each other. */
-static void make_codes(huffman_table *table, const unsigned char *counts) {
-  int code = 0, index = 0;
-  memset(table->look, 0, sizeof table->look);
-  for (int length = 1; length <= 16; length++) {
-    table->first[length] = code - index;
-    for (int n = 0; n < counts[length - 1]; n++, code++, index++)
-      for (int tail = 0; length <= LOOK_BITS && tail < 1 << (LOOK_BITS - length); tail++) {
-        int place = code << (LOOK_BITS - length) | tail;
-        if (place < 1 << LOOK_BITS) table->look[place] = (uint16_t)(length << 8 | table->values[index]);
-      }
-    table->greatest[length] = counts[length - 1] > 0 ? code - 1 : -1;
-    code <<= 1;
-  }
-  table->known = true;
-}
-
-static hl_status take_tables(decoder *d, const unsigned char *bytes, size_t length, hl_error *error) {
-  while (length >= 17) {
-    size_t count = 0;
-    for (int n = 1; n <= 16; n++) count += bytes[n];
-    if ((bytes[0] & 15) >= TABLES || count > 256 || count > length - 17)
-      return refuse(d, "a table of codes is damaged", error);
-    huffman_table *table = &d->table[bytes[0] & 15];
-    memset(table->values, 0, sizeof table->values);
-    memcpy(table->values, bytes + 17, count);
-    make_codes(table, bytes + 1);
-    bytes += 17 + count;
-    length -= 17 + count;
-  }
-  return HL_OK;
-}
 
 static hl_status take_frame(decoder *d, const unsigned char *bytes, size_t length, hl_error *error) {
   if (length < 6 || length < 6 + 3 * (size_t)bytes[5])
@@ -98,8 +49,8 @@ static hl_status take_scan(decoder *d, const unsigned char *bytes, size_t length
     return refuse(d, "its components are not in one scan", error);
   for (size_t c = 0; c < d->components; c++) {
     d->component[c].table = bytes[2 + 2 * c] >> 4;
-    if (bytes[1 + 2 * c] != d->component[c].id || d->component[c].table >= TABLES ||
-        !d->table[d->component[c].table].known)
+    if (bytes[1 + 2 * c] != d->component[c].id || d->component[c].table >= HL_JPEG_TABLES ||
+        !d->reader.table[0][d->component[c].table].known)
       return refuse(d, "a component has no table of codes", error);
   }
   const unsigned char *rest = bytes + 1 + 2 * d->components;
@@ -112,20 +63,14 @@ static hl_status take_scan(decoder *d, const unsigned char *bytes, size_t length
 
 /* Reads marker segments up to the first scan's codes. */
 static hl_status read_headers(decoder *d, hl_error *error) {
-  for (d->at = 2; d->at + 4 <= d->length;) {
-    if (d->bytes[d->at] != 0xff) return refuse(d, "expected a marker", error);
-    int marker = d->bytes[d->at + 1];
-    if (marker == 0xff) {
-      d->at++;
-      continue;
-    }
-    size_t length = (size_t)d->bytes[d->at + 2] << 8 | d->bytes[d->at + 3];
-    if (length < 2 || length > d->length - d->at - 2) break;
-    const unsigned char *content = d->bytes + d->at + 4;
+  const unsigned char *content;
+  size_t length;
+  int marker;
+  d->reader.at = 2;
+  while (hl_jpeg_next_segment(&d->reader, &marker, &content, &length)) {
     hl_status status = HL_OK;
-    d->at += 2 + length;
-    length -= 2;
-    if (marker == 0xc4) status = take_tables(d, content, length, error);
+    if (marker == 0xc4 && !hl_jpeg_take_tables(&d->reader, content, length))
+      status = refuse(d, "a table of codes is damaged", error);
     if (marker == 0xc3) status = take_frame(d, content, length, error);
     if (marker == 0xdd && length >= 2) d->restart = (size_t)content[0] << 8 | content[1];
     if (marker == 0xda) return take_scan(d, content, length, error);
@@ -134,66 +79,16 @@ static hl_status read_headers(decoder *d, hl_error *error) {
   return refuse(d, "it ends before its pixels", error);
 }
 
-/* ---- codes ---- */
+/* ---- samples ---- */
 
-/* Fills `bits` up to at least 32 bits; with zeros after a marker or at the end. */
-static void fill(decoder *d) {
-  while (d->bit_count <= 48) {
-    unsigned byte = 0;
-    if (d->at < d->length && d->bytes[d->at] != 0xff) byte = d->bytes[d->at++];
-    else if (d->at + 1 < d->length && d->bytes[d->at + 1] == 0) {
-      byte = 0xff; /* followed by a stuffed zero */
-      d->at += 2;
-    } else d->missing++;
-    d->bits = d->bits << 8 | byte;
-    d->bit_count += 8;
-  }
-}
-
-static unsigned peek(const decoder *d, int count) {
-  return (unsigned)(d->bits >> (d->bit_count - count)) & ((1u << count) - 1);
-}
-
-/* Decodes one value; -1: no code begins with these bits. At least 32 bits must be in `bits`. */
-static int take_code(decoder *d, const huffman_table *table) {
-  unsigned look = table->look[peek(d, LOOK_BITS)];
-  if (look != 0) {
-    d->bit_count -= (int)(look >> 8);
-    return (int)(look & 255);
-  }
-  for (int length = LOOK_BITS + 1; length <= 16; length++) {
-    int code = (int)peek(d, length), index = code - table->first[length];
-    if (table->greatest[length] < 0 || code > table->greatest[length]) continue;
-    d->bit_count -= length;
-    return index >= 0 && index < 256 ? table->values[index] : -1;
-  }
-  return -1;
-}
-
-/* The next difference (T.81, table H.2 and figure F.12); false where the codes are damaged. */
-static bool take_difference(decoder *d, const huffman_table *table, int *difference) {
-  if (d->bit_count < 32) fill(d);
-  int category = take_code(d, table);
+/* The next difference (T.81, table H.2); false where the codes are damaged. */
+static bool take_difference(hl_jpeg_reader *r, const hl_jpeg_table *table, int *difference) {
+  if (r->bit_count < 32) hl_jpeg_fill(r);
+  int category = hl_jpeg_take_code(r, table);
   if (category < 0 || category > 16) return false;
-  *difference = category == 16 ? 32768 : 0;
-  if (category == 0 || category == 16) return true;
-  int value = (int)peek(d, category);
-  d->bit_count -= category;
-  *difference = value < 1 << (category - 1) ? value - (1 << category) + 1 : value;
+  *difference = category == 16 ? 32768 : category == 0 ? 0 : hl_jpeg_take_number(r, category);
   return true;
 }
-
-/* Passes over a restart marker; the bits before it are padding. */
-static void take_restart(decoder *d) {
-  d->bits = 0;
-  d->bit_count = 0;
-  while (d->at + 1 < d->length &&
-         !(d->bytes[d->at] == 0xff && d->bytes[d->at + 1] >= 0xd0 && d->bytes[d->at + 1] <= 0xd7))
-    d->at++;
-  if (d->at + 1 < d->length) d->at += 2;
-}
-
-/* ---- samples ---- */
 
 /* T.81, table H.1: a is to the left, b above, c above on the left. */
 static int predict(int predictor, int a, int b, int c) {
@@ -208,15 +103,14 @@ static int predict(int predictor, int a, int b, int c) {
   }
 }
 
-/* Decodes a row of samples that lie `step` samples apart. above: the row before; null: a restart came since.
- */
+/* Decodes a row of `step` samples a pixel. above: the row before; null: there is none since the restart. */
 static bool take_row(decoder *d, const uint16_t *above, uint16_t *row) {
   size_t step = d->components;
   for (size_t x = 0; x < d->columns; x++)
     for (size_t c = 0; c < step; c++) {
       size_t n = x * step + c;
       int difference, expected;
-      if (!take_difference(d, &d->table[d->component[c].table], &difference)) return false;
+      if (!take_difference(&d->reader, &d->reader.table[0][d->component[c].table], &difference)) return false;
       if (above == NULL) expected = x > 0 ? row[n - step] : 1 << (d->precision - d->shift - 1);
       else if (x == 0) expected = above[n];
       else expected = predict(d->predictor, row[n - step], above[n], above[n - step]);
@@ -240,13 +134,13 @@ static hl_status take_rows(decoder *d, uint16_t *rows, void *values, hl_error *e
   if (d->restart % d->columns != 0) return refuse(d, "a restart within a row", error);
   for (size_t y = 0; y < d->rows; y++) {
     if (d->restart > 0 && since == d->restart) {
-      take_restart(d);
+      hl_jpeg_take_restart(&d->reader);
       since = 0;
     }
     uint16_t *row = rows + y % 2 * count;
     const uint16_t *above = since == 0 ? NULL : rows + (y + 1) % 2 * count;
     if (!take_row(d, above, row)) return refuse(d, "its codes are damaged", error);
-    if (d->missing > 64) return refuse(d, "it ends before its last pixel", error);
+    if (d->reader.missing > 64) return refuse(d, "it ends before its last pixel", error);
     store_row(d, row, y, values);
     since += d->columns;
   }
@@ -257,8 +151,8 @@ hl_status hl_dicom_decode_jpeg_lossless(const hl_dicom_packed *packed, void *val
   decoder *d = hl_allocate_zeroed(packed->context, 1, sizeof *d);
   if (d == NULL) return hl_fail_memory(error, sizeof *d, packed->path);
   d->packed = packed;
-  d->bytes = packed->bytes;
-  d->length = packed->length;
+  d->reader.bytes = packed->bytes;
+  d->reader.length = packed->length;
   uint16_t *rows = NULL;
   hl_status status = read_headers(d, error);
   if (status == HL_OK) {

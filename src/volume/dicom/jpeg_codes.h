@@ -1,0 +1,48 @@
+/* volume/dicom/jpeg_codes.h - what the JPEG processes with Huffman codes share: marker segments, tables of
+ * codes, bits.
+ *
+ * Source: ITU-T T.81. Markers: annex B. Codes: annexes C and F.2.2. */
+#ifndef HL_VOLUME_DICOM_JPEG_CODES_H
+#define HL_VOLUME_DICOM_JPEG_CODES_H
+
+#include "volume/dicom/codecs.h"
+
+enum { HL_JPEG_TABLES = 4, HL_JPEG_LOOK_BITS = 9 };
+
+typedef struct hl_jpeg_table {
+  bool known;
+  unsigned char values[256];
+  int greatest[17];                      /* the greatest code of each length; -1: there is none */
+  int first[17];                         /* code - first[length]: index of its value */
+  uint16_t look[1 << HL_JPEG_LOOK_BITS]; /* length << 8 | value; 0: a longer code */
+} hl_jpeg_table;
+
+/* One picture that is being read. */
+typedef struct hl_jpeg_reader {
+  const unsigned char *bytes;
+  size_t length, at;
+  uint64_t bits; /* the next ones, from bit `bit_count` - 1 downwards */
+  int bit_count;
+  size_t missing;                         /* bytes read beyond the end */
+  hl_jpeg_table table[2][HL_JPEG_TABLES]; /* of DC codes and differences; of AC codes */
+} hl_jpeg_reader;
+
+/* The next marker segment: its marker and content. False at the end and where there is none. */
+bool hl_jpeg_next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **content, size_t *length);
+
+/* Takes the tables of a segment DHT; false if one is damaged. */
+bool hl_jpeg_take_tables(hl_jpeg_reader *r, const unsigned char *bytes, size_t length);
+
+/* Fills the bits up to 48 at least; zeros after a marker or the end. */
+void hl_jpeg_fill(hl_jpeg_reader *r);
+
+/* A code's value; -1: there is no such code. 32 bits must be there. */
+int hl_jpeg_take_code(hl_jpeg_reader *r, const hl_jpeg_table *table);
+
+/* The number of `count` bits, 1 to 16, that are the sign and size of a difference (T.81, figure F.12). */
+int hl_jpeg_take_number(hl_jpeg_reader *r, int count);
+
+/* Passes over a restart marker; the bits before it are padding. */
+void hl_jpeg_take_restart(hl_jpeg_reader *r);
+
+#endif
