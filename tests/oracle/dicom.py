@@ -25,7 +25,7 @@ except ImportError as absent:
 
 DUMP, PROGRAM = sys.argv[1:3]
 IMPLICIT, EXPLICIT, BIG, DEFLATED = (f"1.2.840.10008.1.2{end}" for end in ("", ".1", ".2", ".1.99"))
-RLE, BASELINE, JPEG_2000 = (f"1.2.840.10008.1.2{end}" for end in (".5", ".4.50", ".4.90"))
+RLE, BASELINE, EXTENDED, JPEG_2000 = (f"1.2.840.10008.1.2{end}" for end in (".5", ".4.50", ".4.51", ".4.90"))
 LONG = {"OB", "OW", "SQ", "UN", "UT", "OF", "OD"}
 problems = []
 
@@ -116,6 +116,51 @@ def pillow_frame(plane, **options):
     return out.getvalue()
 
 
+def segment(marker, content):
+    return bytes([0xff, marker]) + struct.pack(">H", len(content) + 2) + content
+
+
+def jpeg_12_frame(plane, restart=3):
+    """Extended JPEG (T.81, process 4) of 12 bits with steps of 1 and codes of 9 bits; restarts after 3 blocks."""
+    n = np.arange(8)
+    cosines = np.cos((2 * n[None, :] + 1) * n[:, None] * np.pi / 16) / 2
+    cosines[0] /= np.sqrt(2)
+    order = sorted(((u, v) for u in n for v in n), key=lambda p: (sum(p), p[0] if sum(p) % 2 else p[1]))  # zigzag
+    rows, columns = plane.shape
+    padded = np.pad(plane.astype(float) - 2048, ((0, -rows % 8), (0, -columns % 8)), "edge")
+    blocks, previous = [], 0
+    for y in range(0, padded.shape[0], 8):
+        for x in range(0, padded.shape[1], 8):
+            block = np.rint(cosines @ padded[y:y + 8, x:x + 8] @ cosines.T).astype(int)
+            numbers = [int(block[p]) for p in order]
+            if len(blocks) % restart == 0:
+                previous = 0
+            codes, run = [(0, numbers[0] - previous)], 0  # (zeros before it, number)
+            previous = numbers[0]
+            for number in numbers[1:]:
+                run = run + 1 if number == 0 else run
+                if number != 0:
+                    codes += [(15, 0)] * (run // 16) + [(run % 16, number)]
+                    run = 0
+            blocks.append(codes + ([(0, 0)] if run else []))
+    symbols = sorted({zeros << 4 | abs(number).bit_length() for block in blocks for zeros, number in block})
+    table = bytes([0] * 8 + [len(symbols)] + [0] * 7 + symbols)
+    scans = []
+    for first in range(0, len(blocks), restart):
+        bits = ""
+        for zeros, number in (code for block in blocks[first:first + restart] for code in block):
+            size = abs(number).bit_length()
+            bits += format(symbols.index(zeros << 4 | size), "09b")
+            bits += format(number if number > 0 else number + (1 << size) - 1, f"0{size}b") if size else ""
+        bits += "1" * (-len(bits) % 8)
+        scans.append(bytes(int(bits[b:b + 8], 2) for b in range(0, len(bits), 8)).replace(b"\xff", b"\xff\0"))
+    data = b"".join(scan + bytes([0xff, 0xd0 + k % 8]) for k, scan in enumerate(scans[:-1])) + scans[-1]
+    return (b"\xff\xd8" + segment(0xdb, b"\0" + bytes([1] * 64)) +
+            segment(0xc1, struct.pack(">BHHB", 12, rows, columns, 1) + b"\1\x11\0") +
+            segment(0xc4, b"\0" + table) + segment(0xc4, b"\x10" + table) + segment(0xdd, struct.pack(">H", restart)) +
+            segment(0xda, b"\1\1\0\0\x3f\0") + data + b"\xff\xd9")
+
+
 def pixel_elements(planes, syntax):
     kind = planes[0].dtype
     items = {0x00280002: ("US", 1), 0x00280004: ("CS", "MONOCHROME2"), 0x00280010: ("US", planes[0].shape[0]),
@@ -128,6 +173,8 @@ def pixel_elements(planes, syntax):
         data = fragments([rle_frame(p) for p in planes])
     elif syntax == BASELINE:
         data = fragments([pillow_frame(p, format="JPEG", quality=95) for p in planes])
+    elif syntax == EXTENDED:
+        data = fragments([jpeg_12_frame(p) for p in planes])
     elif syntax == JPEG_2000:
         data = fragments([pillow_frame(p, format="JPEG2000", no_jp2=True) for p in planes])
     else:
@@ -202,6 +249,12 @@ def test_geometry():
     info = expect("shuffled slices", root / "plain", HU, spacing=[0.5, 0.75, 2.5])
     check("origin, type and space", info["origin"] == [-10, 20, 5] and info["type"] == "int16" and
           info["space"] == "LPS", info)
+    for path in (root / "plain").iterdir():
+        (root / "both").mkdir(exist_ok=True)
+        (root / "both" / path.name).write_bytes(b"II*\0\x08\0\0\0" + path.read_bytes()[8:])
+    expect("slices that begin like TIFF files", root / "both", HU, spacing=[0.5, 0.75, 2.5])
+    one = next((root / "both").iterdir())
+    check("one of them", read(one)[0] is not None and read(one)[0]["dimensions"][2] == 1, read(one)[2])
     write_slices(root / "down", CT, line(6, (0, 0, -2.5)))
     info = expect("slices from the head down", root / "down", HU[::-1], spacing=[0.5, 0.75, 2.5])
     check("their origin is the lowest slice's", info["origin"] == [-10, 20, 5 - 12.5], info["origin"])
@@ -319,6 +372,10 @@ def test_syntaxes():
         print("skipped: JPEG-LS, without CharLS")
     else:
         expect("a JPEG-LS slice", corpus / "slice-jpegls", few)
+    deep = np.random.RandomState(4).randint(0, 4096, (6, 19, 30)).astype(np.uint16)
+    write_slices(root / "jpeg12", deep, positions, syntax=EXTENDED, extra=lambda n: {"t00280101": ("US", 12),
+                                                                                     "t00280102": ("US", 11)})
+    expect("JPEG slices of 12 bits", root / "jpeg12", deep * 2.0 - 1024, tolerance=2 * 2)  # coefficients are rounded
     try:
         from PIL import features
     except ImportError:

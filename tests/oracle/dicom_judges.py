@@ -73,7 +73,10 @@ def judge_pixels(path, name):
         tell(name, False, f"{wanted.shape} {found.shape}")
         return
     difference = np.nanmax(np.abs(wanted.ravel() - found.ravel()))
-    tell(name, difference <= tolerance * max(1, np.abs(wanted).max()), f"by {difference:g}")
+    allowed = tolerance * max(1, np.abs(wanted).max())
+    if syntax.endswith(".4.51") and data.BitsStored > 8:
+        allowed = 1  # the inverse transform of 12 bits is rounded once, or several times
+    tell(name, difference <= allowed, f"by {difference:g}")
 
 
 def write_slice(path, plane, position, orientation, number):
