@@ -16,4 +16,5 @@
   HL_FORMAT(mrc)       \
   HL_FORMAT(zarr)      \
   HL_FORMAT(dicom)     \
+  HL_FORMAT(slices)    \
   HL_FORMAT(dat)

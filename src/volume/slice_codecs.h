@@ -1,0 +1,25 @@
+/* volume/slice_codecs.h - the decoders of slice_picture.c, one for each kind of picture.
+ *
+ * Each reads the shape, and then, if `samples` is not null, the pixels: [height][width][samples] of the
+ * shape's type, native byte order, in a block that the caller releases, also after a failure. A shape that
+ * the file is too short for is refused before anything is allocated for it. */
+#ifndef HL_VOLUME_SLICE_CODECS_H
+#define HL_VOLUME_SLICE_CODECS_H
+
+#include "volume/slice_picture.h"
+
+hl_status hl_slice_read_png(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
+                            hl_error *error);
+hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
+                             hl_error *error);
+
+/* A TIFF file's first page decodes one component at once. voxels: null: only the shape is read. */
+hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, int component, void *voxels,
+                             hl_error *error);
+
+/* Holds the pixels that a header promises against the most that `bytes_most` decoded bytes can be; `each` are
+ * the bytes of a sample. */
+hl_status hl_slice_check_size(const hl_slice_file *file, const hl_slice_shape *shape, size_t bytes_most,
+                              hl_error *error);
+
+#endif
