@@ -11,6 +11,7 @@
 
 #include "commands.h"
 #include "film/movie.h"
+#include "frames.h"
 #include "input.h"
 #include "render.h"
 
@@ -70,12 +71,9 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                       .whole = true,
                       .low = 1,
                       .high = 16384},
-    [ANIMATE_PART] = {.name = "part",
-                      .kind = OPTION_TEXT,
-                      .argument = "K/N",
-                      .group = "Running",
-                      .help = "render only every N-th frame, from the K-th on: N runs share\n"
-                              "the work; the last one to end joins the film"},
+    [ANIMATE_PART] = FRAMES_OPTION_PART("Running",
+                                        "render only every N-th frame, from the K-th on: N runs share\n"
+                                        "the work; the last one to end joins the film"),
     [ANIMATE_KEEP_FRAMES] = {.name = "keep-frames",
                              .kind = OPTION_SWITCH,
                              .help = "leave the pictures beside the film, in its name with\n\"-frames\""},
@@ -146,19 +144,6 @@ static int make_folder(const animate_job *job) {
     return EXIT_CODE_OK;
   return fail(EXIT_CODE_FAILURE, "%s: no folder for the pictures can be made: %s", job->folder,
               strerror(errno));
-}
-
-static int read_part(animate_job *job) {
-  const cli_value *part = &job->values[ANIMATE_PART];
-  int used = 0;
-  job->part = 0, job->parts = 1;
-  if (!part->given) return EXIT_CODE_OK;
-  bool good = sscanf(part->text, "%6d/%6d%n", &job->part, &job->parts, &used) == 2 &&
-              part->text[used] == '\0';
-  if (!good || job->part < 1 || job->part > job->parts)
-    return fail(EXIT_CODE_USAGE, "--part: '%s' is no K/N with K from 1 to N, as 3/8", part->text);
-  job->part--;
-  return EXIT_CODE_OK;
 }
 
 /* ---- the film's scene ---- */
@@ -248,7 +233,7 @@ static int run_animate(const cli_value *values, char **operands) {
                               .subject = base_name(job.input),
                               .memory_limit = values[ANIMATE_MAX_MEMORY].bytes,
                               .data_folder = values[ANIMATE_DATA].text};
-  int exit_code = read_part(&job);
+  int exit_code = frames_read_part(&values[ANIMATE_PART], &job.part, &job.parts);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(&job);
   if (exit_code == EXIT_CODE_OK) {
     exit_code = host_open(&options, &job.host);

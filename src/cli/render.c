@@ -240,6 +240,7 @@ static void job_close(render_job *job) {
 }
 
 static int run_render(const cli_value *values, char **operands) {
+  if (render_is_series(values, operands)) return render_series(values, operands);
   render_job job = {.values = values, .inputs = operands, .input = operands[0], .started = clock_seconds()};
   while (operands[job.input_count] != NULL) job.input_count++;
   job.result.input = job.input;

@@ -32,6 +32,7 @@ enum render_option {
   RENDER_TF,
   RENDER_COLORMAP,
   RENDER_RANGE,
+  RENDER_RANGE_OF_ALL,
   RENDER_THRESHOLD,
   RENDER_CLIP,
   RENDER_SHADING,
@@ -51,6 +52,7 @@ enum render_option {
   RENDER_LIGHT_POINTS,
   RENDER_STEP,
   RENDER_DATA,
+  RENDER_PART,
   RENDER_THREADS,
   RENDER_INSTRUCTION_SET,
   RENDER_MAX_MEMORY,
@@ -64,6 +66,10 @@ enum render_option {
 extern const cli_choice look_choices[], instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
+
+/* Whether the operands or the options ask for a picture of each of several files; makes these pictures. */
+bool render_is_series(const cli_value *values, char **operands);
+int render_series(const cli_value *values, char **operands);
 
 /* Refuses options that contradict each other. */
 int render_check_options(const cli_value *values);

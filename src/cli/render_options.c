@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "frames.h"
 #include "input.h"
 #include "output.h"
 #include "render.h"
@@ -166,6 +167,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .separator = ',',
                       .low = -INFINITY,
                       .high = INFINITY},
+    [RENDER_RANGE_OF_ALL] = {.name = "range-of-all",
+                             .kind = OPTION_SWITCH,
+                             .help =
+                                 "of a series of files: as --range with the least and\ngreatest value of all "
+                                 "(default: the first file's look)"},
     [RENDER_THRESHOLD] = {.name = "threshold",
                           .kind = OPTION_NUMBERS,
                           .argument = "V",
@@ -299,6 +305,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .group = "Running",
          .help =
              "folder of the files that scenes call data:NAME\n(default: $HALFLIGHT_DATA, or ../shared/data)"},
+    [RENDER_PART] = FRAMES_OPTION_PART(
+        NULL,
+        "of a series of files: every N-th one, from the K-th on,\nso that N runs "
+        "share the work"),
     [RENDER_THREADS] = {.name = "threads",
                         .kind = OPTION_NUMBERS,
                         .argument = "N",

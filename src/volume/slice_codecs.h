@@ -6,7 +6,20 @@
 #ifndef HL_VOLUME_SLICE_CODECS_H
 #define HL_VOLUME_SLICE_CODECS_H
 
-#include "volume/slice_picture.h"
+#include "volume/volume.h"
+
+/* A picture file in memory. */
+typedef struct hl_slice_file {
+  hl_context *context;
+  const char *path; /* for error lines */
+  const unsigned char *bytes;
+  size_t length;
+} hl_slice_file;
+
+typedef struct hl_slice_shape {
+  size_t width, height, samples; /* samples of a pixel */
+  hl_voxel_type type;
+} hl_slice_shape;
 
 hl_status hl_slice_read_png(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
                             hl_error *error);
@@ -21,5 +34,13 @@ hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, i
  * the bytes of a sample. */
 hl_status hl_slice_check_size(const hl_slice_file *file, const hl_slice_shape *shape, size_t bytes_most,
                               hl_error *error);
+
+typedef enum hl_slice_stack {
+  HL_SLICE_ALONE,
+  HL_SLICE_STACK, /* TIFF of several pages: a volume of its own */
+  HL_SLICE_OF_OME /* OME-TIFF, which names all files of its volume */
+} hl_slice_stack;
+
+hl_status hl_slice_find_stack(const hl_slice_file *file, hl_slice_stack *stack, hl_error *error);
 
 #endif

@@ -8,7 +8,6 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "volume/convert.h"
-#include "volume/slice_codecs.h"
 #include "volume/text.h"
 
 typedef enum picture_kind { KIND_PNG, KIND_JPEG, KIND_TIFF, KIND_OTHER } picture_kind;
@@ -27,17 +26,6 @@ static picture_kind kind_of(const hl_slice_file *file) {
   if (bytes[0] == 0xff && bytes[1] == 0xd8) return KIND_JPEG;
   if (memcmp(bytes, "II", 2) == 0 || memcmp(bytes, "MM", 2) == 0) return KIND_TIFF;
   return KIND_OTHER;
-}
-
-hl_status hl_slice_check_size(const hl_slice_file *file, const hl_slice_shape *shape, size_t bytes_most,
-                              hl_error *error) {
-  size_t bytes = shape->samples * hl_voxel_type_bytes(shape->type);
-  if (shape->width > 0 && shape->height > 0 && hl_multiply(bytes, shape->width, &bytes) &&
-      hl_multiply(bytes, shape->height, &bytes) && bytes <= bytes_most)
-    return HL_OK;
-  return hl_fail(error, HL_ERROR_INPUT,
-                 "%s: the picture promises %zu x %zu pixels, more than the file's %zu bytes can hold",
-                 file->path, shape->width, shape->height, file->length);
 }
 
 static hl_status fail_unknown(const hl_slice_file *file, hl_error *error) {

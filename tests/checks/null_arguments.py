@@ -19,6 +19,7 @@ ALLOWED = """
 hl_context_create options
 hl_image_write options
 hl_image_encode options
+hl_volume_save_with options
 hl_image_to_srgb8 options
 hl_renderer_render statistics
 hl_renderer_render_layers layers

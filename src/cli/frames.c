@@ -1,0 +1,94 @@
+/* cli/frames.c - many pictures: a picture carries its scene, so that a run goes on where the last one
+ * stopped, and several runs can share a folder. */
+#define _GNU_SOURCE
+#include "frames.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { MOST_PICTURE_BYTES = 1 << 30 };
+
+int frames_read_part(const cli_value *value, int *part, int *parts) {
+  int used = 0;
+  *part = 0, *parts = 1;
+  if (!value->given) return EXIT_CODE_OK;
+  bool good = sscanf(value->text, "%6d/%6d%n", part, parts, &used) == 2 && value->text[used] == '\0';
+  if (!good || *part < 1 || *part > *parts)
+    return fail(EXIT_CODE_USAGE, "--part: '%s' is no K/N with K from 1 to N, as 3/8", value->text);
+  --*part;
+  return EXIT_CODE_OK;
+}
+
+unsigned char *frames_read_picture(const char *path, size_t *length) {
+  struct stat about;
+  FILE *file = fopen(path, "rbe");
+  unsigned char *bytes = NULL;
+  if (file == NULL) return NULL;
+  if (fstat(fileno(file), &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0 &&
+      about.st_size <= MOST_PICTURE_BYTES)
+    bytes = malloc((size_t)about.st_size);
+  *length = bytes != NULL ? fread(bytes, 1, (size_t)about.st_size, file) : 0;
+  fclose(file);
+  return bytes;
+}
+
+/* The scene that a picture on disk was made of; free with hl_text_release(); null: there is none. */
+static char *scene_of_picture(const cli_host *host, const char *path) {
+  size_t length;
+  char *text = NULL;
+  unsigned char *bytes = frames_read_picture(path, &length);
+  if (bytes == NULL) return NULL;
+  if (hl_image_find_scene(host->context, path, bytes, length, &text, NULL) != HL_OK) text = NULL;
+  free(bytes);
+  return text;
+}
+
+bool frames_have_scene(const cli_host *host, const char *path, const char *scene) {
+  char *text = scene_of_picture(host, path);
+  bool same = text != NULL && strcmp(text, scene) == 0;
+  hl_text_release(host->context, text);
+  return same;
+}
+
+/* "3 h 20 min", "4 min", "12 s". */
+static void describe_time(double seconds, char *text, size_t size) {
+  long whole = (long)(seconds + 0.5);
+  if (whole >= 3600) snprintf(text, size, "%ld h %ld min", whole / 3600, whole % 3600 / 60);
+  else if (whole >= 60) snprintf(text, size, "%ld min %ld s", whole / 60, whole % 60);
+  else snprintf(text, size, "%ld s", whole);
+}
+
+void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double seconds) {
+  char text[80], left[40];
+  if (rendered == 0) {
+    snprintf(text, sizeof text, "frame %d of %d", done + 1, wanted);
+  } else {
+    describe_time(seconds / rendered * (wanted - done), left, sizeof left);
+    snprintf(text, sizeof text, "frame %d of %d, %s left", done + 1, wanted, left);
+  }
+  host_draw_bar(host, (double)done / wanted, text);
+}
+
+hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_scene *scene, bool opaque,
+                        const char *path, hl_error *error) {
+  const hl_scene_description *d = hl_scene_describe(scene);
+  hl_image *image = NULL;
+  char *text = NULL;
+  hl_status status = hl_image_create(host->context, d->width, d->height, &image, error);
+  if (status == HL_OK)
+    status = hl_renderer_render(renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL, error);
+  if (status == HL_OK) status = hl_scene_to_json(host->context, scene, &text, error);
+  if (status == HL_OK) {
+    hl_image_write_options options;
+    hl_scene_write_options(scene, &options);
+    options.scene_json = text;
+    if (opaque) options.background_transparent = 0;
+    status = host_interrupted() ? HL_ERROR_CANCELLED
+                                : hl_image_write(host->context, image, path, &options, error);
+  }
+  hl_text_release(host->context, text);
+  hl_image_destroy(image);
+  return status;
+}

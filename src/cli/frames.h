@@ -1,0 +1,29 @@
+/* cli/frames.h - what commands that make many pictures share: parts of the work, pictures that are there
+ * already, a bar with an estimate. */
+#ifndef HL_CLI_FRAMES_H
+#define HL_CLI_FRAMES_H
+
+#include "host.h"
+#include "options.h"
+
+/* The row of --part in a subcommand's table of options. */
+#define FRAMES_OPTION_PART(heading, text) \
+  { .name = "part", .kind = OPTION_TEXT, .argument = "K/N", .group = (heading), .help = (text) }
+
+/* Reads --part K/N: *part is K - 1; without the option 0 of 1. Returns the exit code. */
+int frames_read_part(const cli_value *value, int *part, int *parts);
+
+/* A picture's bytes, owned by the caller (free); null where it cannot be read. */
+unsigned char *frames_read_picture(const char *path, size_t *length);
+
+/* Whether the picture is there, made of this scene (hl_scene_to_json). */
+bool frames_have_scene(const cli_host *host, const char *path, const char *scene);
+
+/* Draws the bar. done of wanted pictures are there; `rendered` of them took `seconds` in this run. */
+void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double seconds);
+
+/* Renders a scene to a picture that carries it. opaque: also where the scene's background is transparent. */
+hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_scene *scene, bool opaque,
+                        const char *path, hl_error *error);
+
+#endif
