@@ -21,16 +21,15 @@ static hl_status read(tiff_file *tiff, hl_slice_shape *shape, int component, voi
 
 hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, int component, void *voxels,
                              hl_error *error) {
-  tiff_file tiff = {.descriptor = -1};
+  tiff_file tiff = {.descriptor = -1, .warnings = TIFF_NO_WARNINGS};
   hl_status status = tiff_file_open(file->context, file->path, file->bytes, file->length, true, &tiff, error);
-  tiff.warnings = 1000; /* libtiff's words about each slice are not told */
   if (status == HL_OK) status = read(&tiff, shape, component, voxels, error);
   tiff_file_close(&tiff);
   return status;
 }
 
 hl_status hl_slice_find_stack(const hl_slice_file *file, hl_slice_stack *stack, hl_error *error) {
-  tiff_file tiff = {.descriptor = -1};
+  tiff_file tiff = {.descriptor = -1, .warnings = TIFF_NO_WARNINGS};
   uint64_t *offsets = NULL;
   size_t count = 0;
   char *description = NULL;
@@ -38,7 +37,6 @@ hl_status hl_slice_find_stack(const hl_slice_file *file, hl_slice_stack *stack, 
   if (file->length < 2 || (memcmp(file->bytes, "II", 2) != 0 && memcmp(file->bytes, "MM", 2) != 0))
     return HL_OK;
   hl_status status = tiff_file_open(file->context, file->path, file->bytes, file->length, true, &tiff, error);
-  tiff.warnings = 1000;
   bool ome = status == HL_OK && TIFFGetField(tiff.tiff, TIFFTAG_IMAGEDESCRIPTION, &description) &&
              strstr(description, "<OME") != NULL;
   if (status == HL_OK && !ome) status = tiff_file_pages(&tiff, &offsets, &count, error);

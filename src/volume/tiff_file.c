@@ -94,7 +94,8 @@ static hl_status open_descriptor(tiff_file *file, bool quiet, hl_error *error) {
 
 hl_status tiff_file_open(hl_context *context, const char *path, const void *bytes, size_t byte_count,
                          bool quiet, tiff_file *file, hl_error *error) {
-  *file = (tiff_file){.context = context, .memory = bytes, .size = byte_count, .descriptor = -1};
+  *file = (tiff_file){
+      .context = context, .memory = bytes, .size = byte_count, .descriptor = -1, .warnings = file->warnings};
   file->path = hl_copy_text(context, path);
   if (file->path == NULL) return hl_fail_memory(error, strlen(path) + 1, path);
   hl_status status = bytes == NULL ? open_descriptor(file, quiet, error) : HL_OK;

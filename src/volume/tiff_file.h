@@ -18,6 +18,8 @@ typedef struct tiff_shape {
   bool planar;         /* each component has chunks of its own */
 } tiff_shape;
 
+enum { TIFF_NO_WARNINGS = 1 << 20 };
+
 typedef struct tiff_file {
   hl_context *context;
   char *path;                  /* owned */
@@ -26,7 +28,7 @@ typedef struct tiff_file {
   int descriptor; /* -1: none */
   TIFF *tiff;
   char message[300]; /* libtiff's first error since it was cleared */
-  int warnings;
+  int warnings;      /* logged so far; set it to TIFF_NO_WARNINGS before opening to log none, as in threads */
 } tiff_file;
 
 /* bytes: the content, or null. quiet: the context's `reads` callback is not called (from other threads).

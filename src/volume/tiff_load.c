@@ -215,11 +215,11 @@ static hl_status read_slice(stack_reading *r, size_t z, int worker, hl_error *er
   if (r->opened[worker] != slice->file) {
     tiff_file_close(file);
     r->opened[worker] = slice->file;
+    file->warnings = TIFF_NO_WARNINGS; /* they were logged when the pages were found */
     bool first = slice->file == 0;
     status = tiff_file_open(r->context, stack->path, first ? r->memory : NULL, first ? r->memory_size : 0,
                             true, file, error);
     if (status != HL_OK) r->opened[worker] = UINT32_MAX;
-    file->warnings = 1000; /* no more warnings: they were logged when the pages were found */
   }
   tiff_shape shape;
   if (status == HL_OK) status = tiff_file_go(file, stack->offsets[slice->page], r->level, error);

@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""Folders of numbered pictures, written by Pillow, and what must be read from them.
+
+usage: slices.py DUMP_VOLUME HALFLIGHT
+Order by number, kinds and depths, grey that was stored as colours, several series, gaps, archives, and files cut at many
+lengths. Exit 77: numpy or Pillow is missing.
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+try:
+    import numpy as np
+    from PIL import Image
+except ImportError as absent:
+    print("skipped:", absent)
+    sys.exit(77)
+
+DUMP, PROGRAM = sys.argv[1:3]
+root = pathlib.Path(tempfile.mkdtemp(prefix="halflight-slices-"))
+random = np.random.RandomState(1)
+GREY = random.randint(0, 256, (12, 9, 13)).astype(np.uint8)
+DEEP = random.randint(0, 65536, (12, 9, 13)).astype(np.uint16)
+problems = []
+
+
+def check(name, condition, what=""):
+    print("ok" if condition else "not ok", "-", name, "" if condition else f": {what}")
+    if not condition:
+        problems.append(name)
+
+
+def read(path, *options):
+    told = subprocess.run([PROGRAM, "info", "--json", str(path), *options], capture_output=True, text=True, timeout=60)
+    if told.returncode != 0:
+        return None, told.stderr
+    subprocess.run([DUMP, str(path), str(root / "voxels")], capture_output=True, timeout=60, check=True)
+    info = json.loads(told.stdout)
+    return np.fromfile(root / "voxels").reshape(info["dimensions"][::-1]) if not options else info, told.stderr
+
+
+def write(name, planes, pattern, **options):
+    folder = root / name
+    folder.mkdir()
+    for n, plane in enumerate(planes):
+        image = Image.fromarray(plane)
+        image.save(folder / pattern.format(n + 1), **options)
+    return folder
+
+
+def expect(name, path, wanted, warning="", tolerance=0):
+    found, told = read(path)
+    good = found is not None and found.shape == wanted.shape
+    check(name, good and np.abs(found - wanted).max() <= tolerance, told if found is None else found.shape)
+    check(f"{name}: what is told", warning in told if warning else told == "", told)
+
+
+def test_kinds():
+    colors = np.stack([GREY, GREY[::-1], GREY // 2], -1)
+    expect("PNG, without zeros before the numbers", write("png", GREY, "s_{}.png"), GREY)
+    expect("PNG of 16 bits", write("png16", DEEP, "s-{:03}.png"), DEEP)
+    for name, options in (("tiff", {}), ("lzw", {"compression": "tiff_lzw"})):
+        expect(f"TIFF, {name}", write(name, DEEP, "{:02}.tif", **options), DEEP)
+    smooth = np.broadcast_to(np.arange(13, dtype=np.uint8) * 9, (12, 9, 13)).copy()
+    expect("JPEG", write("jpeg", smooth, "{}.JPG", quality=100), smooth, tolerance=1)
+    expect("bits", write("bits", GREY > 99, "{:04}.png"), GREY > 99)
+    expect("grey as colours", write("grey", np.repeat(GREY[..., None], 3, -1), "{}.png"), GREY)
+    expect("colours", write("colors", colors, "{}.png"), np.sqrt((colors.astype(float) ** 2).sum(-1)), "magnitude", 1e-4)
+    info, _ = read(root / "colors", "--component", "1")
+    check("a colour", info["mean"] == colors[..., 1].mean(), info)
+    palette = root / "palette"
+    palette.mkdir()
+    for n, plane in enumerate(GREY):
+        image = Image.fromarray(plane // 64, "P")
+        image.putpalette([0, 0, 0, 80, 80, 80, 160, 160, 160, 240, 240, 240])
+        image.save(palette / f"{n}.png")
+    expect("a grey palette", palette, GREY // 64 * 80.0)
+
+
+def test_folders():
+    shutil.copytree(root / "png", root / "two")
+    shutil.copy(root / "png" / "s_1.png", root / "two" / "thumb_1.png")
+    (root / "two" / "notes.txt").write_text("no slice")
+    expect("the longest of two series", root / "two", GREY, "of 2 series of numbered pictures")
+    shutil.copytree(root / "png", root / "gap")
+    (root / "gap" / "s_5.png").unlink()
+    expect("a number is missing", root / "gap", np.delete(GREY, 4, 0), "1 numbers are missing")
+    with zipfile.ZipFile(root / "slices.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in sorted((root / "tiff").iterdir()):
+            archive.write(path, f"a/{path.name}")
+    expect("an archive", root / "slices.zip", DEEP)
+    shutil.copytree(root / "png", root / "odd")
+    Image.fromarray(GREY[0, :4]).save(root / "odd" / "s_7.png")
+    found, told = read(root / "odd")
+    check("a slice of another size", found is None and "s_7.png" in told and "take it out" in told, told)
+    stacks = root / "stacks"
+    stacks.mkdir()
+    for time in range(3):
+        Image.fromarray(DEEP[0]).save(stacks / f"t{time}.tif", save_all=True,
+                                      append_images=[Image.fromarray(plane + time) for plane in DEEP[1:]])
+    info, told = read(stacks, "--time", "2")
+    check("stacks are time steps", info and info["dimensions"] == [13, 9, 12] and info["times"] == 3, told)
+
+
+def test_damage():
+    for name, path in (("png", "s_6.png"), ("png16", "s-006.png"), ("tiff", "06.tif"), ("jpeg", "6.JPG")):
+        folder = root / f"cut-{name}"
+        shutil.copytree(root / name, folder)
+        whole = (folder / path).read_bytes()
+        for length in sorted({0, 1, 2, 7, 8, 20, *range(33, len(whole), max(1, len(whole) // 25))}):
+            (folder / path).write_bytes(whole[:length])
+            told = subprocess.run([PROGRAM, "info", folder], capture_output=True, text=True, timeout=60)
+            if told.returncode not in (0, 3) or (told.returncode == 3 and told.stderr.count("\n") != 1):
+                check(f"{path} cut after {length} bytes", False, told)
+    bomb = root / "bomb"
+    bomb.mkdir()
+    head = (root / "png" / "s_1.png").read_bytes()
+    for n in range(3):
+        wide = bytearray(head)
+        wide[16:24] = b"\x00\x00\xff\xff\x00\x00\xff\xff"
+        import zlib
+        wide[29:33] = zlib.crc32(wide[12:29]).to_bytes(4, "big")
+        (bomb / f"{n}.png").write_bytes(wide)
+    found, told = read(bomb)
+    check("a picture that the file cannot hold", found is None and "can hold" in told, told)
+
+
+test_kinds()
+test_folders()
+test_damage()
+shutil.rmtree(root)
+print(f"{len(problems)} problems")
+sys.exit(1 if problems else 0)
