@@ -47,6 +47,7 @@
 #include "context.h"
 #include "image.h"
 #include "layers.h"
+#include "mesh.h"
 #include "render.h"
 #include "scene.h"
 #include "settings.h"

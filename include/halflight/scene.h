@@ -6,6 +6,7 @@
 #ifndef HALFLIGHT_SCENE_H
 #define HALFLIGHT_SCENE_H
 
+#include "mesh.h"
 #include "shape.h"
 #include "volume.h"
 
@@ -151,6 +152,23 @@ typedef struct hl_scene_volume {
                         0: mostly onwards, below 0: mostly back; default 0: evenly */
 } hl_scene_volume;
 
+/* A mesh among the volumes. Its colour is that of its vertices, where it has some, times `color`. */
+typedef struct hl_scene_mesh {
+  const char *name; /* may be null */
+  const char *file; /* where the triangles came from, for hl_scene_to_json; may be null */
+  hl_mesh *mesh;    /* retained by the scene */
+  double scale;     /* transform: scale, then rotate, then translate */
+  double rotate_axis[3];
+  double rotate_angle_deg;
+  double translate[3];
+  double color[3]; /* linear RGB */
+  double opacity;  /* what the surface takes of light through it: 0 to 1; times that of its vertices */
+  hl_material material;
+  int smooth;    /* non-zero: normals are interpolated between vertices */
+  int two_sided; /* non-zero: the side that faces away from the eye is lit like the front */
+  int visible, casts_shadow, receives_shadow;
+} hl_scene_mesh;
+
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
 typedef enum hl_kernel { HL_KERNEL_BSPLINE = 0, HL_KERNEL_GAUSSIAN = 1, HL_KERNEL_LINEAR = 2 } hl_kernel;
 typedef enum hl_reconstruction {
@@ -204,6 +222,8 @@ typedef struct hl_scene_description {
   hl_render_settings render;
   const char *description; /* one sentence on the scene; may be null */
   double exposure;         /* stops: a PNG shows the volumes' light times 2^exposure; 0 by default */
+  const hl_scene_mesh *meshes;
+  size_t mesh_count;
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* immutable and counted */
@@ -212,6 +232,7 @@ typedef struct hl_scene hl_scene; /* immutable and counted */
 HL_API void hl_scene_description_defaults(hl_scene_description *description);
 HL_API void hl_light_defaults(hl_light *light);
 HL_API void hl_scene_volume_defaults(hl_scene_volume *volume);
+HL_API void hl_scene_mesh_defaults(hl_scene_mesh *mesh);
 
 /* Checks and copies the description, and retains the volumes. Errors name the field as a JSON pointer
  * ("/lights/0/radius"). */

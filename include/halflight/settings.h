@@ -21,7 +21,8 @@ typedef enum hl_setting_kind {
   HL_SETTINGS_VOLUME = 4,            /* hl_scene_volume; each of "volumes" */
   HL_SETTINGS_MATERIAL = 5,          /* hl_material; a volume's "material" */
   HL_SETTINGS_TRANSFER_FUNCTION = 6, /* hl_transfer_function; a volume's "transfer_function" */
-  HL_SETTINGS_RENDER = 7             /* hl_render_settings; "render" */
+  HL_SETTINGS_RENDER = 7,            /* hl_render_settings; "render" */
+  HL_SETTINGS_MESH = 8               /* hl_scene_mesh; each of "meshes" */
 } hl_setting_kind;
 
 /* The type of the field, and of its value in a scene file. */

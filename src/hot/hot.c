@@ -9,6 +9,7 @@
 #include "render/maximum_lanes.h"
 #include "render/measure_lanes.h"
 #include "render/shade_lanes.h"
+#include "render/surface_lanes.h"
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_lanes.h"
 #include "shadow_sublights/sublight_lanes.h"
@@ -49,5 +50,5 @@ const hot_functions HL_HOT_TABLE = {
                {blur_rows_tile, blur_columns_tile, lit_blocks_tile, emission_tile},
                &cascade,
                &sublights},
-    .render = {shade_tile, measure_tile, cover_tile, maximum_tile},
+    .render = {shade_tile, measure_tile, cover_tile, maximum_tile, shade_surface},
 };

@@ -2,7 +2,10 @@
 #ifndef HL_JSON_PARTS_H
 #define HL_JSON_PARTS_H
 
+#include <halflight/settings.h>
+
 #include "json/read.h"
+#include "scene/limits.h"
 
 /* The image that a light projects (null: none); its pixels and file name are owned by *texture. */
 hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture);
@@ -41,6 +44,24 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
 
 /* Puts the volumes of the reader's `like` on the shelf, which has room for them. */
 hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf);
+
+/* The path of a file that the scene names: in the data folder for "data:...", else relative to the scene's
+ * folder. Owned by the caller (hl_release); null without memory. */
+char *hl_json_path(const hl_json_reader *reader, const char *file);
+
+/* The object "transform" (null: none) of a volume or a mesh; kind: the table that its keys are in. */
+hl_status hl_json_read_transform(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
+                                 void *target);
+
+/* The meshes that are read for one scene. Their names are borrowed from the JSON tree. */
+typedef struct hl_mesh_shelf {
+  hl_scene_mesh *meshes; /* owned, with their files and triangles; [count] */
+  size_t count;
+} hl_mesh_shelf;
+
+/* The array "meshes" (null: none). The shelf is released by hl_json_release_meshes(), after a failure too. */
+hl_status hl_json_read_meshes(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf);
+void hl_json_release_meshes(hl_context *context, hl_mesh_shelf *shelf);
 
 /* The volume that a transfer function is read for. */
 typedef struct hl_function_subject {

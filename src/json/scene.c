@@ -20,6 +20,7 @@ typedef struct gathered {
   hl_light *lights;         /* owned; [light_count] */
   hl_scene_volume *volumes; /* owned, with their transfer functions' points; [volume_count] */
   hl_volume_shelf shelf;
+  hl_mesh_shelf meshes;
   hl_light key_light;
 } gathered;
 
@@ -31,6 +32,7 @@ static void release(hl_context *context, gathered *g) {
     hl_release(context, g->shelf.loaded[v].source);
   }
   hl_release(context, g->shelf.loaded);
+  hl_json_release_meshes(context, &g->meshes);
   json_decref(g->shelf.stood_in);
   hl_release(context, g->volumes);
   for (size_t l = 0; g->lights != NULL && l < g->description.light_count; l++) {
@@ -191,8 +193,8 @@ static hl_status read_version(hl_json_reader *reader, const json_t *root) {
 }
 
 static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
-  static const char *const others[] = {"halflight", "description", "image",  "camera",  "lights",
-                                       "groups",    "volumes",     "render", "$schema", NULL};
+  static const char *const others[] = {"halflight", "description", "image",  "camera",  "lights", "groups",
+                                       "volumes",   "meshes",      "render", "$schema", NULL};
   hl_scene_description *d = &g->description;
   const char *schema = NULL;
   hl_status status = hl_json_settings_object(reader, root, HL_SETTINGS_SCENE, -1, others);
@@ -207,6 +209,9 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   if (status == HL_OK) status = hl_json_check_groups(reader, json_object_get(root, "groups"));
   if (status == HL_OK) status = read_volumes(reader, root, g);
   if (status == HL_OK) status = check_volumes(reader, d);
+  if (status == HL_OK) status = hl_json_read_meshes(reader, json_object_get(root, "meshes"), &g->meshes);
+  d->meshes = g->meshes.meshes;
+  d->mesh_count = g->meshes.count;
   if (status == HL_OK) status = read_camera(reader, json_object_get(root, "camera"), d);
   return status == HL_OK ? read_lights(reader, root, g) : status;
 }

@@ -23,38 +23,39 @@ static const char *const volume_keys[] = {"name",       "stand_in",          "fi
 /* How a file is read. */
 static const char *const of_file[] = {"array", "component", "time", "channel", "level", "series", "spacing"};
 
-static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
+                             void *target) {
   static const char *const keys[] = {"axis", "angle_deg", NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "rotate");
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK)
-    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "transform/rotate/axis", volume);
-  if (status == HL_OK)
-    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "transform/rotate/angle_deg", volume);
+  if (status == HL_OK) status = hl_json_setting(reader, value, kind, "transform/rotate/axis", target);
+  if (status == HL_OK) status = hl_json_setting(reader, value, kind, "transform/rotate/angle_deg", target);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
 
-/* One factor, or three along the axes of the volume's own file. */
-static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+/* One factor; of a volume also three, along the axes of its own file. */
+static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, void *target) {
   const json_t *scale = json_object_get(value, "scale");
-  if (json_is_array(scale)) return hl_json_numbers(reader, value, "scale", 3, volume->axis_scale);
-  if (scale != NULL && !json_is_number(scale))
+  bool three = kind == HL_SETTINGS_VOLUME;
+  if (three && json_is_array(scale))
+    return hl_json_numbers(reader, value, "scale", 3, ((hl_scene_volume *)target)->axis_scale);
+  if (three && scale != NULL && !json_is_number(scale))
     return hl_json_fail(reader, HL_ERROR_INPUT, "scale", "is %s: give a number or three, [x, y, z]",
                         hl_json_type_name(scale));
-  return hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "transform/scale", volume);
+  return hl_json_setting(reader, value, kind, "transform/scale", target);
 }
 
-static hl_status read_transform(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+hl_status hl_json_read_transform(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
+                                 void *target) {
   static const char *const keys[] = {"scale", "rotate", "translate", NULL};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "transform");
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = read_scale(reader, value, volume);
-  if (status == HL_OK) status = read_rotate(reader, json_object_get(value, "rotate"), volume);
-  if (status == HL_OK)
-    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "transform/translate", volume);
+  if (status == HL_OK) status = read_scale(reader, value, kind, target);
+  if (status == HL_OK) status = read_rotate(reader, json_object_get(value, "rotate"), kind, target);
+  if (status == HL_OK) status = hl_json_setting(reader, value, kind, "transform/translate", target);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
@@ -190,7 +191,7 @@ static bool is_data(const char *file) { return strncmp(file, DATA_PREFIX, strlen
 
 /* The path of a file that the scene names: in the data folder for "data:...", else relative to the scene's
  * folder. Owned by the caller (hl_release); null without memory. */
-static char *path_of(const hl_json_reader *reader, const char *file) {
+char *hl_json_path(const hl_json_reader *reader, const char *file) {
   bool data = is_data(file);
   return hl_path_join(reader->context, data ? reader->context->options.data_folder : reader->folder,
                       data ? file + strlen(DATA_PREFIX) : file);
@@ -202,7 +203,7 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
   if (is_data(file) && reader->context->options.data_folder == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "file", "\"%.200s\": no data folder is known: name one",
                         file);
-  char *path = path_of(reader, file);
+  char *path = hl_json_path(reader, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
   const hl_loaded_volume *loaded = find_loaded(shelf, path, options);
   if (loaded != NULL) {
@@ -304,7 +305,7 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
 
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
-  char *path = path_of(reader, file);
+  char *path = hl_json_path(reader, file);
   /* without memory, loading the file reports the error */
   bool there = path == NULL || access(path, F_OK) == 0;
   hl_release(reader->context, path);
@@ -348,7 +349,8 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   hl_status status = hl_json_object(reader, value, volume_keys);
   if (status == HL_OK) status = choose_stand_in(reader, &value, shelf);
   if (status == HL_OK) status = hl_json_text(reader, value, "name", &volume->name);
-  if (status == HL_OK) status = read_transform(reader, json_object_get(value, "transform"), volume);
+  if (status == HL_OK)
+    status = hl_json_read_transform(reader, json_object_get(value, "transform"), HL_SETTINGS_VOLUME, volume);
   if (status == HL_OK)
     status = hl_json_settings_member(reader, json_object_get(value, "material"), "material",
                                      HL_SETTINGS_MATERIAL, &volume->material);

@@ -198,6 +198,21 @@ static void write_transfer_function(writer *w, const hl_transfer_function *funct
   close_bracket(w, "}");
 }
 
+/* The rotation and the translation of a volume or a mesh. */
+static void write_rotation(writer *w, hl_setting_kind kind, const void *object) {
+  open_bracket(w, "rotate", "{");
+  write_key(w, kind, "transform/rotate/axis", object);
+  write_key(w, kind, "transform/rotate/angle_deg", object);
+  close_bracket(w, "}");
+  write_key(w, kind, "transform/translate", object);
+}
+
+static void write_material(writer *w, const hl_material *material) {
+  open_bracket(w, "material", "{");
+  write_settings(w, HL_SETTINGS_MATERIAL, 0, material);
+  close_bracket(w, "}");
+}
+
 static void write_transform(writer *w, const hl_scene_volume *volume) {
   open_bracket(w, "transform", "{");
   const double *axis = volume->axis_scale;
@@ -207,11 +222,7 @@ static void write_transform(writer *w, const hl_scene_volume *volume) {
               (double[3]){hl_scene_volume_scale(volume, 0), hl_scene_volume_scale(volume, 1),
                           hl_scene_volume_scale(volume, 2)},
               3);
-  open_bracket(w, "rotate", "{");
-  write_key(w, HL_SETTINGS_VOLUME, "transform/rotate/axis", volume);
-  write_key(w, HL_SETTINGS_VOLUME, "transform/rotate/angle_deg", volume);
-  close_bracket(w, "}");
-  write_key(w, HL_SETTINGS_VOLUME, "transform/translate", volume);
+  write_rotation(w, HL_SETTINGS_VOLUME, volume);
   close_bracket(w, "}");
 }
 
@@ -279,9 +290,7 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
   write_transform(w, volume);
   write_transfer_function(w, &volume->transfer_function);
   write_key(w, HL_SETTINGS_VOLUME, "shading", volume);
-  open_bracket(w, "material", "{");
-  write_settings(w, HL_SETTINGS_MATERIAL, 0, &volume->material);
-  close_bracket(w, "}");
+  write_material(w, &volume->material);
   write_key(w, HL_SETTINGS_VOLUME, "attenuation_color", volume);
   if (volume->anisotropy != 0) {
     open_bracket(w, "scattering", "{");
@@ -298,6 +307,26 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
     close_bracket(w, "}");
   }
   close_bracket(w, "}");
+}
+
+static void write_mesh(writer *w, const hl_scene_mesh *mesh) {
+  open_bracket(w, NULL, "{");
+  if (mesh->name != NULL) write_name(w, "name", mesh->name);
+  write_name(w, "file", mesh->file);
+  open_bracket(w, "transform", "{");
+  write_key(w, HL_SETTINGS_MESH, "transform/scale", mesh);
+  write_rotation(w, HL_SETTINGS_MESH, mesh);
+  close_bracket(w, "}");
+  write_settings(w, HL_SETTINGS_MESH, 0, mesh);
+  write_material(w, &mesh->material);
+  close_bracket(w, "}");
+}
+
+static void write_meshes(writer *w, const hl_scene_description *d) {
+  if (d->mesh_count == 0) return;
+  open_bracket(w, "meshes", "[");
+  for (size_t m = 0; m < d->mesh_count; m++) write_mesh(w, &d->meshes[m]);
+  close_bracket(w, "]");
 }
 
 static void write_scene(writer *w, const hl_scene_description *d) {
@@ -317,6 +346,7 @@ static void write_scene(writer *w, const hl_scene_description *d) {
   open_bracket(w, "volumes", "[");
   for (size_t v = 0; v < d->volume_count; v++) write_volume(w, &d->volumes[v]);
   close_bracket(w, "]");
+  write_meshes(w, d);
   open_bracket(w, "render", "{");
   write_settings(w, HL_SETTINGS_RENDER, 0, &d->render);
   close_bracket(w, "}");
@@ -356,6 +386,16 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
                  index);
 }
 
+static hl_status check_mesh(const hl_scene_mesh *mesh, size_t index, hl_error *error) {
+  if (mesh->file == NULL)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "/meshes/%zu/file: the mesh came from memory: write it to a file and name that in the scene", index);
+  if (is_utf8(mesh->file) && is_utf8(mesh->name)) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT,
+                 "/meshes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", index);
+}
+
 static hl_status check_light_image(const float *pixels, const char *file, const char *key, size_t light,
                                    hl_error *error) {
   if (pixels == NULL) return HL_OK;
@@ -381,6 +421,10 @@ static hl_status check_writable(const hl_scene_description *d, hl_error *error) 
   }
   for (size_t v = 0; v < d->volume_count; v++) {
     hl_status status = check_volume(&d->volumes[v], v, error);
+    if (status != HL_OK) return status;
+  }
+  for (size_t m = 0; m < d->mesh_count; m++) {
+    hl_status status = check_mesh(&d->meshes[m], m, error);
     if (status != HL_OK) return status;
   }
   if (is_utf8(d->description)) return HL_OK;

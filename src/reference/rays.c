@@ -5,7 +5,7 @@
  * (docs/architecture.md); one ray through its centre would give another picture. */
 #include "reference/reference.h"
 
-enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096 };
+enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096, SURFACE_RAYS = 4 }; /* SURFACE_RAYS: for the edges of meshes */
 
 /* The box around the visible bricks, within the volume's box, in index space; the bricks at the borders reach
  * half a voxel beyond the grid. False: none is visible. */
@@ -70,12 +70,13 @@ int hl_reference_rays(const reference *all, double edge) {
        forward = vec3_normalise(vec3_subtract(vec3_of(scene->camera.target), position));
   content shown = {.nearest = INFINITY};
   for (size_t v = 0; v < scene->volume_count; v++) add_volume(&all->volumes[v], position, forward, &shown);
-  if (shown.corners == 0) return 1;
+  if (shown.corners == 0) return scene->mesh_count > 0 ? SURFACE_RAYS : 1;
   vec3 middle = vec3_scale(shown.sum, 1.0 / shown.corners);
   double depth = vec3_dot(forward, vec3_subtract(middle, position)),
          longer = fmax(scene->width, scene->height);
   if (scene->camera.type == HL_CAMERA_ORTHOGRAPHIC) depth = 1;
   else depth = fmax(depth, shown.nearest);
   double most = fmin(HL_REFERENCE_RAYS, floor(LONGEST_SIDE / longer));
-  return (int)fmax(fmin(floor(pixel_edge(scene) * depth / edge + 0.5), most), 1);
+  double least = scene->mesh_count > 0 ? SURFACE_RAYS : 1;
+  return (int)fmax(fmin(floor(pixel_edge(scene) * depth / edge + 0.5), most), least);
 }

@@ -114,17 +114,14 @@ static double first_within(double before, double extinction, double start) {
   return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
-/* Marches along one camera ray. A perspective ray begins at the eye; an orthographic one has no beginning.
- * Every step is cut into pieces that add no more than most_opacity each, judged by the extinction of the
- * piece before. Leaves the ray's contributions in the worker; returns the first depth. */
-static double trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker) {
+/* Marches along a part of a camera ray. Every step is cut into pieces that add no more than most_opacity
+ * each, judged by the extinction of the piece before. Adds to the ray's contributions in the worker; *first
+ * becomes the first depth where it lies in this part. */
+static void trace_part(const reference *all, const reference_ray *way, reference_worker *worker,
+                       double *first) {
   march walk;
   reference_parts *ray = &worker->ray;
-  bool orthographic = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
-  const reference_ray way = {origin, direction, orthographic ? -INFINITY : 0, INFINITY};
-  double first = INFINITY;
-  hl_reference_parts_clear(ray, all->scene->light_count);
-  hl_reference_march_begin(all, REFERENCE_SEEN, &way, worker->eye, &walk);
+  hl_reference_march_begin(all, REFERENCE_SEEN, way, worker->eye, &walk);
   while (ray->weight < OPAQUE && !hl_pool_stops(all->pool, worker->number) &&
          hl_reference_march_next(&walk)) {
     double at = walk.at - walk.length / 2, end = at + walk.length, extinction = total_extinction(&walk);
@@ -133,11 +130,35 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
       double length = end - at, before = ray->weight;
       if (extinction > 0) length = fmin(length, all->most_opacity / (extinction * (1 - before)));
       hl_reference_march_place(&walk, at + length / 2);
-      extinction = composite(all, &walk, length, origin, direction, worker);
+      extinction = composite(all, &walk, length, way->origin, way->direction, worker);
       if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY)
-        first = first_within(before, extinction, at);
+        *first = first_within(before, extinction, at);
       at += length;
     }
+  }
+}
+
+/* Follows one camera ray, from surface to surface. A perspective ray begins at the eye; an orthographic one
+ * has no beginning. Leaves the ray's contributions in the worker; returns the first depth. */
+static double trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker) {
+  reference_parts *ray = &worker->ray;
+  bool orthographic = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
+  reference_ray way = {origin, direction, orthographic ? -INFINITY : 0, INFINITY};
+  double first = INFINITY;
+  hl_reference_parts_clear(ray, all->scene->light_count);
+  for (bool met = true; met && ray->weight < OPAQUE;) {
+    reference_hit hit;
+    const reference_ray whole = {origin, direction, way.nearest, INFINITY};
+    met = hl_reference_surface_next(all, REFERENCE_SEEN, &whole, way.nearest, &hit);
+    way.farthest = met ? hit.distance : INFINITY;
+    trace_part(all, &way, worker, &first);
+    if (!met || ray->weight >= OPAQUE) break;
+    double before = ray->weight;
+    hl_reference_surface_shade(all, &hit, &way, worker);
+    hl_reference_parts_add(ray, &worker->sample, (1 - before) * hit.triangle->opacity,
+                           all->scene->light_count);
+    if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY) first = hit.distance;
+    way.nearest = hit.distance;
   }
   return first;
 }
@@ -218,6 +239,8 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
   }
   all->step = options->step * edge;
   all->rays = options->rays > 0 ? options->rays : hl_reference_rays(all, edge);
+  hl_status made = hl_reference_surfaces_create(all, error);
+  if (made != HL_OK) return made;
   double coarser = fmax(options->step / USUAL_STEP, 1);
   all->most_opacity = fmin(MOST_OPACITY * coarser * coarser, COARSEST_OPACITY);
   for (size_t l = 0; l < scene->light_count; l++) {
@@ -235,6 +258,7 @@ static void release(reference *all) {
     hl_release(all->context, all->lights[l].points);
   hl_release(all->context, all->volumes);
   hl_release(all->context, all->lights);
+  hl_reference_surfaces_release(all);
 }
 
 /* Allocates one block each for the workers, their crossings, their arrivals and their contributions. */

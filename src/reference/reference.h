@@ -9,6 +9,7 @@
  * nothing rays.c        how many rays a pixel of a small picture has lights.c      points on the lights,
  * their images, and the transmittance towards them shade.c       the light that one sample sends to the eye
  *     layers.c      that light by its sources, depth and normals
+ *     surfaces.c    where rays meet meshes, and the light that a surface sends to the eye
  *     maximum.c     the greatest value along a ray, in place of light
  * */
 #ifndef HL_REFERENCE_REFERENCE_H
@@ -58,16 +59,40 @@ typedef struct reference_light {
   size_t point_count;
 } reference_light;
 
+/* A triangle of a mesh, in the world. */
+typedef struct reference_triangle {
+  vec3 corner[3];
+  const hl_scene_mesh *mesh;
+  size_t index; /* in the mesh */
+  double opacity;
+} reference_triangle;
+
+/* A box around triangles. Leaves have no children: second is 0. */
+typedef struct reference_node {
+  double low[3], high[3];
+  size_t first, count; /* triangles */
+  size_t second;       /* index of the second child; the first one follows the node */
+} reference_node;
+
+typedef struct reference_surfaces {
+  reference_triangle *triangles; /* owned; [triangle_count] */
+  reference_node *nodes;         /* owned; [node_count] */
+  vec3 *normals;                 /* owned; of all meshes' vertices; of any length */
+  size_t *first_normal;          /* owned; [mesh_count] */
+  size_t triangle_count, node_count;
+} reference_surfaces;
+
 typedef struct reference {
   hl_context *context;
   hl_pool *pool;
   const hl_scene_description *scene;
   reference_volume *volumes; /* owned; [scene->volume_count] */
   reference_light *lights;   /* owned; [scene->light_count] */
-  double step;               /* world units */
-  int rays;                  /* rays along each side of a pixel */
-  double most_opacity;       /* greatest opacity that one sample may add to a pixel */
-  bool all_shadows;          /* layers need the transmittance of every light at every sample */
+  reference_surfaces surfaces;
+  double step;         /* world units */
+  int rays;            /* rays along each side of a pixel */
+  double most_opacity; /* greatest opacity that one sample may add to a pixel */
+  bool all_shadows;    /* layers need the transmittance of every light at every sample */
 } reference;
 
 typedef struct reference_ray {
@@ -179,6 +204,36 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
 /* The pixel of a maximum projection: premultiplied RGBA, alpha 1 where a volume shows something. */
 void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
                           float rgba[4]);
+
+/* ---- meshes (surfaces.c) ---- */
+
+hl_status hl_reference_surfaces_create(reference *all, hl_error *error);
+void hl_reference_surfaces_release(reference *all);
+
+/* Where a ray meets a triangle. */
+typedef struct reference_hit {
+  const reference_triangle *triangle;
+  double distance;
+  double weight[3]; /* of the triangle's corners */
+} reference_hit;
+
+/* A point of a surface that is shaded. */
+typedef struct reference_surface_point {
+  vec3 point, normal, to_eye; /* world; unit vectors; the normal is on the eye's side */
+  double color[3];
+} reference_surface_point;
+
+/* The first triangle farther along the ray than `after` and nearer than ray->farthest; false: none. */
+bool hl_reference_surface_next(const reference *all, reference_role role, const reference_ray *ray,
+                               double after, reference_hit *hit);
+/* The fraction of light that passes all surfaces on a ray, which may begin on a surface. */
+double hl_reference_surfaces_passing(const reference *all, const reference_ray *ray);
+/* Sets the worker's sample to what the surface sends back along the ray, with weight 1. */
+void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
+                                reference_worker *worker);
+
+/* A surface within this fraction of a step from the beginning of a ray is the one that it begins on. */
+#define LEAST_GAP 1e-3
 
 /* Contributions (layers.c): sets them to zero; adds others, times `scale`; writes the caller's layers of one
  * pixel. */

@@ -227,6 +227,8 @@ static double widest_ray(const frame *frame) {
 static bool is_lit(const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->volume_count && !hl_is_maximum(scene); i++)
     if (scene->volumes[i].visible && scene->volumes[i].shading != HL_SHADING_FLAT) return true;
+  for (size_t i = 0; i < scene->mesh_count; i++)
+    if (scene->meshes[i].visible) return true;
   return false;
 }
 
@@ -295,13 +297,17 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   for (size_t i = 0; i < scene->light_count; i++) vertices += scene->lights[i].vertex_count;
   framed->volumes = hl_allocate(context, scene->volume_count, sizeof *framed->volumes);
   framed->lights = hl_allocate(context, scene->light_count, sizeof *framed->lights);
+  framed->meshes = hl_allocate(context, scene->mesh_count, sizeof *framed->meshes);
   framed->vertices = hl_allocate(context, vertices, sizeof *framed->vertices);
-  if (framed->volumes == NULL || framed->lights == NULL || framed->vertices == NULL)
+  if (framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL || framed->vertices == NULL)
     return hl_fail_memory(error, scene->volume_count * sizeof *framed->volumes, "the scene in frame space");
   memcpy(framed->volumes, scene->volumes, scene->volume_count * sizeof *framed->volumes);
   if (scene->light_count > 0)
     memcpy(framed->lights, scene->lights, scene->light_count * sizeof *framed->lights);
+  if (scene->mesh_count > 0)
+    memcpy(framed->meshes, scene->meshes, scene->mesh_count * sizeof *framed->meshes);
   framed->scene.volumes = framed->volumes;
+  framed->scene.meshes = framed->meshes;
   framed->scene.lights = framed->lights;
   return HL_OK;
 }
@@ -315,6 +321,10 @@ hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description
   double(*vertices)[3] = framed->vertices;
   move_camera(&space, &framed->scene.camera);
   for (size_t i = 0; i < scene->volume_count; i++) move_volume(&space, &framed->volumes[i]);
+  for (size_t i = 0; i < scene->mesh_count; i++) {
+    move_point(&space, framed->meshes[i].translate);
+    framed->meshes[i].scale /= space.unit;
+  }
   for (size_t i = 0; i < scene->light_count; vertices += scene->lights[i++].vertex_count)
     move_light(&space, &framed->lights[i], vertices);
   return HL_OK;
@@ -323,5 +333,6 @@ hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description
 void hl_framed_scene_release(hl_context *context, framed_scene *framed) {
   hl_release(context, framed->volumes);
   hl_release(context, framed->lights);
+  hl_release(context, framed->meshes);
   hl_release(context, framed->vertices);
 }

@@ -9,6 +9,7 @@
 #include "light/light_source.h"
 #include "render/slab.h"
 #include "scene/scene.h"
+#include "surface/surfaces.h"
 #include "view/occupancy.h"
 
 enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
@@ -38,6 +39,7 @@ typedef struct frame {
   light_sectors sectors; /* of lights within the content */
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
+  const surfaces *surfaces; /* of the scene's meshes; null: none */
 } frame;
 
 /* The eye's view in width x height pixels. */
@@ -84,6 +86,7 @@ typedef struct framed_scene {
       scene; /* in frame space; voxels, images and texts are borrowed from the scene in the world */
   hl_scene_volume *volumes; /* owned; [volume_count] */
   hl_light *lights;         /* owned; [light_count] */
+  hl_scene_mesh *meshes;    /* owned; [mesh_count] */
   double (*vertices)[3];    /* owned; of all polygons */
   double unit;              /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
 } framed_scene;

@@ -113,6 +113,7 @@ typedef struct frame_work {
   framed_scene framed;
   frame frame;
   grid *grids;         /* [volumes] */
+  surfaces surfaces;   /* of the meshes */
   frame_sweep *sweeps; /* [LIGHT_SECTORS * lights + 1] */
   int sweep_count;
   float *pixels; /* [sweeps][tiles][16][4][16]; owned, or the caller's if in_place */
@@ -131,6 +132,7 @@ static void release_work(hl_renderer *renderer, frame_work *work) {
   hl_release(context, work->frame.lights);
   hl_release(context, work->grids);
   hl_release(context, work->sweeps);
+  hl_surfaces_release(context, &work->surfaces);
   if (!work->in_place) hl_reserve_return(&renderer->reserve, work->pixels);
   hl_release(context, work->tile_rows);
   hl_layer_pixels_release(context, &work->layers);
@@ -212,11 +214,22 @@ static void open_faces(const hl_scene_description *scene, grid *grids) {
       if (k != i && scene->volumes[k].casts_shadow) hl_open_faces(&grids[i], &grids[k]);
 }
 
+/* Brings the meshes to frame space, and adds their boxes to the content. */
+static hl_status add_surfaces(hl_context *context, const hl_scene_description *scene, frame_work *work,
+                              hl_error *error) {
+  frame *frame = &work->frame;
+  if (scene->mesh_count == 0) return HL_OK;
+  for (size_t i = 0; i < scene->mesh_count; i++, frame->point_count += 8)
+    hl_surface_corners(&scene->meshes[i], frame->voxel, frame->points + frame->point_count);
+  frame->surfaces = &work->surfaces;
+  return hl_surfaces_create(context, scene, &work->surfaces, error);
+}
+
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
                               const frame_request *request, frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   frame *frame = &work->frame;
-  frame->points = hl_allocate(context, scene->volume_count * 8 + 1, sizeof(vec3));
+  frame->points = hl_allocate(context, (scene->volume_count + scene->mesh_count) * 8 + 1, sizeof(vec3));
   frame->lights = hl_allocate(context, LIGHT_SECTORS * scene->light_count, sizeof(light_source));
   work->grids = hl_allocate(context, scene->volume_count, sizeof(grid));
   work->sweeps = hl_allocate_zeroed(context, LIGHT_SECTORS * scene->light_count + 1, sizeof(frame_sweep));
@@ -230,7 +243,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   }
   open_faces(scene, work->grids);
   frame->voxel = smallest_edge(renderer);
-  hl_status status = hl_frame_set_up_eye(frame, scene, error);
+  hl_status status = add_surfaces(context, scene, work, error);
+  if (status == HL_OK) status = hl_frame_set_up_eye(frame, scene, error);
   if (status != HL_OK) return status;
   frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
                    frame->voxel; /* at most the margin by which volumes continue beyond their faces */
@@ -299,7 +313,8 @@ static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_descrip
                                    const frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   if (work->frame.point_count == 0) return HL_OK;
-  vec3 *points = hl_allocate(context, scene->volume_count * CONTENT_POINTS + 1, sizeof *points);
+  vec3 *points = hl_allocate(context, (size_t)work->frame.point_count / 8 * CONTENT_POINTS + 1,
+                             sizeof *points);
   sweep_bytes *bytes = hl_allocate(context, (size_t)work->sweep_count, sizeof *bytes);
   hl_status status = HL_OK;
   if (points == NULL || bytes == NULL)

@@ -47,33 +47,46 @@ LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int s
   return lanes_bits(faced & seen) != 0;
 }
 
+/* Where a light's rays come from at a position; its strength there, without color, in arriving->full. Returns
+ * the length of its way through the slab. */
+LANES_INLINE lanes find_direction(const shade_job *job, const shade_light *light, lanes3 position,
+                                  arriving_light *arriving) {
+  lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
+  if (light->parallel) {
+    arriving->towards = set3(light->towards);
+  } else {
+    lanes3 way = {light->position[0] - position.x, light->position[1] - position.y,
+                  light->position[2] - position.z};
+    lanes least = lanes_set(LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE);
+    lanes squared = lanes_max(dot3(way, way), least), distance = lanes_sqrt(squared);
+    arriving->towards = scale3(way, 1.0f / distance);
+    lanes climb = lanes_abs(dot3(arriving->towards, set3(job->normal)));
+    path = lanes_min(light->path / lanes_max(climb, lanes_set(1e-3f)), distance);
+    if (light->inverse_square) strength = 1.0f / squared;
+    if (light->sector.count > 0) strength = strength * fraction_of_sector(&light->sector, arriving->towards);
+    if (light->cone.scale > 0) strength = strength * within_cone(&light->cone, arriving->towards);
+  }
+  for (int c = 0; c < 3; c++) arriving->full.c[c] = strength;
+  return path;
+}
+
+/* The light without attenuation, after find_direction(). */
+LANES_INLINE void find_full_light(const shade_light *light, lanes3 position, arriving_light *arriving) {
+  for (int c = 0; c < 3; c++) arriving->full.c[c] = arriving->full.c[c] * light->color[c];
+  if (light->texture.pixels == NULL) return;
+  lanes pattern[3];
+  texture_pattern(&light->texture, position, pattern);
+  for (int c = 0; c < 3; c++) arriving->full.c[c] = arriving->full.c[c] * pattern[c];
+}
+
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_slab *slab,
                                      block_density *densities, int count) {
   const block_geometry *g = &slab->geometry;
   arriving_light arriving;
-  lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
-  if (light->parallel) {
-    arriving.towards = set3(light->towards);
-  } else {
-    lanes3 way = {light->position[0] - g->position.x, light->position[1] - g->position.y,
-                  light->position[2] - g->position.z};
-    lanes least = lanes_set(LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE);
-    lanes squared = lanes_max(dot3(way, way), least), distance = lanes_sqrt(squared);
-    arriving.towards = scale3(way, 1.0f / distance);
-    lanes climb = lanes_abs(dot3(arriving.towards, set3(job->normal)));
-    path = lanes_min(light->path / lanes_max(climb, lanes_set(1e-3f)), distance);
-    if (light->inverse_square) strength = 1.0f / squared;
-    if (light->sector.count > 0) strength = strength * fraction_of_sector(&light->sector, arriving.towards);
-    if (light->cone.scale > 0) strength = strength * within_cone(&light->cone, arriving.towards);
-  }
+  lanes path = find_direction(job, light, g->position, &arriving);
   arriving.dark = !is_faced(densities, count, slab->seen, arriving.towards);
   if (arriving.dark) return arriving;
-  for (int c = 0; c < 3; c++) arriving.full.c[c] = strength * light->color[c];
-  if (light->texture.pixels != NULL) {
-    lanes pattern[3];
-    texture_pattern(&light->texture, g->position, pattern);
-    for (int c = 0; c < 3; c++) arriving.full.c[c] = arriving.full.c[c] * pattern[c];
-  }
+  find_full_light(light, g->position, &arriving);
   arriving.shadowed = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
   color_lanes passing = passing_light(job, light, slab, densities, count, arriving.towards, path);

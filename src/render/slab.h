@@ -13,6 +13,8 @@
 
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
+struct surface_samples;
+
 typedef struct shade_volume {
   const classifier *classifier;
   const grid *grid;
@@ -119,9 +121,13 @@ typedef struct maximum_values {
   size_t tiles;
 } maximum_values;
 
+/* Lights samples of surfaces (surface_samples.h), with the light that reaches the slab. */
+typedef void shade_surface_function(const shade_job *job, struct surface_samples *samples);
+
 /* The functions of this room that are compiled for each instruction set. */
 typedef struct render_functions {
   shade_tile_function *shade, *measure, *cover, *maximum;
+  shade_surface_function *surface;
 } render_functions;
 
 #endif

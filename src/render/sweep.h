@@ -10,6 +10,7 @@
 #include "render/layers.h"
 #include "render/view_sheets.h"
 #include "shadow/shadow_method.h"
+#include "surface/fragments.h"
 
 /* One light of a sweep with its buffer. */
 typedef struct sweep_light {
@@ -50,6 +51,15 @@ typedef struct sweep_layers {
   float (*ones)[4];            /* owned; a colour table */
 } sweep_layers;
 
+/* The surfaces of the sweep's views; zeros where there are none. */
+typedef struct surface_state {
+  fragments image, lights[FRAME_LIGHTS];
+  void *memory;                 /* owned; all arrays that follow */
+  shade_patch *patches;         /* [threads][volumes] */
+  float (*cuts)[TILE_PIXELS];   /* [threads][volumes][2]; where the pieces of slabs begin and end in boxes */
+  float (*bounds)[TILE_PIXELS]; /* [threads][2]; where they begin and end */
+} surface_state;
+
 typedef struct sweep sweep;
 
 /* A function that a sweep calls for each tile of a slab. Returns the blocks that stay open: in them, later
@@ -82,6 +92,7 @@ struct sweep {
   attenuate_job attenuate[FRAME_LIGHTS];
   shade_job shade;
   sweep_layers layers;
+  surface_state surfaces;
   /* the stage now running */
   int sheet;
   int task_start[FRAME_LIGHTS + 1];  /* each light's first task, and one past the last task */

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "render/sweep_layers.h"
+#include "render/sweep_surfaces.h"
 
 /* Blocks outside the picture are closed from the start. */
 void hl_sweep_open(sweep *sweep) {
@@ -266,7 +267,7 @@ static double longest_way(const sweep *sweep) {
 
 static hl_status begin_lights(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
   hl_context *context = sweep->content.context;
-  vec3 *points = hl_allocate(context, (size_t)sweep->content.volume_count * CONTENT_POINTS + 1,
+  vec3 *points = hl_allocate(context, (size_t)sweep->frame->point_count / 8 * CONTENT_POINTS + 1,
                              sizeof *points);
   if (points == NULL) return hl_fail_memory(error, sizeof *points, "the content's corners");
   hl_status status = HL_OK;
@@ -290,6 +291,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
   set_up_jobs(sweep);
   sweep->image.beside = longest_way(sweep);
   status = hl_sweep_layers_begin(sweep, error);
+  if (status == HL_OK) status = hl_sweep_surfaces_begin(sweep, error);
   sweep->seconds_sort = hl_clock_seconds() - start;
   return status;
 }
@@ -297,6 +299,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
 void hl_sweep_end(sweep *sweep) {
   hl_context *context = sweep->content.context;
   hl_sweep_layers_end(sweep);
+  hl_sweep_surfaces_end(sweep);
   for (int i = 0; i < FRAME_LIGHTS; i++) {
     sweep_light *light = &sweep->lights[i];
     hl_view_sheets_end(&light->sheets);

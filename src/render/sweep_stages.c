@@ -1,6 +1,7 @@
 /* render/sweep_stages.c - the stages of a sheet, each a set of tiles shared out to the threads. */
 #include "core/context.h"
 #include "render/sweep_layers.h"
+#include "render/sweep_surfaces.h"
 
 enum { TILES_A_TASK = 2 };
 
@@ -76,6 +77,7 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   sweep_counts *counts = &sweep->counts[worker];
   uint32_t blocks = 0, need = sweep->open[tile] & shown_blocks(sweep, tile, last_of_run(sweep->sheet));
   counts->pixels_skipped_image += hl_pixels_of_blocks(ALL_BLOCKS & ~need);
+  fragment_range surfaces = hl_sweep_surfaces_reach(sweep, tile, sweep->sheet);
   if (need == 0) {
     counts->skipped_image++;
     return;
@@ -87,12 +89,19 @@ static void shade_one(sweep *sweep, size_t tile, int worker) {
   double filled = read_clock(timed);
   counts->filled_image++;
   counts->seconds_fill += filled - start;
-  blocks &= shown_blocks(sweep, tile, sweep->sheet);
-  if (blocks == 0) return;
+  uint32_t shown = shown_blocks(sweep, tile, sweep->sheet);
+  blocks &= shown;
+  if (blocks == 0 && surfaces.count == 0) return;
   void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->content.volume_count * SHADE_SCRATCH_BYTES;
   const tile_slab slab = {
       tile, hl_tile_x(sweep, tile), hl_tile_y(sweep, tile), patches, count, blocks, worker, scratch};
-  uint32_t open = sweep->act(sweep, &slab);
+  uint32_t open;
+  if (surfaces.count > 0) {
+    blocks = need & shown;
+    open = hl_sweep_surfaces_tile(sweep, &slab, blocks, surfaces);
+  } else {
+    open = sweep->act(sweep, &slab);
+  }
   sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);
   counts->seconds_shade += read_clock(timed) - filled;
 }
@@ -158,7 +167,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
 
 /* Step 17 for one tile of a light's shadow buffer. */
 static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uint32_t need,
-                                 const attenuate_volume *volumes, int count) {
+                                 const attenuate_volume *volumes, int count, fragment_range surfaces) {
   light_shadow *shadow = &sweep->lights[light_index].shadow;
   const shadow_method *method = shadow->method;
   shadow_buffer *buffer = shadow->buffer;
@@ -174,7 +183,8 @@ static void composite_light_tile(sweep *sweep, int light_index, size_t tile, uin
   for (int i = 0; i < count; i++) worked |= volumes[i].blocks;
   attenuated_blocks blocks = sweep->content.hot->shadow.attenuate(&job, tile_x, tile_y);
   if (method->find_lit == NULL) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
-  if (blocks.taken == 0) return;
+  bool taken = hl_sweep_surfaces_attenuate(&job, surfaces);
+  if (blocks.taken == 0 && !taken) return;
   buffer->tile_touched[tile] = 1;
   if (method->after_tile != NULL) method->after_tile(shadow, tile);
 }
@@ -184,6 +194,7 @@ static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker
   light_shadow *shadow = &sweep->lights[light_index].shadow;
   if (shadow->method->find_lit != NULL) shadow->method->find_lit(shadow, tile);
   uint32_t need = shadow->buffer->tile_lit[tile];
+  fragment_range surfaces = hl_sweep_surfaces_reach_light(sweep, light_index, tile, sweep->sheet);
   counts->pixels_skipped_light += hl_pixels_of_blocks(ALL_BLOCKS & ~need);
   if (need == 0) {
     counts->skipped_light++;
@@ -194,7 +205,8 @@ static void attenuate_one(sweep *sweep, int light_index, size_t tile, int worker
   double start = read_clock(timed);
   int count = fill_light_tile(sweep, &sweep->lights[light_index], tile, worker, need, volumes);
   double filled = read_clock(timed);
-  if (count > 0) composite_light_tile(sweep, light_index, tile, need, volumes, count);
+  if (count > 0 || surfaces.count > 0)
+    composite_light_tile(sweep, light_index, tile, need, volumes, count, surfaces);
   double end = read_clock(timed);
   counts->filled_light++;
   counts->seconds_light += end - start;

@@ -110,19 +110,28 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
   if (status == HL_OK) status = hl_check_count(&root, "lights", d->lights, d->light_count, HL_LIMIT_LIGHTS);
   if (status == HL_OK)
     status = hl_check_count(&root, "volumes", d->volumes, d->volume_count, HL_LIMIT_VOLUMES);
+  if (status == HL_OK) status = hl_check_count(&root, "meshes", d->meshes, d->mesh_count, HL_LIMIT_MESHES);
   if (status != HL_OK) return status;
   if (d->volume_count == 0) return hl_check_refuse(&root, "volumes", "is empty: name at least one volume");
   for (size_t l = 0; l < d->light_count && status == HL_OK; l++)
     status = hl_light_check(&d->lights[l], l, error);
   for (size_t v = 0; v < d->volume_count && status == HL_OK; v++)
     status = hl_scene_volume_check(&d->volumes[v], v, error);
+  for (size_t m = 0; m < d->mesh_count && status == HL_OK; m++)
+    status = hl_scene_mesh_check(&d->meshes[m], m, error);
   if (status == HL_OK) status = check_scales(d, error);
+  if (status == HL_OK && d->mesh_count > 0 && d->render.compositing == HL_COMPOSITING_MAXIMUM)
+    status = hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "/meshes: are not in maximum projections: remove them, or render with light");
   return status == HL_OK ? hl_settings_check(HL_SETTINGS_RENDER, &d->render, 0, "/render", error) : status;
 }
 
 hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *scene, hl_error *error) {
   size_t light_count = scene->light_count;
   if (layers == NULL) return HL_OK;
+  if (scene->mesh_count > 0)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/meshes: a scene with meshes has no layers yet: remove the meshes, or ask for no layers");
   if (scene->render.compositing == HL_COMPOSITING_MAXIMUM)
     return hl_fail(
         error, HL_ERROR_UNSUPPORTED,

@@ -17,6 +17,9 @@ hl_status hl_light_check(const hl_light *light, size_t index, hl_error *error);
 /* Checks one volume of a description, before a camera frames it. */
 hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_error *error);
 
+/* Checks one mesh of a description. */
+hl_status hl_scene_mesh_check(const hl_scene_mesh *mesh, size_t index, hl_error *error);
+
 /* Checks a transfer function; place: what errors call it ("/volumes/0/transfer_function"). */
 hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place,
                                      hl_error *error);

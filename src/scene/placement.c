@@ -12,11 +12,19 @@ double hl_scene_volume_scale(const hl_scene_volume *volume, int axis) {
   return volume->scale * volume->axis_scale[axis];
 }
 
+static mat3 rotation(const double axis[3], double angle_deg) {
+  if (angle_deg == 0) return (mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  return mat3_rotation(vec3_normalise(vec3_of(axis)), angle_deg * HL_PI / 180);
+}
+
+affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh) {
+  mat3 turn = rotation(mesh->rotate_axis, mesh->rotate_angle_deg);
+  for (int r = 0; r < 3; r++) turn.row[r] = vec3_scale(turn.row[r], mesh->scale);
+  return (affine3){turn, vec3_of(mesh->translate)};
+}
+
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
-  mat3 turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  if (volume->rotate_angle_deg != 0)
-    turn = mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)),
-                         volume->rotate_angle_deg * HL_PI / 180);
+  mat3 turn = rotation(volume->rotate_axis, volume->rotate_angle_deg);
   const double x = hl_scene_volume_scale(volume, 0), y = hl_scene_volume_scale(volume, 1),
                z = hl_scene_volume_scale(volume, 2);
   for (int r = 0; r < 3; r++) turn.row[r] = (vec3){turn.row[r].x * x, turn.row[r].y * y, turn.row[r].z * z};

@@ -12,6 +12,9 @@ double hl_scene_volume_scale(const hl_scene_volume *volume, int axis);
 /* Index space of scene volume -> world: the volume's own placement, then scale, rotate, translate. */
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);
 
+/* A mesh's own space -> world: scale, rotate, translate. */
+affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh);
+
 /* The box that the volume fills in its own index space: voxel cells from -0.5 to n-0.5, cut by clip
  * (clip is a box in the file's own world; where the grid is oblique to it, its bounds in index space). */
 void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]);

@@ -29,6 +29,13 @@ void hl_scene_volume_defaults(hl_scene_volume *volume) {
   hl_settings_defaults(HL_SETTINGS_TRANSFER_FUNCTION, &volume->transfer_function);
 }
 
+void hl_scene_mesh_defaults(hl_scene_mesh *mesh) {
+  if (mesh == NULL) return;
+  *mesh = (hl_scene_mesh){.mesh = NULL};
+  hl_settings_defaults(HL_SETTINGS_MESH, mesh);
+  hl_settings_defaults(HL_SETTINGS_MATERIAL, &mesh->material);
+}
+
 void hl_scene_description_defaults(hl_scene_description *description) {
   if (description == NULL) return;
   *description = (hl_scene_description){.struct_size = sizeof(hl_scene_description)};
@@ -48,11 +55,19 @@ static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_volume_release(volume->volume);
 }
 
+static void release_mesh(hl_context *context, hl_scene_mesh *mesh) {
+  hl_release(context, (void *)mesh->name);
+  hl_release(context, (void *)mesh->file);
+  hl_mesh_release(mesh->mesh);
+}
+
 static void destroy(hl_scene *scene) {
   hl_context *context = scene->context;
   hl_scene_description *d = &scene->description;
   for (size_t v = 0; v < d->volume_count; v++) release_volume(context, (hl_scene_volume *)&d->volumes[v]);
   hl_release(context, (void *)d->volumes);
+  for (size_t m = 0; m < d->mesh_count; m++) release_mesh(context, (hl_scene_mesh *)&d->meshes[m]);
+  hl_release(context, (void *)d->meshes);
   hl_placed_lights_release(context, &scene->placed);
   for (size_t l = 0; l < d->light_count; l++) {
     hl_release(context, (void *)d->lights[l].vertices);
@@ -125,6 +140,25 @@ static hl_status copy_volumes(hl_scene *scene, const hl_scene_description *from,
     if (status != HL_OK) return status;
   }
   return HL_OK;
+}
+
+static hl_status copy_meshes(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
+  void *copy = NULL;
+  hl_status status = copy_array(scene->context, from->meshes, from->mesh_count, sizeof *from->meshes,
+                                "a scene's meshes", &copy, error);
+  if (status != HL_OK) return status;
+  hl_scene_mesh *meshes = copy;
+  for (size_t m = 0; m < from->mesh_count; m++) {
+    meshes[m].name = meshes[m].file = NULL;
+    hl_mesh_retain(meshes[m].mesh);
+  }
+  scene->description.meshes = meshes;
+  scene->description.mesh_count = from->mesh_count;
+  for (size_t m = 0; m < from->mesh_count && status == HL_OK; m++) {
+    status = copy_text(scene->context, from->meshes[m].name, &meshes[m].name, error);
+    if (status == HL_OK) status = copy_text(scene->context, from->meshes[m].file, &meshes[m].file, error);
+  }
+  return status;
 }
 
 static void forget_images(hl_light *light) {
@@ -220,12 +254,15 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   made->description = *description;
   made->description.lights = NULL;
   made->description.volumes = NULL;
+  made->description.meshes = NULL;
+  made->description.mesh_count = 0;
   made->description.description = NULL;
   made->description.light_count = made->description.volume_count = 0;
   mend_up(&made->description.camera);
   status = copy_text(context, description->description, &made->description.description, error);
   if (status == HL_OK) status = copy_lights(made, description, error);
   if (status == HL_OK) status = copy_volumes(made, description, error);
+  if (status == HL_OK) status = copy_meshes(made, description, error);
   if (status == HL_OK) status = hl_lights_place(context, &made->description, &made->placed, error);
   if (status != HL_OK) {
     destroy(made);

@@ -209,6 +209,34 @@ static const hl_setting volume_rows[] = {
     {.key = "clip/max", FIELD(hl_scene_volume, clip_max), A_POINT,
      .sentence = "The greatest corner of the box that is kept."}};
 
+static const hl_setting mesh_rows[] = {
+    {.key = "transform/scale", FIELD(hl_scene_mesh, scale), .type = HL_SETTING_NUMBER, .unit = "",
+     .high = HL_LIMIT_LENGTH, .open_low = 1, .standard = {1}, .sentence = "A factor on the mesh's size.",
+     .mend = "give a factor above 0"},
+    {.key = "transform/rotate/axis", FIELD(hl_scene_mesh, rotate_axis), A_DIRECTION, .standard = {0, 0, 1},
+     .sentence = "The axis that the mesh is turned about."},
+    {.key = "transform/rotate/angle_deg", FIELD(hl_scene_mesh, rotate_angle_deg), .type = HL_SETTING_NUMBER,
+     .unit = "degrees", .low = -1e6, .high = 1e6, .sentence = "The angle that the mesh is turned by.",
+     .mend = "give an angle in degrees"},
+    {.key = "transform/translate", FIELD(hl_scene_mesh, translate), A_POINT,
+     .sentence = "The vector that the mesh is moved by, after it was scaled and turned."},
+    {.key = "color", FIELD(hl_scene_mesh, color), .type = HL_SETTING_COLOR, .unit = "linear RGB", .high = 1,
+     .standard = {0.8, 0.8, 0.8}, .sentence = "The colour, times that of the vertices where they have one.",
+     .mend = "give linear RGB, each from {low} to {high}"},
+    {.key = "opacity", FIELD(hl_scene_mesh, opacity), .type = HL_SETTING_NUMBER, .unit = "", .high = 1,
+     .standard = {1}, .sentence = "The fraction of light that the surface stops.",
+     .mend = "give a fraction from {low} to {high}"},
+    {.key = "smooth", FIELD(hl_scene_mesh, smooth), A_FLAG, .standard = {1},
+     .sentence = "Normals are interpolated between the vertices; else each triangle is flat."},
+    {.key = "two_sided", FIELD(hl_scene_mesh, two_sided), A_FLAG, .standard = {1},
+     .sentence = "Both sides of the surface are lit; else the back is black."},
+    {.key = "visible", FIELD(hl_scene_mesh, visible), A_FLAG, .standard = {1},
+     .sentence = "The eye sees the mesh; a mesh that it does not see still casts shadows."},
+    {.key = "casts_shadow", FIELD(hl_scene_mesh, casts_shadow), A_FLAG, .standard = {1},
+     .sentence = "The mesh takes light from what lies behind it."},
+    {.key = "receives_shadow", FIELD(hl_scene_mesh, receives_shadow), A_FLAG, .standard = {1},
+     .sentence = "The mesh is darkened by shadows."}};
+
 static const hl_setting render_rows[] = {
     {.key = "shadows", FIELD(hl_render_settings, shadows), A_CHOICE(shadows), .standard = {HL_SHADOWS_SOFT},
      .option = "shadows", .sentence = "The shadows of all lights that do not say otherwise."},
@@ -257,6 +285,7 @@ static const struct {
     [HL_SETTINGS_VOLUME] = TABLE(volume_rows),
     [HL_SETTINGS_MATERIAL] = TABLE(material_rows),
     [HL_SETTINGS_RENDER] = TABLE(render_rows),
+    [HL_SETTINGS_MESH] = TABLE(mesh_rows),
     [HL_SETTINGS_TRANSFER_FUNCTION] = TABLE(transfer_function_rows),
 };
 

@@ -55,6 +55,8 @@ VALUES = {
     "const hl_volume_description *": "&description", "const hl_scene_description *": "hl_scene_describe(scene)",
     "const hl_image_write_options *": "&write_options", "const hl_reference_options *": "&reference_options",
     "const hl_shapes_options *": "&shapes_options",
+    "hl_mesh *": "mesh", "const hl_mesh *": "mesh", "hl_mesh **": "&any",
+    "const hl_mesh_description *": "&mesh_description",
     "hl_view *": "&view", "const hl_view *": "&view",
     "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "double": "0.5",
 }
@@ -70,6 +72,8 @@ static hl_volume *volume;
 static hl_scene *scene;
 static hl_renderer *renderer;
 static hl_image *image;
+static hl_mesh *mesh;
+static hl_mesh_description mesh_description;
 static hl_volume_description description;
 static hl_image_write_options write_options;
 static hl_reference_options reference_options;
@@ -91,8 +95,15 @@ static int make(void) {
   hl_image_write_options_defaults(&write_options);
   hl_reference_options_defaults(&reference_options);
   hl_shapes_options_defaults(&shapes_options);
+  if (hl_context_create(NULL, &context, &error) != HL_OK) return 0;
+  static const uint32_t triangle[1][3] = {{0, 1, 2}};
+  static const float corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  hl_mesh_description_defaults(&mesh_description);
+  mesh_description.positions = corners, mesh_description.vertex_count = 3;
+  mesh_description.triangles = triangle, mesh_description.triangle_count = 1;
+  if (hl_mesh_create(context, &mesh_description, &mesh, &error) != HL_OK) return 0;
   hl_scene *large;
-  if (hl_context_create(NULL, &context, &error) != HL_OK || hl_volume_create(context, &description, &volume, &error) != HL_OK ||
+  if (hl_volume_create(context, &description, &volume, &error) != HL_OK ||
       hl_scene_for_volume(context, volume, "ball.nrrd", &large, &error) != HL_OK ||
       hl_renderer_create(context, &renderer, &error) != HL_OK || hl_image_create(context, 4, 4, &image, &error) != HL_OK)
     return 0;

@@ -21,6 +21,7 @@ TARGETS = {
     "metaimage": ("MetaImage", ["volume/metaimage.c"]),
     "legacy_vtk": ("legacy VTK", ["volume/legacy_vtk.c"]),
     "vti": ("VTK XML", ["volume/vti.c", "volume/xml.c"]),
+    "mesh": ("PLY, STL, OBJ", ["mesh/ply.c", "mesh/stl.c", "mesh/obj.c"]),
     "npy": ("NumPy", ["volume/npy.c"]),
     "mrc": ("MRC, CCP4", ["volume/mrc.c"]),
     "dicom": ("DICOM, zip archives", ["volume/dicom.c", "volume/source.c", "volume/bundle_zip.c"] + [

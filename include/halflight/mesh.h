@@ -1,0 +1,55 @@
+/* halflight/mesh.h - triangles that share a scene with volumes.
+ *
+ * Meshes are immutable and reference-counted: hl_mesh_retain() and hl_mesh_release(). Counter-clockwise
+ * vertices face the viewer.
+ */
+#ifndef HALFLIGHT_MESH_H
+#define HALFLIGHT_MESH_H
+
+#include "context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct hl_mesh hl_mesh;
+
+/* The arrays of a mesh. hl_mesh_create() copies them. */
+typedef struct hl_mesh_description {
+  size_t struct_size;          /* set by hl_mesh_description_defaults() */
+  const float (*positions)[3]; /* [vertex_count]; world units */
+  const float (*normals)[3];   /* [vertex_count]; of any length; null: none */
+  const float (*colors)[4];    /* [vertex_count]; linear RGB and opacity, 0 to 1; null: none */
+  size_t vertex_count;
+  const uint32_t (*triangles)[3]; /* [triangle_count]; indices of vertices */
+  size_t triangle_count;
+} hl_mesh_description;
+
+HL_API void hl_mesh_description_defaults(hl_mesh_description *description);
+
+/* Copies the arrays. Triangles without an area, and those with a vertex that is no number, are left out. An
+ * index out of range is HL_ERROR_INPUT. *mesh is owned by the caller (release it). */
+HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description,
+                                               hl_mesh **mesh, hl_error *error);
+
+/* Reads PLY (ASCII and binary), STL (ASCII and binary) and OBJ files. Faces of more than three corners become
+ * fans of triangles. Colours of 8 bits are sRGB, as other programs take them. */
+HL_API HL_WARN_UNUSED hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh,
+                                             hl_error *error);
+
+/* Whether hl_mesh_load() reads files of this name: by its ending. */
+HL_API int hl_mesh_reads_name(const char *path);
+
+/* The mesh's arrays, valid as long as the mesh. Null for null. */
+HL_API const hl_mesh_description *hl_mesh_describe(const hl_mesh *mesh);
+
+/* The least and greatest coordinates of the vertices; world units. */
+HL_API HL_WARN_UNUSED hl_status hl_mesh_get_box(const hl_mesh *mesh, double low[3], double high[3]);
+
+HL_API void hl_mesh_retain(hl_mesh *mesh);
+HL_API void hl_mesh_release(hl_mesh *mesh); /* null is allowed */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

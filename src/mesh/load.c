@@ -1,0 +1,52 @@
+/* mesh/load.c - hl_mesh_load: chooses the reader of a file by its content, or else by its name. */
+#include <string.h>
+
+#include "core/context.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "mesh/mesh.h"
+#include "volume/text.h"
+
+static const struct {
+  const char *ending;
+  mesh_reader *read;
+} formats[] = {{".ply", hl_mesh_read_ply}, {".stl", hl_mesh_read_stl}, {".obj", hl_mesh_read_obj}};
+
+int hl_mesh_reads_name(const char *path) {
+  for (size_t n = 0; path != NULL && n < sizeof formats / sizeof *formats; n++)
+    if (hl_text_ends(path, formats[n].ending)) return 1;
+  return 0;
+}
+
+static mesh_reader *reader_of(const char *path, mesh_text text) {
+  if (text.length >= 4 && memcmp(text.bytes, "ply", 3) == 0 && hl_is_space((char)text.bytes[3]))
+    return hl_mesh_read_ply;
+  for (size_t n = 0; n < sizeof formats / sizeof *formats; n++)
+    if (hl_text_ends(path, formats[n].ending)) return formats[n].read;
+  return NULL;
+}
+
+hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh, hl_error *error) {
+  if (context == NULL || path == NULL || mesh == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_mesh_load: null context, path or mesh");
+  *mesh = NULL;
+  unsigned char *bytes = NULL;
+  mesh_text text = {0};
+  hl_status status = hl_file_read(context, path, SIZE_MAX - 1, &bytes, &text.length, error);
+  if (status != HL_OK) return status;
+  text.bytes = bytes;
+  mesh_parts parts = {.context = context, .path = path};
+  mesh_reader *read = reader_of(path, text);
+  if (read == NULL)
+    status = hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: is no mesh that is known: give .ply, .stl or .obj",
+                     path);
+  else status = read(text, &parts, error);
+  hl_release(context, bytes);
+  if (status == HL_OK) {
+    hl_error told;
+    status = hl_mesh_of_parts(&parts, mesh, &told);
+    if (status != HL_OK) hl_fail(error, status, "%s: %s", path, told.message);
+  }
+  hl_mesh_parts_release(&parts);
+  return status;
+}

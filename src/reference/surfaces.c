@@ -1,0 +1,276 @@
+/* reference/surfaces.c - the meshes of a scene for the oracle: where rays meet triangles, found in a tree of
+ * boxes, and the light that a point of a surface sends to the eye. */
+#include <string.h>
+
+#include "core/memory.h"
+#include "mesh/mesh.h"
+#include "reference/reference.h"
+
+enum { LEAF_TRIANGLES = 4, DEEPEST = 96 };
+
+/* ---- the tree ---- */
+
+static void grow_box(double low[3], double high[3], const vec3 *corner, int count) {
+  for (int i = 0; i < count; i++) {
+    const double at[3] = {corner[i].x, corner[i].y, corner[i].z};
+    for (int axis = 0; axis < 3; axis++) {
+      low[axis] = fmin(low[axis], at[axis]);
+      high[axis] = fmax(high[axis], at[axis]);
+    }
+  }
+}
+
+static double middle_of(const reference_triangle *triangle, int axis) {
+  double sum = 0;
+  for (int i = 0; i < 3; i++) sum += (&triangle->corner[i].x)[axis];
+  return sum / 3;
+}
+
+/* Moves the triangles whose middle lies below `at` to the front; returns how many. */
+static size_t part_triangles(reference_triangle *triangles, size_t count, int axis, double at) {
+  size_t below = 0;
+  for (size_t t = 0; t < count; t++) {
+    if (middle_of(&triangles[t], axis) >= at) continue;
+    reference_triangle moved = triangles[t];
+    triangles[t] = triangles[below];
+    triangles[below++] = moved;
+  }
+  return below;
+}
+
+/* Makes the tree of a range of triangles, which it sorts; returns its node. A node's second child is at
+ * `second`, the first one follows it. */
+static size_t make_tree(reference_surfaces *all, size_t first, size_t count, int depth) {
+  size_t made = all->node_count++;
+  reference_node *node = &all->nodes[made];
+  *node = (reference_node){
+      {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, first, count, 0};
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t t = first; t < first + count; t++) {
+    const reference_triangle *triangle = &all->triangles[t];
+    vec3 middle = {middle_of(triangle, 0), middle_of(triangle, 1), middle_of(triangle, 2)};
+    grow_box(node->low, node->high, triangle->corner, 3);
+    grow_box(low, high, &middle, 1);
+  }
+  if (count <= LEAF_TRIANGLES || depth == DEEPEST) return made;
+  int axis = 0;
+  for (int other = 1; other < 3; other++)
+    if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
+  size_t below = part_triangles(all->triangles + first, count, axis, (low[axis] + high[axis]) / 2);
+  if (below == 0 || below == count) return made;
+  (void)make_tree(all, first, below, depth + 1);
+  size_t second = make_tree(all, first + below, count - below, depth + 1);
+  all->nodes[made].second = second;
+  return made;
+}
+
+static void add_mesh(reference_surfaces *all, const hl_scene_mesh *mesh) {
+  const hl_mesh_description *d = &mesh->mesh->description;
+  affine3 placement = hl_scene_mesh_to_world(mesh);
+  for (size_t t = 0; t < d->triangle_count; t++) {
+    reference_triangle *made = &all->triangles[all->triangle_count++];
+    double opacity = 0;
+    *made = (reference_triangle){.mesh = mesh, .index = t};
+    for (int i = 0; i < 3; i++) {
+      const float *p = d->positions[d->triangles[t][i]];
+      made->corner[i] = affine3_apply(placement, (vec3){p[0], p[1], p[2]});
+      opacity += d->colors != NULL ? fmin(fmax(d->colors[d->triangles[t][i]][3], 0), 1) / 3 : 1.0 / 3;
+    }
+    made->opacity = opacity * mesh->opacity;
+  }
+}
+
+/* Normals of a mesh's vertices, in the world: the file's, or the sum of the triangles' cross products. */
+static void add_normals(const hl_scene_mesh *mesh, vec3 *normals) {
+  const hl_mesh_description *d = &mesh->mesh->description;
+  affine3 placement = hl_scene_mesh_to_world(mesh);
+  for (size_t v = 0; v < d->vertex_count && d->normals != NULL; v++)
+    normals[v] = mat3_apply(placement.linear, (vec3){d->normals[v][0], d->normals[v][1], d->normals[v][2]});
+  for (size_t t = 0; t < d->triangle_count && d->normals == NULL; t++) {
+    vec3 corner[3];
+    for (int i = 0; i < 3; i++) {
+      const float *p = d->positions[d->triangles[t][i]];
+      corner[i] = affine3_apply(placement, (vec3){p[0], p[1], p[2]});
+    }
+    vec3 cross = vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0]));
+    for (int i = 0; i < 3; i++) normals[d->triangles[t][i]] = vec3_add(normals[d->triangles[t][i]], cross);
+  }
+}
+
+hl_status hl_reference_surfaces_create(reference *all, hl_error *error) {
+  const hl_scene_description *scene = all->scene;
+  reference_surfaces *made = &all->surfaces;
+  size_t triangles = 0, vertices = 0, at = 0;
+  for (size_t m = 0; m < scene->mesh_count; m++) {
+    triangles += scene->meshes[m].mesh->description.triangle_count;
+    vertices += scene->meshes[m].mesh->description.vertex_count;
+  }
+  if (triangles == 0) return HL_OK;
+  made->triangles = hl_allocate(all->context, triangles, sizeof *made->triangles);
+  made->nodes = hl_allocate(all->context, 2 * triangles, sizeof *made->nodes);
+  made->normals = hl_allocate_zeroed(all->context, vertices, sizeof *made->normals);
+  made->first_normal = hl_allocate(all->context, scene->mesh_count, sizeof *made->first_normal);
+  if (made->triangles == NULL || made->nodes == NULL || made->normals == NULL || made->first_normal == NULL)
+    return hl_fail_memory(error, triangles * sizeof *made->triangles, "the reference's meshes");
+  for (size_t m = 0; m < scene->mesh_count; m++) {
+    made->first_normal[m] = at;
+    add_mesh(made, &scene->meshes[m]);
+    add_normals(&scene->meshes[m], made->normals + at);
+    at += scene->meshes[m].mesh->description.vertex_count;
+  }
+  (void)make_tree(made, 0, triangles, 0);
+  return HL_OK;
+}
+
+void hl_reference_surfaces_release(reference *all) {
+  hl_release(all->context, all->surfaces.triangles);
+  hl_release(all->context, all->surfaces.nodes);
+  hl_release(all->context, all->surfaces.normals);
+  hl_release(all->context, all->surfaces.first_normal);
+}
+
+/* ---- rays ---- */
+
+/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997); the distance, infinite
+ * where the ray misses. */
+static double meet(const reference_triangle *triangle, const reference_ray *ray, double weight[3]) {
+  vec3 ab = vec3_subtract(triangle->corner[1], triangle->corner[0]);
+  vec3 ac = vec3_subtract(triangle->corner[2], triangle->corner[0]);
+  vec3 p = vec3_cross(ray->direction, ac), away = vec3_subtract(ray->origin, triangle->corner[0]);
+  vec3 q = vec3_cross(away, ab);
+  double determinant = vec3_dot(ab, p);
+  if (determinant == 0) return INFINITY;
+  weight[1] = vec3_dot(away, p) / determinant;
+  weight[2] = vec3_dot(ray->direction, q) / determinant;
+  weight[0] = 1 - weight[1] - weight[2];
+  if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0) return INFINITY;
+  return vec3_dot(ac, q) / determinant;
+}
+
+static bool meets_box(const reference_node *node, const reference_ray *ray, double nearest, double farthest) {
+  const double o[3] = {ray->origin.x, ray->origin.y, ray->origin.z};
+  const double d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
+  for (int axis = 0; axis < 3; axis++) {
+    if (d[axis] == 0) {
+      if (o[axis] < node->low[axis] || o[axis] > node->high[axis]) return false;
+      continue;
+    }
+    double a = (node->low[axis] - o[axis]) / d[axis], b = (node->high[axis] - o[axis]) / d[axis];
+    nearest = fmax(nearest, fmin(a, b) * (1 - 1e-12) - 1e-300);
+    farthest = fmin(farthest, fmax(a, b) * (1 + 1e-12) + 1e-300);
+  }
+  return nearest <= farthest;
+}
+
+static bool takes_part(const reference_triangle *triangle, reference_role role) {
+  return role == REFERENCE_SEEN ? triangle->mesh->visible : triangle->mesh->casts_shadow;
+}
+
+/* Visits the leaves that a ray may meet. */
+bool hl_reference_surface_next(const reference *all, reference_role role, const reference_ray *ray,
+                               double after, reference_hit *hit) {
+  const reference_surfaces *surfaces = &all->surfaces;
+  size_t waiting[DEEPEST + 2], count = 0;
+  *hit = (reference_hit){.distance = ray->farthest};
+  if (surfaces->node_count > 0) waiting[count++] = 0;
+  while (count > 0) {
+    const reference_node *node = &surfaces->nodes[waiting[--count]];
+    if (!meets_box(node, ray, after, hit->distance)) continue;
+    if (node->second != 0) {
+      waiting[count++] = node->second;
+      waiting[count++] = (size_t)(node - surfaces->nodes) + 1;
+      continue;
+    }
+    for (size_t t = node->first; t < node->first + node->count; t++) {
+      double weight[3] = {0, 0, 0}, distance = meet(&surfaces->triangles[t], ray, weight);
+      if (!(distance > after && distance < hit->distance) || !takes_part(&surfaces->triangles[t], role))
+        continue;
+      *hit = (reference_hit){&surfaces->triangles[t], distance, {weight[0], weight[1], weight[2]}};
+    }
+  }
+  return hit->triangle != NULL;
+}
+
+double hl_reference_surfaces_passing(const reference *all, const reference_ray *ray) {
+  double passing = 1, least = all->step * LEAST_GAP;
+  reference_hit hit;
+  for (double after = ray->nearest + least; passing > 0; after = hit.distance + 1e-9 * least) {
+    if (!hl_reference_surface_next(all, REFERENCE_CASTS_SHADOW, ray, after, &hit)) break;
+    passing *= 1 - hit.triangle->opacity;
+  }
+  return passing;
+}
+
+/* ---- light ---- */
+
+/* The cosine of 40 degrees: beyond that angle between a triangle and a vertex's normal there is an edge. */
+static const double ROUNDED = 0.766;
+
+static vec3 normal_of(const reference *all, const reference_hit *hit, vec3 flat) {
+  const hl_scene_mesh *mesh = hit->triangle->mesh;
+  const uint32_t *corner = mesh->mesh->description.triangles[hit->triangle->index];
+  const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];
+  vec3 sum = {0, 0, 0};
+  for (int i = 0; i < 3; i++) {
+    vec3 own = vec3_normalise(normals[corner[i]]);
+    double along = vec3_dot(own, flat);
+    if (fabs(along) < ROUNDED) own = flat;
+    sum = vec3_add(sum,
+                   vec3_scale(own, along < 0 && fabs(along) >= ROUNDED ? -hit->weight[i] : hit->weight[i]));
+  }
+  return vec3_normalise(sum);
+}
+
+static void color_of(const reference_hit *hit, double color[3]) {
+  const hl_scene_mesh *mesh = hit->triangle->mesh;
+  const hl_mesh_description *d = &mesh->mesh->description;
+  const uint32_t *corner = d->triangles[hit->triangle->index];
+  for (int c = 0; c < 3; c++) {
+    double own = d->colors == NULL ? 1 : 0;
+    for (int i = 0; i < 3 && d->colors != NULL; i++) own += hit->weight[i] * d->colors[corner[i]][c];
+    color[c] = own * mesh->color[c];
+  }
+}
+
+/* Eqs. (3) and (4) for one light. */
+static void add_light(const reference *all, size_t light, const reference_hit *hit,
+                      const reference_surface_point *at, reference_worker *worker, double picture[3]) {
+  const hl_material *material = &hit->triangle->mesh->material;
+  double reach[3];
+  arrival arrived;
+  hl_reference_light_arrive(&all->lights[light], at->point, &arrived);
+  double cosine = vec3_dot(at->normal, arrived.towards);
+  if (cosine <= 0) return;
+  hl_reference_light_reach(all, &all->lights[light], at->point, hit->triangle->mesh->receives_shadow, worker,
+                           reach);
+  vec3 reflected = vec3_subtract(vec3_scale(at->normal, 2 * cosine), arrived.towards);
+  double gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
+  for (int c = 0; c < 3; c++)
+    picture[c] = (at->color[c] * material->diffuse * cosine + gloss) * arrived.incoming[c] * reach[c];
+}
+
+void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
+                                reference_worker *worker) {
+  reference_parts *sample = &worker->sample;
+  const hl_scene_mesh *mesh = hit->triangle->mesh;
+  const vec3 *corner = hit->triangle->corner;
+  reference_surface_point at = {.point = vec3_add(ray->origin, vec3_scale(ray->direction, hit->distance)),
+                                .to_eye = vec3_scale(ray->direction, -1)};
+  vec3 flat = vec3_normalise(
+      vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0])));
+  bool behind = vec3_dot(flat, at.to_eye) < 0;
+  at.normal = mesh->smooth ? normal_of(all, hit, flat) : flat;
+  if (behind) at.normal = vec3_scale(at.normal, -1);
+  color_of(hit, at.color);
+  hl_reference_parts_clear(sample, all->scene->light_count);
+  sample->weight = 1;
+  sample->normal = at.normal;
+  sample->depth = hit->distance;
+  if (behind && !mesh->two_sided) return;
+  for (int c = 0; c < 3; c++) {
+    sample->ambient[c] = at.color[c] * mesh->material.ambient * all->scene->ambient[c];
+    sample->emission[c] = at.color[c] * mesh->material.emission;
+  }
+  for (size_t l = 0; l < all->scene->light_count; l++)
+    add_light(all, l, hit, &at, worker, sample->lights[l].picture);
+}

@@ -1,0 +1,73 @@
+/* render/surface_lanes.h - sixteen samples of surfaces lit (steps 14 and 15). */
+#ifndef HL_RENDER_SURFACE_LANES_H
+#define HL_RENDER_SURFACE_LANES_H
+
+#include "render/shade_lanes.h"
+#include "render/surface_samples.h"
+
+LANES_INLINE lanes3 load3(const float v[3][SURFACE_SAMPLES]) {
+  return (lanes3){lanes_load(v[0]), lanes_load(v[1]), lanes_load(v[2])};
+}
+
+/* Pixels of a shadow buffer by which look-ups move away from a surface, along its normal: so that they read
+ * as little as possible of what lies behind it, and of its own matter. */
+static const float LOOKUP_OFFSET = 1.25f;
+
+/* A position moved away from a surface. Derived: the buffer's column is (r1.p) / (r0.p); a way d at a right
+ * angle to the light moves it by about |r1| d / (r0.p). */
+LANES_INLINE lanes3 moved_away(const shade_light *light, const shadow_map *map, lanes3 position,
+                               lanes3 normal) {
+  const float *row = map->rows[1];
+  float scale = LOOKUP_OFFSET / sqrtf(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+  lanes away = light->parallel ? lanes_set(scale)
+                               : lanes_max(row_of_point(map->rows[0], position), lanes_set(0)) * scale;
+  return add_scaled3(position, normal, away);
+}
+
+/* The light that passes everything before the slab. */
+LANES_INLINE color_lanes light_before_slab(const shade_light *light, lanes3 position, lanes3 normal) {
+  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &light->lookup->map;
+  position = moved_away(light, map, position, normal);
+  if (light->sublight_count > 0) return mean_of_sublights(light, position, 0xffff);
+  color_lanes passing = {{lanes_set(1.0f), lanes_set(1.0f), lanes_set(1.0f)}};
+  shadow_taps taps = taps_of_position(light, map, position);
+  for (int c = 0; c < light->channels; c++)
+    passing.c[c] = interpolated(light->lookup, &taps, light->cubic, c);
+  return passing;
+}
+
+/* Eqs. (3) and (4) for a surface: what one light adds. */
+LANES_INLINE void add_light(const shade_job *job, const shade_light *light, const surface_samples *samples,
+                            color_lanes *lit) {
+  lanes3 position = load3(samples->position), normal = load3(samples->normal);
+  arriving_light arriving;
+  (void)find_direction(job, light, position, &arriving);
+  lanes facing = dot3(normal, arriving.towards);
+  if (lanes_bits(facing > 0.0f) == 0) return;
+  find_full_light(light, position, &arriving);
+  if (is_dark(&arriving.full)) return;
+  lanes3 mirrored = add_scaled3(scale3(arriving.towards, lanes_set(-1.0f)), normal, facing * 2.0f);
+  lanes glint = power(dot3(load3(samples->towards_eye), mirrored), samples->shininess) * samples->specular;
+  lanes diffuse = lanes_max(facing, lanes_set(0)) * samples->diffuse, transmittance = lanes_set(1.0f);
+  glint = lanes_keep(facing > 0.0f, glint);
+  bool shadowed = light->shadowed && samples->receives_shadow;
+  color_lanes passing;
+  if (shadowed) passing = light_before_slab(light, position, normal);
+  for (int c = 0; c < 3; c++) {
+    if (shadowed && c < light->channels)
+      transmittance = lanes_min(lanes_max(passing.c[c], lanes_set(0)), lanes_set(1.0f));
+    lit->c[c] = lanes_fma(arriving.full.c[c] * transmittance,
+                          lanes_fma(lanes_load(samples->color[c]), diffuse, glint), lit->c[c]);
+  }
+}
+
+static void shade_surface(const shade_job *job, surface_samples *samples) {
+  color_lanes lit;
+  for (int c = 0; c < 3; c++)
+    lit.c[c] = lanes_load(samples->color[c]) *
+               (samples->ambient * job->ambient[c] + samples->emission * job->emission);
+  for (int i = 0; i < job->light_count; i++) add_light(job, &job->lights[i], samples, &lit);
+  for (int c = 0; c < 3; c++) lanes_store(samples->lit[c], lit.c[c]);
+}
+
+#endif

@@ -1,0 +1,21 @@
+/* render/surface_samples.h - samples of surfaces that are lit together: the input and the result of the hot
+ * function for surfaces. */
+#ifndef HL_RENDER_SURFACE_SAMPLES_H
+#define HL_RENDER_SURFACE_SAMPLES_H
+
+#include "render/slab.h"
+
+enum { SURFACE_SAMPLES = 16 };
+
+/* Up to sixteen samples of one mesh in one slab. Unused ones repeat the first. */
+typedef struct surface_samples {
+  _Alignas(64) float position[3][SURFACE_SAMPLES]; /* frame space */
+  float normal[3][SURFACE_SAMPLES];                /* unit, on the eye's side; 0: black */
+  float towards_eye[3][SURFACE_SAMPLES];           /* unit */
+  float color[3][SURFACE_SAMPLES];                 /* linear RGB */
+  float lit[3][SURFACE_SAMPLES];                   /* the result: the light that leaves towards the eye */
+  float ambient, diffuse, specular, shininess, emission; /* ka kd ks n ke */
+  int receives_shadow;
+} surface_samples;
+
+#endif

@@ -1,0 +1,318 @@
+/* render/sweep_surfaces.c - see sweep_surfaces.h. */
+#include "render/sweep_surfaces.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/surface_samples.h"
+
+/* ---- begin and end ---- */
+
+/* Pixels of a shadow buffer by which surfaces are delayed: as far as its look-ups reach beyond the way that
+ * they are moved away from the surface (surface_lanes.h). */
+static double reach_of_lookups(const light_shadow *shadow) {
+  if (shadow->sublight_count > 0 || shadow->plan.cubic) return 1.75;
+  return shadow->method == &hl_shadow_hard ? 0.75 : 2; /* soft methods blur by a pixel and more */
+}
+
+static hl_status make_fragments(sweep *sweep, const view *view, const light_shadow *shadow,
+                                const occupancy *occupancy, fragments *made, hl_error *error) {
+  const fragments_source source = {.context = sweep->content.context,
+                                   .pool = sweep->content.pool,
+                                   .surfaces = sweep->frame->surfaces,
+                                   .view = view,
+                                   .sheets = &sweep->geometry->sheets,
+                                   .falling = shadow == NULL && sweep->geometry->back_to_front,
+                                   .of_light = shadow != NULL,
+                                   .delay = shadow != NULL ? reach_of_lookups(shadow) : 0,
+                                   .rise = shadow != NULL && shadow->method != &hl_shadow_hard ? 1.25 : 0,
+                                   .marks = occupancy->by_sheet,
+                                   .tile_words = occupancy->tile_words};
+  return hl_fragments_create(&source, made, error);
+}
+
+/* Each thread's memory for tiles with fragments. */
+static hl_status make_room(sweep *sweep, hl_error *error) {
+  size_t places = (size_t)hl_pool_threads(sweep->content.pool), volumes = (size_t)sweep->content.volume_count;
+  surface_state *state = &sweep->surfaces;
+  hl_layout layout = {0};
+  for (int pass = 0; pass < 2; pass++) {
+    state->patches = hl_layout_take(&layout, places * volumes, sizeof *state->patches);
+    state->cuts = hl_layout_take(&layout, places * volumes * 2, sizeof *state->cuts);
+    state->bounds = hl_layout_take(&layout, places * 2, sizeof *state->bounds);
+    if (pass == 1) break;
+    state->memory = hl_allocate(sweep->content.context, layout.bytes, 1);
+    if (state->memory == NULL) return hl_fail_memory(error, layout.bytes, "the surfaces");
+    layout = (hl_layout){.base = state->memory};
+  }
+  return HL_OK;
+}
+
+hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error) {
+  if (sweep->frame->surfaces == NULL || sweep->preparatory) return HL_OK;
+  surface_state *state = &sweep->surfaces;
+  hl_status status = make_room(sweep, error);
+  if (status == HL_OK)
+    status = make_fragments(sweep, &sweep->frame->eye, NULL, &sweep->image.occupancy, &state->image, error);
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
+    sweep_light *light = &sweep->lights[i];
+    if (light->shadow.method == NULL) continue;
+    status = make_fragments(sweep, &light->shadow.buffer->view, &light->shadow, &light->sheets.occupancy,
+                            &state->lights[i], error);
+  }
+  return status;
+}
+
+void hl_sweep_surfaces_end(sweep *sweep) {
+  hl_context *context = sweep->content.context;
+  hl_fragments_release(context, &sweep->surfaces.image);
+  for (int i = 0; i < FRAME_LIGHTS; i++) hl_fragments_release(context, &sweep->surfaces.lights[i]);
+  hl_release(context, sweep->surfaces.memory);
+}
+
+static fragment_range reach(const fragments *all, size_t tile, int slab) {
+  return all->first != NULL ? hl_fragments_reach(all, tile, slab) : (fragment_range){NULL, 0};
+}
+
+fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab) {
+  return reach(&sweep->surfaces.image, tile, slab);
+}
+
+fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size_t tile, int slab) {
+  return reach(&sweep->surfaces.lights[light], tile, slab);
+}
+
+/* ---- the picture: samples of surfaces ---- */
+
+/* Where the ray of a fragment's samples meets it, and the fragment's normal and colour there. */
+typedef struct surface_point {
+  vec3 position, normal, towards_eye;
+  double color[3];
+} surface_point;
+
+static vec3 position_of(const sweep *sweep, const tile_slab *slab, const fragment *f) {
+  const view *eye = &sweep->frame->eye;
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
+  double u, v;
+  vec3 start, way;
+  hl_fragment_middle(f->samples, &u, &v);
+  u += slab->x * TILE + block % 4 * BLOCK + lane % BLOCK;
+  v += slab->y * TILE + block / 4 * BLOCK + lane / BLOCK;
+  hl_view_ray(eye, u, v, &start, &way);
+  double rise = sheets->first + f->height - vec3_dot(sheets->normal, start);
+  return vec3_add(start, vec3_scale(way, rise / vec3_dot(sheets->normal, way)));
+}
+
+/* The weights of a triangle's corners at a point of its plane. */
+static void find_weights(const vec3 corner[3], vec3 cross, vec3 at, double weight[3]) {
+  double area = vec3_dot(cross, cross), sum = 0;
+  for (int i = 0; i < 3; i++) {
+    vec3 a = corner[(i + 1) % 3], b = corner[(i + 2) % 3];
+    double part = vec3_dot(cross, vec3_cross(vec3_subtract(a, at), vec3_subtract(b, at)));
+    weight[i] = area > 0 ? fmax(part / area, 0) : 1;
+    sum += weight[i];
+  }
+  for (int i = 0; i < 3; i++) weight[i] = sum > 0 ? weight[i] / sum : 1.0 / 3;
+}
+
+/* The cosine of the greatest angle between a triangle and a vertex's normal at which the surface counts as
+ * rounded there: 40 degrees. Beyond it there is an edge. */
+static const double ROUNDED = 0.766;
+
+static vec3 smooth_normal(const surfaces *all, const uint32_t *corner, const double weight[3], vec3 flat) {
+  vec3 sum = {0, 0, 0};
+  for (int i = 0; i < 3; i++) {
+    vec3 own = hl_surface_vector(all->normals[corner[i]]);
+    double along = vec3_dot(own, flat);
+    if (fabs(along) < ROUNDED) own = flat;
+    else if (along < 0) own = vec3_scale(own, -1);
+    sum = vec3_add(sum, vec3_scale(own, weight[i]));
+  }
+  return vec3_normalise(sum);
+}
+
+static void find_color(const surface_mesh *mesh, const uint32_t *corner, const double weight[3],
+                       double color[3]) {
+  for (int c = 0; c < 3; c++) {
+    double own = 0;
+    for (int i = 0; i < 3 && mesh->colors != NULL; i++)
+      own += weight[i] * mesh->colors[corner[i] - mesh->first_vertex][c];
+    color[c] = mesh->scene->color[c] * (mesh->colors != NULL ? own : 1);
+  }
+}
+
+static surface_point find_point(const sweep *sweep, const tile_slab *slab, const fragment *f,
+                                const surface_mesh *mesh) {
+  const surfaces *all = sweep->frame->surfaces;
+  const uint32_t *corner = all->triangles[f->triangle];
+  const view *eye = &sweep->frame->eye;
+  surface_point point = {.position = position_of(sweep, slab, f)};
+  vec3 at[3];
+  double weight[3];
+  for (int i = 0; i < 3; i++) at[i] = hl_surface_vector(all->positions[corner[i]]);
+  vec3 cross = vec3_cross(vec3_subtract(at[1], at[0]), vec3_subtract(at[2], at[0])),
+       flat = vec3_normalise(cross);
+  find_weights(at, cross, point.position, weight);
+  point.towards_eye = eye->perspective ? vec3_normalise(vec3_subtract(eye->origin, point.position))
+                                       : vec3_scale(eye->direction, -1);
+  point.normal = mesh->scene->smooth ? smooth_normal(all, corner, weight, flat) : flat;
+  bool behind = vec3_dot(flat, point.towards_eye) < 0;
+  if (behind) point.normal = vec3_scale(point.normal, mesh->scene->two_sided ? -1 : 0);
+  find_color(mesh, corner, weight, point.color);
+  if (behind && !mesh->scene->two_sided) point.color[0] = point.color[1] = point.color[2] = 0;
+  return point;
+}
+
+static void set_sample(surface_samples *samples, int i, const surface_point *point) {
+  const vec3 *vectors[] = {&point->position, &point->normal, &point->towards_eye};
+  float(*rows[])[SURFACE_SAMPLES] = {samples->position, samples->normal, samples->towards_eye};
+  for (int n = 0; n < 3; n++) {
+    rows[n][0][i] = (float)vectors[n]->x;
+    rows[n][1][i] = (float)vectors[n]->y;
+    rows[n][2][i] = (float)vectors[n]->z;
+  }
+  for (int c = 0; c < 3; c++) samples->color[c][i] = (float)point->color[c];
+}
+
+static void set_material(surface_samples *samples, const hl_scene_mesh *mesh) {
+  samples->ambient = (float)mesh->material.ambient;
+  samples->diffuse = (float)mesh->material.diffuse;
+  samples->specular = (float)mesh->material.specular;
+  samples->shininess = (float)mesh->material.shininess;
+  samples->emission = (float)mesh->material.emission;
+  samples->receives_shadow = mesh->receives_shadow;
+}
+
+/* Step 16 for one fragment. pixels: the tile's. */
+static void composite_fragment(int back_to_front, const fragment *f, const float lit[3], float *pixels) {
+  float *at = pixels + (size_t)(f->pixel / BLOCK_PIXELS) * 4 * BLOCK_PIXELS + f->pixel % BLOCK_PIXELS;
+  float *alpha = at + 3 * BLOCK_PIXELS;
+  float weight = back_to_front ? f->opacity : f->opacity * (1 - *alpha),
+        keep = back_to_front ? 1 - f->opacity : 1;
+  for (int c = 0; c < 3; c++) at[c * BLOCK_PIXELS] = lit[c] * weight + at[c * BLOCK_PIXELS] * keep;
+  *alpha = *alpha * keep + weight;
+}
+
+/* Steps 14 to 16 for fragments of one mesh. */
+static void shade_batch(const sweep *sweep, const tile_slab *slab, const fragment *const *list, int count,
+                        const surface_mesh *mesh) {
+  surface_samples samples;
+  set_material(&samples, mesh->scene);
+  for (int i = 0; i < SURFACE_SAMPLES; i++) {
+    surface_point point = find_point(sweep, slab, list[i < count ? i : 0], mesh);
+    set_sample(&samples, i, &point);
+  }
+  sweep->content.hot->render.surface(&sweep->shade, &samples);
+  float *pixels = sweep->pixels + slab->tile * 4 * TILE_PIXELS;
+  for (int i = 0; i < count; i++) {
+    const float lit[3] = {samples.lit[0][i], samples.lit[1][i], samples.lit[2][i]};
+    composite_fragment(sweep->shade.back_to_front, list[i], lit, pixels);
+  }
+}
+
+/* ---- the picture: slabs cut at fragments ---- */
+
+/* The fragments of a slab's round: each pixel's fragment number `round`, from below. */
+static int fragments_of_round(fragment_range range, int round, const fragment *list[TILE_PIXELS]) {
+  int count = 0, number = 0;
+  for (size_t i = 0; i < range.count; i++) {
+    number = i > 0 && range.first[i].pixel == range.first[i - 1].pixel ? number + 1 : 0;
+    if (number == round) list[count++] = &range.first[i];
+  }
+  return count;
+}
+
+static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t blocks, const fragment **list,
+                            int count) {
+  const fragment *batch[SURFACE_SAMPLES];
+  const surface_mesh *mesh = NULL;
+  int filled = 0;
+  for (int i = 0; i < count; i++) {
+    if ((blocks >> list[i]->pixel / BLOCK_PIXELS & 1) == 0) continue;
+    const surface_mesh *own = hl_surface_of(sweep->frame->surfaces, list[i]->triangle);
+    if (filled > 0 && (own != mesh || filled == SURFACE_SAMPLES)) {
+      shade_batch(sweep, slab, batch, filled, mesh);
+      filled = 0;
+    }
+    mesh = own;
+    batch[filled++] = list[i];
+  }
+  if (filled > 0) shade_batch(sweep, slab, batch, filled, mesh);
+}
+
+/* Shades the piece of each pixel's slab between two heights. */
+static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const float *from, const float *to) {
+  const surface_state *state = &sweep->surfaces;
+  size_t place = (size_t)slab->worker * (size_t)sweep->content.volume_count;
+  shade_patch *patches = state->patches + place;
+  for (int p = 0; p < slab->patch_count; p++) {
+    const shade_patch *whole = &slab->patches[p];
+    float *enter = state->cuts[(place + (size_t)p) * 2], *leave = state->cuts[(place + (size_t)p) * 2 + 1];
+    bool open = whole->enter == NULL || whole->uncut;
+    for (int i = 0; i < TILE_PIXELS; i++) {
+      enter[i] = open || from[i] > whole->enter[i] ? from[i] : whole->enter[i];
+      leave[i] = open || to[i] < whole->leave[i] ? to[i] : whole->leave[i];
+    }
+    patches[p] = *whole;
+    patches[p].enter = enter;
+    patches[p].leave = leave;
+    patches[p].uncut = 0;
+  }
+  tile_slab piece = *slab;
+  piece.patches = patches;
+  return sweep->act(sweep, &piece);
+}
+
+/* The blocks, among `blocks`, of which some pixel is not opaque. */
+static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t blocks) {
+  const float *pixels = sweep->pixels + slab->tile * 4 * TILE_PIXELS;
+  uint32_t open = 0;
+  for (; blocks != 0; blocks &= blocks - 1) {
+    int block = __builtin_ctz(blocks);
+    const float *alpha = pixels + (block * 4 + 3) * BLOCK_PIXELS;
+    for (int lane = 0; lane < BLOCK_PIXELS; lane++)
+      if (alpha[lane] < 1 - 1.0f / 2048) open |= 1u << block;
+  }
+  return open;
+}
+
+/* Heights beyond all sheets. */
+static const float BELOW = -1e30f, ABOVE = 1e30f;
+
+uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
+                                fragment_range range) {
+  const fragment *list[TILE_PIXELS];
+  float *from = sweep->surfaces.bounds[slab->worker * 2], *to = sweep->surfaces.bounds[slab->worker * 2 + 1];
+  for (int i = 0; i < TILE_PIXELS; i++) from[i] = BELOW;
+  for (int round = 0;; round++) {
+    int count = fragments_of_round(range, round, list);
+    for (int i = 0; i < TILE_PIXELS; i++) to[i] = ABOVE;
+    for (int i = 0; i < count; i++) to[list[i]->pixel] = list[i]->height;
+    if (slab->blocks != 0) (void)shade_piece(sweep, slab, from, to);
+    if (count == 0) break;
+    shade_fragments(sweep, slab, blocks, list, count);
+    for (int i = 0; i < TILE_PIXELS; i++)
+      from[i] = to[i]; /* above all sheets where the slab was shaded to its end */
+  }
+  return sweep->shade.back_to_front ? blocks : open_blocks(sweep, slab, blocks);
+}
+
+/* ---- the lights ---- */
+
+bool hl_sweep_surfaces_attenuate(const attenuate_job *job, fragment_range range) {
+  for (size_t i = 0; i < range.count; i++) {
+    const fragment *f = &range.first[i];
+    int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
+    size_t row = (size_t)(block / 4 * BLOCK + lane / BLOCK),
+           column = (size_t)(block % 4 * BLOCK + lane % BLOCK);
+    for (int c = 0; c < job->channels; c++) {
+      float *at = job->transmittance[c] + row * job->stride + column, before = *at;
+      *at = before * (1 - f->opacity);
+      if (job->older[c] != NULL) job->older[c][row * job->stride + column] *= 1 - f->opacity;
+      if (job->moment[c] != NULL)
+        job->moment[c][row * job->moment_stride + column] += (before - *at) * job->position;
+    }
+  }
+  return range.count > 0;
+}

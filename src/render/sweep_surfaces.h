@@ -1,0 +1,25 @@
+/* render/sweep_surfaces.h - surfaces in the sheet loop: slabs cut at the fragments of the eye's view,
+ * fragments lit and composited, and fragments of the lights' views taken out of the shadow buffers. */
+#ifndef HL_RENDER_SWEEP_SURFACES_H
+#define HL_RENDER_SWEEP_SURFACES_H
+
+#include "render/sweep.h"
+
+/* After the sweep's views and lights have begun. Does nothing where the frame has no surfaces. */
+hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error);
+void hl_sweep_surfaces_end(sweep *sweep);
+
+/* The fragments of the eye's view in a slab of a tile; to be asked for once, slabs in rising order. */
+fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab);
+
+/* Steps 12 to 16 for a tile with fragments: each pixel's slab is cut at its fragments, and its pieces and the
+ * fragments are composited in the order of their heights. slab->blocks: those with density; blocks: all that
+ * are to be shaded. Returns the blocks that stay open. */
+uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
+                                fragment_range range);
+
+/* Step 17 for the surfaces of a slab in a tile of a light's buffer. Returns whether any took light. */
+bool hl_sweep_surfaces_attenuate(const attenuate_job *job, fragment_range range);
+fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size_t tile, int slab);
+
+#endif

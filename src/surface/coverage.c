@@ -1,0 +1,97 @@
+/* surface/coverage.c - see coverage.h. Polygons are cut into fans of triangles; a triangle covers a sample
+ * where all three edge functions (Pineda 1988) are at least 0. */
+#include "surface/coverage.h"
+
+#include <string.h>
+
+enum { SAMPLES = 16 };
+
+const unsigned char hl_sample_row[SAMPLES] = {3, 10, 1, 8, 15, 6, 13, 4, 11, 2, 9, 0, 7, 14, 5, 12};
+
+/* One edge: value + x * across + y * down is at least 0 inside; pixels from the tile's corner. */
+typedef struct edge {
+  int64_t value, across, down;
+  int64_t offset[SAMPLES]; /* of each sample in its pixel */
+  int64_t least, greatest; /* of the offsets */
+} edge;
+
+/* From a to b; the inside lies to its left where y points down and x to the right... of the sign that the
+ * caller gives. Samples on the edge belong to the triangle on one side of it only: an edge of the other
+ * direction gets 1 less. */
+static void set_edge(edge *e, int64_t ax, int64_t ay, int64_t bx, int64_t by) {
+  int64_t dx = bx - ax, dy = by - ay;
+  bool owns = dy > 0 || (dy == 0 && dx < 0);
+  e->across = dy * SUBPIXELS;
+  e->down = -dx * SUBPIXELS;
+  e->value = -ax * dy + ay * dx - (owns ? 0 : 1);
+  e->least = INT64_MAX;
+  e->greatest = INT64_MIN;
+  for (int s = 0; s < SAMPLES; s++) {
+    int64_t x = (2 * s + 1) * SUBPIXELS / 32, y = (2 * hl_sample_row[s] + 1) * SUBPIXELS / 32;
+    e->offset[s] = x * dy - y * dx;
+    if (e->offset[s] < e->least) e->least = e->offset[s];
+    if (e->offset[s] > e->greatest) e->greatest = e->offset[s];
+  }
+}
+
+static uint32_t cover_pixel(const edge edges[3], int x, int y) {
+  int64_t at[3];
+  bool whole = true;
+  for (int i = 0; i < 3; i++) {
+    at[i] = edges[i].value + x * edges[i].across + y * edges[i].down;
+    if (at[i] + edges[i].greatest < 0) return 0;
+    whole = whole && at[i] + edges[i].least >= 0;
+  }
+  if (whole) return 0xffff;
+  uint32_t bits = 0;
+  for (int s = 0; s < SAMPLES; s++) {
+    int64_t outside = (at[0] + edges[0].offset[s]) | (at[1] + edges[1].offset[s]) |
+                      (at[2] + edges[2].offset[s]);
+    bits |= (uint32_t)(outside >= 0) << s;
+  }
+  return bits;
+}
+
+static int clamp_pixel(int64_t subpixels) {
+  int64_t pixel = subpixels < 0 ? 0 : subpixels / SUBPIXELS;
+  return pixel > TILE - 1 ? TILE - 1 : (int)pixel;
+}
+
+static bool cover_triangle(const int64_t x[3], const int64_t y[3], uint16_t covered[TILE_PIXELS]) {
+  int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+  int64_t x0 = x[0], x1 = x[0], y0 = y[0], y1 = y[0];
+  edge edges[3];
+  uint32_t any = 0;
+  for (int i = 1; i < 3; i++) {
+    x0 = x[i] < x0 ? x[i] : x0, x1 = x[i] > x1 ? x[i] : x1;
+    y0 = y[i] < y0 ? y[i] : y0, y1 = y[i] > y1 ? y[i] : y1;
+  }
+  if (area == 0 || x1 < 0 || y1 < 0 || x0 >= TILE * SUBPIXELS || y0 >= TILE * SUBPIXELS) return false;
+  for (int i = 0; i < 3; i++) {
+    int from = area < 0 ? i : (i + 1) % 3, to = area < 0 ? (i + 1) % 3 : i;
+    set_edge(&edges[i], x[from], y[from], x[to], y[to]);
+  }
+  for (int row = clamp_pixel(y0); row <= clamp_pixel(y1); row++)
+    for (int column = clamp_pixel(x0); column <= clamp_pixel(x1); column++) {
+      uint32_t bits = cover_pixel(edges, column, row);
+      covered[row * TILE + column] |= (uint16_t)bits;
+      any |= bits;
+    }
+  return any != 0;
+}
+
+bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, uint16_t covered[TILE_PIXELS]) {
+  int64_t left = (int64_t)tile_x * TILE * SUBPIXELS, top = (int64_t)tile_y * TILE * SUBPIXELS;
+  bool any = false;
+  memset(covered, 0, TILE_PIXELS * sizeof *covered);
+  for (int i = 1; i + 1 < polygon->count; i++) {
+    const int corner[3] = {0, i, i + 1};
+    int64_t x[3], y[3];
+    for (int k = 0; k < 3; k++) {
+      x[k] = polygon->x[corner[k]] - left;
+      y[k] = polygon->y[corner[k]] - top;
+    }
+    any = cover_triangle(x, y, covered) || any;
+  }
+  return any;
+}

@@ -1,0 +1,18 @@
+/* surface/coverage.h - which of the sixteen samples of each pixel of a tile a polygon covers.
+ *
+ * Coordinates are whole numbers of 1/256 pixels: a sample on an edge that two triangles share belongs to
+ * exactly one of them, on every machine. */
+#ifndef HL_SURFACE_COVERAGE_H
+#define HL_SURFACE_COVERAGE_H
+
+#include "surface/triangle_bins.h"
+
+/* The samples' positions in a pixel: sample i lies at ((i + 1/2) / 16, (hl_sample_row[i] + 1/2) / 16). No two
+ * share a row or a column. */
+extern const unsigned char hl_sample_row[16];
+
+/* covered: [TILE rows][TILE columns]; one bit for each sample. Returns whether any is covered. The polygon is
+ * convex; its corners may go either way round. */
+bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, uint16_t covered[TILE_PIXELS]);
+
+#endif

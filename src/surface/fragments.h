@@ -1,0 +1,72 @@
+/* surface/fragments.h - where the rays of one view meet surfaces.
+ *
+ * A fragment is what one triangle covers of one pixel. Each pixel has sixteen sample positions; a fragment
+ * tells which of them it covers, at one height. Heights grow along every ray of a light, and grow or fall
+ * along every ray of the eye: fragments sorted by height are sorted by depth.
+ *
+ * Opacity. Fragments of one pixel may cover the same samples or different ones. So that they can be
+ * composited one after the other, each gets the fraction that it takes of the light which the fragments
+ * before it let pass, averaged over the samples (derived: with t[i] the transmittance of sample i before the
+ * fragment, it takes sum over its samples of t[i] a / sum over all samples of t[i]). Triangles that share an
+ * edge thus leave no seam. */
+#ifndef HL_SURFACE_FRAGMENTS_H
+#define HL_SURFACE_FRAGMENTS_H
+
+#include "core/pool.h"
+#include "surface/surfaces.h"
+#include "view/view.h"
+
+enum { FRAGMENT_SAMPLES = 16 };
+
+typedef struct fragment {
+  float height;  /* above the first sheet; frame units */
+  float opacity; /* see above; above 0 */
+  uint32_t triangle;
+  int32_t slab;     /* k: between sheets k-1 and k */
+  uint16_t samples; /* covered, one bit each */
+  uint16_t pixel;   /* in its tile, block after block: 16 * block + lane */
+} fragment;
+
+/* The fragments of one view. */
+typedef struct fragments {
+  fragment *list;   /* owned; tile after tile; within a tile by slab, then pixel, then height */
+  uint32_t *first;  /* owned; [tiles + 1]; where a tile's fragments begin */
+  uint32_t *cursor; /* owned; [tiles]; the next fragment that the sweep reaches */
+  size_t tiles;
+} fragments;
+
+/* The input of hl_fragments_create(); borrowed. */
+typedef struct fragments_source {
+  hl_context *context;
+  hl_pool *pool;
+  const surfaces *surfaces;
+  const view *view;
+  const sheet_stack *sheets;
+  bool falling;  /* the view meets great heights first */
+  bool of_light; /* a light's view: of the meshes that cast shadows; else of those that are visible */
+  double delay;  /* pixels of the view: a fragment counts from the height that its triangle's plane has so far
+                    away, so that a surface does not darken itself where buffers are interpolated */
+  double rise;   /* pixels of the view: a fragment of a light's view fills all slabs that its triangle's plane
+                    crosses   within so many, so that rays of other directions than the view's find no gap
+                    between   pixels of a   slanted surface; 0: one slab */
+  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. Bits are set for each sheet that ends a
+                      slab with a visible or shadow-casting surface in the tile, and in tiles beside it */
+  int tile_words;
+} fragments_source;
+
+hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error);
+void hl_fragments_release(hl_context *context, fragments *made);
+
+/* A tile's fragments in one slab. */
+typedef struct fragment_range {
+  const fragment *first;
+  size_t count;
+} fragment_range;
+
+/* Slabs are asked for in rising order; the tile's owner asks. */
+fragment_range hl_fragments_reach(const fragments *all, size_t tile, int slab);
+
+/* The mean position of the covered samples in their pixel, 0 to 1. */
+void hl_fragment_middle(uint16_t samples, double *u, double *v);
+
+#endif

@@ -1,0 +1,45 @@
+/* surface/surfaces.h - the triangles of all meshes of a scene, in frame space.
+ *
+ * In: the scene's meshes. Out: what fragments.c rasterises and the sweep shades. */
+#ifndef HL_SURFACE_SURFACES_H
+#define HL_SURFACE_SURFACES_H
+
+#include <halflight/scene.h>
+
+#include "core/error.h"
+#include "core/vector.h"
+
+typedef struct surface_mesh {
+  const hl_scene_mesh *scene; /* in frame space; borrowed */
+  const float (*colors)[4];   /* borrowed; [vertices of the mesh]; null: none */
+  size_t first_vertex;        /* in positions and normals */
+  uint32_t first_triangle, triangle_count;
+} surface_mesh;
+
+typedef struct surfaces {
+  surface_mesh *meshes;     /* owned; [mesh_count]; their triangles follow each other */
+  float (*positions)[3];    /* owned; [vertex_count]; frame space */
+  float (*normals)[3];      /* owned; [vertex_count]; unit, or 0 where a vertex has none; frame space */
+  uint32_t (*triangles)[3]; /* owned; [triangle_count]; indices of positions */
+  size_t mesh_count, vertex_count;
+  uint32_t triangle_count;
+} surfaces;
+
+/* scene: in frame space; its meshes are borrowed until the release. */
+hl_status hl_surfaces_create(hl_context *context, const hl_scene_description *scene, surfaces *made,
+                             hl_error *error);
+void hl_surfaces_release(hl_context *context, surfaces *made);
+
+/* The bytes that hl_surfaces_create() allocates. */
+uint64_t hl_surfaces_bytes(const hl_scene_description *scene);
+
+/* The mesh that a triangle belongs to. */
+const surface_mesh *hl_surface_of(const surfaces *all, uint32_t triangle);
+
+/* The corners of a box around a mesh; frame space. A flat mesh gets a box of thickness `least`. */
+void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]);
+
+/* A position of surfaces->positions or ->normals. */
+static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }
+
+#endif

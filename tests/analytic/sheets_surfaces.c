@@ -1,0 +1,351 @@
+/* analytic/sheets_surfaces.c - meshes among volumes: coverage, opacity, light and shadows with known answers.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 64, PIXELS = SIDE * SIDE };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* A stage with meshes, and a clear volume far aside, which tells the size of voxels. */
+typedef struct mesh_stage {
+  stage set;
+  hl_scene_mesh meshes[4];
+} mesh_stage;
+
+static void open_meshes(mesh_stage *all) {
+  stage_open(&all->set);
+  all->set.scene.width = all->set.scene.height = SIDE;
+  all->set.scene.camera.height = 32;
+  stage_look(&all->set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  hl_scene_volume *clear = stage_add_box(&all->set, (vec3){-0.5, -0.5, -0.5}, (vec3){0.5, 0.5, 0.5});
+  stage_set_opacity(&all->set, clear, 0, 1);
+  all->set.scene.meshes = all->meshes;
+  all->set.scene.mesh_count = 0;
+}
+
+static void close_meshes(mesh_stage *all) {
+  for (size_t m = 0; m < all->set.scene.mesh_count; m++) hl_mesh_release(all->meshes[m].mesh);
+  stage_close(&all->set);
+}
+
+static hl_scene_mesh *add_mesh(mesh_stage *all, const float (*positions)[3], size_t vertices,
+                               const uint32_t (*triangles)[3], size_t count) {
+  hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
+  hl_mesh_description d;
+  hl_error error = {0};
+  hl_mesh_description_defaults(&d);
+  d.positions = positions, d.vertex_count = vertices, d.triangles = triangles, d.triangle_count = count;
+  hl_scene_mesh_defaults(mesh);
+  if (hl_mesh_create(all->set.context, &d, &mesh->mesh, &error) != HL_OK) fail_msg("%s", error.message);
+  mesh->material = (hl_material){.diffuse = 1};
+  for (int c = 0; c < 3; c++) mesh->color[c] = 1;
+  return mesh;
+}
+
+/* A rectangle about a centre with two half edges. */
+static hl_scene_mesh *add_quad(mesh_stage *all, vec3 centre, vec3 u, vec3 v) {
+  static const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
+  float positions[4][3];
+  for (int i = 0; i < 4; i++) {
+    double a = i == 1 || i == 2 ? 1 : -1, b = i >= 2 ? 1 : -1;
+    vec3_store(positions[i], vec3_add(centre, vec3_add(vec3_scale(u, a), vec3_scale(v, b))));
+  }
+  return add_mesh(all, (const float(*)[3])positions, 4, triangles, 2);
+}
+
+/* ---- coverage ---- */
+
+/* Edges at odd fractions of pixels: a pixel's alpha is the fraction that the rectangle covers of it, to a
+ * sixteenth a side, and no seam shows where the triangles meet. A pixel is half a unit wide. */
+static void test_coverage(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 6; k++) {
+    double opacity = k % 2 ? 0.5 : 1, x = 5.15 + 0.31 * k, y = 7.27 - 0.23 * k;
+    mesh_stage all;
+    open_meshes(&all);
+    add_quad(&all, (vec3){0, 0, 3}, (vec3){x, 0, 0}, (vec3){0, y, 0})->opacity = opacity;
+    stage_render_sheets(&all.set, pixels);
+    double sum = 0;
+    for (int i = 0; i < PIXELS; i++) {
+      double left = (i % SIDE - SIDE / 2) * 0.5, top = (i / SIDE - SIDE / 2) * 0.5;
+      double across = fmax(fmin(left + 0.5, x) - fmax(left, -x), 0) / 0.5,
+             down = fmax(fmin(top + 0.5, y) - fmax(top, -y), 0) / 0.5;
+      double alpha = (double)pixels[4 * i + 3];
+      sum += alpha;
+      assert_near(alpha, opacity * across * down, across * down == 1 ? 1e-6 : opacity * 0.13);
+    }
+    assert_near(sum, opacity * 4 * x * y / 0.25, opacity * 12);
+    close_meshes(&all);
+  }
+}
+
+/* A board of many small triangles, oblique to the eye: every pixel within it has the board's own opacity. */
+static void test_no_seams(void **state) {
+  (void)state;
+  enum { N = 24 };
+  static float positions[(N + 1) * (N + 1)][3], pixels[PIXELS * 4];
+  static uint32_t triangles[2 * N * N][3];
+  for (int i = 0; i < (N + 1) * (N + 1); i++) {
+    double x = (i % (N + 1)) * 24.0 / N - 12, y = (i / (N + 1)) * 24.0 / N - 12;
+    vec3_store(positions[i], (vec3){x, y, 0.4 * x - 0.3 * y});
+  }
+  for (int i = 0; i < N * N; i++) {
+    uint32_t at = (uint32_t)(i / N * (N + 1) + i % N);
+    memcpy(triangles[2 * i], (uint32_t[3]){at, at + 1, at + N + 2}, sizeof triangles[0]);
+    memcpy(triangles[2 * i + 1], (uint32_t[3]){at, at + N + 2, at + N + 1}, sizeof triangles[0]);
+  }
+  for (int k = 0; k < 4; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    double opacity = k % 2 ? 0.7 : 1;
+    add_mesh(&all, (const float(*)[3])positions, (N + 1) * (N + 1), (const uint32_t(*)[3])triangles,
+             2 * N * N)
+        ->opacity = opacity;
+    stage_add_directional(&all.set, k < 2 ? (vec3){0.2, 0.3, -1} : (vec3){0.2, 0.3, 1});
+    stage_render_sheets(&all.set, pixels);
+    for (int y = 12; y < SIDE - 12; y++)
+      for (int x = 12; x < SIDE - 12; x++) assert_near((double)pixels[4 * (y * SIDE + x) + 3], opacity, 1e-5);
+    close_meshes(&all);
+  }
+}
+
+/* ---- matter before and behind ---- */
+
+/* A haze of flat colour with a black pane in its middle: the half before the pane is seen, and the other half
+ * where the pane is clear. */
+static void test_pane_in_haze(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 8; k++) {
+    double opacity = k % 4 / 3.0, depth = 8 * -log(1 - 0.1), half = exp(-depth / 2);
+    mesh_stage all;
+    open_meshes(&all);
+    hl_scene_volume *haze = stage_add_box(&all.set, (vec3){-8, -8, -4}, (vec3){8, 8, 4});
+    stage_set_opacity(&all.set, haze, 0.1, 1);
+    stage_set_color(&all.set, haze, 1, 0.5, 0.25);
+    haze->shading = HL_SHADING_FLAT;
+    add_quad(&all, (vec3){0, 0, 0}, (vec3){6, 0, 0}, (vec3){0, 6, 0})->opacity = opacity;
+    all.meshes[0].material.diffuse = 0;
+    if (k >= 4)
+      stage_add_directional(&all.set, (vec3){0.2, 0.3, 1}); /* from behind: sheets go back to front */
+    stage_render_sheets(&all.set, pixels);
+    double seen = 1 - half + half * (1 - opacity) * (1 - half), alpha = 1 - half * half * (1 - opacity);
+    for (int y = SIDE / 2 - 8; y < SIDE / 2 + 8; y++)
+      for (int x = SIDE / 2 - 8; x < SIDE / 2 + 8; x++) {
+        const float *pixel = pixels + 4 * (y * SIDE + x);
+        assert_near((double)pixel[0], seen, 2e-4);
+        assert_near((double)pixel[2], seen * 0.25, 2e-4);
+        assert_near((double)pixel[3], alpha, 2e-4);
+      }
+    close_meshes(&all);
+  }
+}
+
+/* ---- light ---- */
+
+static const hl_soft_method METHODS[] = {HL_SOFT_CASCADE, HL_SOFT_PAPER, HL_SOFT_SUBLIGHTS};
+
+/* k = 0: hard; 1 to 3: the soft methods, under a light of some size. */
+static void choose_shadows(stage *set, hl_light *light, int k, double angle) {
+  set->scene.render.shadows = k == 0 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT;
+  if (k == 0) return;
+  set->scene.render.soft_method = METHODS[k - 1];
+  light->angular_diameter_deg = angle;
+}
+
+/* A board alone, tilted from facing the light to nearly along it, is evenly lit by N.L: it does not shade
+ * itself. */
+static void test_no_acne(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 4; k++)
+    for (double tilt = 0; tilt <= 80; tilt += 16) {
+      double angle = tilt * HL_PI / 180, turn = tilt * 0.7;
+      vec3 u = {cos(turn), sin(turn), 0}, v = {-sin(turn) * cos(angle), cos(turn) * cos(angle), sin(angle)};
+      mesh_stage all;
+      open_meshes(&all);
+      add_quad(&all, (vec3){0, 0, 0}, vec3_scale(u, 20), vec3_scale(v, 60));
+      hl_light *light = stage_add_directional(&all.set, (vec3){0, 0, -1});
+      choose_shadows(&all.set, light, k, 8);
+      vec3 normal = vec3_cross(u, v); /* the eye is on the lit side */
+      stage_look(&all.set, vec3_scale(vec3_add(normal, (vec3){0.1, 0.2, 0.6}), 80), (vec3){0, 0, 0}, u);
+      stage_render_sheets(&all.set, pixels);
+      int seen = 0;
+      for (int i = 0; i < PIXELS; i++) {
+        int x = i % SIDE, y = i / SIDE;
+        if (x < 16 || x >= SIDE - 16 || y < 16 || y >= SIDE - 16 || pixels[4 * i + 3] < 0.9999f) continue;
+        assert_near((double)pixels[4 * i], cos(angle), 0.005);
+        seen++;
+      }
+      assert_true(seen > 300);
+      close_meshes(&all);
+    }
+}
+
+/* A pane of opacity o between light and floor takes o of the light, in every method and colour. */
+static void test_translucent_pane(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 4; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    add_quad(&all, (vec3){0, 0, -4}, (vec3){15, 0, 0}, (vec3){0, 15, 0});
+    hl_scene_mesh *pane = add_quad(&all, (vec3){0, 0, 4}, (vec3){12, 0, 0}, (vec3){0, 12, 0});
+    pane->opacity = 0.3;
+    pane->visible = 0;
+    choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
+    stage_render_sheets(&all.set, pixels);
+    for (int y = SIDE / 2 - 10; y < SIDE / 2 + 10; y++)
+      for (int x = SIDE / 2 - 10; x < SIDE / 2 + 10; x++)
+        assert_near((double)pixels[4 * (y * SIDE + x)], 0.7, 0.01);
+    pane->casts_shadow = 0;
+    stage_render_sheets(&all.set, pixels);
+    assert_near((double)pixels[4 * (SIDE / 2 * SIDE + SIDE / 2)], 1, 1e-4);
+    close_meshes(&all);
+  }
+}
+
+/* The fraction of a disk of radius 1 on one side of a line at distance x from its middle. */
+static double disk_beyond(double x) {
+  if (x <= -1) return 1;
+  if (x >= 1) return 0;
+  return (acos(x) - x * sqrt(1 - x * x)) / HL_PI;
+}
+
+/* An edge at height 12 above a floor, under a light of 20 degrees: the penumbra is the fraction of the
+ * light's disk that is seen past the edge. The paper's method is not asked: its penumbrae have another width.
+ */
+static void test_penumbra(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const struct {
+    int kind;
+    double angle, tolerance, mean;
+  } cases[] = {{0, 0, 0.51, 0.02}, {1, 20, 0.06, 0.02}, {3, 20, 0.14, 0.04}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    add_quad(&all, (vec3){0, 0, -6}, (vec3){15.5, 0, 0}, (vec3){0, 15.5, 0});
+    add_quad(&all, (vec3){-15, 0, 6}, (vec3){15, 0, 0}, (vec3){0, 40, 0})->visible = 0; /* its edge: x = 0 */
+    choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0, 0, -1}), cases[k].kind,
+                   cases[k].angle);
+    stage_render_sheets(&all.set, pixels);
+    double radius = fmax(12 * tan(cases[k].angle / 2 * HL_PI / 180), 1e-9), sum = 0;
+    int count = 0;
+    for (int x = 4; x < SIDE - 4; x++) {
+      double at = (x + 0.5 - SIDE / 2.0) * 0.5, light = (double)pixels[4 * (SIDE / 2 * SIDE + x)];
+      double expected = 1 - disk_beyond(at / radius);
+      assert_near(light, expected, cases[k].tolerance);
+      sum += fabs(light - expected);
+      count++;
+    }
+    assert_near(sum / count, 0, cases[k].mean);
+    close_meshes(&all);
+  }
+}
+
+/* A volume's shadow on a mesh: behind a box of haze a floor has the light that the haze lets through. And a
+ * mesh's shadow in a volume: below an opaque pane haze is dark. */
+static void test_volume_and_mesh(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 4; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    hl_scene_volume *haze = stage_add_box(&all.set, (vec3){-12, -12, 0}, (vec3){12, 12, 8});
+    stage_set_opacity(&all.set, haze, 0.1, 1);
+    haze->visible = 0;
+    add_quad(&all, (vec3){0, 0, -4}, (vec3){15, 0, 0}, (vec3){0, 15, 0});
+    choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
+    stage_render_sheets(&all.set, pixels);
+    for (int y = SIDE / 2 - 10; y < SIDE / 2 + 10; y++)
+      for (int x = SIDE / 2 - 10; x < SIDE / 2 + 10; x++)
+        assert_near((double)pixels[4 * (y * SIDE + x)], pow(0.9, 8), 0.01);
+    haze->visible = 1;
+    haze->casts_shadow = 0;
+    add_quad(&all, (vec3){0, 0, 10}, (vec3){15, 0, 0}, (vec3){0, 15, 0})->visible = 0;
+    stage_render_sheets(&all.set, pixels);
+    for (int c = 0; c < 3; c++) assert_near((double)pixels[4 * (SIDE / 2 * SIDE + SIDE / 2) + c], 0, 0.01);
+    close_meshes(&all);
+  }
+}
+
+/* ---- invariance ---- */
+
+static void add_scenery(mesh_stage *all) {
+  add_quad(all, (vec3){0, 0, -6}, (vec3){14, 2, 1}, (vec3){-2, 14, 3});
+  add_quad(all, (vec3){2, 1, 3}, (vec3){5, 1, 3}, (vec3){-1, 6, -2})->opacity = 0.6;
+  hl_scene_volume *haze = stage_add_box(&all->set, (vec3){-60, -60, -5}, (vec3){60, 60, 4});
+  stage_set_opacity(&all->set, haze, 0.03, 1);
+  hl_light *light = stage_add_directional(&all->set, (vec3){0.3, -0.4, -1});
+  light->angular_diameter_deg = 10;
+  all->set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  all->set.scene.camera.fovy_deg = 25;
+  stage_look(&all->set, (vec3){30, -40, 50}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+}
+
+static void test_threads_and_instruction_sets(void **state) {
+  (void)state;
+  static float first[PIXELS * 4], other[PIXELS * 4];
+  for (int k = 0; k < 4; k++)
+    for (int run = 0; run < 4; run++) {
+      mesh_stage all;
+      open_meshes(&all);
+      add_scenery(&all);
+      choose_shadows(&all.set, &all.set.lights[0], k, 10);
+      all.set.scene.render.threads = (const int[]){1, 2, 7, 1}[run];
+      stage_render_sheets(&all.set, run == 0 ? first : other);
+      if (run > 0) assert_memory_equal(first, other, sizeof first);
+      close_meshes(&all);
+    }
+}
+
+/* Hard shadows against the reference, which has sixteen rays a pixel. */
+static void test_against_the_reference(void **state) {
+  (void)state;
+  static float sheets[PIXELS * 4], exact[PIXELS * 4];
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.rays = 4;
+  options.step = 2; /* the haze is even */
+  mesh_stage all;
+  open_meshes(&all);
+  add_scenery(&all);
+  choose_shadows(&all.set, &all.set.lights[0], 0, 0);
+  all.set.scene.width = all.set.scene.height = SIDE / 2;
+  stage_render_sheets(&all.set, sheets);
+  stage_render(&all.set, &options, exact);
+  double sum = 0, signed_sum = 0;
+  for (int i = 0; i < PIXELS; i++) {
+    double difference = (double)sheets[i] - (double)exact[i];
+    sum += difference * difference;
+    signed_sum += difference;
+  }
+  assert_near(sqrt(sum / PIXELS), 0, 0.016);
+  assert_near(signed_sum / PIXELS, 0, 0.0015);
+  close_meshes(&all);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_coverage),
+                                     cmocka_unit_test(test_no_seams),
+                                     cmocka_unit_test(test_pane_in_haze),
+                                     cmocka_unit_test(test_no_acne),
+                                     cmocka_unit_test(test_translucent_pane),
+                                     cmocka_unit_test(test_penumbra),
+                                     cmocka_unit_test(test_volume_and_mesh),
+                                     cmocka_unit_test(test_threads_and_instruction_sets),
+                                     cmocka_unit_test(test_against_the_reference)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

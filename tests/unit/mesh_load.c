@@ -1,0 +1,167 @@
+/* tests/unit/mesh_load.c - meshes from files and from memory: what is read, what is left out, what is
+ * refused. */
+#define _GNU_SOURCE
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "mesh/mesh.h"
+
+static char folder[] = "/tmp/halflight-mesh-XXXXXX";
+
+static int make_folder(void **state) {
+  (void)state;
+  return mkdtemp(folder) != NULL ? 0 : -1;
+}
+static int remove_folder(void **state) {
+  (void)state;
+  return rmdir(folder);
+}
+
+/* Loads a file of this text. mesh: null where it is refused, with `told` in the message. */
+static hl_mesh *load(hl_context *context, const char *name, const char *text, size_t length,
+                     const char *told) {
+  char path[300];
+  hl_mesh *mesh = NULL;
+  hl_error error = {0};
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, "wb");
+  assert_int_equal(fwrite(text, 1, length, file), length);
+  fclose(file);
+  hl_status status = hl_mesh_load(context, path, &mesh, &error);
+  unlink(path);
+  if (told == NULL && status != HL_OK) fail_msg("%s: %s", name, error.message);
+  if (told != NULL) {
+    assert_null(mesh);
+    if (strstr(error.message, told) == NULL) fail_msg("%s: %s, not %s", name, error.message, told);
+    assert_non_null(strstr(error.message, path));
+  }
+  return mesh;
+}
+
+#define PLY_HEAD(format) \
+  "ply\nformat " format " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+static const char PLY[] = PLY_HEAD("ascii") "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty "
+                          "uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                          "0 0 0 255 0 0 255\n2 0 0 0 255 0 51\n2 3 0 0 0 255 255\n0 3 1 188 188 188 255\n4 0 1 2 3\n";
+
+static void test_ply(void **state) {
+  (void)state;
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh *mesh = load(context, "a.ply", PLY, sizeof PLY - 1, NULL);
+  const hl_mesh_description *d = hl_mesh_describe(mesh);
+  assert_int_equal(d->vertex_count, 4);
+  assert_int_equal(d->triangle_count, 2);
+  assert_memory_equal(d->triangles[1], ((uint32_t[3]){0, 2, 3}), 12);
+  assert_memory_equal(d->positions[3], ((float[3]){0, 3, 1}), 12);
+  assert_true(d->colors[0][0] == 1 && d->colors[0][1] == 0 && d->colors[1][3] == 0.2f);
+  assert_true(d->colors[3][1] > 0.50f && d->colors[3][1] < 0.51f); /* 188 of sRGB is 0.503 linear */
+  double low[3], high[3];
+  assert_int_equal(hl_mesh_get_box(mesh, low, high), HL_OK);
+  assert_true(low[0] == 0 && high[0] == 2 && high[1] == 3 && high[2] == 1);
+  assert_false(mesh->closed);
+  hl_mesh_release(mesh);
+  for (size_t length = 0; length < sizeof PLY - 9; length++) /* without the last face all is refused */
+    assert_null(load(context, "a.ply", PLY, length, ""));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* The six faces of a cube as an OBJ of quads, as ASCII STL, and from memory turned inside out. */
+static void test_cube_is_closed(void **state) {
+  (void)state;
+  static const int faces[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
+                                  {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
+  char obj[2000] = "", stl[4000] = "solid cube\n";
+  uint32_t turned[12][3];
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  for (int v = 0; v < 8; v++) sprintf(obj + strlen(obj), "v %d %d %d\n", v & 1, v >> 1 & 1, v >> 2);
+  for (int f = 0; f < 6; f++) {
+    const int *q = faces[f];
+    sprintf(obj + strlen(obj), "f %d %d %d %d\n", q[0], q[1], q[2], q[3]);
+    for (int t = 0; t < 2; t++) {
+      const int corner[3] = {q[0], q[1 + t], q[2 + t]};
+      sprintf(stl + strlen(stl), "facet normal 0 0 0\nouter loop\n");
+      for (int i = 0; i < 3; i++) {
+        int v = corner[i] - 1;
+        sprintf(stl + strlen(stl), "vertex %d %d %d\n", v & 1, v >> 1 & 1, v >> 2);
+        turned[2 * f + t][2 - i] = (uint32_t)v;
+      }
+      sprintf(stl + strlen(stl), "endloop\nendfacet\n");
+    }
+  }
+  hl_mesh *of_obj = load(context, "c.obj", obj, strlen(obj), NULL),
+          *of_stl = load(context, "c.stl", stl, strlen(stl), NULL);
+  assert_int_equal(hl_mesh_describe(of_stl)->vertex_count, 8);
+  assert_int_equal(hl_mesh_describe(of_obj)->triangle_count, 12);
+  assert_true(of_obj->closed && of_stl->closed);
+  hl_mesh_description d = *hl_mesh_describe(of_obj);
+  d.triangles = (const uint32_t(*)[3])turned;
+  hl_mesh *inside_out = NULL, *open = NULL;
+  assert_int_equal(hl_mesh_create(context, &d, &inside_out, NULL), HL_OK);
+  d.triangle_count = 11;
+  assert_int_equal(hl_mesh_create(context, &d, &open, NULL), HL_OK);
+  assert_false(inside_out->closed || open->closed);
+  hl_mesh *all[] = {of_obj, of_stl, inside_out, open};
+  for (int i = 0; i < 4; i++) hl_mesh_release(all[i]);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void test_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *name, *text, *told;
+  } cases[] = {
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "a.obj:4: a face names a vertex that is not there"},
+      {"a.obj", "v 0 0\n", "a.obj:1: a vertex is three numbers"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "the mesh has no triangle with an area"},
+      {"a.stl", "solid x\nvertex 1 2 x\n", "a vertex is three numbers"},
+      {"a.stl", "short", "is too short for an STL file"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty thing x\nend_header\n",
+       "of an unknown type"},
+      {"a.off", "OFF\n", "is no mesh that is known: give .ply, .stl or .obj"}};
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
+    assert_null(load(context, cases[c].name, cases[c].text, strlen(cases[c].text), cases[c].told));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* Triangles that cannot be seen are left out; those that name no vertex are refused. */
+static void test_from_memory(void **state) {
+  (void)state;
+  const float positions[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}, {2, 0, 0}};
+  const uint32_t triangles[4][3] = {{0, 1, 3}, {0, 1, 4}, {0, 1, 2}, {0, 1, 5}};
+  hl_context *context = NULL;
+  hl_mesh_description d;
+  hl_mesh *mesh = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh_description_defaults(&d);
+  d.positions = positions, d.vertex_count = 5, d.triangles = triangles, d.triangle_count = 3;
+  assert_int_equal(hl_mesh_create(context, &d, &mesh, NULL), HL_OK);
+  assert_int_equal(hl_mesh_describe(mesh)->triangle_count, 1);
+  assert_memory_equal(hl_mesh_describe(mesh)->triangles[0], triangles[2], sizeof triangles[2]);
+  hl_mesh_release(mesh);
+  d.triangle_count = 4;
+  assert_int_equal(hl_mesh_create(context, &d, &mesh, &error), HL_ERROR_INPUT);
+  assert_string_equal(error.message, "triangle 3 names vertex 5: the mesh has 5 vertices, counted from 0");
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ply), cmocka_unit_test(test_cube_is_closed),
+                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_from_memory)};
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
