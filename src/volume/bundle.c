@@ -12,7 +12,7 @@
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
-#include "volume/bundle_zip.h"
+#include "volume/bundle.h"
 
 hl_status hl_bundle_open_folder(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error) {
   *bundle = (hl_bundle){.context = context, .path = hl_copy_text(context, path)};
@@ -154,7 +154,7 @@ hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error) {
 hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
                                hl_source **source, hl_error *error) {
   *source = NULL;
-  if (bundle->is_archive) return hl_zip_entry_open(bundle, entry, quiet, source, error);
+  if (bundle->open_entry != NULL) return bundle->open_entry(bundle, entry, quiet, source, error);
   if (bundle->memory != NULL)
     return hl_source_of_memory(bundle->context, bundle->path, bundle->memory, bundle->memory_size, source,
                                error);

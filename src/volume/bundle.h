@@ -14,7 +14,9 @@ typedef struct hl_bundle_entry {
   int method;          /* of archives: 0 stored, 8 deflated; others cannot be read */
 } hl_bundle_entry;
 
-typedef struct hl_bundle {
+typedef struct hl_bundle hl_bundle;
+
+struct hl_bundle {
   hl_context *context;
   char *path; /* owned; of the folder or the archive */
   char *root; /* owned; of a folder: its path without links, with a '/' at its end, set by
@@ -26,7 +28,10 @@ typedef struct hl_bundle {
   hl_bundle_entry *entries; /* owned; [count], sorted by name; a folder's are found by hl_bundle_list */
   size_t count, capacity;
   size_t links_passed; /* symbolic links that lead out of the folder or to folders */
-} hl_bundle;
+  /* Of archives: hl_bundle_entry_open. */
+  hl_status (*open_entry)(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
+                          hl_source **source, hl_error *error);
+};
 
 enum { HL_BUNDLE_FILES_MOST = 200000, HL_BUNDLE_DEPTH_MOST = 24 };
 
@@ -34,13 +39,14 @@ enum { HL_BUNDLE_FILES_MOST = 200000, HL_BUNDLE_DEPTH_MOST = 24 };
 hl_status hl_bundle_open_folder(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error);
 /* A bundle of one file; the caller may set `memory` to its content. */
 hl_status hl_bundle_of_file(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error);
-/* A zip archive: the file `path`, or the caller's memory. Reads its directory. */
-hl_status hl_bundle_open_zip(hl_context *context, const char *path, const void *bytes, size_t byte_count,
-                             hl_bundle *bundle, hl_error *error);
 void hl_bundle_close(hl_bundle *bundle);
 
 /* Finds a folder's files. Call it once; an archive's files are known without it. */
 hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error);
+
+/* Add a copy of an entry and of its name, and sort the entries when all are added. */
+hl_status hl_bundle_add(hl_bundle *bundle, hl_bundle_entry entry, hl_error *error);
+void hl_bundle_sort(hl_bundle *bundle);
 
 /* Opens the file of an entry. quiet: as for hl_source_open. May be called from several threads. */
 hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,

@@ -144,22 +144,7 @@ static hl_status read_directory(hl_bundle *bundle, hl_source *source, hl_error *
   return status;
 }
 
-hl_status hl_bundle_open_zip(hl_context *context, const char *path, const void *bytes, size_t byte_count,
-                             hl_bundle *bundle, hl_error *error) {
-  *bundle = (hl_bundle){.context = context,
-                        .path = hl_copy_text(context, path),
-                        .is_archive = true,
-                        .memory = bytes,
-                        .memory_size = byte_count};
-  if (bundle->path == NULL) return hl_fail_memory(error, strlen(path), path);
-  hl_source *source = NULL;
-  hl_status status = open_archive(bundle, false, &source, error);
-  if (status == HL_OK) status = read_directory(bundle, source, error);
-  hl_source_close(source);
-  return status;
-}
-
-hl_status hl_zip_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
+static hl_status open_entry(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
                             hl_source **source, hl_error *error) {
   unsigned char local[LOCAL_BYTES];
   hl_status status = open_archive(bundle, quiet, source, error);
@@ -177,5 +162,21 @@ hl_status hl_zip_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entr
   if (status == HL_OK) return HL_OK;
   hl_source_close(*source);
   *source = NULL;
+  return status;
+}
+
+hl_status hl_bundle_open_zip(hl_context *context, const char *path, const void *bytes, size_t byte_count,
+                             hl_bundle *bundle, hl_error *error) {
+  *bundle = (hl_bundle){.context = context,
+                        .path = hl_copy_text(context, path),
+                        .is_archive = true,
+                        .open_entry = open_entry,
+                        .memory = bytes,
+                        .memory_size = byte_count};
+  if (bundle->path == NULL) return hl_fail_memory(error, strlen(path), path);
+  hl_source *source = NULL;
+  hl_status status = open_archive(bundle, false, &source, error);
+  if (status == HL_OK) status = read_directory(bundle, source, error);
+  hl_source_close(source);
   return status;
 }

@@ -1,14 +1,11 @@
-/* volume/bundle_zip.h - functions that bundle.c and bundle_zip.c need of each other. */
+/* volume/bundle_zip.h - the files of a zip archive as a bundle. */
 #ifndef HL_VOLUME_BUNDLE_ZIP_H
 #define HL_VOLUME_BUNDLE_ZIP_H
 
 #include "volume/bundle.h"
 
-/* Copies the entry and its name. */
-hl_status hl_bundle_add(hl_bundle *bundle, hl_bundle_entry entry, hl_error *error);
-void hl_bundle_sort(hl_bundle *bundle);
-
-hl_status hl_zip_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
-                            hl_source **source, hl_error *error);
+/* A zip archive: the file `path`, or the caller's memory. Reads its directory. */
+hl_status hl_bundle_open_zip(hl_context *context, const char *path, const void *bytes, size_t byte_count,
+                             hl_bundle *bundle, hl_error *error);
 
 #endif

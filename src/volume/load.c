@@ -6,6 +6,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/bundle_zip.h"
 #include "volume/decoders.h"
 #include "volume/format.h"
 #include "volume/formats.h"

@@ -8,7 +8,6 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "volume/bundle_zip.h"
 #include "volume/dicom/header.h"
 
 enum { REFERENCED_FILE = 0x00041500, NAME_BYTES = 512 };
