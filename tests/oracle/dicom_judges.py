@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Holds the DICOM reader against pydicom (its own test files), GDCM (every codec) and dcm2niix (geometry).
 
-usage: dicom_judges.py DUMP_VOLUME
+usage: dicom_judges.py DUMP_VOLUME [DATA_FOLDER]
 Needs Debian's python3-pydicom, python3-gdcm, python3-nibabel and dcm2niix, and no network. Prints a line for each file;
 exit 1 if a value or a place differs.
 """
@@ -10,6 +10,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -79,14 +80,14 @@ def judge_pixels(path, name):
     tell(name, difference <= allowed, f"by {difference:g}")
 
 
-def write_slice(path, plane, position, orientation, number):
+def write_slice(path, plane, position, orientation, number, series="1.2.3"):
     meta = FileMetaDataset()
     meta.TransferSyntaxUID = "1.2.840.10008.1.2.1"
     meta.MediaStorageSOPClassUID = "1.2.840.10008.5.1.4.1.1.4"
-    meta.MediaStorageSOPInstanceUID = f"1.2.3.{number}"
+    meta.MediaStorageSOPInstanceUID = f"{series}.{number}"
     data = FileDataset(str(path), {}, file_meta=meta, preamble=b"\0" * 128)
     data.SOPClassUID, data.SOPInstanceUID = meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID
-    data.Modality, data.SeriesInstanceUID, data.StudyInstanceUID = "MR", "1.2.3", "1.2"
+    data.Modality, data.SeriesInstanceUID, data.StudyInstanceUID = "MR", series, "1.2"
     data.SeriesNumber, data.InstanceNumber, data.PatientName = 1, number, "A"
     data.ImagePositionPatient = [round(float(x), 6) for x in position]
     data.ImageOrientationPatient = [float(x) for x in orientation]
@@ -101,23 +102,15 @@ def write_slice(path, plane, position, orientation, number):
 
 
 def judge_codecs():
-    noise, syntaxes = np.random.RandomState(2), gdcm.TransferSyntax
+    noise = np.random.RandomState(2)
     planes = {"int16": noise.randint(-1500, 3000, (37, 53)).astype(np.int16),
               "uint16": noise.randint(0, 65535, (20, 33)).astype(np.uint16),
               "uint8": noise.randint(0, 255, (21, 16)).astype(np.uint8)}
     for kind, plane in planes.items():
         write_slice(folder / "plain", plane, (0, 0, 0), (1, 0, 0, 0, 1, 0), 1)
         for codec in ("JPEGLosslessProcess14", "JPEGLosslessProcess14_1", "JPEGLSLossless", "JPEG2000Lossless", "RLELossless"):
-            reader, change, writer = gdcm.ImageReader(), gdcm.ImageChangeTransferSyntax(), gdcm.ImageWriter()
-            reader.SetFileName(str(folder / "plain"))
-            reader.Read()
-            change.SetTransferSyntax(gdcm.TransferSyntax(getattr(syntaxes, codec)))
-            change.SetInput(reader.GetImage())
-            change.Change()
-            writer.SetFile(reader.GetFile())
-            writer.SetImage(change.GetOutput())
-            writer.SetFileName(str(folder / "packed"))
-            writer.Write()
+            shutil.copy(folder / "plain", folder / "packed")
+            assert pack(folder / "packed", codec)
             info, found = read(folder / "packed")
             tell(f"{codec} of {kind}", found is not None and np.array_equal(found[0], plane), info.get("error", ""))
 
@@ -149,6 +142,58 @@ def judge_geometry():
         tell(f"{name} slices, by dcm2niix", bool(same and off < 1e-4), f"places differ by {off:.2g} voxels")
 
 
+def pack(path, codec):
+    reader, change, writer = gdcm.ImageReader(), gdcm.ImageChangeTransferSyntax(), gdcm.ImageWriter()
+    reader.SetFileName(str(path))
+    reader.Read()
+    change.SetTransferSyntax(gdcm.TransferSyntax(getattr(gdcm.TransferSyntax, codec)))
+    change.SetInput(reader.GetImage())
+    change.Change()
+    writer.SetFile(reader.GetFile())
+    writer.SetImage(change.GetOutput())
+    writer.SetFileName(str(path))
+    return writer.Write()
+
+
+def judge_series(data_folder):
+    """Series made of real volumes: names shuffled, gantries tilted, two in a folder, each transfer syntax of GDCM."""
+    axial, sagittal = (1, 0, 0, 0, 1, 0), (0, 1, 0, 0, 0, -1)
+    cases = [("cranium_mha/cranium.mha", axial, (0, 0, 3), None), ("cranium_mha/cranium.mha", axial, (0, 0.8, 3), "RLELossless"),
+             ("bonsai/bonsai.nrrd", axial, (0, 0, 1.5), "JPEG2000Lossless"), ("engine/*", axial, (0, 0, -1), "JPEGLosslessProcess14_1"),
+             ("stroke_t1_nii/*.nii*", sagittal, (1.5, 0, 0), "JPEGLSLossless"),
+             ("hipip_signed/*.nrrd", axial, (0, 0, 2), "JPEGLosslessProcess14"),
+             ("headmr_mhd/*.mhd", axial, (0, -0.5, 4), "two series in one folder")]
+    random = np.random.RandomState(7)
+    for number, (pattern, orientation, step, codec) in enumerate(cases):
+        paths = sorted(glob.glob(f"{data_folder}/{pattern}"))
+        info, values = next(((i, v) for i, v in map(read, paths) if v is not None), (None, None))
+        if values is None:
+            print("absent", pattern)
+            continue
+        values = values[::2, ::2, ::2]
+        planes = values.astype(np.int16 if values.min() < 0 else np.uint8 if values.max() < 256 else np.uint16)
+        if not np.array_equal(planes, values):  # floats
+            low, high = values.min(), values.max()
+            planes = np.rint((values - low) / (high - low) * 4095).astype(np.uint16)
+        series = folder / f"series{number}"
+        series.mkdir()
+        names = random.permutation(len(planes))
+        for n, plane in enumerate(planes):
+            path = series / f"IM{names[n]:04}"
+            write_slice(path, plane, np.array([-10, 20, 5]) + n * np.array(step), orientation, n + 1)
+            if codec is not None and "series" not in codec:
+                assert pack(path, codec)
+        if codec == "two series in one folder":
+            for n in range(3):
+                write_slice(series / f"A{n}", planes[n][:5, :7], np.array([0, 0, n]), axial, n + 1, "1.2.4")
+        info, found = read(series)
+        wanted = planes if np.dot(np.cross(orientation[:3], orientation[3:]), step) > 0 else planes[::-1]
+        third = np.array(info.get("direction", [0] * 9)).reshape(3, 3)[:, 2] * info.get("spacing", [0] * 3)[2]
+        same_step = np.allclose(np.abs(third), np.abs(step), atol=1e-5)
+        tell(f"series of {pattern}, {codec or 'explicit'}, {len(planes)} slices {step} apart",
+             found is not None and np.array_equal(found, wanted) and same_step, info.get("error", third))
+
+
 base = os.path.dirname(pydicom.__file__) + "/data"
 for path in sorted(glob.glob(base + "/test_files/**/*", recursive=True) + glob.glob(base + "/charset_files/*.dcm")):
     if os.path.isfile(path) and "DICOMDIR" not in path and not path.endswith((".py", ".json", ".txt", ".xml", ".zip", ".pyc")):
@@ -158,5 +203,7 @@ for path in sorted(glob.glob(base + "/test_files/**/*", recursive=True) + glob.g
             pass
 judge_codecs()
 judge_geometry()
+if len(sys.argv) > 2:
+    judge_series(sys.argv[2])
 print(f"{wrong} differ")
 sys.exit(1 if wrong else 0)
