@@ -112,6 +112,8 @@ typedef struct hl_volume_load_options {
   size_t byte_count;
   const char *series; /* the one to read of several. DICOM: a series' number, UID or description; null: the
                          largest. OME-Zarr: an image's number, path or name; null: the first */
+  hl_space space;     /* the volume's world is turned into this anatomical space, if the file tells its own;
+                         default     unknown: the file's */
   int time, channel, level; /* the time step, channel and resolution (0: the finest) to read of several, from
                                0 on; default HL_INDEX_DEFAULT */
 } hl_volume_load_options;

@@ -75,6 +75,15 @@ static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene 
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 
+/* The anatomical space of a bare volume's scene, which the volumes after it are turned into. */
+static hl_space space_of(const hl_scene *scene) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  const hl_scene_description *description = hl_scene_describe(scene);
+  bool known = description->volume_count > 0 &&
+               hl_volume_get_info(description->volumes[0].volume, &info) == HL_OK;
+  return known ? info.space : HL_SPACE_UNKNOWN;
+}
+
 static int load_each(cli_host *host, const cli_value *values, const cli_input *inputs, size_t count,
                      hl_scene **scenes) {
   hl_volume_load_options options;
@@ -85,6 +94,7 @@ static int load_each(cli_host *host, const cli_value *values, const cli_input *i
     hl_status status = input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n], &error);
     if (bare) render_name_scene(inputs[n].path, true, &error);
     if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+    if (options.space == HL_SPACE_UNKNOWN) options.space = space_of(scenes[n]);
   }
   return EXIT_CODE_OK;
 }

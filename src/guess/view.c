@@ -274,9 +274,8 @@ hl_status hl_view_automatic(const hl_scene_description *description, const hl_da
                             hl_view *view, hl_error *error) {
   const hl_scene_volume *first = &description->volumes[0];
   hl_view_about(description, (vec3){0, 0, 1}, view);
-  /* Programs write left-posterior-superior for any data, so it says little; right-anterior-superior is meant.
-   */
-  if (hl_scene_space(description) == HL_SPACE_RAS || !first_decides(description)) return HL_OK;
+  /* Programs write left-posterior-superior for any data, so it says little unless the file is DICOM. */
+  if (hl_scene_is_anatomical(description) || !first_decides(description)) return HL_OK;
   hl_data_analysis made;
   hl_status status = analysis == NULL ? hl_data_analyse(first->volume, &made, error) : HL_OK;
   hl_upright upright;

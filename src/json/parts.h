@@ -33,6 +33,7 @@ typedef struct hl_volume_shelf {
   size_t count;
   const json_t *groups; /* of shapes; may be null */
   json_t *stood_in; /* owned; volumes whose file was absent, with the keys of their stand-ins; null: none */
+  hl_space space;   /* of the first volume that tells one: the scene's; later volumes are turned into it */
   bool projected;   /* the picture is a maximum projection */
   int threads;      /* for sampling shapes; 0: one per processor */
 } hl_volume_shelf;

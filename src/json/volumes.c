@@ -10,6 +10,7 @@
 #include "json/settings.h"
 #include "json/shapes.h"
 #include "scene/scene.h"
+#include "volume/volume.h"
 
 #define DATA_PREFIX "data:" /* begins the names of files in the context's data folder */
 
@@ -197,6 +198,12 @@ char *hl_json_path(const hl_json_reader *reader, const char *file) {
                       data ? file + strlen(DATA_PREFIX) : file);
 }
 
+/* Whether the scene leaves the volume where its file puts it, so that its anatomical space counts. */
+static bool stays_as_it_is(const hl_scene_volume *volume) {
+  return volume->rotate_angle_deg == 0 && volume->translate[0] == 0 && volume->translate[1] == 0 &&
+         volume->translate[2] == 0;
+}
+
 /* Loads the volume's file, or takes it from the shelf. */
 static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
                       hl_volume_shelf *shelf, hl_scene_volume *volume) {
@@ -215,7 +222,9 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
                         file);
   } else {
     hl_volume *made = NULL;
-    hl_status status = hl_volume_load_with(reader->context, path, options, &made, reader->error);
+    hl_volume_load_options with_space = *options;
+    if (stays_as_it_is(volume)) with_space.space = shelf->space;
+    hl_status status = hl_volume_load_with(reader->context, path, &with_space, &made, reader->error);
     if (status != HL_OK) {
       hl_release(reader->context, path);
       hl_json_enter(reader, "file");
@@ -225,6 +234,7 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
     loaded = put_on_shelf(shelf, path, options, made);
   }
   volume->volume = loaded->volume;
+  if (shelf->space == HL_SPACE_UNKNOWN && stays_as_it_is(volume)) shelf->space = loaded->volume->space;
   volume->file = loaded->source;
   volume->array = options->array;
   volume->series = options->series;

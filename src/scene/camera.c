@@ -49,13 +49,24 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
   memcpy(direction, &way, sizeof way);
 }
 
-/* Anatomy counts only for volumes that the scene does not turn. */
-hl_space hl_scene_space(const hl_scene_description *description) {
+/* The first volume that tells its space; null: there is none. Anatomy holds while a volume is not turned in
+ * the scene. */
+static const hl_volume *first_in_space(const hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++)
     if (description->volumes[v].volume->space != HL_SPACE_UNKNOWN &&
         description->volumes[v].rotate_angle_deg == 0)
-      return description->volumes[v].volume->space;
-  return HL_SPACE_UNKNOWN;
+      return description->volumes[v].volume;
+  return NULL;
+}
+
+hl_space hl_scene_space(const hl_scene_description *description) {
+  const hl_volume *volume = first_in_space(description);
+  return volume != NULL ? volume->space : HL_SPACE_UNKNOWN;
+}
+
+bool hl_scene_is_anatomical(const hl_scene_description *description) {
+  const hl_volume *volume = first_in_space(description);
+  return volume != NULL && (volume->is_anatomical || volume->space == HL_SPACE_RAS);
 }
 
 static vec3 front_of(hl_space space) { return (vec3){0, space == HL_SPACE_LPS ? -1 : 1, 0}; }

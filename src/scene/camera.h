@@ -30,5 +30,7 @@ void hl_view_about(const hl_scene_description *description, vec3 up, hl_view *vi
 
 /* The anatomy of the first volume that has one and is not turned in the scene. */
 hl_space hl_scene_space(const hl_scene_description *description);
+/* Whether this space is meant, so that bodies stand upright along z: by DICOM's files and NIfTI's. */
+bool hl_scene_is_anatomical(const hl_scene_description *description);
 
 #endif

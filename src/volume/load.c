@@ -194,6 +194,8 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "%s: time %d, channel %d, level %d: give an index or HL_INDEX_DEFAULT for each", subject,
                    options->time, options->channel, options->level);
+  if (options->space != HL_SPACE_UNKNOWN && hl_space_name(options->space) == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: there is no space %d", subject, (int)options->space);
   bool given = options->spacing[0] != 0 || options->spacing[1] != 0 || options->spacing[2] != 0;
   for (int axis = 0; axis < 3; axis++)
     if (given && !(options->spacing[axis] > 0 && isfinite(options->spacing[axis])))
@@ -201,6 +203,26 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
                      "%s: spacing[%d] is %g: give three finite numbers above 0, or 0 for the file's", subject,
                      axis, options->spacing[axis]);
   return HL_OK;
+}
+
+/* Turns a volume's world into another anatomical space, and tells so: x, y or both change their signs. */
+static void turn_into(hl_context *context, const char *path, hl_space wanted, hl_volume *volume) {
+  static const double signs[][2] = {
+      [HL_SPACE_RAS] = {1, 1}, [HL_SPACE_LPS] = {-1, -1}, [HL_SPACE_LAS] = {-1, 1}};
+  if (wanted == HL_SPACE_UNKNOWN || volume->space == HL_SPACE_UNKNOWN || volume->space == wanted) return;
+  affine3 *place = &volume->index_to_world;
+  const vec3 zero = {0, 0, 0}; /* subtracted from, so that no -0 arises */
+  if (signs[wanted][0] != signs[volume->space][0]) {
+    place->linear.row[0] = vec3_subtract(zero, place->linear.row[0]);
+    place->offset.x = 0 - place->offset.x;
+  }
+  if (signs[wanted][1] != signs[volume->space][1]) {
+    place->linear.row[1] = vec3_subtract(zero, place->linear.row[1]);
+    place->offset.y = 0 - place->offset.y;
+  }
+  hl_log(context, HL_LOG_WARNING, "%s: its world is %s: it is turned into %s, that of the volumes before it",
+         path, hl_space_name(volume->space), hl_space_name(wanted));
+  volume->space = wanted;
 }
 
 /* Gives the volume the list of arrays, and tells what was chosen by default. */
@@ -215,6 +237,7 @@ static hl_status finish(hl_load_request *request, hl_status status, hl_volume **
     hl_log(request->context, HL_LOG_WARNING, "%s", request->component_told);
   if (request->selection_told[0] != 0)
     hl_log(request->context, HL_LOG_WARNING, "%s", request->selection_told);
+  (*volume)->is_anatomical = request->is_anatomical;
   (*volume)->selection = request->selection;
   (*volume)->series = request->series_list;
   (*volume)->series_count = request->series_count;
@@ -247,15 +270,18 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
   if (options->bytes == NULL && is_folder(path)) {
-    status = load_folder(path, &request, volume, error);
-    return finish(&request, status, volume);
+    status = finish(&request, load_folder(path, &request, volume, error), volume);
+    if (status == HL_OK) turn_into(context, path, options->space, *volume);
+    return status;
   }
   status = options->bytes != NULL
                ? hl_stream_open_memory(context, path, options->bytes, options->byte_count, &stream, error)
                : hl_stream_open(context, path, false, &stream, error);
   if (status == HL_OK) status = load(&stream, &request, volume, error);
   hl_stream_close(stream);
-  return finish(&request, status, volume);
+  status = finish(&request, status, volume);
+  if (status == HL_OK) turn_into(context, path, options->space, *volume);
+  return status;
 }
 
 hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume, hl_error *error) {

@@ -297,6 +297,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   if (status != HL_OK) return status;
   place(&header, &payload.grid);
   payload.grid.space = HL_SPACE_RAS;
+  request->is_anatomical = true;
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
   payload.big_endian = header.big_endian;
   if (status == HL_OK) status = find_components(&header, side_by_side, series, others, &payload, error);

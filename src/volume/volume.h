@@ -55,6 +55,8 @@ struct hl_volume {
   affine3 index_to_world; /* voxel centres at integer indices */
   hl_voxel_type type;     /* as in the file */
   hl_space space;
+  bool is_anatomical; /* the space is meant: DICOM's, NIfTI's; other programs write left-posterior-superior
+                         for any data */
   double minimum, maximum; /* data values over finite voxels */
   double mean;
   uint64_t nonfinite_count;

@@ -53,16 +53,16 @@ static void put_real(hl_written_header *header, size_t at, double value) {
 /* The place of a grid in a world whose x and y point the other way. */
 static void turn(hl_volume_description *grid) {
   for (int row = 0; row < 2; row++) {
-    grid->origin[row] = -grid->origin[row];
-    for (int axis = 0; axis < 3; axis++) grid->axis[axis][row] = -grid->axis[axis][row];
+    grid->origin[row] = 0 - grid->origin[row];
+    for (int axis = 0; axis < 3; axis++) grid->axis[axis][row] = 0 - grid->axis[axis][row];
   }
 }
 
 /* Brings a grid into the space that a format's world is, if the grid tells its own. */
 static void bring_into(hl_space wanted, hl_volume_description *grid) {
   if (grid->space == HL_SPACE_LAS) { /* only x differs from RAS */
-    grid->origin[0] = -grid->origin[0];
-    for (int axis = 0; axis < 3; axis++) grid->axis[axis][0] = -grid->axis[axis][0];
+    grid->origin[0] = 0 - grid->origin[0];
+    for (int axis = 0; axis < 3; axis++) grid->axis[axis][0] = 0 - grid->axis[axis][0];
     grid->space = HL_SPACE_RAS;
   }
   if (grid->space != HL_SPACE_UNKNOWN && grid->space != wanted) turn(grid);

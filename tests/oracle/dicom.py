@@ -249,6 +249,9 @@ def test_geometry():
     info = expect("shuffled slices", root / "plain", HU, spacing=[0.5, 0.75, 2.5])
     check("origin, type and space", info["origin"] == [-10, 20, 5] and info["type"] == "int16" and
           info["space"] == "LPS", info)
+    scene = json.loads(subprocess.run([PROGRAM, "render", root / "plain", "--print-scene"], capture_output=True, check=True).stdout)
+    eye = np.subtract(scene["camera"]["position"], scene["camera"]["target"])
+    check("seen from the front, upright", eye[1] < 0 and scene["camera"]["up"][2] > 0.5, scene["camera"])
     for path in (root / "plain").iterdir():
         (root / "both").mkdir(exist_ok=True)
         (root / "both" / path.name).write_bytes(b"II*\0\x08\0\0\0" + path.read_bytes()[8:])

@@ -226,8 +226,7 @@ static hl_status read_all(reading *r, hl_error *error) {
   return r->failed ? r->status : HL_OK;
 }
 
-static hl_status make_volume(reading *r, const hl_load_request *request, hl_volume **volume,
-                             hl_error *error) {
+static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_volume_description grid = r->stack->grid;
   grid.type = r->as_floats && hl_voxel_type_storage(r->type) != HL_STORAGE_F32 ? HL_VOXEL_F32 : r->type;
   if (!r->as_floats) {
@@ -239,12 +238,12 @@ static hl_status make_volume(reading *r, const hl_load_request *request, hl_volu
     for (int row = 0; row < 3; row++) grid.axis[axis][row] *= request->spacing[axis] / length;
   }
   void *voxels = r->voxels;
+  request->is_anatomical = grid.space != HL_SPACE_UNKNOWN;
   r->voxels = NULL;
   return hl_volume_adopt(r->set->context, &grid, r->set->bundle->path, voxels, volume, error);
 }
 
-static hl_status read_volume(reading *r, const hl_load_request *request, hl_volume **volume,
-                             hl_error *error) {
+static hl_status read_volume(reading *r, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const size_t *n = r->stack->grid.dimensions;
   size_t count = n[0] * n[1] * n[2];
   r->slice_voxels = n[0] * n[1];
