@@ -113,7 +113,7 @@ static bool is_film(const char *path) {
   return false;
 }
 
-/* "turn-frames" of "turn.mp4"; a folder's own name without a slash at its end. */
+/* "turn-frames" for "turn.mp4"; of a folder, its own name without a slash at the end. */
 static char *name_folder(const char *output, bool film) {
   char *folder = NULL;
   const char *dot = strrchr(output, '.');

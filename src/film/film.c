@@ -34,7 +34,7 @@ static hl_status no_memory(hl_error *error) {
   return HL_ERROR_MEMORY;
 }
 
-/* Which turn of the camera a path names; -1: it names a key of the scene. */
+/* The index of the camera's turn that a path names; -1: the path names a number of the scene. */
 static int turn_of(const char *path) {
   for (int t = 0; t < TURN_COUNT; t++)
     if (strcmp(path, turn_paths[t]) == 0) return t;
@@ -43,7 +43,7 @@ static int turn_of(const char *path) {
 
 /* ---- numbers in the scene's text ---- */
 
-/* The member of an object or element of an array that `name` tells; null: there is none. */
+/* The member of an object, or the element of an array, called `name`; null: there is none. */
 static json_t *step_into(json_t *at, const char *name) {
   if (json_is_object(at)) return json_object_get(at, name);
   size_t digits = strspn(name, "0123456789");
@@ -51,14 +51,14 @@ static json_t *step_into(json_t *at, const char *name) {
   return json_array_get(at, strtoul(name, NULL, 10));
 }
 
-/* Whole numbers stay whole where the scene has one. (The program's own writer of JSON has a json_integer().)
+/* A number that is whole in the scene stays whole. (The program's own writer of JSON has a json_integer().)
  */
 static json_t *number_like(const json_t *before, double value) {
   return json_is_integer(before) ? json_pack("I", (json_int_t)llround(value)) : json_real(value);
 }
 
-/* Writes a value where the path leads. A key that an object lacks is added: the scene has its default there,
- * and the library refuses what is no key. */
+/* Writes a value at a path. A key that its object lacks is added, as the scene has the key's default there;
+ * the library refuses unknown keys. */
 static hl_status write_value(json_t *root, const char *path, double value, hl_error *error) {
   char *names = strdup(path), *rest = names, *name;
   if (names == NULL) return no_memory(error);
@@ -94,7 +94,7 @@ static hl_status read_frame(const film *f, json_t *text, int frame, hl_scene **s
 
 /* ---- the camera ---- */
 
-/* At zoom 2 what was an inch across is two. */
+/* At zoom 2 everything looks twice as large. */
 static void zoom(hl_camera *camera, double factor) {
   if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height /= factor;
   else
@@ -102,7 +102,7 @@ static void zoom(hl_camera *camera, double factor) {
       camera->position[k] = camera->target[k] + (camera->position[k] - camera->target[k]) / factor;
 }
 
-/* given: the turns that keys ask for. */
+/* given: which of the camera's turns have keys. */
 static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
                              const hl_scene_description *description, hl_error *error) {
   hl_view view;
@@ -185,7 +185,8 @@ static hl_status parse_scene(film *f, hl_error *error) {
   return f->text != NULL ? HL_OK : no_memory(error);
 }
 
-/* A mistake in a key shows before the first frame is rendered. */
+/* Makes the first and the last frame's scene, so that a mistake in a key shows before any frame is rendered.
+ */
 static hl_status try_frame(const film *f, int frame, hl_error *error) {
   hl_scene *scene = NULL;
   hl_status status = film_scene(f, frame, &scene, error);

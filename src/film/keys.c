@@ -17,7 +17,7 @@ __attribute__((format(printf, 2, 3))) static hl_status refuse(hl_error *error, c
   return HL_ERROR_ARGUMENT;
 }
 
-/* "FRAME:VALUE" at *at, which moves past it. */
+/* Reads "FRAME:VALUE" at *at, which moves past it. */
 static hl_status read_point(const char **at, const film_key *key, int *frame, double *value,
                             hl_error *error) {
   char *end;

@@ -6,10 +6,10 @@
 
 enum { FILM_MOST_FRAMES = 1000000, FILM_MOST_POINTS = 1000 };
 
-/* A value that goes through points, linearly from one to the next; before the first and after the last it
- * stays. */
+/* A value at each frame: linear between the given frames, constant before the first and after the last. */
 typedef struct film_key {
-  char *path;     /* owned; "camera.azimuth", "lights.0.intensity": a scene's keys and numbers of elements */
+  char *path;     /* owned; path of a number: "camera.azimuth", or keys and numbers of elements as in
+                     "lights.0.intensity" */
   int *frames;    /* owned; [count], rising */
   double *values; /* owned; [count] */
   size_t count;   /* at least 1 */

@@ -27,7 +27,8 @@ struct movie {
 
 const char *const movie_extensions[] = {".mp4", ".mov", ".mkv", ".webm", ".gif", NULL};
 
-/* Players expect an even size, half the resolution of colour, and to be told that the colours are sRGB's. */
+/* Players expect even widths and heights, colours at half the resolution, and a mark that the colours are
+ * sRGB's. */
 #define FOR_PLAYERS                                                                                     \
   "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=in_range=pc:out_range=tv:out_color_matrix=bt709,format=yuv420p," \
   "setparams=color_primaries=bt709:color_trc=iec61966-2-1:colorspace=bt709"
@@ -69,7 +70,7 @@ static hl_status fail_io(hl_error *error, const char *path, const char *what) {
   return HL_ERROR_IO;
 }
 
-/* Words of ffmpeg's command line; words: [MOST_WORDS]. */
+/* The words of ffmpeg's command line; words: [MOST_WORDS]. */
 static void command_line(const struct kind *kind, const char *rate, const char *file, const char **words) {
   const char *const first[] = {
       "ffmpeg",     "-hide_banner", "-nostdin",   "-loglevel", "error", "-y",     "-f",  "image2pipe",
@@ -83,7 +84,7 @@ static void command_line(const struct kind *kind, const char *rate, const char *
   words[count] = NULL;
 }
 
-/* ffmpeg runs in a group of its own: Ctrl-C ends it by us, with its file. */
+/* ffmpeg runs in a process group of its own: at Ctrl-C this program ends it and removes its file. */
 static int spawn(movie *m, const char **words, int input) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -149,7 +150,7 @@ hl_status movie_add(movie *m, const unsigned char *png, size_t length, hl_error 
   while (length > 0) {
     ssize_t taken = write(m->pipe, png, length);
     if (taken < 0 && errno == EINTR) continue;
-    if (taken < 0) { /* it has ended too early: its messages say why */
+    if (taken < 0) { /* ffmpeg has ended early: its messages tell the reason */
       hl_status status = movie_end(m, error);
       return status == HL_OK ? HL_ERROR_IO : status;
     }
@@ -159,7 +160,7 @@ hl_status movie_add(movie *m, const unsigned char *png, size_t length, hl_error 
   return HL_OK;
 }
 
-/* Waits for ffmpeg, which ends when the pipe is closed; whether it was content. */
+/* Waits for ffmpeg, which ends when the pipe is closed. Whether it succeeded. */
 static bool wait_for_end(movie *m) {
   int how = 0;
   if (m->pipe >= 0) close(m->pipe);

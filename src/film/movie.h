@@ -1,4 +1,4 @@
-/* film/movie.h - pictures joined to a film by ffmpeg's program, which is told them through a pipe. */
+/* film/movie.h - joins pictures to a film: ffmpeg, run as a program, reads them from a pipe. */
 #ifndef HL_FILM_MOVIE_H
 #define HL_FILM_MOVIE_H
 
@@ -15,12 +15,13 @@ extern const char *const movie_extensions[];
 /* Whether ffmpeg is in the PATH. */
 bool movie_available(void);
 
-/* Begins a film: `path` ends in one of the extensions, and is there when movie_end() has returned, never half
- * of it. The calls return HL_ERROR_UNSUPPORTED where ffmpeg is absent, and HL_ERROR_IO with its own words
- * where it fails. SIGPIPE must be ignored. */
+/* Begins a film. `path` ends in one of the extensions; the file is complete when movie_end() has returned,
+ * and never there as a half. All calls return HL_ERROR_UNSUPPORTED if ffmpeg is absent, and HL_ERROR_IO with
+ * ffmpeg's own words if it fails. SIGPIPE must be ignored. */
 hl_status movie_begin(const char *path, double frames_per_second, movie **result, hl_error *error);
 
-/* The next picture, as the bytes of a PNG; all of a film have one size. After a failure m is destroyed. */
+/* Adds a picture, as the bytes of a PNG; all pictures of a film have the same size. After a failure m is
+ * destroyed. */
 hl_status movie_add(movie *m, const unsigned char *png, size_t length, hl_error *error);
 
 /* Ends the film; m is destroyed. movie_abandon() leaves nothing behind; null is allowed. */

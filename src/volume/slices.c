@@ -59,7 +59,7 @@ static bool cut_name(const hl_bundle_entry *entry, numbered_name *name) {
   return true;
 }
 
-/* Compares what is around the numbers: equal within a series. */
+/* Compares names by the texts around their numbers, which are equal within a series. */
 static int compare_series(const numbered_name *a, const numbered_name *b) {
   size_t shorter = a->number_at < b->number_at ? a->number_at : b->number_at;
   int order = strncmp(a->entry->name, b->entry->name, shorter);
@@ -86,7 +86,7 @@ static hl_status list_names(slices_reading *r, size_t *count, hl_error *error) {
   return HL_OK;
 }
 
-/* Chooses the longest run of one series. */
+/* Chooses the longest series. */
 static void choose_series(slices_reading *r, size_t count) {
   size_t series = 0;
   for (size_t begin = 0, end; begin < count; begin = end, series++) {
@@ -158,7 +158,8 @@ static hl_status read_slice(void *data, size_t slice, int worker, hl_error *erro
   return status;
 }
 
-/* Holds all pictures' promises against their files, before anything is allocated for the volume. */
+/* Compares the size that each picture promises with its file's length, before anything is allocated for the
+ * volume. */
 static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *error) {
   hl_slice_file file;
   char path[PATH_BYTES];
@@ -171,7 +172,7 @@ static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *err
     if (hl_cancelled(file.context))
       return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->bundle->path);
     uint64_t size = name_of(r, n)->entry->size, least = name_of(r, 0)->entry->size;
-    if (size >= least / 64) continue; /* as good a promise as the first one's */
+    if (size >= least / 64) continue; /* as many bytes as the first picture's, or nearly so */
     status = read_file(r, n, true, path, sizeof path, &file, error);
     if (status == HL_OK) status = hl_slice_measure(&file, &shape, error);
     hl_release(file.context, (void *)file.bytes);
@@ -255,7 +256,7 @@ static hl_status load_file(slices_reading *r, size_t slice, hl_volume **volume, 
   return status;
 }
 
-/* Files that are volumes of their own are time steps; of OME-TIFF any file leads to all others. */
+/* Files that are volumes of their own are time steps; one file of an OME-TIFF leads to all others. */
 static hl_status load_stack(slices_reading *r, hl_slice_stack stack, hl_volume **volume, hl_error *error) {
   hl_load_request *request = r->request;
   if (stack == HL_SLICE_OF_OME) return load_file(r, 0, volume, error);

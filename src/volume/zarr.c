@@ -1,7 +1,7 @@
 /* volume/zarr.c - Zarr arrays and OME-Zarr images, in folders and zip archives.
  *
- * The parts are in zarr/: metadata reads JSON files, array one array's metadata, image OME-Zarr's axes and
- * levels, series the images of a collection, voxels and chunk the voxels. */
+ * The steps are in zarr/: metadata.c reads JSON files, array_read.c an array's metadata, image.c OME-Zarr's
+ * axes and levels, series.c lists the images of a collection, voxels.c and chunk.c read the voxels. */
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static bool is_marker(const char *name) {
          strcmp(name, ".zattrs") == 0;
 }
 
-/* An archive's root may lie in a folder: the marker that lies highest tells. */
+/* The root of an archive may lie in a folder: it is where the marker file with the shortest path lies. */
 static bool find_root_of_archive(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES]) {
   int least = HL_BUNDLE_DEPTH_MOST;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -54,7 +54,7 @@ static hl_status find_root(hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], b
 
 /* ---- one image ---- */
 
-/* Sizes of a level's volume along x, y, z; *others: what its other axes have in all. */
+/* The sizes of a level's volume along x, y, z; *others: the product of its other axes' sizes. */
 static void level_sizes(const hl_zarr_image *image, int level, size_t sizes[3]) {
   const hl_zarr_array *array = &image->levels[level].array;
   for (int a = 0; a < 3; a++) sizes[a] = 1;
@@ -72,7 +72,7 @@ static hl_status choose_level(const hl_zarr_image *image, const char *path, hl_l
   return hl_level_choose(request, path, sizes, (size_t)image->level_count, error);
 }
 
-/* The volume's grid, and which of the array's axes are its own. */
+/* The volume's grid, and the array's axes that are the grid's. */
 static void describe(const hl_zarr_image *image, int number, hl_payload *payload, hl_zarr_choice *choice) {
   const hl_zarr_level *level = &image->levels[number];
   double known = 1;
@@ -91,7 +91,8 @@ static void describe(const hl_zarr_image *image, int number, hl_payload *payload
   if (choice->axis[HL_ZARR_Z] < 0) payload->grid.axis[HL_ZARR_Z][HL_ZARR_Z] = known;
 }
 
-/* How many the array has along an axis of a kind, and where the choice's index along it lies. */
+/* The array's size along an axis of a kind (time, channel), and where the chosen index along this axis is
+ * kept. */
 static size_t count_along(const hl_zarr_image *image, const hl_zarr_array *array, hl_zarr_axis kind,
                           int *axis) {
   *axis = -1;
@@ -162,7 +163,7 @@ static hl_status list_array(const hl_bundle *bundle, const char *folder, const c
 
 static int by_text(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
-/* The names in a folder, sorted; owned by the caller, as are all of them. */
+/* The names of the files in a folder, sorted; the list and the names are owned by the caller. */
 static hl_status list_folder(const hl_bundle *bundle, char **names, size_t *count, hl_error *error) {
   DIR *folder = opendir(bundle->path);
   hl_status status = HL_OK;
@@ -179,7 +180,7 @@ static hl_status list_folder(const hl_bundle *bundle, char **names, size_t *coun
   return status;
 }
 
-/* The names in an archive under `folder` that have array metadata; as list_folder. */
+/* The names of the arrays in an archive's folder; sorted and owned as in list_folder(). */
 static hl_status list_archive(const hl_bundle *bundle, const char *root, char **names, size_t *count,
                               hl_error *error) {
   size_t length = strlen(root);
@@ -215,7 +216,7 @@ static hl_status list_arrays(const hl_bundle *bundle, const char *folder, hl_loa
   return status;
 }
 
-/* A group without OME-Zarr's metadata: one of its arrays. */
+/* A group without OME-Zarr's metadata: reads one of its arrays. */
 static hl_status load_group(const hl_bundle *bundle, const char *folder, hl_load_request *request,
                             hl_volume **volume, hl_error *error) {
   char path[HL_ZARR_PATH_BYTES];
@@ -245,7 +246,7 @@ static hl_status load_described(const hl_bundle *bundle, const char *folder, con
   return status;
 }
 
-/* depth: collections within collections are gone into so far (a plate's well). */
+/* depth: how many collections the group lies within (a plate's well, say). */
 static hl_status load_node(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], int depth,
                            hl_load_request *request, hl_volume **volume, hl_error *error) {
   json_t *attributes;

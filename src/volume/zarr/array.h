@@ -19,25 +19,27 @@ typedef enum hl_zarr_compressor {
 
 /* How a chunk's voxels become bytes. */
 typedef struct hl_zarr_codecs {
-  int order[HL_ZARR_AXES_MOST]; /* the array's axes as they lie in a chunk, the slowest first */
+  int order[HL_ZARR_AXES_MOST]; /* the array's axes in the order in which they lie in a chunk, the slowest
+                                   first */
   bool big_endian;
   hl_zarr_compressor compressor;
-  int inner_checks, outer_checks; /* CRC32C sums (4 bytes each) behind the voxels, behind the packed bytes */
+  int inner_checks,
+      outer_checks; /* number of CRC32C sums (4 bytes each) after the voxels, and after the packed bytes */
 } hl_zarr_codecs;
 
 typedef struct hl_zarr_array {
-  char folder[HL_ZARR_PATH_BYTES]; /* in the bundle; "" or ends with '/' */
+  char folder[HL_ZARR_PATH_BYTES]; /* folder of the array in the bundle; "" or ending with '/' */
   int version;                     /* 2 or 3 */
   int rank;
   uint64_t shape[HL_ZARR_AXES_MOST], chunk[HL_ZARR_AXES_MOST]; /* [rank]; in voxels */
   char axis_name[HL_ZARR_AXES_MOST][HL_ZARR_NAME_BYTES];       /* "": none */
   hl_voxel_type type;
   size_t chunk_bytes;    /* of a chunk's voxels */
-  unsigned char fill[8]; /* a voxel of missing chunks, native byte order */
+  unsigned char fill[8]; /* the value of voxels in missing chunks, native byte order */
   hl_zarr_codecs codecs;
   char separator;  /* in the names of chunks: '.' or '/' */
   bool has_prefix; /* names of chunks begin with "c" */
-  /* shards: files of several chunks */
+  /* shards are files that hold several chunks */
   bool is_sharded;
   uint64_t shard[HL_ZARR_AXES_MOST]; /* in chunks; 1 without shards */
   uint64_t chunks_in_shard;

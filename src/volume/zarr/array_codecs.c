@@ -40,7 +40,7 @@ hl_status hl_zarr_type_3(const hl_zarr_reading *r, const char *name) {
 /* ---- fill values ---- */
 
 static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[8]) {
-  /* the low bytes of two's complement, whatever the type's sign */
+  /* keeps the low bytes; two's complement makes this right for signed and unsigned types */
   uint8_t byte = (uint8_t)value;
   uint16_t word = (uint16_t)value;
   uint32_t wide = (uint32_t)value;
@@ -52,7 +52,7 @@ static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[
   }
 }
 
-/* Binary16 of a double: normal numbers are cut, which is exact for what such an array can hold. */
+/* Binary16 of a double. The fraction is cut, which is exact for fill values that such an array can hold. */
 static uint16_t half_of(double value) {
   int exponent;
   uint16_t sign = signbit(value) ? 0x8000 : 0;
@@ -138,7 +138,7 @@ hl_status hl_zarr_compressor_2(const hl_zarr_reading *r, const json_t *compresso
   return find_compressor(name, &r->array->codecs.compressor) ? HL_OK : fail_codec(r, name);
 }
 
-/* "order" is a permutation: axis n of what is stored is the array's axis order[n]. */
+/* "order" is a permutation: stored axis n is axis order[n] of the array. */
 static hl_status take_transpose(const hl_zarr_reading *r, const json_t *configuration,
                                 hl_zarr_codecs *codecs) {
   const json_t *order = json_object_get(configuration, "order");

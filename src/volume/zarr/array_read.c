@@ -1,5 +1,5 @@
-/* volume/zarr/array_read.c - the metadata of a Zarr array: what its JSON says, checked. array_codecs.c reads
- * the codecs and values. */
+/* volume/zarr/array_read.c - reads and checks the metadata of a Zarr array (array_codecs.c: its codecs and
+ * values). */
 #include "volume/zarr/array_read.h"
 
 #include <string.h>
@@ -98,7 +98,7 @@ static hl_status read_chunk_names(const hl_zarr_reading *r, const json_t *encodi
   return read_separator(r, configured(encoding, "separator"), plain ? '/' : '.');
 }
 
-/* Shards: the chunk grid's chunks are files of inner chunks. */
+/* With shards, the chunks of the chunk grid are files of several inner chunks. */
 static hl_status read_shards(const hl_zarr_reading *r, const json_t *codec) {
   hl_zarr_array *array = r->array;
   uint64_t outer[HL_ZARR_AXES_MOST];
@@ -156,7 +156,7 @@ static hl_status read_version_3(const hl_zarr_reading *r, const json_t *node) {
 
 /* ---- the whole ---- */
 
-/* xarray names the axes of version 2 in an attribute. */
+/* In version 2, xarray writes the axes' names into an attribute. */
 static hl_status read_attributed_names(const hl_zarr_reading *r) {
   json_t *attributes;
   hl_status status = hl_zarr_metadata_read(r->bundle, r->array->folder, ".zattrs", &attributes, r->error);

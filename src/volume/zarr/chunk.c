@@ -1,7 +1,7 @@
 /* volume/zarr/chunk.c - from a chunk's bytes in a file to its voxels: check sums, zlib, zstd, blosc.
  *
- * A chunk's size is known from the metadata: what unpacks to any other size is refused, and no memory is
- * taken before the packed data themselves promise this size, where they promise one. */
+ * The size of an unpacked chunk is known from the metadata: data that unpack to another size are refused.
+ * Where packed data state their unpacked size, it is compared before any memory is taken. */
 #include "volume/zarr/chunk.h"
 
 #include <string.h>
@@ -49,7 +49,7 @@ bool hl_zarr_check_sum(const unsigned char *bytes, size_t length) {
 typedef struct packed_bytes {
   const unsigned char *bytes;
   size_t length;
-  size_t unpacked; /* bytes that must come out */
+  size_t unpacked; /* bytes that unpacking must give */
 } packed_bytes;
 
 static hl_status fail_damaged(const hl_zarr_unpacker *u, const char *codec, hl_error *error) {
@@ -155,7 +155,7 @@ static hl_status read_packed(hl_zarr_unpacker *u, hl_source *source, uint64_t of
 
 hl_status hl_zarr_chunk_read(hl_zarr_unpacker *u, hl_source *source, uint64_t offset, uint64_t length,
                              const unsigned char **voxels, hl_error *error) {
-  enum { SLACK = 1 << 20 }; /* packing makes nothing much larger */
+  enum { SLACK = 1 << 20 }; /* packing makes no data larger than by this */
   const hl_zarr_codecs *codecs = &u->array->codecs;
   bool is_raw = codecs->compressor == HL_ZARR_RAW;
   packed_bytes packed = {.unpacked = u->array->chunk_bytes + 4 * (size_t)codecs->inner_checks};

@@ -4,15 +4,15 @@
 
 #include "volume/zarr/array.h"
 
-/* A thread's memory for one chunk, packed and unpacked. Zeroed but for the first three members before its
- * first use. */
+/* A thread's memory for one chunk, packed and unpacked. Set the first three members, and all others to zero,
+ * before its first use. */
 typedef struct hl_zarr_unpacker {
   hl_context *context;
   const char *path; /* for error lines */
   const hl_zarr_array *array;
   unsigned char *packed; /* owned; [capacity] */
   size_t capacity;
-  unsigned char *voxels; /* owned; [array->chunk_bytes] and a check sum */
+  unsigned char *voxels; /* owned; [array->chunk_bytes], followed by a check sum */
   void *zstd;            /* owned; zstd's own memory */
 } hl_zarr_unpacker;
 
@@ -25,7 +25,7 @@ hl_status hl_zarr_chunk_read(hl_zarr_unpacker *unpacker, hl_source *source, uint
 
 /* CRC32C of RFC 3720, section 12.1. */
 uint32_t hl_zarr_crc32c(const unsigned char *bytes, size_t length);
-/* Whether the last four of the bytes are the sum of those before them, least significant first. */
+/* Whether the last four bytes are the CRC32C of all bytes before them, least significant byte first. */
 bool hl_zarr_check_sum(const unsigned char *bytes, size_t length);
 
 #endif

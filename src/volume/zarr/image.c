@@ -31,7 +31,8 @@ static hl_zarr_axis axis_of_name(const char *name) {
   return HL_ZARR_OTHER;
 }
 
-/* Axes without names: the last are x, y, z; the one before them is the channel, and before it time. */
+/* Axes without names: the last three are z, y and x; before them come the channel and, before that, the time.
+ */
 static void take_places(int rank, hl_zarr_axis *axis) {
   static const hl_zarr_axis from_end[] = {HL_ZARR_X, HL_ZARR_Y, HL_ZARR_Z, HL_ZARR_CHANNEL, HL_ZARR_TIME};
   for (int n = 0; n < rank; n++) axis[rank - 1 - n] = n < HL_ZARR_OTHER ? from_end[n] : HL_ZARR_OTHER;
@@ -59,7 +60,8 @@ static double micrometres(const char *unit) {
   return 0;
 }
 
-/* Sets *unit: what a length along the space axes is multiplied by; 1 unless all of them tell a known unit. */
+/* Sets *unit, the factor of all lengths along the space axes: micrometres if each of the axes has a known
+ * unit, else 1. */
 static void read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double unit[3]) {
   bool told = json_array_size(axes) == (size_t)rank, all = true;
   for (int n = 0; n < rank && told; n++) {
@@ -103,7 +105,7 @@ static hl_status apply(const hl_bundle *bundle, const char *folder, const json_t
   return HL_OK;
 }
 
-/* Where no level tells its scale (before 0.4), the levels cover the same space. */
+/* Before version 0.4 no level states its scale: all levels are taken to cover the same space. */
 static void scale_by_shape(hl_zarr_image *image) {
   for (int n = 1; n < image->level_count; n++)
     for (int axis = 0; axis < image->levels[0].array.rank; axis++) {

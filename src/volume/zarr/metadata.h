@@ -8,17 +8,16 @@
 
 enum { HL_ZARR_PATH_BYTES = 512, HL_ZARR_METADATA_BYTES_MOST = 4 << 20 };
 
-/* Reads the JSON object in folder + name; *object is null where there is no such file. The caller gives it
- * back (json_decref). */
+/* Reads the JSON object in folder + name; *object is null if there is no such file, else owned by the caller
+ * (json_decref). */
 hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, const char *name,
                                 json_t **object, hl_error *error);
 
-/* The attributes of the group or array in `folder`: of `zarr.json` or `.zattrs`; null where there are none.
- */
+/* The attributes of the group or array in `folder`, from `zarr.json` or `.zattrs`; null if there are none. */
 hl_status hl_zarr_attributes_read(const hl_bundle *bundle, const char *folder, json_t **attributes,
                                   hl_error *error);
 
-/* OME-Zarr's part of the attributes: of 0.5 their "ome", of 0.4 they themselves. Borrowed. */
+/* OME-Zarr's part of the attributes: their member "ome" in version 0.5, all of them in 0.4. Borrowed. */
 const json_t *hl_zarr_ome(const json_t *attributes);
 
 /* "PATH/FOLDER...: WHAT" */
@@ -26,8 +25,8 @@ __attribute__((format(printf, 5, 6))) hl_status hl_zarr_fail(const hl_bundle *bu
                                                              hl_error *error, hl_status code,
                                                              const char *format, ...);
 
-/* folder + name + '/' into `joined`; false if it is too long, or leads out of the folder ("..", "/"). "."
- * and "" are the folder itself. */
+/* Writes folder + name + '/' into `joined`. False if it is too long or leads out of the folder ("..", "/");
+ * the names "." and "" stand for the folder itself. */
 bool hl_zarr_join(char joined[HL_ZARR_PATH_BYTES], const char *folder, const char *name);
 
 #endif

@@ -52,7 +52,7 @@ static hl_status list_numbered(const hl_bundle *bundle, const char *base, hl_loa
   return status;
 }
 
-/* list: of objects with a "path"; tail: what follows it. */
+/* list: an array of objects with a "path"; tail: appended to each path. */
 static hl_status list_paths(const hl_bundle *bundle, const char *base, const json_t *list, const char *tail,
                             hl_load_request *request, hl_error *error) {
   hl_status status = HL_OK;

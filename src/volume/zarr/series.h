@@ -5,8 +5,9 @@
 
 #include "volume/zarr/image.h"
 
-/* Lists the collection's images in the request, and sets `folder` to the one that the request names by its
- * number (from 0), path or name, or to the first. *is_collection: false if `ome` is none. */
+/* Lists the collection's images in the request, and sets `folder` to the image that the request names by its
+ * number (from 0), path or name, or to the first one. *is_collection: false if `ome` describes no collection.
+ */
 hl_status hl_zarr_series_choose(const hl_bundle *bundle, const json_t *ome, hl_load_request *request,
                                 char folder[HL_ZARR_PATH_BYTES], bool *is_collection, hl_error *error);
 

@@ -1,7 +1,7 @@
 /* volume/zarr/voxels.c - reads chunks on all threads and puts their voxels where they belong.
  *
- * A part is one chunk, of a file of its own or of a shard; parts of one shard follow each other. A chunk that
- * is not there holds the fill value. */
+ * A part is one chunk; its file may be a shard, which holds several chunks: parts of the same shard follow
+ * each other. A missing chunk holds the fill value. */
 #include "volume/zarr/voxels.h"
 
 #include <stdatomic.h>
@@ -26,30 +26,31 @@ static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 typedef struct worker {
   hl_zarr_unpacker unpacker;
   char key[KEY_BYTES];  /* of the open file; "": none */
-  hl_source *source;    /* owned; null: there is no such file */
-  unsigned char *index; /* owned; [16 * chunks_in_shard] and a check sum */
+  hl_source *source;    /* owned; null: the file does not exist */
+  unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a check sum */
 } worker;
 
 typedef struct reading {
   const hl_bundle *bundle;
   const hl_zarr_array *array;
   const hl_zarr_choice *choice;
-  unsigned char *voxels;            /* owned until all are read */
-  size_t stored_bytes;              /* of a voxel */
-  uint64_t size[3];                 /* of the volume */
-  uint64_t files[3], inner[3];      /* along i, j, k: files; chunks in each */
-  uint64_t parts;                   /* in all */
-  size_t stride[HL_ZARR_AXES_MOST]; /* in a chunk, along the array's axes; bytes */
-  unsigned char fill[4];            /* a voxel in stored form */
-  worker *workers;                  /* owned; [threads] */
-  atomic_size_t found;              /* chunks that are there */
+  unsigned char *voxels;       /* owned until the volume takes it */
+  size_t stored_bytes;         /* of a voxel */
+  uint64_t size[3];            /* of the volume */
+  uint64_t files[3], inner[3]; /* along i, j, k: number of files, and of chunks in each file */
+  uint64_t parts;              /* in all */
+  size_t
+      stride[HL_ZARR_AXES_MOST]; /* bytes from a voxel to the next one in a chunk, along the array's axes */
+  unsigned char fill[4];         /* a voxel in stored form */
+  worker *workers;               /* owned; [threads] */
+  atomic_size_t found;           /* chunks that are there */
 } reading;
 
-/* A part's place, in chunks and voxels. */
+/* Where a part lies, in chunks and in voxels. */
 typedef struct part {
   uint64_t file[HL_ZARR_AXES_MOST];  /* coordinates of its file */
-  uint64_t inner[HL_ZARR_AXES_MOST]; /* of its chunk within the file */
-  uint64_t begin[3], count[3];       /* its voxels in the volume */
+  uint64_t inner[HL_ZARR_AXES_MOST]; /* index of the chunk within its file */
+  uint64_t begin[3], count[3];       /* the part's voxels in the volume */
 } part;
 
 /* ---- which part is where ---- */
@@ -124,7 +125,7 @@ static void fill_row(const reading *r, void *row, size_t count) {
   for (size_t n = 0; r->stored_bytes == 4 && n < count; n++) ((float *)row)[n] = wide;
 }
 
-/* Voxels `step` bytes apart, through a small buffer where they do not lie side by side. */
+/* Reads voxels that lie `step` bytes apart; through a small buffer unless they lie side by side. */
 static void store_row(const reading *r, const unsigned char *from, size_t step, size_t count,
                       unsigned char *row) {
   enum { STAGED = 512 };
@@ -143,7 +144,7 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
   }
 }
 
-/* chunk: the part's voxels, or null: it is filled. */
+/* chunk: the part's voxels; null: the part gets the fill value. */
 static void put(const reading *r, const part *p, const unsigned char *chunk) {
   size_t step[3];
   for (int a = 0; a < 3; a++) step[a] = r->choice->axis[a] < 0 ? 0 : r->stride[r->choice->axis[a]];
@@ -178,7 +179,7 @@ static hl_status read_index(const reading *r, worker *w, hl_error *error) {
              : status;
 }
 
-/* Opens the part's file, which may be the one that is open. */
+/* Opens the file of a part, unless it is open already. */
 static hl_status open_file(const reading *r, worker *w, const part *p, hl_error *error) {
   char key[KEY_BYTES];
   name_file(r->array, p, key);
@@ -197,7 +198,7 @@ static uint64_t little_u64(const unsigned char *bytes) {
   return value;
 }
 
-/* Where a chunk lies in its file; *length 0: it is not there. */
+/* Finds a chunk in its file; *length 0: the chunk is missing. */
 static hl_status find_chunk(const reading *r, const worker *w, const part *p, uint64_t *offset,
                             uint64_t *length, hl_error *error) {
   uint64_t size = w->source != NULL ? hl_source_size(w->source) : 0, number = 0;

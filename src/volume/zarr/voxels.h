@@ -10,7 +10,7 @@ typedef struct hl_zarr_choice {
   uint64_t index[HL_ZARR_AXES_MOST]; /* along axes that are not in `axis` */
 } hl_zarr_choice;
 
-/* Reads *voxels, [k][j][i] in stored form, owned by the caller. Fails where not one chunk is there. */
+/* Reads *voxels, [k][j][i] in stored form, owned by the caller. Fails if all chunks are missing. */
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
                               const hl_zarr_choice *choice, void **voxels, hl_error *error);
 
