@@ -74,10 +74,15 @@ int render_series(const cli_value *values, char **operands);
 /* Refuses options that contradict each other. */
 int render_check_options(const cli_value *values);
 
-/* Loads the operands into one scene: a scene file, a picture that carries a scene, or one or more volumes;
- * *bare: they are volumes. Several volumes share one world, and each keeps its own look. They are named like
- * their files without folder and extensions; "-2" and so on is appended to names that are taken. Returns the
- * exit code. */
+/* Parts operands into meshes, by their names, and others; both lists end with null. */
+void render_part_meshes(char **operands, char **meshes, char **others);
+/* Adds meshes to a scene; *scene null: makes one for them. bare: the camera frames them too. */
+int render_add_meshes(cli_host *host, char *const *paths, bool bare, hl_scene **scene);
+
+/* Loads the operands into one scene: a scene file, a picture that carries a scene, or one or more volumes,
+ * and meshes; *bare: they are volumes. Several volumes share one world, and each keeps its own look. They are
+ * named like their files without folder and extensions; "-2" and so on is appended to names that are taken.
+ * Returns the exit code. */
 int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
                        hl_scene **scene);
 

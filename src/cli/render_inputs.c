@@ -99,8 +99,8 @@ static int load_each(cli_host *host, const cli_value *values, const cli_input *i
   return EXIT_CODE_OK;
 }
 
-int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
-                       hl_scene **scene) {
+static int load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                        hl_scene **scene) {
   cli_input inputs[MAXIMUM_OPERANDS] = {{0}};
   hl_scene *scenes[MAXIMUM_OPERANDS] = {NULL};
   size_t count = 0;
@@ -117,4 +117,14 @@ int render_load_inputs(cli_host *host, const cli_value *values, char **operands,
     else hl_scene_release(scenes[n]);
   }
   return exit_code;
+}
+
+int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                       hl_scene **scene) {
+  char *meshes[MAXIMUM_OPERANDS + 1], *others[MAXIMUM_OPERANDS + 1];
+  int exit_code = EXIT_CODE_OK;
+  *bare = true;
+  render_part_meshes(operands, meshes, others);
+  if (others[0] != NULL) exit_code = load_volumes(host, values, others, bare, scene);
+  return exit_code == EXIT_CODE_OK ? render_add_meshes(host, meshes, *bare, scene) : exit_code;
 }

@@ -106,28 +106,9 @@ static hl_status add_box(hl_outline *outline, const hl_scene_volume *volume, hl_
   return status;
 }
 
-hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error) {
-  hl_status status = HL_OK;
-  *outline = (hl_outline){.context = description->volumes[0].volume->context};
-  for (size_t n = 0; status == HL_OK && n < description->volume_count; n++)
-    status = add_volume(outline, &description->volumes[n], error);
-  bool nothing = outline->count == 0;
-  for (size_t n = 0; nothing && status == HL_OK && n < description->volume_count; n++)
-    status = add_box(outline, &description->volumes[n], error);
-  return status;
-}
-
 void hl_outline_release(hl_outline *outline) {
   hl_release(outline->context, outline->point);
   hl_release(outline->context, outline->radius);
-}
-
-double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, double tangent) {
-  vec3 normal = vec3_subtract(along, vec3_scale(forward, tangent));
-  double length = vec3_length(normal), greatest = -INFINITY;
-  for (size_t n = 0; n < outline->count; n++)
-    greatest = fmax(greatest, vec3_dot(outline->point[n], normal) + length * outline->radius[n]);
-  return greatest;
 }
 
 /* Directions spread evenly over the sphere (spherical Fibonacci points; Swinbank and Purser 2006). */
@@ -157,6 +138,46 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
     if (!known) status = add(thinned, outline->point[best], outline->radius[best], error);
   }
   return status;
+}
+
+/* Adds the outermost vertices of a mesh: those that lie farthest in many directions. */
+static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
+  enum { MOST_CORNERS = 60000 };
+  const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);
+  affine3 placement = hl_scene_mesh_to_world(mesh);
+  size_t corners = 3 * d->triangle_count, stride = corners / MOST_CORNERS + 1;
+  hl_outline all = {.context = outline->context}, few = {.context = outline->context};
+  hl_status status = HL_OK;
+  for (size_t c = 0; c < corners && status == HL_OK; c += stride) {
+    const float *p = d->positions[d->triangles[c / 3][c % 3]];
+    status = add(&all, affine3_apply(placement, (vec3){p[0], p[1], p[2]}), 0, error);
+  }
+  if (status == HL_OK) status = hl_outline_thin(&all, &few, error);
+  for (size_t n = 0; n < few.count && status == HL_OK; n++) status = add(outline, few.point[n], 0, error);
+  hl_outline_release(&all);
+  hl_outline_release(&few);
+  return status;
+}
+
+hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error) {
+  hl_status status = HL_OK;
+  *outline = (hl_outline){.context = description->volumes[0].volume->context};
+  for (size_t n = 0; status == HL_OK && n < description->volume_count; n++)
+    status = add_volume(outline, &description->volumes[n], error);
+  for (size_t n = 0; status == HL_OK && n < description->mesh_count; n++)
+    if (description->meshes[n].visible) status = add_mesh(outline, &description->meshes[n], error);
+  bool nothing = outline->count == 0;
+  for (size_t n = 0; nothing && status == HL_OK && n < description->volume_count; n++)
+    status = add_box(outline, &description->volumes[n], error);
+  return status;
+}
+
+double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, double tangent) {
+  vec3 normal = vec3_subtract(along, vec3_scale(forward, tangent));
+  double length = vec3_length(normal), greatest = -INFINITY;
+  for (size_t n = 0; n < outline->count; n++)
+    greatest = fmax(greatest, vec3_dot(outline->point[n], normal) + length * outline->radius[n]);
+  return greatest;
 }
 
 /* ---- the range of values that a transfer function shows, from any side.

@@ -1,0 +1,104 @@
+/* cli/render_meshes.c - meshes among the operands of `halflight render`: they are added to the scene of the
+ * others, in colours of their own. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render.h"
+
+/* Colours of the first meshes, linear RGB: ivory, blue, ochre, green, rose, violet. */
+static const double colors[][3] = {{0.75, 0.71, 0.62}, {0.18, 0.40, 0.70}, {0.75, 0.42, 0.10},
+                                   {0.20, 0.50, 0.22}, {0.72, 0.28, 0.32}, {0.38, 0.28, 0.62}};
+
+void render_part_meshes(char **operands, char **meshes, char **others) {
+  size_t count = 0, left = 0;
+  for (size_t n = 0; operands[n] != NULL; n++) {
+    if (hl_mesh_reads_name(operands[n])) meshes[count++] = operands[n];
+    else others[left++] = operands[n];
+  }
+  meshes[count] = others[left] = NULL;
+}
+
+/* Makes a scene of the scene and more meshes. */
+static hl_status extend(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
+                        hl_scene **scene, hl_error *error) {
+  hl_scene_description description = *hl_scene_describe(*scene);
+  size_t before = description.mesh_count;
+  hl_scene_mesh *meshes = malloc((before + count) * sizeof *meshes);
+  hl_scene *made = NULL;
+  if (meshes == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory: %zu meshes", before + count);
+    return error->code = HL_ERROR_MEMORY;
+  }
+  if (before > 0) memcpy(meshes, description.meshes, before * sizeof *meshes);
+  memcpy(meshes + before, added, count * sizeof *meshes);
+  description.meshes = meshes;
+  description.mesh_count = before + count;
+  hl_view view;
+  hl_status status = bare ? hl_view_of_camera(&description, &view) : HL_OK;
+  if (status == HL_OK && bare)
+    status = hl_camera_frame_view(&description, &view, 1, &description.camera, error);
+  if (status == HL_OK) status = hl_scene_create(context, &description, &made, error);
+  free(meshes);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = made;
+  return HL_OK;
+}
+
+/* A scene for meshes without a volume: a clear one in their middle, whose voxels tell the distance of sheets.
+ */
+static hl_status begin_scene(hl_context *context, const hl_scene_mesh *meshes, size_t count, hl_scene **scene,
+                             hl_error *error) {
+  enum { SHEETS_ACROSS = 200 };
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, longest = 0;
+  for (size_t m = 0; m < count; m++) {
+    double own[2][3];
+    hl_status status = hl_mesh_get_box(meshes[m].mesh, own[0], own[1]);
+    if (status != HL_OK) return status;
+    for (int axis = 0; axis < 3; axis++) {
+      low[axis] = fmin(low[axis], own[0][axis]);
+      high[axis] = fmax(high[axis], own[1][axis]);
+      longest = fmax(longest, high[axis] - low[axis]);
+    }
+  }
+  double voxel = longest / SHEETS_ACROSS;
+  char text[1000];
+  snprintf(
+      text, sizeof text,
+      "{\"halflight\": 1, \"volumes\": [{\"name\": \"clear\", \"shapes\": [{\"type\": \"box\", \"size\": "
+      "[%.9g, "
+      "%.9g, %.9g], \"position\": [%.17g, %.17g, %.17g]}], \"voxel_size\": %.9g, \"visible\": false, "
+      "\"casts_shadow\": false, \"transfer_function\": {\"opacity\": [[0, 0]], \"color\": [[0, 1, 1, 1]]}}]}",
+      voxel, voxel, voxel, (low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2, voxel);
+  return hl_scene_from_json(context, text, strlen(text), NULL, "meshes", scene, error);
+}
+
+/* Loads the meshes; *count of them were, of which the caller releases each. */
+static hl_status load_meshes(hl_context *context, char *const *paths, hl_scene_mesh *added, size_t *count,
+                             hl_error *error) {
+  hl_status status = HL_OK;
+  for (*count = 0; paths[*count] != NULL && status == HL_OK; ++*count) {
+    hl_scene_mesh *mesh = &added[*count];
+    hl_scene_mesh_defaults(mesh);
+    mesh->file = paths[*count];
+    status = hl_mesh_load(context, paths[*count], &mesh->mesh, error);
+    bool own = status == HL_OK && hl_mesh_describe(mesh->mesh)->colors != NULL;
+    for (int c = 0; c < 3; c++)
+      mesh->color[c] = own ? 1 : colors[*count % (sizeof colors / sizeof *colors)][c];
+  }
+  return status;
+}
+
+int render_add_meshes(cli_host *host, char *const *paths, bool bare, hl_scene **scene) {
+  hl_scene_mesh added[MAXIMUM_OPERANDS];
+  size_t count = 0;
+  hl_error error = {0};
+  if (paths[0] == NULL) return EXIT_CODE_OK;
+  hl_status status = load_meshes(host->context, paths, added, &count, &error);
+  if (status == HL_OK && *scene == NULL) status = begin_scene(host->context, added, count, scene, &error);
+  if (status == HL_OK) status = extend(host->context, added, count, bare, scene, &error);
+  for (size_t m = 0; m < count; m++) hl_mesh_release(added[m].mesh);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
+}
