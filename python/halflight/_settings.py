@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import functools
 import numbers
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ._library import ffi, lib, text_of
@@ -79,6 +79,16 @@ def from_field(setting: Setting, value: Any) -> Any:
     if setting.type in (lib.HL_SETTING_NUMBER, lib.HL_SETTING_WHOLE):
         return value
     return tuple(value)
+
+
+def names(kind: int, *without: str) -> list[str]:
+    """The fields of a table but for some."""
+    return [field for field in table(kind) if field not in without]
+
+
+def taken(values: dict[str, Any], fields: Sequence[str]) -> dict[str, Any]:
+    """Take the values of these fields out of `values`."""
+    return {field: values.pop(field) for field in fields if field in values}
 
 
 def fill(place: str, struct: Any, kind: int, values: Mapping[str, object]) -> None:

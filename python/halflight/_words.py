@@ -34,10 +34,16 @@ def choice(place: str, word: object, known: Collection[str]) -> str:
     return word
 
 
-def suggests(function: Callable[P, R]) -> Callable[P, R]:
-    """Make `function` answer an unknown keyword with the nearest one that it has."""
+def suggests_also(further: Collection[str]) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """`suggests` for a function whose ``**`` takes these keywords."""
+    return lambda function: suggests(function, further)
+
+
+def suggests(function: Callable[P, R], further: Collection[str] = ()) -> Callable[P, R]:
+    """Make `function` answer an unknown keyword with the nearest one that it has. further: what its ** takes."""
     parameters = inspect.signature(function).parameters.values()
     known = [p.name for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name != "self"]
+    known += further
     place = function.__qualname__.removesuffix(".__init__") + "()"
 
     @functools.wraps(function)

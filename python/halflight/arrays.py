@@ -85,7 +85,8 @@ def readable(array: np.ndarray[Any, Any], axes: str) -> np.ndarray[Any, Any]:
         raise ValueError(f"the array has the shape {array.shape}: a volume has three axes, here '{axes}'; "
                          "of more, choose with an index, such as array[0]")
     if isinstance(array, np.ma.MaskedArray):
-        array = np.ma.filled(array.astype(np.float32), np.nan)
+        masked: Any = array.astype(np.float32)
+        array = masked.filled(np.nan)
     voxels = array.transpose([axes.index(name) for name in "zyx"])
     if voxels.dtype == np.bool_:
         voxels = voxels.view(np.uint8)

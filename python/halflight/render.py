@@ -4,15 +4,16 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Mapping, Sequence
-from typing import Any, TypedDict, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
 from . import _settings, arrays, transfer
 from ._library import call, context, ffi, lib, made, text_of
-from ._words import check_keywords, suggests
+from ._words import check_keywords, suggests, suggests_also
 from .camera import Camera
 from .image import Image, Pixels
+from .keywords import FurtherSettings
 from .lights import Light
 from .progress import Progress, told
 from .scene import Scene, Settings
@@ -188,7 +189,7 @@ def _given(**words: Any) -> dict[str, Any]:
     return {word: value for word, value in words.items() if value is not None}
 
 
-class Asked(TypedDict, total=False):
+class Asked(FurtherSettings, total=False):
     """The keywords of `render` that say what is seen."""
 
     spacing: arrays.Spacing
@@ -212,11 +213,19 @@ class Asked(TypedDict, total=False):
     size: tuple[int, int]
     background: Any
     threads: int
+    array: str
+    component: int | str
+    series: str
+    time: int
+    channel: int
+    level: int
 
 
-_PLACE = ("spacing", "origin", "direction", "affine", "axes")
-_MATERIAL = ("ambient", "diffuse", "specular", "shininess")
-_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads")
+_PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level")
+_MATERIAL = ("ambient", "diffuse", "specular", "shininess",
+             *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
+_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads",
+             *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
 _LOOK = ("cmap", "clim", "opacity", "opacity_unit_distance", "tf")
 
 
@@ -238,7 +247,7 @@ def _is_scene(volume: Any) -> bool:
     return isinstance(volume, (str, os.PathLike)) and os.fspath(volume).lower().endswith(".json")
 
 
-@suggests
+@suggests_also(FurtherSettings.__annotations__)
 def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None, direction: Any = None,
            affine: Any = None, axes: str | None = None, cmap: Any = None, clim: Sequence[float] | None = None,
            opacity: Any = None, opacity_unit_distance: float | None = None, shade: bool | str | None = None,
@@ -246,7 +255,9 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
            shininess: float | None = None, tf: Any = None, shadows: bool | str | None = None,
            lights: Light | Sequence[Light] | None = None, camera: Camera | str | tuple[float, float] | None = None,
            size: tuple[int, int] | None = None, background: Any = None, threads: int | None = None,
-           layers: bool = False, progress: Progress = None) -> Image:
+           layers: bool = False, progress: Progress = None, array: str | None = None,
+           component: int | str | None = None, series: str | None = None, time: int | None = None,
+           channel: int | None = None, level: int | None = None, **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
     An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
@@ -289,6 +300,10 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         0, the default, is one per processor. The picture is the same with any number.
     layers, progress : optional
         As for `Renderer.render`.
+    array, component, series, time, channel, level : optional
+        Of a file with several: see `Volume`.
+    **further : FurtherSettings
+        What `Volume` and `Scene` take besides: `exposure`, `soft_method`, `anisotropy`, ...
 
     Returns
     -------
@@ -306,13 +321,14 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         spacing=spacing, origin=origin, direction=direction, affine=affine, axes=axes, cmap=cmap, clim=clim,
         opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
-        background=background, threads=threads)
+        background=background, threads=threads, array=array, component=component, series=series, time=time,
+        channel=channel, level=level, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer().render(scene, layers=layers, progress=progress)
 
 
-def _scene_of(volume: Any, place: Mapping[str, Any], material: Look, settings: Settings,
+def _scene_of(volume: Any, place: Mapping[str, Any], material: Mapping[str, Any], settings: Mapping[str, Any],
               look: tuple[Any, Any, Any, Any, Any]) -> Scene:
     if isinstance(volume, Scene) or _is_scene(volume):
         for word in place:

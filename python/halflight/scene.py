@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, TypedDict, Unpack
+from typing import Any, Unpack
 
 from . import _settings, colors
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .camera import Camera, camera_from
+from .keywords import PictureSettings, RenderSettings
 from .lights import Light, light_from
 from .volume import Volume, as_volume, volume_from
 
@@ -17,27 +18,36 @@ __all__ = ["Scene", "Settings"]
 SIDES = ("automatic", "front", "back", "left", "right", "top", "bottom", "iso")
 
 
-class Settings(TypedDict, total=False):
-    """Keywords of `Scene`. What is not given is chosen from the first volume."""
+class Settings(PictureSettings, RenderSettings, total=False):
+    """Keywords of `Scene`. What is not given is chosen from the first volume.
+
+    Parameters
+    ----------
+    camera : Camera, str or (azimuth, elevation)
+        "front", "back", "left", "right", "top", "bottom" and "iso" are sides; angles in degrees.
+    lights : a light or a list of them
+        See `halflight.lights`.
+    ambient : float, (r, g, b) or str
+        Light from everywhere.
+    size : (width, height)
+        Pixels.
+    background : colour or "transparent"
+        What a PNG shows behind the volumes.
+    description : str
+        One sentence on the scene, for its file.
+    """
 
     camera: Camera | str | tuple[float, float]
     lights: Light | Sequence[Light]
     ambient: float | Sequence[float] | str
     size: tuple[int, int]
     background: float | Sequence[float] | str
-    exposure: float
     description: str
-    shadows: str
-    soft_method: str
-    light_samples: int
-    sheet_spacing: float
-    kernel: str
-    reconstruction: str
-    slicing: str
-    shadow_lookup: str
-    shadow_resolution: int | str
-    threads: int
-    compositing: str
+
+
+_RENDER = _settings.names(lib.HL_SETTINGS_RENDER)
+_IMAGE = _settings.names(lib.HL_SETTINGS_IMAGE, "width", "height", "background", "background_transparent")
+_TOP = _settings.names(lib.HL_SETTINGS_SCENE, "ambient")
 
 
 class Scene:
@@ -50,9 +60,8 @@ class Scene:
     **settings : Settings
         `camera` (a Camera; "front", "back", "left", "right", "top", "bottom", "iso"; or azimuth and elevation in
         degrees), `lights`, `ambient`, `size` (width, height in pixels), `background` (a colour or "transparent"),
-        `exposure` (stops), `description`, and the scene file's `render` keys: `shadows` ("off", "hard", "soft"),
-        `soft_method` ("cascade", "paper", "sublights"), `light_samples`, `sheet_spacing`, `kernel`,
-        `reconstruction`, `slicing`, `shadow_lookup`, `shadow_resolution`, `threads`, `compositing`.
+        `description`, and the keywords of `halflight.keywords.PictureSettings` and `RenderSettings`: `shadows`,
+        `exposure`, ...
 
     Examples
     --------
@@ -259,10 +268,11 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
         struct.ambient = colors.linear_color("ambient", ambient)
     if (background := settings.get("background")) is not None:
         _set_background(struct, background)
-    _settings.fill("", struct, lib.HL_SETTINGS_IMAGE, {"exposure": settings.get("exposure")})
     if (description := settings.get("description")) is not None:
         keep.append(text := ffi.new("char[]", description.encode()))
         struct.description = text
-    render = {word: value for word, value in settings.items() if word in _settings.table(lib.HL_SETTINGS_RENDER)}
-    _settings.fill("", struct.render, lib.HL_SETTINGS_RENDER, render)
+    rest = dict(settings)
+    _settings.fill("", struct, lib.HL_SETTINGS_IMAGE, _settings.taken(rest, _IMAGE))
+    _settings.fill("", struct, lib.HL_SETTINGS_SCENE, _settings.taken(rest, _TOP))
+    _settings.fill("", struct.render, lib.HL_SETTINGS_RENDER, _settings.taken(rest, _RENDER))
     return made(lib.hl_scene_create, "hl_scene", lib.hl_scene_release, context, pointer)

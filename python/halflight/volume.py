@@ -4,46 +4,68 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypedDict, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
 from . import _settings, arrays, neighbours
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords
+from .keywords import MaterialSettings, VolumeSettings
 from .transfer import TransferFunction, function_from
 
-__all__ = ["Info", "Look", "Volume", "info"]
+__all__ = ["FileArray", "FileSeries", "Info", "Look", "Volume", "info"]
 
 Source = Any  # a path, an array, or an object of one of the packages that halflight.neighbours knows
 
 
-class Look(TypedDict, total=False):
-    """How a volume looks and where it stands: keywords of `Volume`. What is not given is chosen from the data."""
+class Look(VolumeSettings, MaterialSettings, total=False):
+    """How a volume looks and where it stands: keywords of `Volume`. What is not given is chosen from the data.
+
+    Parameters
+    ----------
+    name : str
+        What the volume is called.
+    transfer_function : TransferFunction
+        Which values are seen, and in which colour.
+    clip : ((x, y, z), (x, y, z)) or None
+        The corners of the box that is kept, in the world before the transform.
+    scale : float or 3 floats
+        Along the world's axes, before the rotation.
+    """
 
     name: str
     transfer_function: TransferFunction
-    shading: str
-    ambient: float
-    diffuse: float
-    specular: float
-    shininess: float
-    emission: float
-    attenuation_color: Sequence[float]
-    visible: bool
-    casts_shadow: bool
-    receives_shadow: bool
     clip: tuple[Sequence[float], Sequence[float]] | None
     scale: float | Sequence[float]
-    rotate_axis: Sequence[float]
-    rotate_angle_deg: float
-    translate: Sequence[float]
 
 
 _OF_FILES = ("array", "component", "series", "time", "channel", "level")
-_MATERIAL = ("ambient", "diffuse", "specular", "shininess", "emission")
-_FIELDS = ("shading", "attenuation_color", "visible", "casts_shadow", "receives_shadow", "rotate_axis",
-           "rotate_angle_deg", "translate")
+_MATERIAL = _settings.names(lib.HL_SETTINGS_MATERIAL)
+_FIELDS = _settings.names(lib.HL_SETTINGS_VOLUME, "scale", "clip_min", "clip_max")
+
+
+@dataclass(frozen=True)
+class FileArray:
+    """An array of a volume's file: `components` values for each voxel; `chosen` was read."""
+
+    name: str
+    type: str | None
+    components: int
+    of_cells: bool
+    chosen: bool
+
+
+@dataclass(frozen=True)
+class FileSeries:
+    """A DICOM series: `dimensions` are columns, rows and slices; `number` is None where the files have none."""
+
+    uid: str
+    number: float | None
+    modality: str
+    description: str
+    dimensions: tuple[int, int, int]
+    chosen: bool
 
 
 @dataclass(frozen=True)
@@ -72,6 +94,14 @@ class Info:
         "RAS", "LPS" or "LAS" where the world's axes are known.
     taken_for : str
         What an automatic look takes the volume for.
+    arrays : tuple of FileArray
+        The arrays of the volume's file; none where it is no file.
+    times, channels, levels : int
+        How many the file has of each, at least 1.
+    time, channel, level : int
+        Which of them was read.
+    series : tuple of FileSeries
+        Of DICOM files: what the folder or archive holds.
     """
 
     dimensions: tuple[int, int, int]
@@ -85,6 +115,14 @@ class Info:
     histogram: np.ndarray[Any, np.dtype[np.uint64]]
     space: str | None
     taken_for: str
+    arrays: tuple[FileArray, ...] = ()
+    times: int = 1
+    time: int = 0
+    channels: int = 1
+    channel: int = 0
+    levels: int = 1
+    level: int = 0
+    series: tuple[FileSeries, ...] = ()
 
 
 class Volume:
@@ -114,10 +152,8 @@ class Volume:
         Of a file with several: the array's name; the number of the component, or "magnitude"; a DICOM series by
         number, UID or description; the number of the time step, channel and resolution.
     **look : Look
-        How it looks and where it stands: `name`, `transfer_function`, `shading` ("phong", "none", "flat"),
-        `ambient`, `diffuse`, `specular`, `shininess`, `emission`, `attenuation_color`, `visible`,
-        `casts_shadow`, `receives_shadow`, `clip` ((x, y, z), (x, y, z)), `scale`, `rotate_axis`,
-        `rotate_angle_deg`, `translate`.
+        How it looks and where it stands: `name`, `transfer_function`, `clip`, `scale`, and the keywords of
+        `halflight.keywords.VolumeSettings` and `MaterialSettings`.
 
     Examples
     --------
@@ -133,8 +169,7 @@ class Volume:
                  direction: Any = None, affine: Any = None, axes: str | None = None, array: str | None = None,
                  component: int | str | None = None, series: str | None = None, time: int | None = None,
                  channel: int | None = None, level: int | None = None, **look: Unpack[Look]) -> None:
-        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes",
-                                          *_OF_FILES])
+        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", *_OF_FILES])
         self._handle: Any = None
         self._file: str | None = None
         self._loading: Any = None
@@ -220,8 +255,7 @@ class Volume:
 
     def info(self) -> Info:
         """Size, type, place and statistics."""
-        raw = ffi.new("hl_volume_info *")
-        raw.struct_size = ffi.sizeof("hl_volume_info")
+        raw = _sized("info")
         if lib.hl_volume_get_info(self._handle, raw) != lib.HL_OK:
             raise RuntimeError("the volume is not known")
         kind = ffi.new("const char **")
@@ -234,7 +268,27 @@ class Volume:
             range=(raw.range[0], raw.range[1]), mean=raw.mean, nonfinite_count=raw.nonfinite_count,
             histogram=np.array(list(raw.histogram), dtype=np.uint64),
             space=None if lib.hl_space_name(raw.space) == ffi.NULL else text_of(lib.hl_space_name(raw.space)),
-            taken_for=text_of(kind[0]))
+            taken_for=text_of(kind[0]), **self._choices())
+
+    def _choices(self) -> dict[str, Any]:
+        """What the volume's file holds, and what was read of it."""
+        selection, array, series = (_sized(name) for name in ("selection", "array", "series"))
+        arrays, many = list[FileArray](), list[FileSeries]()
+        for n in range(lib.hl_volume_array_count(self._handle)):
+            if lib.hl_volume_get_array(self._handle, n, array) == lib.HL_OK:
+                kind = text_of(lib.hl_voxel_type_name(array.type)) if array.type else None
+                arrays.append(FileArray(text_of(array.name), kind, array.components, bool(array.of_cells),
+                                        bool(array.chosen)))
+        for n in range(lib.hl_volume_series_count(self._handle)):
+            if lib.hl_volume_get_series(self._handle, n, series) == lib.HL_OK:
+                number = None if series.number != series.number else series.number
+                columns, rows, slices = series.dimensions
+                many.append(FileSeries(text_of(series.uid), number, text_of(series.modality),
+                                       text_of(series.description), (columns, rows, slices), bool(series.chosen)))
+        if lib.hl_volume_get_selection(self._handle, selection) != lib.HL_OK:
+            raise RuntimeError("the volume is not known")
+        words = ("times", "time", "channels", "channel", "levels", "level")
+        return {word: getattr(selection, word) for word in words} | {"arrays": tuple(arrays), "series": tuple(many)}
 
     def __repr__(self) -> str:
         size = "x".join(map(str, self.dimensions))
@@ -288,9 +342,16 @@ class Volume:
             struct.scale = 1.0
             struct.axis_scale = ([_settings.number(f"{place}scale", scale)] * 3 if np.ndim(scale) == 0
                                  else _settings.numbers_of(f"{place}scale", scale))
-        material = {word: changes.pop(word, None) for word in _MATERIAL}
+        material = _settings.taken(changes, _MATERIAL)
         _settings.fill(place, struct.material, lib.HL_SETTINGS_MATERIAL, material)
         _settings.fill(place, struct, lib.HL_SETTINGS_VOLUME, changes)
+
+
+def _sized(noun: str) -> Any:
+    """A struct hl_volume_`noun` that knows its size."""
+    struct = ffi.new(f"hl_volume_{noun} *")
+    struct.struct_size = ffi.sizeof(f"hl_volume_{noun}")
+    return struct
 
 
 def volume_from(scene: Any, index: int) -> Volume:

@@ -18,10 +18,10 @@ import numpy as np
 from . import _page
 from ._library import call, context, ffi, lib, made, names, text_of
 from .image import Image
-from .render import Asked, Renderer, Source, scene_for
+from .render import Asked, Renderer, scene_for
 from .scene import Scene
 from .transfer import colormap_points
-from .volume import Volume
+from .volume import Source, Volume
 
 __all__ = ["show"]
 

@@ -159,15 +159,17 @@ static void improve(const frame_job *job, const hl_view *view, vec3 along, doubl
 static double make_room(const frame_job *job, const frame_job *few, const hl_view *view, frame_place *place) {
   const frame_place tight = *place, loose = fit(job, FILLED_LEAST);
   double depth = (reach(job, job->forward, 0) - reach(job, vec3_scale(job->forward, -1), 0)) / 2;
+  /* From above or below the picture turns about the line of sight, where any depth needs as much room. */
+  bool depth_matters = fabs(vec3_dot(job->forward, vec3_normalise(vec3_of(view->up)))) < 1 - 1e-9;
   for (int round = 0; round < 3; round++) { /* the middle depends a little on the distance */
     centre(job, place);
     double room = room_of(job, place, depth),
            height = 2 * (job->tangent_y > 0 ? room * job->tangent_y : room);
     vec3 target = point_at(job, place, depth);
-    improve(few, view, job->forward, radius_about(job->outline, target), &target);
+    if (depth_matters) improve(few, view, job->forward, radius_about(job->outline, target), &target);
     improve(few, view, job->right, ASIDE * height * job->aspect, &target);
     improve(few, view, job->up, ASIDE * height, &target);
-    improve(few, view, job->forward, radius_about(job->outline, target) / 4, &target);
+    if (depth_matters) improve(few, view, job->forward, radius_about(job->outline, target) / 4, &target);
     depth = vec3_dot(target, job->forward);
     double turn = needed_in_a_turn(job, view, target), enough = room_of(job, &loose, depth);
     room = fmax(fmax(room_of(job, &tight, depth), turn / OVER), fmin(enough, needed_at_all(job, target)));

@@ -56,6 +56,15 @@ def test_simpleitk(blob, expected):
     assert volume.info().range == expected[1].range
 
 
+def test_itk(blob, expected):
+    itk = pytest.importorskip("itk")
+    image = itk.image_from_array(blob)
+    image.SetSpacing(SPACING.tolist())
+    image.SetOrigin(ORIGIN.tolist())
+    image.SetDirection(itk.matrix_from_array(DIRECTION))
+    check(image, expected, "LPS")
+
+
 @pytest.mark.parametrize("order", "FC")
 def test_pynrrd(blob, expected, tmp_path, order):
     nrrd = pytest.importorskip("nrrd")

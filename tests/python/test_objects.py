@@ -48,6 +48,33 @@ def test_defaults_are_the_library_s(light):
         assert actual == expected, field.name
 
 
+def test_every_setting_has_its_keyword():
+    """Rows of the library's tables: of lights here, the others are written by scripts/settings."""
+    table = _settings.table
+    lights = {field.name for light in LIGHTS for field in dataclasses.fields(light)}
+    assert set(table(_library.lib.HL_SETTINGS_LIGHT)) - {"type"} == lights - {"_texture", "vertices"}
+    assert set(table(_library.lib.HL_SETTINGS_CAMERA)) - {"type"} == {field.name for field in dataclasses.fields(Camera)}
+    look, settings = halflight.volume.Look.__annotations__, halflight.scene.Settings.__annotations__
+    assert set(table(_library.lib.HL_SETTINGS_VOLUME)) - {"clip_min", "clip_max"} <= set(look)
+    assert set(table(_library.lib.HL_SETTINGS_MATERIAL)) <= set(look)
+    assert set(table(_library.lib.HL_SETTINGS_RENDER)) <= set(settings)
+
+
+def test_info_is_the_program_s(program, tmp_path, blob):
+    np.save(tmp_path / "blob.npy", np.stack([blob, blob + 1], axis=-1))
+    said = json.loads(subprocess.run([program, "info", tmp_path / "blob.npy", "--json"], check=True, capture_output=True).stdout)
+    with pytest.warns(halflight.HalflightWarning):
+        found = dataclasses.asdict(halflight.info(tmp_path / "blob.npy"))
+    for name, value in found.items():
+        expected = said.get(name)
+        if name == "arrays":
+            assert [dict(one) for one in value] == expected
+        elif name == "series":
+            assert list(value) == (expected or [])
+        else:
+            assert np.asarray(value).tolist() == expected, name
+
+
 def test_cameras_come_back(blob):
     for camera in (Camera(position=(0, -90, 5), target=(1, 2, 3), fovy_deg=20),
                    Camera(position=(0, -90, 5), target=(1, 2, 3), up=(0, 1, 1), height=40)):
@@ -72,7 +99,7 @@ def test_json_is_the_program_s_file(program, tmp_path, blob):
 
 def test_volume_looks_come_back(blob):
     look = {"name": "ball", "shading": "none", "ambient": 0.5, "diffuse": 0.25, "specular": 0.125, "shininess": 7.0,
-            "emission": 0.5, "attenuation_color": (1.0, 0.5, 0.25), "visible": False, "casts_shadow": False,
+            "emission": 0.5, "attenuation_color": (1.0, 0.5, 0.25), "anisotropy": 0.5, "visible": False, "casts_shadow": False,
             "receives_shadow": False, "clip": ((1.0, 2.0, 3.0), (9.0, 8.0, 7.0)), "scale": (2.0, 1.0, 1.0),
             "rotate_axis": (0.0, 1.0, 0.0), "rotate_angle_deg": 30.0, "translate": (5.0, 6.0, 7.0),
             "transfer_function": TransferFunction([(0, 0), (50, 0.5)], color=[(0, 1, 0, 0), (9, 0, 1, 0)],

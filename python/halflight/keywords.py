@@ -1,0 +1,152 @@
+"""Keywords that the tables of settings name. Written by scripts/settings."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypedDict
+
+
+class VolumeSettings(TypedDict, total=False):
+    """Keywords of `Volume`, from the scene file's volumes.
+
+    Parameters
+    ----------
+    rotate_axis : Sequence[float]
+        The axis that the volume is turned about. Default: [0, 0, 1].
+    rotate_angle_deg : float
+        The angle that the volume is turned by. Degrees, -1e6 to 1e6. Default: 0.
+    translate : Sequence[float]
+        The vector that the volume is moved by, after it was scaled and turned. World units. Default: [0, 0,
+        0].
+    shading : str
+        Surfaces, a medium such as smoke, or the colours themselves without light. "phong", "none", "flat".
+    attenuation_color : Sequence[float]
+        Relative extinction of red, green and blue. Default: [1, 1, 1].
+    anisotropy : float
+        g: how a medium scatters light; above 0 onwards, below 0 back to where it comes from, 0 evenly. -0.99
+        to 0.99. Default: 0.
+    visible : bool
+        The eye sees the volume; a volume that it does not see still casts shadows. Default: True.
+    casts_shadow : bool
+        The volume takes light from what lies behind it. Default: True.
+    receives_shadow : bool
+        The volume is darkened by shadows. Default: True.
+    """
+
+    rotate_axis: Sequence[float]
+    rotate_angle_deg: float
+    translate: Sequence[float]
+    shading: str
+    attenuation_color: Sequence[float]
+    anisotropy: float
+    visible: bool
+    casts_shadow: bool
+    receives_shadow: bool
+
+
+class MaterialSettings(TypedDict, total=False):
+    """Keywords of `Volume`, from the scene file's materials.
+
+    Parameters
+    ----------
+    ambient : float
+        ka: the factor on the light from everywhere. 0 to 1000. Default: 1.
+    diffuse : float
+        kd: the factor on light that is scattered evenly. 0 to 1000. Default: 0.7.
+    specular : float
+        ks: the factor on the highlight. 0 to 1000. Default: 0.3.
+    shininess : float
+        n: the exponent of the highlight; larger is smaller. 0 to 10000. Default: 32.
+    emission : float
+        ke: the fraction of the colour that shines by itself. 0 to 1e6. Default: 0.
+    """
+
+    ambient: float
+    diffuse: float
+    specular: float
+    shininess: float
+    emission: float
+
+
+class PictureSettings(TypedDict, total=False):
+    """Keywords of `Scene`, from the scene file's image and top level.
+
+    Parameters
+    ----------
+    exposure : float
+        A PNG shows the volumes' light times 2^exposure. Stops, -32 to 32. Default: 0.
+    """
+
+    exposure: float
+
+
+class RenderSettings(TypedDict, total=False):
+    """Keywords of `Scene`, from the scene file's render settings.
+
+    Parameters
+    ----------
+    shadows : str
+        The shadows of all lights that do not say otherwise. "off", "hard", "soft". Default: "soft".
+    soft_method : str
+        How soft shadows are made. "cascade", "paper", "sublights". Default: "cascade".
+    light_samples : int
+        M: sublights stand for a light by M x M points. 1 to 64. Default: 4.
+    sheet_spacing : float
+        The distance of neighbouring sheets; more than 4 is as 4. Smallest voxel edges, 0.01 to 100. Default:
+        0.5.
+    kernel : str
+        The function that spreads a voxel's value around it. "bspline", "gaussian", "linear". Default:
+        "bspline".
+    reconstruction : str
+        Whether voxels are splatted onto sheets or samples gather voxels. "auto", "splat", "gather". Default:
+        "auto".
+    slicing : str
+        The direction that the sheets are perpendicular to. "half-vector", "image-aligned". Default:
+        "half-vector".
+    shadow_lookup : str
+        How light is read between the pixels of a shadow buffer. "auto", "bilinear", "cubic", "nearest".
+        Default: "auto".
+    shadow_resolution : int | str
+        Pixels along the longer side of a shadow buffer. Pixels, "auto" or 1 to 16384. Default: "auto".
+    threads : int
+        0: one thread per processor. 0 to 1024. Default: 0.
+    compositing : str
+        What a pixel shows: lit matter, or the greatest value along its ray, without light. "light",
+        "maximum". Default: "light".
+    """
+
+    shadows: str
+    soft_method: str
+    light_samples: int
+    sheet_spacing: float
+    kernel: str
+    reconstruction: str
+    slicing: str
+    shadow_lookup: str
+    shadow_resolution: int | str
+    threads: int
+    compositing: str
+
+
+class FurtherSettings(TypedDict, total=False):
+    """Keywords of `render` beyond those of its signature.
+    """
+
+    rotate_axis: Sequence[float]
+    rotate_angle_deg: float
+    translate: Sequence[float]
+    attenuation_color: Sequence[float]
+    anisotropy: float
+    visible: bool
+    casts_shadow: bool
+    receives_shadow: bool
+    emission: float
+    exposure: float
+    soft_method: str
+    light_samples: int
+    sheet_spacing: float
+    kernel: str
+    reconstruction: str
+    slicing: str
+    shadow_lookup: str
+    shadow_resolution: int | str
+    compositing: str
