@@ -67,6 +67,45 @@ class MaterialSettings(TypedDict, total=False):
     emission: float
 
 
+class MeshSettings(TypedDict, total=False):
+    """Keywords of `Mesh`, from the scene file's meshes.
+
+    Parameters
+    ----------
+    scale : float
+        A factor on the mesh's size. Above 0, to 1e15. Default: 1.
+    rotate_axis : Sequence[float]
+        The axis that the mesh is turned about. Default: [0, 0, 1].
+    rotate_angle_deg : float
+        The angle that the mesh is turned by. Degrees, -1e6 to 1e6. Default: 0.
+    translate : Sequence[float]
+        The vector that the mesh is moved by, after it was scaled and turned. World units. Default: [0, 0, 0].
+    opacity : float
+        The fraction of light that the surface stops. 0 to 1. Default: 1.
+    smooth : bool
+        Normals are interpolated between the vertices; else each triangle is flat. Default: True.
+    two_sided : bool
+        Both sides of the surface are lit; else the back is black. Default: True.
+    visible : bool
+        The eye sees the mesh; a mesh that it does not see still casts shadows. Default: True.
+    casts_shadow : bool
+        The mesh takes light from what lies behind it. Default: True.
+    receives_shadow : bool
+        The mesh is darkened by shadows. Default: True.
+    """
+
+    scale: float
+    rotate_axis: Sequence[float]
+    rotate_angle_deg: float
+    translate: Sequence[float]
+    opacity: float
+    smooth: bool
+    two_sided: bool
+    visible: bool
+    casts_shadow: bool
+    receives_shadow: bool
+
+
 class PictureSettings(TypedDict, total=False):
     """Keywords of `Scene`, from the scene file's image and top level.
 

@@ -15,6 +15,7 @@ from .camera import Camera
 from .image import Image, Pixels
 from .keywords import FurtherSettings
 from .lights import Light
+from .mesh import Mesh
 from .progress import Progress, told
 from .scene import Scene, Settings
 from .volume import Look, Source, Volume
@@ -219,12 +220,13 @@ class Asked(FurtherSettings, total=False):
     time: int
     channel: int
     level: int
+    meshes: Mesh | Sequence[Mesh]
 
 
 _PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level")
 _MATERIAL = ("ambient", "diffuse", "specular", "shininess",
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
-_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads",
+_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes",
              *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
 _LOOK = ("cmap", "clim", "opacity", "opacity_unit_distance", "tf")
 
@@ -257,7 +259,8 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
            size: tuple[int, int] | None = None, background: Any = None, threads: int | None = None,
            layers: bool = False, progress: Progress = None, array: str | None = None,
            component: int | str | None = None, series: str | None = None, time: int | None = None,
-           channel: int | None = None, level: int | None = None, **further: Unpack[FurtherSettings]) -> Image:
+           channel: int | None = None, level: int | None = None, meshes: Mesh | Sequence[Mesh] | None = None,
+           **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
     An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
@@ -302,6 +305,8 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         As for `Renderer.render`.
     array, component, series, time, channel, level : optional
         Of a file with several: see `Volume`.
+    meshes : Mesh or a list of them, optional
+        Triangles among the volumes.
     **further : FurtherSettings
         What `Volume` and `Scene` take besides: `exposure`, `soft_method`, `anisotropy`, ...
 
@@ -322,7 +327,7 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
-        channel=channel, level=level, **further)
+        channel=channel, level=level, meshes=meshes, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer().render(scene, layers=layers, progress=progress)

@@ -11,6 +11,7 @@ from ._words import check_keywords, choice
 from .camera import Camera, camera_from
 from .keywords import PictureSettings, RenderSettings
 from .lights import Light, light_from
+from .mesh import Mesh, mesh_from
 from .volume import Volume, as_volume, volume_from
 
 __all__ = ["Scene", "Settings"]
@@ -35,6 +36,8 @@ class Settings(PictureSettings, RenderSettings, total=False):
         What a PNG shows behind the volumes.
     description : str
         One sentence on the scene, for its file.
+    meshes : a Mesh or a list of them
+        Triangles among the volumes.
     """
 
     camera: Camera | str | tuple[float, float]
@@ -43,6 +46,7 @@ class Settings(PictureSettings, RenderSettings, total=False):
     size: tuple[int, int]
     background: float | Sequence[float] | str
     description: str
+    meshes: Mesh | Sequence[Mesh]
 
 
 _RENDER = _settings.names(lib.HL_SETTINGS_RENDER)
@@ -156,6 +160,11 @@ class Scene:
         return tuple(light_from(self._struct.lights[n], self._handle) for n in range(self._struct.light_count))
 
     @property
+    def meshes(self) -> tuple[Mesh, ...]:
+        """The meshes."""
+        return tuple(mesh_from(self._struct.meshes[n]) for n in range(self._struct.mesh_count))
+
+    @property
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
         return self._struct.width, self._struct.height
@@ -206,6 +215,17 @@ def _set_lights(struct: Any, settings: Mapping[str, Any], keep: list[Any]) -> No
             light._fill(array[n], keep, f"lights[{n}]: ")
     keep.append(array)
     struct.lights, struct.light_count = array, len(array)
+
+
+def _set_meshes(struct: Any, meshes: Mesh | Sequence[Mesh], keep: list[Any]) -> None:
+    given = [meshes] if isinstance(meshes, Mesh) else list(meshes)
+    array = ffi.new("hl_scene_mesh[]", len(given))
+    for n, mesh in enumerate(given):
+        if not isinstance(mesh, Mesh):
+            raise TypeError(f"meshes[{n}]: {mesh!r} is no Mesh")
+        mesh._fill(array[n], keep, f"meshes[{n}]: ")
+    keep.append(array)
+    struct.meshes, struct.mesh_count = array, len(given)
 
 
 def _set_background(struct: Any, background: Any) -> None:
@@ -264,6 +284,8 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
     reframe = chosen and (size is not None or len(volumes) > 1 or any(one._changes.keys() - {"name"} for one in volumes))
     _set_camera(struct, settings.get("camera"), reframe)
     _set_lights(struct, settings, keep)
+    if (meshes := settings.get("meshes")) is not None:
+        _set_meshes(struct, meshes, keep)
     if (ambient := settings.get("ambient")) is not None:
         struct.ambient = colors.linear_color("ambient", ambient)
     if (background := settings.get("background")) is not None:

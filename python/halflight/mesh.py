@@ -1,0 +1,187 @@
+"""Meshes: triangles in the world of the volumes, which cast shadows on them and receive theirs."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Unpack
+
+import numpy as np
+
+from . import _settings, colors
+from ._library import call, context, ffi, lib, made, text_of
+from ._words import check_keywords
+from .keywords import MaterialSettings, MeshSettings
+
+__all__ = ["Mesh", "MeshLook"]
+
+
+class MeshLook(MeshSettings, MaterialSettings, total=False):
+    """Keywords of `Mesh`: how it looks and where it stands.
+
+    Parameters
+    ----------
+    name : str
+        What the mesh is called.
+    color : colour
+        A name or "#rrggbb" (sRGB), or linear RGB; times the vertices' colours where these are given.
+    """
+
+    name: str
+    color: float | Sequence[float] | str
+
+
+_MATERIAL = _settings.names(lib.HL_SETTINGS_MATERIAL)
+_FIELDS = _settings.names(lib.HL_SETTINGS_MESH, "color")
+
+
+class Mesh:
+    """Triangles that share a scene with volumes.
+
+    Parameters
+    ----------
+    source : path, array_like of shape (n, 3), or an object that has vertices and faces
+        A PLY, STL or OBJ file; vertices (x, y, z) in world units; a mesh of PyVista or VTK's `PolyData` wrapped by
+        it, trimesh, or meshio. What is given is copied.
+    triangles : array_like of int, shape (m, 3), optional
+        Numbers of vertices, for vertices given as an array. Counter-clockwise ones face the viewer.
+    normals : array_like, shape (n, 3), optional
+        At the vertices, of any length.
+    colors : array_like, shape (n, 3) or (n, 4), optional
+        Of the vertices, with opacity: uint8 are sRGB, others linear from 0 to 1.
+    **look : MeshLook
+        `name`, `color`, `opacity`, `smooth`, `visible`, ..., and the material: see `halflight.keywords`.
+
+    Examples
+    --------
+    >>> floor = Mesh([(0, 0, 0), (9, 0, 0), (9, 9, 0), (0, 9, 0)], [(0, 1, 2), (0, 2, 3)], color="white")
+    >>> floor.triangle_count
+    2
+    """
+
+    __slots__ = ("__weakref__", "_file", "_handle", "look")
+
+    def __init__(self, source: Any, triangles: Any = None, *, normals: Any = None, colors: Any = None,
+                 **look: Unpack[MeshLook]) -> None:
+        check_keywords("Mesh()", look, ["normals", "colors", *MeshLook.__annotations__])
+        self.look: Mapping[str, Any] = dict(look)
+        self._handle: Any = None
+        self._file: str | None = None
+        if isinstance(source, Mesh):
+            self._file, self._handle, self.look = source._file, source._handle, {**source.look, **look}
+            return
+        if isinstance(source, (str, os.PathLike)):
+            for word, value in (("triangles", triangles), ("normals", normals), ("colors", colors)):
+                if value is not None:
+                    raise TypeError(f"{word}: a file says them itself")
+            self._file = os.fspath(source)
+            self._handle = made(lib.hl_mesh_load, "hl_mesh", lib.hl_mesh_release, context, os.fsencode(source),
+                                path=self._file)
+            return
+        vertices, faces = (source, triangles) if triangles is not None else _vertices_and_faces(source)
+        self._handle = _create(vertices, faces, normals, colors)
+
+    def replace(self, **look: Unpack[MeshLook]) -> Mesh:
+        """The same triangles with another look."""
+        return Mesh(self, **look)
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices there are."""
+        count: int = lib.hl_mesh_describe(self._handle).vertex_count
+        return count
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles there are; those without an area are left out."""
+        count: int = lib.hl_mesh_describe(self._handle).triangle_count
+        return count
+
+    def __repr__(self) -> str:
+        return f"<halflight.Mesh of {self.triangle_count} triangles{'' if self._file is None else f' {self._file}'}>"
+
+    def _fill(self, struct: Any, keep: list[Any], place: str) -> None:
+        """Set an hl_scene_mesh, which is valid as long as `keep`."""
+        keep.append(self)
+        lib.hl_scene_mesh_defaults(ffi.addressof(struct))
+        struct.mesh = self._handle
+        look = dict(self.look)
+        if self._file is not None:
+            keep.append(file := ffi.new("char[]", os.fsencode(self._file)))
+            struct.file = file
+        if (name := look.pop("name", None)) is not None:
+            keep.append(text := ffi.new("char[]", str(name).encode()))
+            struct.name = text
+        if (color := look.pop("color", None)) is not None:
+            struct.color = colors.linear_color(f"{place}color", color)
+        _settings.fill(place, struct.material, lib.HL_SETTINGS_MATERIAL, _settings.taken(look, _MATERIAL))
+        _settings.fill(place, struct, lib.HL_SETTINGS_MESH, look)
+
+
+def mesh_from(struct: Any) -> Mesh:
+    """The mesh of an hl_scene_mesh."""
+    found = Mesh.__new__(Mesh)
+    found._file = None if struct.file == ffi.NULL else os.fsdecode(ffi.string(struct.file))
+    lib.hl_mesh_retain(struct.mesh)
+    found._handle = ffi.gc(struct.mesh, lib.hl_mesh_release)
+    look = _settings.read(struct, lib.HL_SETTINGS_MESH) | _settings.read(struct.material, lib.HL_SETTINGS_MATERIAL)
+    found.look = look if struct.name == ffi.NULL else look | {"name": text_of(struct.name)}
+    return found
+
+
+def _vertices_and_faces(source: Any) -> tuple[Any, Any]:
+    """What PyVista, meshio and trimesh call points or vertices, and faces or cells."""
+    if hasattr(source, "points") and hasattr(source, "triangulate"):
+        plain = source.triangulate()
+        return plain.points, np.asarray(plain.faces).reshape(-1, 4)[:, 1:]
+    if hasattr(source, "points") and hasattr(source, "cells_dict"):
+        return source.points, source.cells_dict.get("triangle", ())
+    if hasattr(source, "vertices") and hasattr(source, "faces"):
+        return source.vertices, source.faces
+    raise TypeError(f"{type(source).__name__} is no path and no mesh: give vertices and triangles")
+
+
+def _rows(place: str, values: Any, widths: Sequence[int], kind: Any) -> np.ndarray[Any, Any]:
+    """A packed array of rows of one of these widths."""
+    try:
+        rows = np.ascontiguousarray(values)
+    except (TypeError, ValueError):
+        raise TypeError(f"{place}: {values!r} is no array of numbers") from None
+    wanted = " or ".join(f"(n, {width})" for width in widths)
+    if rows.ndim != 2 or rows.shape[1] not in widths:
+        raise ValueError(f"{place}: the shape {rows.shape} is not {wanted}")
+    if rows.dtype.kind not in ("iu" if kind == np.uint32 else "iuf"):
+        raise TypeError(f"{place}: {rows.dtype} is no {'whole number' if kind == np.uint32 else 'number'}")
+    if kind == np.uint32 and rows.size > 0 and not 0 <= rows.min() <= rows.max() < 1 << 32:
+        raise ValueError(f"{place}: {rows.min() if rows.min() < 0 else rows.max()} is no number of a vertex")
+    return np.ascontiguousarray(rows, kind)
+
+
+def _linear(given: Any) -> np.ndarray[Any, Any]:
+    """Colours of vertices, linear with opacity."""
+    rows = np.asarray(given)
+    values = rows / 255.0 if rows.dtype == np.uint8 else rows
+    shown = _rows("colors", values, (3, 4), np.float64)
+    if rows.dtype == np.uint8:
+        shown[:, :3] = colors.to_linear(shown[:, :3])
+    opacity = np.ones((len(shown), 1)) if shown.shape[1] == 3 else shown[:, 3:]
+    return np.ascontiguousarray(np.hstack([shown[:, :3], opacity]), np.float32)
+
+
+def _create(vertices: Any, triangles: Any, normals: Any, given: Any) -> Any:
+    description = ffi.new("hl_mesh_description *")
+    lib.hl_mesh_description_defaults(description)
+    arrays = {"positions": _rows("vertices", vertices, (3,), np.float32),
+              "triangles": _rows("triangles", triangles, (3,), np.uint32)}
+    if normals is not None:
+        arrays["normals"] = _rows("normals", normals, (3,), np.float32)
+    if given is not None:
+        arrays["colors"] = _linear(given)
+    for name, array in arrays.items():
+        if name != "triangles" and len(array) != len(arrays["positions"]):
+            raise ValueError(f"{name}: {len(array)} rows for {len(arrays['positions'])} vertices")
+        kind = "uint32_t" if name == "triangles" else "float"
+        setattr(description, name, ffi.cast(f"{kind} (*)[{array.shape[1]}]", ffi.from_buffer(array)))
+    description.vertex_count, description.triangle_count = len(arrays["positions"]), len(arrays["triangles"])
+    place = ffi.new("hl_mesh **")
+    call(lib.hl_mesh_create, context, description, place)
+    return ffi.gc(place[0], lib.hl_mesh_release)
