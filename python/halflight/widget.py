@@ -100,8 +100,8 @@ def _jpeg(image: Image, quality: int) -> tuple[str, bytes]:
 def _encoded(image: Image, asked: dict[str, Any]) -> tuple[str, bytes]:
     if asked["format"] == "jpeg":
         return _jpeg(image, min(max(int(asked["quality"]), 10), 100))
-    if asked["format"] == "exr":
-        return "image/x-exr", image.encode("exr")
+    if asked["format"] in ("exr", "npy"):
+        return "image/x-exr" if asked["format"] == "exr" else "application/octet-stream", image.encode(asked["format"])
     return "image/png", image.encode("png", depth=16 if asked["depth"] == 16 else 8)
 
 

@@ -57,6 +57,7 @@ static void on_progress(void *user_data, const char *stage, double fraction) {
   cli_host *host = user_data;
   char text[80];
   snprintf(text, sizeof text, "%s %s", stage, host->subject);
+  if (host->progressed != NULL) host->progressed(fraction);
   if (!host->own_bar) host_draw_bar(host, fraction, text);
 }
 
@@ -110,6 +111,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
   host->cancelled = options->cancelled;
+  host->progressed = options->progressed;
   host->bar = options->progress && !options->quiet && terminal_can_redraw();
   host->color = color_wanted();
   snprintf(host->subject, sizeof host->subject, "%s", options->subject);

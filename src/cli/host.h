@@ -14,11 +14,12 @@ typedef struct cli_host {
   bool bar;     /* stderr is a terminal that can redraw a line */
   bool own_bar; /* the command draws the bar itself: each call of the library is a part of a longer run */
   bool color;
-  bool drawn;              /* a bar is on the line now */
-  double drawn_at;         /* seconds; bars are redrawn ten times a second at most */
-  bool (*cancelled)(void); /* or null */
-  cli_read_files read;     /* the files that the context has read */
-  char subject[32];        /* the input's name beside the bar, cut to keep the line short */
+  bool drawn;                          /* a bar is on the line now */
+  double drawn_at;                     /* seconds; bars are redrawn ten times a second at most */
+  bool (*cancelled)(void);             /* or null */
+  void (*progressed)(double fraction); /* or null */
+  cli_read_files read;                 /* the files that the context has read */
+  char subject[32];                    /* the input's name beside the bar, cut to keep the line short */
 } cli_host;
 
 typedef struct cli_host_options {
@@ -28,7 +29,8 @@ typedef struct cli_host_options {
   uint64_t memory_limit; /* bytes; 0: the machine's memory */
   hl_instruction_set instruction_set;
   bool (*cancelled)(void); /* may be null; else asked, in addition to signals, on the thread that renders */
-  const char *data_folder; /* null: HALFLIGHT_DATA, or ../shared/data */
+  void (*progressed)(double fraction); /* told by the thread that calls the library; or null */
+  const char *data_folder;             /* null: HALFLIGHT_DATA, or ../shared/data */
 } cli_host_options;
 
 /* Makes the context and starts listening to SIGINT, SIGTERM and SIGHUP. Returns the exit code. `host` must

@@ -102,8 +102,8 @@ static bool make_absolute(const char **file, path_list *list) {
 }
 
 /* The scene with absolute paths, so that the page's scene can be rendered from any folder. */
-static hl_status name_absolutely(view_job *job, hl_error *error) {
-  hl_scene_description d = *hl_scene_describe(job->scene);
+static hl_status name_absolutely(view_job *job, hl_scene **scene, hl_error *error) {
+  hl_scene_description d = *hl_scene_describe(*scene);
   hl_scene_volume *volumes = malloc(d.volume_count * sizeof *volumes + 1);
   hl_light *lights = malloc(d.light_count * sizeof *lights + 1);
   path_list *list = calloc(1, sizeof *list);
@@ -122,8 +122,8 @@ static hl_status name_absolutely(view_job *job, hl_error *error) {
   hl_status status = good ? hl_scene_create(job->host.context, &d, &named, error) : HL_ERROR_MEMORY;
   if (!good) snprintf(error->message, sizeof error->message, "out of memory for the scene's paths");
   if (status == HL_OK) {
-    hl_scene_release(job->scene);
-    job->scene = named;
+    hl_scene_release(*scene);
+    *scene = named;
   }
   for (size_t p = 0; list != NULL && p < list->count; p++) free(list->paths[p]);
   free(list);
@@ -141,8 +141,24 @@ static int load(view_job *job, char **inputs) {
   int exit_code = render_load_inputs(&job->host, values, inputs, &bare, &job->scene);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_error error = {0};
-  hl_status status = name_absolutely(job, &error);
+  hl_status status = name_absolutely(job, &job->scene, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error);
+}
+
+/* A file that a page opens; without a path in its name, the scene can be saved beside it. */
+static hl_status open_file(void *user_data, const char *path, const char *name, hl_scene **scene,
+                           hl_error *error) {
+  view_job *job = user_data;
+  hl_volume *volume = NULL;
+  hl_status status;
+  if (has_extension(path, ".json")) {
+    status = hl_scene_load(job->host.context, path, scene, error);
+    return status == HL_OK ? name_absolutely(job, scene, error) : status;
+  }
+  status = hl_volume_load(job->host.context, path, &volume, error);
+  if (status == HL_OK) status = hl_scene_for_volume(job->host.context, volume, name, scene, error);
+  hl_volume_release(volume);
+  return status;
 }
 
 /* ---- the browser ---- */
@@ -191,13 +207,14 @@ static void make_title(char **inputs, char *title, size_t size) {
 
 static int run_view(const cli_value *values, char **inputs) {
   view_job job = {.values = values};
-  char title[300], problem[300];
+  char title[300], problem[300], folder[PATH_MAX];
   cli_host_options options = {.quiet = values[VIEW_QUIET].given,
                               .progress = true,
                               .subject = base_name(inputs[0]),
                               .memory_limit = values[VIEW_MAX_MEMORY].bytes,
                               .data_folder = values[VIEW_DATA].text,
-                              .cancelled = server_is_outdated};
+                              .cancelled = server_is_outdated,
+                              .progressed = server_progress};
   int exit_code = host_open(&options, &job.host);
   if (exit_code == EXIT_CODE_OK) exit_code = load(&job, inputs);
   if (exit_code == EXIT_CODE_OK) {
@@ -207,6 +224,8 @@ static int run_view(const cli_value *values, char **inputs) {
     server_options server = {.context = job.host.context,
                              .scene = job.scene,
                              .title = title,
+                             .folder = getcwd(folder, sizeof folder),
+                             .open = open_file,
                              .port = values[VIEW_PORT].given ? (int)values[VIEW_PORT].number[0] : 0,
                              .stopped = host_interrupted,
                              .user_data = &job,

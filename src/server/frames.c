@@ -13,9 +13,10 @@
 
 /* The frame that this thread works on. */
 static _Thread_local struct {
-  const server *server;
+  server *server;
   server_page *page; /* null: none */
   unsigned long long number;
+  bool opening; /* a file */
 } current;
 
 static double clock_seconds(void) {
@@ -28,6 +29,11 @@ bool server_is_outdated(void) {
   if (current.server == NULL) return false;
   if (current.server->options.stopped()) return true;
   return current.page != NULL && atomic_load(&current.page->newest) > current.number;
+}
+
+void server_progress(double fraction) {
+  if (current.server != NULL && current.opening && fraction >= 0 && fraction <= 1)
+    atomic_store(&current.server->opening_part, (int)(1000 * fraction));
 }
 
 bool pages_begin(server *s) {
@@ -98,10 +104,17 @@ static void fail_frame(server_answer *answer, hl_status status, const hl_error *
   else refuse(answer, 400, "text/plain; charset=utf-8", error);
 }
 
-static hl_status read_scene(const server *s, const char *text, size_t length, hl_scene **scene,
+static hl_status read_scene(server *s, long long number, const char *text, size_t length, hl_scene **scene,
                             hl_error *error) {
-  hl_status status = hl_scene_from_json_like(s->options.context, text, length, NULL, "scene",
-                                             s->options.scene, scene, error);
+  server_opened *opened = opened_enter(s, number);
+  if (opened == NULL) {
+    snprintf(error->message, sizeof error->message,
+             "this volume is open no longer, as too many others are: open it again");
+    return HL_ERROR_INPUT;
+  }
+  hl_status status = hl_scene_from_json_like(s->options.context, text, length, NULL, "scene", opened->scene,
+                                             scene, error);
+  opened_leave(s, opened);
   if (status != HL_OK) return status;
   const hl_scene_description *d = hl_scene_describe(*scene);
   if ((long long)d->width * d->height <= MOST_PIXELS) return HL_OK;
@@ -112,12 +125,12 @@ static hl_status read_scene(const server *s, const char *text, size_t length, hl
   return HL_ERROR_INPUT;
 }
 
-void answer_scene(server *s, const char *text, size_t length, server_answer *answer) {
+void answer_scene(server *s, long long opened, const char *text, size_t length, server_answer *answer) {
   hl_scene *scene = NULL;
   hl_error error = {0};
   current.server = s;
   current.page = NULL;
-  hl_status status = read_scene(s, text, length, &scene, &error);
+  hl_status status = read_scene(s, opened, text, length, &scene, &error);
   if (status == HL_OK) status = hl_scene_to_json(s->options.context, scene, &answer->text, &error);
   hl_scene_release(scene);
   current.server = NULL;
@@ -159,7 +172,9 @@ static hl_status write_exact(const server *s, const hl_scene *scene, const hl_im
   if (status == HL_OK)
     status = hl_image_encode(s->options.context, image, request->format, options, &answer->bytes,
                              &answer->length, error);
-  answer->type = strcmp(request->format, "png") == 0 ? "image/png" : "image/x-exr";
+  answer->type = strcmp(request->format, "png") == 0   ? "image/png"
+                 : strcmp(request->format, "exr") == 0 ? "image/x-exr"
+                                                       : "application/octet-stream";
   hl_text_release(s->options.context, json);
   return status;
 }
@@ -189,7 +204,7 @@ static hl_status render(server *s, server_page *page, const hl_scene *scene, con
   return status;
 }
 
-void answer_frame(server *s, const frame_request *request, server_answer *answer) {
+void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer) {
   server_page *page = enter_page(s, request->page, request->number);
   if (page == NULL) {
     refuse(answer, 503, "text/plain; charset=utf-8",
@@ -203,14 +218,68 @@ void answer_frame(server *s, const frame_request *request, server_answer *answer
   current.page = page;
   current.number = request->number;
   double began = clock_seconds();
-  hl_status status = server_is_outdated() ? HL_ERROR_CANCELLED
-                                          : read_scene(s, request->text, request->length, &scene, &error);
+  hl_status status = server_is_outdated()
+                         ? HL_ERROR_CANCELLED
+                         : read_scene(s, request->opened, request->text, request->length, &scene, &error);
   answer->seconds_read = clock_seconds() - began;
-  if (status == HL_OK) status = render(s, page, scene, request, answer, &error);
+  if (status == HL_OK)
+    status = film != NULL ? render_film(s, page, scene, film, answer, &error)
+                          : render(s, page, scene, request, answer, &error);
   current.server = NULL;
   pthread_mutex_unlock(&page->rendering);
   hl_scene_release(scene);
   leave_page(s, page);
   if (status == HL_OK) answer->status = 200;
   else fail_frame(answer, status, &error);
+}
+
+void cancel_frames(server *s, const char *name, unsigned long long number) {
+  pthread_mutex_lock(&s->pages_lock);
+  for (int p = 0; p < MOST_PAGES; p++)
+    if (strcmp(s->pages[p].name, name) == 0 && atomic_load(&s->pages[p].newest) < number)
+      atomic_store(&s->pages[p].newest, number);
+  pthread_mutex_unlock(&s->pages_lock);
+}
+
+bool film_progress(server *s, const char *name, int *done, int *frames) {
+  bool found = false;
+  pthread_mutex_lock(&s->pages_lock);
+  for (int p = 0; p < MOST_PAGES; p++)
+    if (strcmp(s->pages[p].name, name) == 0) {
+      *done = atomic_load(&s->pages[p].film_done);
+      *frames = atomic_load(&s->pages[p].film_frames);
+      found = *frames > 0;
+    }
+  pthread_mutex_unlock(&s->pages_lock);
+  return found;
+}
+
+void answer_open(server *s, const char *path, const char *name, server_answer *answer) {
+  const char *slash = strrchr(name, '/');
+  hl_scene *scene = NULL;
+  hl_error error = {0};
+  current.server = s;
+  current.page = NULL;
+  current.opening = true;
+  atomic_store(&s->opening_part, 0);
+  hl_status status = s->options.open(s->options.user_data, path, name, &scene, &error);
+  current.opening = false;
+  current.server = NULL;
+  if (status == HL_OK) {
+    server_opened *opened = opened_add(s, scene, slash != NULL ? slash + 1 : name);
+    answer->from_malloc = opened != NULL ? (unsigned char *)strdup(opened->start) : NULL;
+    if (opened != NULL) opened_leave(s, opened);
+    if (answer->from_malloc == NULL) {
+      snprintf(error.message, sizeof error.message, "no memory to open another file");
+      status = HL_ERROR_MEMORY;
+    }
+  }
+  hl_scene_release(scene);
+  if (status != HL_OK) {
+    fail_frame(answer, status, &error);
+    return;
+  }
+  answer->status = 200;
+  answer->type = "application/json";
+  answer->length = strlen((const char *)answer->from_malloc);
 }

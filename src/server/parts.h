@@ -2,10 +2,12 @@
 #ifndef HL_SERVER_PARTS_H
 #define HL_SERVER_PARTS_H
 
+#include <limits.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "server.h"
 
@@ -14,6 +16,9 @@ enum {
   PAGE_NAME_LENGTH = 32,
   MOST_PAGES =
       8, /* pages that keep a renderer; a new page takes the place of the one that was idle for longest */
+  MOST_OPENED = 6, /* scenes; the one that was not used for longest makes room */
+  MOST_FILM_KEYS = 32,
+  MOST_FILM_FRAMES = 100000,
   MOST_CONNECTIONS = 64,     /* at once */
   IDLE_SECONDS = 20,         /* after which a silent connection is closed */
   MOST_BODY_BYTES = 4 << 20, /* of a scene's text */
@@ -21,6 +26,8 @@ enum {
   LEAST_QUALITY = 10,
   MOST_QUALITY = 100 /* of a JPEG */
 };
+
+#define MOST_NUMBER 1000000000000LL /* of a page's frames */
 
 /* A file of the page, embedded when the program is built (embed.py). */
 typedef struct server_asset {
@@ -35,18 +42,30 @@ extern const size_t server_asset_count;
 
 /* One page in a browser: its frames are rendered one after the other. */
 typedef struct server_page {
-  char name[PAGE_NAME_LENGTH + 1]; /* "": free */
-  pthread_mutex_t rendering;       /* held while a frame of the page is rendered */
-  hl_renderer *renderer;           /* owned; under `rendering` */
-  atomic_ullong newest;            /* the highest number of a requested frame */
-  int users;                       /* requests that hold the page; under server.pages_lock */
-  unsigned long long last_use;     /* under server.pages_lock */
+  char name[PAGE_NAME_LENGTH + 1];   /* "": free */
+  pthread_mutex_t rendering;         /* held while a frame of the page is rendered */
+  hl_renderer *renderer;             /* owned; under `rendering` */
+  atomic_ullong newest;              /* the highest number of a requested frame */
+  atomic_int film_done, film_frames; /* of the film that the page renders; 0 frames: none */
+  int users;                         /* requests that hold the page; under server.pages_lock */
+  unsigned long long last_use;       /* under server.pages_lock */
 } server_page;
+
+/* A scene that is open. */
+typedef struct server_opened {
+  long long number;            /* by which pages name it; 0: the program's input */
+  hl_scene *scene;             /* owned; null: free */
+  char *start;                 /* owned; the text of its start.json */
+  int users;                   /* requests that hold it; under server.pages_lock */
+  unsigned long long last_use; /* under server.pages_lock */
+} server_opened;
 
 typedef struct server {
   server_options options;
   char token[TOKEN_DIGITS + 1];
-  char *start; /* owned; the text of start.json */
+  server_opened opened[MOST_OPENED];
+  long long next_opened;   /* under pages_lock */
+  atomic_int opening_part; /* thousandths of the volume that is being read */
   pthread_mutex_t pages_lock;
   server_page pages[MOST_PAGES];
   unsigned long long uses;
@@ -70,21 +89,68 @@ typedef struct server_answer {
 typedef struct frame_request {
   const char *page;
   unsigned long long number;
-  const char *format; /* "jpeg", "png" or "exr" */
+  long long opened;   /* the open scene whose volumes it has */
+  const char *format; /* "jpeg", "png", "exr" or "npy" */
   int quality;        /* of a JPEG */
   int depth;          /* of a PNG: 8 or 16 */
   const char *text;   /* the scene */
   size_t length;
 } frame_request;
 
+/* What a film's request asks for, besides a frame's. */
+typedef struct film_request {
+  const char *format; /* "mp4", "webm" or "gif" */
+  const char *keys[MOST_FILM_KEYS];
+  size_t key_count;
+  int turntable, frames;
+  double frames_per_second;
+} film_request;
+
+/* A file that arrives from a page, in a temporary folder of its own. */
+typedef struct server_upload {
+  char folder[PATH_MAX / 2], path[PATH_MAX];
+  FILE *file;
+} server_upload;
+
 /* frames.c */
 bool pages_begin(server *s);
 void pages_end(server *s);
-void answer_frame(server *s, const frame_request *request, server_answer *answer);
-void answer_scene(server *s, const char *text, size_t length, server_answer *answer);
+/* film: null for a picture. */
+void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
+void answer_scene(server *s, long long opened, const char *text, size_t length, server_answer *answer);
+/* Makes the page's frames below this number outdated. */
+void cancel_frames(server *s, const char *page, unsigned long long number);
+/* How far the page's film is; false: it has none. */
+bool film_progress(server *s, const char *page, int *done, int *frames);
+/* Opens a file by its path, and answers with its start.json; name: what its scene calls it. */
+void answer_open(server *s, const char *path, const char *name, server_answer *answer);
 
-/* start.c: the text of start.json (free()); null without memory. */
-char *describe_start(const server_options *options);
+/* films.c */
+hl_status render_film(server *s, server_page *page, const hl_scene *scene, const film_request *request,
+                      server_answer *answer, hl_error *error);
+
+/* opened.c: scenes that are open. An entered one is held until it is left; null: it is open no longer. */
+server_opened *opened_enter(server *s, long long number);
+void opened_leave(server *s, server_opened *opened);
+/* Adds a scene, which is retained, and enters it; null without memory or room. */
+server_opened *opened_add(server *s, hl_scene *scene, const char *title);
+void opened_end(server *s);
+
+/* folder.c */
+bool folder_can_open(const char *name); /* by its extension */
+/* The absolute path of what lies below the server's folder; false: it does not, by any link. */
+bool folder_resolve(const server *s, const char *inside, char path[PATH_MAX]);
+/* JSON of what can be opened in a folder below the server's (free()); null: it is none. */
+char *describe_folder(const server *s, const char *at);
+bool upload_folder(const char *name, server_upload *upload); /* the folder alone */
+bool upload_begin(const char *name, server_upload *upload);
+bool upload_add(server_upload *upload, const char *bytes, size_t count);
+bool upload_finish(server_upload *upload);
+void upload_end(server_upload *upload); /* removes the file and its folder */
+
+/* start.c: the text of a scene's start.json (free()); null without memory. */
+char *describe_start(const server *s, const hl_scene *scene, const char *title, long long number);
+void put_json_text(FILE *out, const char *text);
 
 /* jpeg.c: a picture as JPEG (free()); rgba: [height][width][4]. Null without memory. */
 unsigned char *encode_jpeg(const uint8_t *rgba, int width, int height, int quality, size_t *length);

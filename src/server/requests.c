@@ -15,6 +15,8 @@ typedef struct request {
   const char *path;
   char *body; /* owned; [length] */
   size_t length, capacity;
+  bool uploads;
+  server_upload upload; /* of a file that arrives in the body */
 } request;
 
 static const char plain[] = "text/plain; charset=utf-8";
@@ -87,6 +89,16 @@ static const char *query(struct MHD_Connection *connection, const char *name) {
   return MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
 }
 
+/* A file that is dropped: its name, and room for it. */
+static unsigned check_upload(const server *s, struct MHD_Connection *connection, request *r,
+                             const char **line) {
+  const char *name = query(connection, "name");
+  *line = "this viewer opens no files\n";
+  if (s->options.folder == NULL) return 403;
+  *line = "this is no file of volumes or scenes that Halflight reads\n";
+  return name != NULL && upload_begin(name, &r->upload) ? 0 : 400;
+}
+
 /* The HTTP status of a refused request, with its error line; 0: the request is allowed. */
 static unsigned check(const server *s, struct MHD_Connection *connection, const char *method, const char *url,
                       request *r, const char **line) {
@@ -101,6 +113,8 @@ static unsigned check(const server *s, struct MHD_Connection *connection, const 
   *line = "only GET and POST are answered\n";
   bool posts = strcmp(method, "POST") == 0;
   if (!posts && strcmp(method, "GET") != 0) return 405;
+  r->uploads = posts && strcmp(r->path, "upload") == 0;
+  if (r->uploads) return check_upload(s, connection, r, line);
   *line = "the scene is too large for the viewer\n";
   if (length != NULL && strtoull(length, NULL, 10) > MOST_BODY_BYTES) return 413;
   return 0;
@@ -131,22 +145,69 @@ static void answer_problem(server_answer *answer, unsigned status, const char *l
   snprintf(answer->problem, sizeof answer->problem, "%s", line);
 }
 
-static void answer_get(const server *s, const char *path, server_answer *answer) {
-  answer->status = 200;
-  if (strcmp(path, "start.json") == 0) {
-    answer->type = "application/json";
-    answer->borrowed = s->start;
-    answer->length = strlen(s->start);
+/* Owns text, which is null for lack of memory. */
+static void answer_json(server_answer *answer, char *text) {
+  if (text == NULL) {
+    answer_problem(answer, 500, "out of memory\n");
     return;
   }
+  answer->status = 200;
+  answer->type = "application/json";
+  answer->from_malloc = (unsigned char *)text;
+  answer->length = strlen(text);
+}
+
+static void answer_folder(const server *s, struct MHD_Connection *connection, server_answer *answer) {
+  const char *at = query(connection, "at");
+  char *text = s->options.folder != NULL ? describe_folder(s, at != NULL ? at : "") : NULL;
+  if (text == NULL) answer_problem(answer, 404, "there is no such folder below the viewer's\n");
+  else answer_json(answer, text);
+}
+
+static void answer_film_progress(server *s, struct MHD_Connection *connection, server_answer *answer) {
+  const char *page = query(connection, "page");
+  int done = 0, frames = 0;
+  char *text = NULL;
+  if (page != NULL) film_progress(s, page, &done, &frames);
+  if (asprintf(&text, "{\"done\":%d,\"frames\":%d}", done, frames) < 0) text = NULL;
+  answer_json(answer, text);
+}
+
+static void answer_start(server *s, server_answer *answer) {
+  server_opened *first = opened_enter(s, 0);
+  if (first == NULL) {
+    answer_problem(answer, 410, "the volume that the viewer began with is open no longer\n");
+    return;
+  }
+  answer_json(answer, strdup(first->start));
+  opened_leave(s, first);
+}
+
+static void answer_opening(server *s, server_answer *answer) {
+  char *text = NULL;
+  if (asprintf(&text, "{\"part\":%.3f}", atomic_load(&s->opening_part) / 1000.0) < 0) text = NULL;
+  answer_json(answer, text);
+}
+
+static void answer_asset(const char *path, server_answer *answer) {
   for (size_t a = 0; a < server_asset_count; a++)
     if (strcmp(server_assets[a].name, path) == 0) {
+      answer->status = 200;
       answer->type = server_assets[a].type;
       answer->borrowed = server_assets[a].bytes;
       answer->length = server_assets[a].length;
       return;
     }
   answer_problem(answer, 404, "there is nothing here\n");
+}
+
+static void answer_get(server *s, struct MHD_Connection *connection, const char *path,
+                       server_answer *answer) {
+  if (strcmp(path, "start.json") == 0) answer_start(s, answer);
+  else if (strcmp(path, "folder.json") == 0) answer_folder(s, connection, answer);
+  else if (strcmp(path, "film.json") == 0) answer_film_progress(s, connection, answer);
+  else if (strcmp(path, "opening.json") == 0) answer_opening(s, answer);
+  else answer_asset(path, answer);
 }
 
 /* A whole number of the query, from low to high; `standard` if it is absent, -1 if it is anything else. */
@@ -167,45 +228,107 @@ static bool is_page_name(const char *name) {
 }
 
 static bool is_format(const char *format) {
+  return format != NULL && (strcmp(format, "jpeg") == 0 || strcmp(format, "png") == 0 ||
+                            strcmp(format, "exr") == 0 || strcmp(format, "npy") == 0);
+}
+
+static bool is_film_format(const char *format) {
   return format != NULL &&
-         (strcmp(format, "jpeg") == 0 || strcmp(format, "png") == 0 || strcmp(format, "exr") == 0);
+         (strcmp(format, "mp4") == 0 || strcmp(format, "webm") == 0 || strcmp(format, "gif") == 0);
+}
+
+static frame_request read_query(struct MHD_Connection *connection, const request *r) {
+  return (frame_request){.page = query(connection, "page"),
+                         .number = (unsigned long long)query_number(connection, "number", 1, MOST_NUMBER, 0),
+                         .opened = query_number(connection, "opened", 0, MOST_NUMBER, 0),
+                         .format = query(connection, "format"),
+                         .quality = (int)query_number(connection, "quality", LEAST_QUALITY, MOST_QUALITY, 85),
+                         .depth = (int)query_number(connection, "depth", 8, 16, 8),
+                         .text = r->body,
+                         .length = r->length};
+}
+
+static bool names_page(const frame_request *wanted) {
+  return is_page_name(wanted->page) && wanted->number > 0 && wanted->number <= MOST_NUMBER;
 }
 
 static void post_frame(server *s, struct MHD_Connection *connection, const request *r,
                        server_answer *answer) {
-  frame_request wanted = {.page = query(connection, "page"),
-                          .format = query(connection, "format"),
-                          .text = r->body,
-                          .length = r->length};
-  long long number = query_number(connection, "number", 1, 1000000000000, -1);
-  wanted.quality = (int)query_number(connection, "quality", LEAST_QUALITY, MOST_QUALITY, 85);
-  wanted.depth = (int)query_number(connection, "depth", 8, 16, 8);
-  wanted.number = (unsigned long long)number;
-  bool good = is_page_name(wanted.page) && is_format(wanted.format) && number > 0 && wanted.quality > 0 &&
-              (wanted.depth == 8 || wanted.depth == 16);
-  if (!good)
-    answer_problem(answer, 400,
-                   "a frame needs ?page=NAME&number=N&format=jpeg|png|exr (&quality=10..100, &depth=8|16)\n");
-  else answer_frame(s, &wanted, answer);
+  frame_request wanted = read_query(connection, r);
+  if (names_page(&wanted) && is_format(wanted.format) && wanted.quality > 0 &&
+      (wanted.depth == 8 || wanted.depth == 16))
+    answer_frame(s, &wanted, NULL, answer);
+  else
+    answer_problem(
+        answer, 400,
+        "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, &depth=8|16)\n");
+}
+
+static void post_film(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
+  frame_request wanted = read_query(connection, r);
+  film_request film = {.format = wanted.format};
+  for (char name[8]; film.key_count < MOST_FILM_KEYS; film.key_count++) {
+    snprintf(name, sizeof name, "key%zu", film.key_count);
+    if ((film.keys[film.key_count] = query(connection, name)) == NULL) break;
+  }
+  film.turntable = (int)query_number(connection, "turntable", 0, MOST_FILM_FRAMES, 0);
+  film.frames = (int)query_number(connection, "frames", 0, MOST_FILM_FRAMES, 0);
+  film.frames_per_second = (double)query_number(connection, "fps", 1, 240, 30);
+  if (names_page(&wanted) && is_film_format(film.format) && film.turntable >= 0 && film.frames >= 0 &&
+      film.frames_per_second > 0)
+    answer_frame(s, &wanted, &film, answer);
+  else
+    answer_problem(
+        answer, 400,
+        "a film needs ?page=NAME&number=N&format=mp4|webm|gif (&turntable=N&frames=N&fps=N&key0=...)\n");
+}
+
+static void post_cancel(server *s, struct MHD_Connection *connection, const request *r,
+                        server_answer *answer) {
+  frame_request wanted = read_query(connection, r);
+  answer->status = 204;
+  if (names_page(&wanted)) cancel_frames(s, wanted.page, wanted.number);
+  else answer_problem(answer, 400, "?page=NAME&number=N is missing\n");
+}
+
+static void post_open(server *s, struct MHD_Connection *connection, server_answer *answer) {
+  const char *file = query(connection, "file");
+  char path[PATH_MAX];
+  if (file != NULL && s->options.folder != NULL && folder_can_open(file) && folder_resolve(s, file, path))
+    answer_open(s, path, path, answer);
+  else answer_problem(answer, 403, "no such file of volumes or scenes lies below the viewer's folder\n");
+}
+
+static void post_upload(server *s, struct MHD_Connection *connection, request *r, server_answer *answer) {
+  if (!upload_finish(&r->upload))
+    answer_problem(answer, 500, "the file cannot be stored: is the disk full?\n");
+  else answer_open(s, r->upload.path, query(connection, "name"), answer);
+  upload_end(&r->upload);
+}
+
+static void answer_post(server *s, struct MHD_Connection *connection, request *r, server_answer *answer) {
+  bool frame = strcmp(r->path, "frame") == 0, film = strcmp(r->path, "film") == 0;
+  if (r->uploads) post_upload(s, connection, r, answer);
+  else if (strcmp(r->path, "open") == 0) post_open(s, connection, answer);
+  else if (strcmp(r->path, "cancel") == 0) post_cancel(s, connection, r, answer);
+  else if (!frame && !film && strcmp(r->path, "scene") != 0)
+    answer_problem(answer, 404, "there is nothing here\n");
+  else if (r->body == NULL) answer_problem(answer, 400, "the scene is missing\n");
+  else if (frame) post_frame(s, connection, r, answer);
+  else if (film) post_film(s, connection, r, answer);
+  else answer_scene(s, read_query(connection, r).opened, r->body, r->length, answer);
 }
 
 /* Answers a complete request. The connection does not count as idle while its picture is made. */
-static enum MHD_Result answer(server *s, struct MHD_Connection *connection, const char *method,
-                              const request *r) {
+static enum MHD_Result answer(server *s, struct MHD_Connection *connection, const char *method, request *r) {
   server_answer a = {0};
   if (strcmp(method, "GET") == 0) {
-    answer_get(s, r->path, &a);
+    answer_get(s, connection, r->path, &a);
     return send_answer(s, connection, &a);
   }
-  bool frame = strcmp(r->path, "frame") == 0;
-  if (!frame && strcmp(r->path, "scene") != 0) answer_problem(&a, 404, "there is nothing here\n");
-  else if (r->body == NULL) answer_problem(&a, 400, "the scene is missing\n");
-  else {
-    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
-    if (frame) post_frame(s, connection, r, &a);
-    else answer_scene(s, r->body, r->length, &a);
-    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)IDLE_SECONDS);
-  }
+  MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
+  answer_post(s, connection, r, &a);
+  MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)IDLE_SECONDS);
   return send_answer(s, connection, &a);
 }
 
@@ -225,7 +348,8 @@ static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connec
     return refusal != 0 ? send_line(connection, refusal, line) : MHD_YES;
   }
   if (*upload_size > 0) {
-    bool taken = !r->refused && collect(r, upload, *upload_size);
+    bool taken = !r->refused && (r->uploads ? upload_add(&r->upload, upload, *upload_size)
+                                            : collect(r, upload, *upload_size));
     *upload_size = 0;
     return taken ? MHD_YES : MHD_NO; /* a body larger than its header announced: the connection ends */
   }
@@ -237,7 +361,10 @@ static void on_end(void *user_data, struct MHD_Connection *connection, void **ow
                    enum MHD_RequestTerminationCode code) {
   (void)user_data, (void)connection, (void)code;
   request *r = *own;
-  if (r != NULL) free(r->body);
+  if (r != NULL) {
+    upload_end(&r->upload);
+    free(r->body);
+  }
   free(r);
   *own = NULL;
 }

@@ -74,8 +74,9 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
   bool good = s != NULL && pages_begin(s);
   if (good) {
     s->options = *options;
-    s->start = describe_start(options);
-    good = s->start != NULL;
+    server_opened *first = opened_add(s, options->scene, options->title);
+    good = first != NULL;
+    if (good) opened_leave(s, first);
   }
   if (!good) snprintf(problem, problem_size, "out of memory for the viewer");
   if (good && !make_token(s->token)) {
@@ -86,7 +87,7 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
   good = listening >= 0 && serve(s, listening, problem, problem_size);
   if (s != NULL) {
     pages_end(s);
-    free(s->start);
+    opened_end(s);
   }
   free(s);
   return good;

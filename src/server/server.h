@@ -6,9 +6,14 @@
  *     GET  TOKEN/start.json    what is open: the scene, its volumes' ranges and histograms, presets,
  * colormaps POST TOKEN/frame         a scene file's text in, its picture out
  * (?page=NAME&number=N&format=FORMAT) POST TOKEN/scene         a scene file's text in, the same scene with
- * all its defaults written out
+ * all its defaults written out POST TOKEN/film          a scene file's text in, a film out (as a frame,
+ * &turntable=N&key0=PATH=...) GET  TOKEN/film.json     how far the page's film is (?page=NAME) POST
+ * TOKEN/cancel        makes frames and films of a page outdated (?page=NAME&number=N) GET  TOKEN/folder.json
+ * what can be opened in a folder below the one that the viewer was started in (?at=) POST TOKEN/open opens a
+ * file there (?file=PATH), or the file in the body (upload?name=NAME): its start.json, whose number &opened=N
+ * says whose volumes a scene has GET  TOKEN/opening.json  how far a file is read
  *
- * Scenes name the volumes and images that were open at the start: a page cannot open another file. A page's
+ * Scenes name the volumes and images of what is open: no other file is read for them. A page's
  * frames are numbered; one with a higher number cancels those before it, which are answered with 204.
  */
 #ifndef HL_SERVER_SERVER_H
@@ -20,8 +25,11 @@
 
 typedef struct server_options {
   hl_context *context; /* its `cancelled` callback is server_is_outdated() */
-  const hl_scene *scene;
-  const char *title;     /* the input's name, for the page's title */
+  hl_scene *scene;
+  const char *title;  /* the input's name, for the page's title */
+  const char *folder; /* absolute; pages may open what lies below it; null: nothing */
+  /* Reads the file at `path`, which its scene calls `name`. */
+  hl_status (*open)(void *user_data, const char *path, const char *name, hl_scene **scene, hl_error *error);
   int port;              /* 0: a free one */
   bool (*stopped)(void); /* asked some times a second; true ends server_run() */
   void *user_data;
@@ -31,6 +39,9 @@ typedef struct server_options {
 /* Serves until options->stopped() returns true. False, with an error line in `problem`, if it could not
  * begin. */
 bool server_run(const server_options *options, char *problem, size_t problem_size);
+
+/* For the context's `progress` callback: how far the file is read that this thread opens. */
+void server_progress(double fraction);
 
 /* For the context's `cancelled` callback: whether the frame that this thread renders is no longer wanted. */
 bool server_is_outdated(void);

@@ -8,7 +8,7 @@
 #include "parts.h"
 #include "text/json_value.h"
 
-static void put_text(FILE *out, const char *text) {
+void put_json_text(FILE *out, const char *text) {
   char piece[HL_JSON_PIECE_BYTES];
   fputc('"', out);
   for (size_t length; (length = hl_json_piece(&text, piece)) > 0;) fwrite(piece, 1, length, out);
@@ -46,7 +46,7 @@ static void put_volume(FILE *out, const hl_scene_volume *volume) {
   put_numbers(out, info.range, 2);
   const char *space = hl_space_name(info.space);
   fputs(",\"space\":", out);
-  if (space != NULL) put_text(out, space);
+  if (space != NULL) put_json_text(out, space);
   else fputs("null", out);
   fputs(",\"histogram\":[", out);
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
@@ -60,7 +60,7 @@ static void put_colormaps(FILE *out, hl_context *context) {
   for (size_t c = 0; hl_colormap_name(c) != NULL; c++) {
     hl_transfer_function function = {0};
     if (c > 0) fputc(',', out);
-    put_text(out, hl_colormap_name(c));
+    put_json_text(out, hl_colormap_name(c));
     fputs(":[", out);
     if (hl_transfer_function_colormap(context, hl_colormap_name(c), 0, 1, &function, NULL) == HL_OK)
       for (size_t p = 0; p < function.color_count; p++) {
@@ -74,15 +74,17 @@ static void put_colormaps(FILE *out, hl_context *context) {
   fputc('}', out);
 }
 
-char *describe_start(const server_options *options) {
+char *describe_start(const server *s, const hl_scene *opened, const char *title, long long number) {
+  hl_context *context = s->options.context;
   char *scene = NULL, *text = NULL;
   size_t length = 0;
-  if (hl_scene_to_json(options->context, options->scene, &scene, NULL) != HL_OK) return NULL;
+  if (hl_scene_to_json(context, opened, &scene, NULL) != HL_OK) return NULL;
   FILE *out = open_memstream(&text, &length);
   if (out != NULL) {
-    const hl_scene_description *d = hl_scene_describe(options->scene);
+    const hl_scene_description *d = hl_scene_describe(opened);
     fprintf(out, "{\"version\":\"%s\",\"title\":", hl_version());
-    put_text(out, options->title);
+    put_json_text(out, title);
+    fprintf(out, ",\"opened\":%lld,\"folder\":%s", number, s->options.folder != NULL ? "true" : "false");
     fprintf(out, ",\"scene\":%s,\"volumes\":[", scene);
     for (size_t v = 0; v < d->volume_count; v++) {
       if (v > 0) fputc(',', out);
@@ -91,10 +93,10 @@ char *describe_start(const server_options *options) {
     fputs("],\"presets\":[", out);
     for (size_t p = 0; hl_preset_name(p) != NULL; p++) {
       if (p > 0) fputc(',', out);
-      put_text(out, hl_preset_name(p));
+      put_json_text(out, hl_preset_name(p));
     }
     fputs("],", out);
-    put_colormaps(out, options->context);
+    put_colormaps(out, context);
     fputs("}", out);
     bool failed = ferror(out) != 0;
     if (fclose(out) != 0 || failed) {
@@ -102,6 +104,6 @@ char *describe_start(const server_options *options) {
       text = NULL;
     }
   }
-  hl_text_release(options->context, scene);
+  hl_text_release(context, scene);
   return text;
 }

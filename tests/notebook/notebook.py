@@ -20,7 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "viewer"
 from browser import Browser  # noqa: E402  (the folder is added above)
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
-PACKAGES = ("jupyterlab>=4", "anywidget>=0.9", "numpy", "pillow", "cffi")
+PACKAGES = ("jupyterlab>=4", "anywidget>=0.9", "numpy", "pillow", "cffi", "axe-core-python")  # the last for ../viewer/tools.py
 CELLS = ["""import numpy, halflight
 z, y, x = numpy.mgrid[-1:1:32j, -1:1:32j, -1:1:32j]
 ball = numpy.exp(-6 * ((x - 0.3) ** 2 + y**2 + 1.5 * z**2)).astype(numpy.float32)

@@ -2,23 +2,44 @@
 
 import { button, isActive, make, row, section, select } from "./controls.js";
 
-const stem = (title) => title.replace(/\.(gz|json|nrrd|nhdr|nii|mha|mhd|vti|vtk|raw|npy|png)$/gi, "").replace(/\.nii$/i, "") || "picture";
+export const stem = (title) => title.replace(/\.(gz|json|nrrd|nhdr|nii|mha|mhd|vti|vtk|raw|npy|png)$/gi, "").replace(/\.nii$/i, "") || "picture";
 
 // Shell words in single quotes where they need any.
-const quoted = (word) => (/^[\w./+:=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+export const quoted = (word) => (/^[\w./+:=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
 // The scene file's text: what `halflight render` takes.
 export const sceneText = (scene) => JSON.stringify(scene, null, 2) + "\n";
 
-export const commandLine = (title) => `halflight render ${quoted(`${stem(title)}.json`)} -o ${quoted(`${stem(title)}.png`)}`;
+// A command that needs nothing beside it but the scene's volumes: the scene is its standard input.
+export const commandLine = (scene, title) =>
+  `halflight render - -o ${quoted(`${stem(title)}.png`)} <<'END'\n${sceneText(scene)}END\n`;
 
-function download(blob, name) {
+// The same as a Python program.
+export const pythonProgram = (scene, title) =>
+  `import halflight\n\nscene = halflight.Scene.from_json(r"""${sceneText(scene).replaceAll('"""', '\\"\\"\\"')}""")\n` +
+  `halflight.Renderer().render(scene).save("${stem(title).replaceAll(/["\\]/g, "_")}.png")\n`;
+
+export function download(blob, name) {
   const link = make("a", { href: URL.createObjectURL(blob), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-export function exportPanel({ store, start, channel, report }) {
+// Returns the function that puts a text into the clipboard, or where that is not allowed into a file.
+export function copier(report, title) {
+  return async (text, what) => {
+    try {
+      await navigator.clipboard.writeText(text);
+      report(`${what} is in the clipboard`);
+    } catch {
+      const extension = { "the scene": "json", "the program": "py" }[what] ?? "sh";
+      download(new Blob([text], { type: "text/plain" }), `${stem(title)}.${extension}`);
+      report(`${what} is saved, as the clipboard is not allowed`);
+    }
+  };
+}
+
+export function exportPanel({ store, start, channel, report, copy }) {
   const { element, body } = section("Save", false);
   const name = stem(start.title);
   let format = "png";
@@ -48,16 +69,6 @@ export function exportPanel({ store, start, channel, report }) {
     save.disabled = false;
   }
 
-  async function copyCommand() {
-    const text = commandLine(start.title);
-    try {
-      await navigator.clipboard.writeText(text);
-      report("copied: save the scene beside it");
-    } catch {
-      report(text);
-    }
-  }
-
   const save = button("save picture", savePicture, { class: "primary" });
   const saveScene = () => {
     download(new Blob([sceneText(store.scene)], { type: "application/json" }), `${name}.json`);
@@ -66,8 +77,12 @@ export function exportPanel({ store, start, channel, report }) {
   body.append(
     row(make("span", { class: "name" }, "Size"), make("span", { class: "pair" }, width, "×", height)), kind.element,
     row(make("label", { for: "transparent" }, "Transparent"), transparent), row("", save),
-    row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene), button("copy command", copyCommand))),
-    make("p", { class: "facts" }, "The scene file renders to the same picture, byte for byte: ", make("code", {}, commandLine(start.title))));
+    row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),
+      button("copy scene", () => copy(sceneText(store.scene), "the scene")))),
+    row("", make("span", { class: "buttons" },
+      button("copy command", () => copy(commandLine(store.scene, start.title), "the command")),
+      button("copy Python", () => copy(pythonProgram(store.scene, start.title), "the program")))),
+    make("p", { class: "facts" }, "Each of them makes the same picture, byte for byte."));
   function update() {
     for (const [input, key] of [[width, "width"], [height, "height"]])
       if (!isActive(input) && !input.value) input.placeholder = store.scene.image[key];

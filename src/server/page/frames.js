@@ -24,6 +24,7 @@ export class Frames {
   #report;
   #changed = false;
   #busy = false;
+  #ended = false;
   #generation = 0;
   #timer = 0;
   #work = 60000; // pixels, for sheets a voxel apart, that take as long as the budget
@@ -40,8 +41,17 @@ export class Frames {
     store.listen(() => this.move());
   }
 
+  // No more frames are asked for.
+  end() {
+    this.#ended = true;
+    this.#changed = false;
+    this.#generation++;
+    clearTimeout(this.#timer);
+  }
+
   // Something has changed.
   move() {
+    if (this.#ended) return;
     this.#changed = true;
     this.#generation++;
     clearTimeout(this.#timer);
@@ -86,6 +96,7 @@ export class Frames {
       }
     }
     this.#busy = false;
+    if (this.#ended) return;
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
   }

@@ -15,7 +15,13 @@ function parseTimes(header) {
 
 export class HttpChannel {
   #number = 0;
+  #opened;
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
+
+  // opened: the number of what is open (of start.json), whose volumes the scenes have.
+  constructor(opened = 0) {
+    this.#opened = opened;
+  }
 
   // What is open, and what there is to choose from: start.json.
   async start() {
@@ -24,15 +30,51 @@ export class HttpChannel {
 
   // The scene with its defaults written out: presets as points, a camera that frames everything.
   async completeScene(scene) {
-    return (await check(await fetch("scene", { method: "POST", body: JSON.stringify(scene) }))).json();
+    return (await check(await fetch(`scene?opened=${this.#opened}`, { method: "POST", body: JSON.stringify(scene) }))).json();
   }
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
   // frames apart that do not cancel each other.
   async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, lane = "" } = {}) {
-    const query = new URLSearchParams({ page: this.#page + lane, number: ++this.#number, format, quality, depth });
+    const query = new URLSearchParams({ page: this.#page + lane, number: ++this.#number, opened: this.#opened, format, quality, depth });
     const response = await check(await fetch(`frame?${query}`, { method: "POST", body: JSON.stringify(scene) }));
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };
+  }
+
+  // What can be opened in a folder below the one that the viewer was started in: { at, entries }.
+  async folder(at) {
+    return (await check(await fetch(`folder.json?${new URLSearchParams({ at })}`))).json();
+  }
+
+  // Opens a file of the folder, or one that the browser has: what is open then, for a channel of its own.
+  async open(file) {
+    return (await check(await fetch(`open?${new URLSearchParams({ file })}`, { method: "POST" }))).json();
+  }
+
+  async upload(file) {
+    return (await check(await fetch(`upload?${new URLSearchParams({ name: file.name })}`, { method: "POST", body: file }))).json();
+  }
+
+  // How far it is read: { part }, from 0 to 1.
+  async opening() {
+    return (await check(await fetch("opening.json"))).json();
+  }
+
+  // A film of the scene, as a blob; null: it was stopped.
+  async film(scene, { turntable, keys, fps, format }) {
+    const query = new URLSearchParams({ page: `${this.#page}-film`, number: ++this.#number, opened: this.#opened, turntable, fps, format });
+    keys.forEach((key, n) => query.append(`key${n}`, key));
+    const response = await check(await fetch(`film?${query}`, { method: "POST", body: JSON.stringify(scene) }));
+    return response.status === 204 ? null : response.blob();
+  }
+
+  // { done, frames }.
+  async filmProgress() {
+    return (await check(await fetch(`film.json?page=${this.#page}-film`))).json();
+  }
+
+  async stopFilm() {
+    await fetch(`cancel?page=${this.#page}-film&number=${++this.#number}`, { method: "POST" });
   }
 }

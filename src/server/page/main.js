@@ -3,10 +3,15 @@
 import { HttpChannel } from "./http_channel.js";
 import { mount } from "./viewer.js";
 
-try {
-  const channel = new HttpChannel(), start = await channel.start();
+// Shows what is open, in place of what was.
+function show(start) {
+  globalThis.halflight?.end();
   document.title = `${start.title} · Halflight`;
-  globalThis.halflight = mount(document.body, channel, start, document); // for the browser's console, and for tests
+  globalThis.halflight = mount(document.body, new HttpChannel(start.opened), start, { keyboard: document, reopen: show }); // for the console, and for tests
+}
+
+try {
+  show(await new HttpChannel().start());
 } catch (error) {
   document.body.textContent = `The page cannot begin: ${error.message}`;
   throw error;

@@ -2,6 +2,7 @@
 
 import { axes, projector, worldHeight } from "./camera.js";
 import { corners, edges, placed, worldBox } from "./boxes.js";
+import { ClipHandles } from "./clip_handles.js";
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
 import { directionOf, sizeOf, withDirection, withSize } from "./light.js";
@@ -30,17 +31,20 @@ export class Overlay {
   #marker = make("svg:g", { class: "marker", "aria-hidden": "true" });
   #bar = make("svg:g", { class: "scale", "aria-hidden": "true" });
   #box = make("svg:path", { class: "clip-box", "aria-hidden": "true" });
+  #clip;
   #width = 1;
   #height = 1;
   #showBox = false;
   chosenLight = 0;
   onChooseLight = () => {};
 
-  constructor(svg, { store, start }) {
+  constructor(svg, viewer) {
+    const { store, start } = viewer;
     this.#svg = svg;
     this.#store = store;
     this.#start = start;
-    svg.append(this.#box, this.#marker, this.#bar, this.#lights);
+    this.#clip = new ClipHandles(viewer);
+    svg.append(this.#box, this.#marker, this.#bar, this.#lights, this.#clip.element);
     store.listen(() => this.draw());
     new ResizeObserver(() => this.draw()).observe(svg);
   }
@@ -51,7 +55,7 @@ export class Overlay {
     this.draw();
   }
 
-  // The edges of clipped volumes.
+  // The edges of the volumes' boxes, and the handles that clip the chosen one.
   set showsBox(shows) {
     this.#showBox = shows;
     this.draw();
@@ -60,9 +64,11 @@ export class Overlay {
   draw() {
     this.#width = this.#svg.clientWidth;
     this.#height = this.#svg.clientHeight;
+    if (this.#height === 0) return; // not laid out yet
     this.#drawMarker();
     this.#drawBar();
     this.#drawBox();
+    this.#clip.draw(this.#showBox, this.#width, this.#height);
     this.#drawLights();
   }
 
@@ -94,10 +100,8 @@ export class Overlay {
   #drawBox() {
     const project = projector(this.#store.scene.camera, this.#width, this.#height);
     const lines = this.#store.scene.volumes.flatMap((volume, v) => {
-      if (!this.#showBox || !volume.clip || !this.#start.volumes[v]) return [];
-      const whole = worldBox(this.#start.volumes[v]), { min, max } = volume.clip;
-      if (min.every((x, k) => x <= whole.min[k]) && max.every((x, k) => x >= whole.max[k])) return [];
-      const points = corners(volume.clip).map((point) => project(placed(point, volume.transform)));
+      if (!this.#showBox || !this.#start.volumes[v]) return [];
+      const points = corners(volume.clip ?? worldBox(this.#start.volumes[v])).map((point) => project(placed(point, volume.transform)));
       return edges.filter(([a, b]) => points[a] && points[b]).map(([a, b]) => `M${points[a]}L${points[b]}`);
     });
     this.#box.setAttribute("d", lines.join(""));

@@ -10,7 +10,7 @@ const MOUSE = [
   ["wheel, or right drag", "zoom"], ["one finger", "turn"], ["two fingers", "pan, zoom and roll"],
 ];
 
-// keyboard: the element or document whose keys are meant; area: the picture's; actions: what keys other than those of
+// keyboard: { target, signal }, the element or document whose keys are meant, until the signal says so; area: the picture's; actions: what keys other than those of
 // the camera do, by name.
 export function installShortcuts(store, keyboard, area, actions) {
   const move = (change) => () => store.setCamera(change(store.scene.camera));
@@ -34,13 +34,14 @@ export function installShortcuts(store, keyboard, area, actions) {
     ["s", "s", "next kind of shadows: off, hard, soft", actions.shadows],
     ["u", "u", "undo (ctrl + z)", () => store.undo()],
     ["U", "U", "redo (ctrl + shift + z)", () => store.redo()],
+    ["p", "p", "probe: value, opacity and light under the cursor", actions.probe],
     ["i", "i", "times and sizes of frames", actions.statistics],
     ["b", "b", "show or hide the side bar", actions.sidebar],
     ["t", "t", "dark or light", actions.theme],
     ["?", "?", "this sheet", actions.help],
   ];
   const byKey = new Map(keys.map(([key, , , action]) => [key, action]));
-  keyboard.addEventListener("keydown", (event) => {
+  keyboard.target.addEventListener("keydown", (event) => {
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
       if (event.shiftKey) store.redo();
       else store.undo();
@@ -54,7 +55,7 @@ export function installShortcuts(store, keyboard, area, actions) {
     if (!action) return;
     action();
     event.preventDefault();
-  });
+  }, { signal: keyboard.signal });
   return keys.filter(([, shown]) => shown !== "").map(([, shown, text]) => [shown, text]);
 }
 

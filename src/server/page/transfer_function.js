@@ -4,18 +4,24 @@
 const byValue = (a, b) => a[0] - b[0];
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
+// Two rows at one value make a step; a third one there would mean nothing, and is refused by the scene's reader.
+const isReadable = (rows) => rows.every((row, n) => n < 2 || row[0] !== rows[n - 2][0]);
+const nearest = (rows, value) => rows.reduce((best, row, n) => (Math.abs(row[0] - value) < Math.abs(rows[best][0] - value) ? n : best), 0);
+
 // Opacity points that may stand at one value, as at a step, keep their order.
 export function movePoint(tf, index, value, opacity, range) {
   const low = index > 0 ? tf.opacity[index - 1][0] : range[0];
   const high = index < tf.opacity.length - 1 ? tf.opacity[index + 1][0] : range[1];
   const point = [clamp(value, Math.min(low, high), Math.max(low, high)), clamp(opacity, 0, 1)];
-  return { ...tf, opacity: tf.opacity.map((p, n) => (n === index ? point : p)) };
+  const points = tf.opacity.map((p, n) => (n === index ? point : p));
+  return isReadable(points) ? { ...tf, opacity: points } : tf;
 }
 
 // { tf, index } with a new point.
 export function addPoint(tf, value, opacity) {
   const point = [value, clamp(opacity, 0, 1)];
   const points = [...tf.opacity, point].sort(byValue);
+  if (!isReadable(points)) return { tf, index: nearest(tf.opacity, value) };
   return { tf: { ...tf, opacity: points }, index: points.indexOf(point) };
 }
 
@@ -26,7 +32,8 @@ export function removePoint(tf, index) {
 export function moveStop(tf, index, value) {
   const low = index > 0 ? tf.color[index - 1][0] : -Infinity;
   const high = index < tf.color.length - 1 ? tf.color[index + 1][0] : Infinity;
-  return { ...tf, color: tf.color.map((c, n) => (n === index ? [clamp(value, low, high), ...c.slice(1)] : c)) };
+  const color = tf.color.map((c, n) => (n === index ? [clamp(value, low, high), ...c.slice(1)] : c));
+  return isReadable(color) ? { ...tf, color } : tf;
 }
 
 export function recolorStop(tf, index, color) {
@@ -36,6 +43,7 @@ export function recolorStop(tf, index, color) {
 export function addStop(tf, value) {
   const stop = [value, ...colorAt(tf, value)];
   const color = [...tf.color, stop].sort(byValue);
+  if (!isReadable(color)) return { tf, index: nearest(tf.color, value) };
   return { tf: { ...tf, color }, index: color.indexOf(stop) };
 }
 

@@ -1,11 +1,14 @@
 // The viewer: the picture, what lies over it, and the panels beside it, in any element of a page or a notebook.
 
-import { exportPanel } from "./export.js";
+import { copier, exportPanel } from "./export.js";
+import { filmPanel } from "./film_panel.js";
 import { Frames } from "./frames.js";
 import { functionPanel } from "./function_panel.js";
 import { lightPanel, shadowPanel } from "./light_panel.js";
+import { openPanel } from "./open_panel.js";
 import { Overlay } from "./overlay.js";
 import { Pointer } from "./pointer.js";
+import { Probe } from "./probe.js";
 import { helpSheet, installShortcuts } from "./shortcuts.js";
 import { Store } from "./store.js";
 import { installTheme } from "./theme.js";
@@ -13,7 +16,7 @@ import { viewPanel } from "./view_panel.js";
 import { volumePanel } from "./volume_panel.js";
 
 // One file each; in the order of the side bar.
-const PANELS = [functionPanel, lightPanel, shadowPanel, volumePanel, viewPanel, exportPanel];
+const PANELS = [functionPanel, lightPanel, shadowPanel, volumePanel, viewPanel, exportPanel, filmPanel, openPanel];
 
 const MARKUP = `
   <div class="viewer">
@@ -25,6 +28,7 @@ const MARKUP = `
         <button id="redo" type="button" title="Redo (ctrl + shift + z)">Redo</button>
         <button id="reset" type="button" title="Frame everything (r)">Frame</button>
         <button id="show-lights" type="button" title="The lights' handles (l)">Lights</button>
+        <button id="probe" type="button" aria-pressed="false" title="Value, opacity and light under the cursor (p)">Probe</button>
         <button id="theme" type="button" title="Dark or light (t)">Theme</button>
         <button id="sidebar" type="button" title="The side bar (b)">Panels</button>
         <button id="show-help" type="button" title="Mouse, fingers and keys (?)" aria-label="Help">?</button>
@@ -78,7 +82,7 @@ function showFrame(find, report, frame) {
 }
 
 // The picture's size follows the window's.
-function followSize(store, area) {
+function followSize(store, area, signal) {
   const measure = () => {
     const density = Math.min(devicePixelRatio || 1, 2);
     const [width, height] = [area.clientWidth, area.clientHeight].map((side) => Math.min(Math.max(Math.round(side * density), 16), MOST_SIDE));
@@ -86,7 +90,9 @@ function followSize(store, area) {
     if (image.width !== width || image.height !== height)
       store.change("size", (scene) => ({ ...scene, image: { ...scene.image, width, height } }));
   };
-  new ResizeObserver(measure).observe(area);
+  const observer = new ResizeObserver(measure);
+  observer.observe(area);
+  signal.addEventListener("abort", () => observer.disconnect());
   measure();
 }
 
@@ -111,6 +117,10 @@ function actionsOf(viewer, find, root, update) {
       const kinds = ["off", "hard", "soft"];
       store.changeRender("shadows", kinds[(kinds.indexOf(store.scene.render.shadows) + 1) % 3]);
     },
+    probe: () => {
+      viewer.probe.on = !viewer.probe.on;
+      find("probe").setAttribute("aria-pressed", String(viewer.probe.on));
+    },
     statistics: () => { find("statistics").hidden = !find("statistics").hidden; },
     sidebar: () => { root.classList.toggle("bare"); },
     theme: installTheme(root, () => { update(); overlay.draw(); }),
@@ -119,14 +129,16 @@ function actionsOf(viewer, find, root, update) {
 }
 
 // Fills an empty element with a viewer. channel: how pictures are asked for (http_channel.js); start: what is open;
-// keyboard: where its keys are listened to. Returns { store, frames, overlay }.
-export function mount(element, channel, start, keyboard = element) {
+// keyboard: where its keys are listened to; reopen(start): called where a person opens another file. Returns { store,
+// frames, overlay, probe, end }; end() stops all of it.
+export function mount(element, channel, start, { keyboard = element, reopen = () => {} } = {}) {
   element.innerHTML = MARKUP;
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
+  const ended = new AbortController();
   const store = new Store(start.scene), report = messageBox(find("message"));
-  const viewer = { store, start, channel, report, current: { volume: 0, light: 0 } };
+  const viewer = { store, start, channel, report, reopen, root, copy: copier(report, start.title), current: { volume: 0, light: 0 } };
   find("title").textContent = start.title;
-  followSize(store, find("view"));
+  followSize(store, find("view"), ended.signal);
   viewer.overlay = new Overlay(find("overlay"), viewer);
   viewer.frameEverything = () => frameEverything(viewer);
   viewer.chooseVolume = (index) => {
@@ -141,14 +153,19 @@ export function mount(element, channel, start, keyboard = element) {
     find("redo").disabled = !store.canRedo;
   };
   store.listen((_, name) => { if (name !== "camera") update(); });
-  const frames = new Frames(viewer, find("picture"), (frame) => showFrame(find, report, frame));
+  viewer.probe = new Probe(viewer, find("view"));
+  const frames = new Frames(viewer, find("picture"), (frame) => {
+    showFrame(find, report, frame);
+    if (frame.stage === "final") viewer.probe.rest();
+  });
   new Pointer(find("view"), store);
   const actions = actionsOf(viewer, find, root, update);
-  helpSheet(find("help"), installShortcuts(store, keyboard, find("view"), actions));
-  const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, sidebar: actions.sidebar };
+  helpSheet(find("help"), installShortcuts(store, { target: keyboard, signal: ended.signal }, find("view"), actions));
+  const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar };
   for (const [id, action] of Object.entries(buttons)) find(id).addEventListener("click", action);
   viewer.overlay.showsLights = true;
   update();
   frames.move();
-  return { store, frames, overlay: viewer.overlay };
+  report("Drag to turn. Drag the white dot to move the light. ? lists the rest.");
+  return { store, frames, overlay: viewer.overlay, probe: viewer.probe, end: () => { ended.abort(); frames.end(); } };
 }

@@ -1,0 +1,131 @@
+/* server/folder.c - the files that a page may open: those below the folder that the viewer was started in,
+ * and those that are dropped on it. */
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "parts.h"
+
+enum { MOST_ENTRIES = 2000 };
+
+static const char *const extensions[] = {".json", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha",  ".mhd",
+                                         ".vti",  ".vtk",  ".npy",  ".mrc", ".map",    ".ccp4", ".rec",
+                                         ".tif",  ".tiff", ".dcm",  ".raw", ".raw.gz", ".zip",  NULL};
+
+bool folder_can_open(const char *name) {
+  size_t length = strlen(name);
+  for (int e = 0; extensions[e] != NULL; e++) {
+    size_t end = strlen(extensions[e]);
+    if (length > end && strcasecmp(name + length - end, extensions[e]) == 0) return true;
+  }
+  return false;
+}
+
+bool folder_resolve(const server *s, const char *inside, char path[PATH_MAX]) {
+  char asked[PATH_MAX];
+  const char *folder = s->options.folder;
+  size_t length = strlen(folder);
+  if (inside[0] == '/' || snprintf(asked, sizeof asked, "%s/%s", folder, inside) >= (int)sizeof asked ||
+      realpath(asked, path) == NULL)
+    return false;
+  return strncmp(path, folder, length) == 0 && (path[length] == '\0' || path[length] == '/' || length == 1);
+}
+
+/* What the list shows: 'd' a folder, 'f' a file that can be opened, 0 nothing. */
+static char kind_of(const server *s, const char *at, const char *name, off_t *bytes) {
+  char inside[PATH_MAX], path[PATH_MAX];
+  struct stat about;
+  bool fits = snprintf(inside, sizeof inside, "%s%s%s", at, at[0] != '\0' ? "/" : "", name) <
+              (int)sizeof inside;
+  if (name[0] == '.' || !fits || !folder_resolve(s, inside, path) || stat(path, &about) != 0) return 0;
+  *bytes = about.st_size;
+  if (S_ISDIR(about.st_mode)) return 'd';
+  return S_ISREG(about.st_mode) && folder_can_open(name) ? 'f' : 0;
+}
+
+static void put_entries(const server *s, FILE *out, const char *at, struct dirent **entries, int count) {
+  const char *comma = "";
+  for (int e = 0; e < count; e++) {
+    off_t bytes = 0;
+    char kind = kind_of(s, at, entries[e]->d_name, &bytes);
+    if (kind == 0) continue;
+    fprintf(out, "%s{\"folder\":%s,\"bytes\":%lld,\"name\":", comma, kind == 'd' ? "true" : "false",
+            (long long)bytes);
+    put_json_text(out, entries[e]->d_name);
+    fputc('}', out);
+    comma = ",";
+  }
+}
+
+char *describe_folder(const server *s, const char *at) {
+  char path[PATH_MAX], *text = NULL;
+  size_t length = 0;
+  struct dirent **entries = NULL;
+  if (!folder_resolve(s, at, path)) return NULL;
+  int count = scandir(path, &entries, NULL, versionsort);
+  if (count < 0) return NULL;
+  FILE *out = open_memstream(&text, &length);
+  if (out != NULL) {
+    fputs("{\"at\":", out);
+    put_json_text(out, at);
+    fputs(",\"entries\":[", out);
+    put_entries(s, out, at, entries, count < MOST_ENTRIES ? count : MOST_ENTRIES);
+    fputs("]}", out);
+    if (fclose(out) != 0) {
+      free(text);
+      text = NULL;
+    }
+  }
+  for (int e = 0; e < count; e++) free(entries[e]);
+  free(entries);
+  return text;
+}
+
+/* ---- files that are dropped ---- */
+
+bool upload_folder(const char *name, server_upload *upload) {
+  const char *folder = getenv("TMPDIR");
+  if (folder == NULL || folder[0] != '/') folder = "/tmp";
+  *upload = (server_upload){0};
+  if (snprintf(upload->folder, sizeof upload->folder, "%s/halflight-view-XXXXXX", folder) >=
+          (int)sizeof upload->folder ||
+      mkdtemp(upload->folder) == NULL) {
+    upload->folder[0] = '\0';
+    return false;
+  }
+  snprintf(upload->path, sizeof upload->path, "%s/%s", upload->folder, name);
+  return true;
+}
+
+bool upload_begin(const char *name, server_upload *upload) {
+  *upload = (server_upload){0};
+  if (!folder_can_open(name) || strchr(name, '/') != NULL || name[0] == '.' || strlen(name) > NAME_MAX ||
+      !upload_folder(name, upload))
+    return false;
+  upload->file = fopen(upload->path, "wbxe");
+  if (upload->file == NULL) upload_end(upload);
+  return upload->file != NULL;
+}
+
+bool upload_add(server_upload *upload, const char *bytes, size_t count) {
+  return upload->file != NULL && fwrite(bytes, 1, count, upload->file) == count;
+}
+
+bool upload_finish(server_upload *upload) {
+  bool good = upload->file != NULL && fclose(upload->file) == 0;
+  upload->file = NULL;
+  return good;
+}
+
+void upload_end(server_upload *upload) {
+  if (upload->file != NULL) fclose(upload->file);
+  if (upload->path[0] != '\0') unlink(upload->path);
+  if (upload->folder[0] != '\0') rmdir(upload->folder);
+  *upload = (server_upload){0};
+}

@@ -1,0 +1,74 @@
+/* server/opened.c - scenes that are open: the program's input, and those that pages have opened since.
+ *
+ * A frame's scene may name the volumes of one of them. The one that was used longest ago makes room for
+ * another, if no request holds it.
+ */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "parts.h"
+
+static server_opened *find(server *s, long long number) {
+  for (int o = 0; o < MOST_OPENED; o++)
+    if (s->opened[o].scene != NULL && s->opened[o].number == number) return &s->opened[o];
+  return NULL;
+}
+
+server_opened *opened_enter(server *s, long long number) {
+  pthread_mutex_lock(&s->pages_lock);
+  server_opened *opened = find(s, number);
+  if (opened != NULL) {
+    opened->users++;
+    opened->last_use = ++s->uses;
+  }
+  pthread_mutex_unlock(&s->pages_lock);
+  return opened;
+}
+
+void opened_leave(server *s, server_opened *opened) {
+  pthread_mutex_lock(&s->pages_lock);
+  opened->users--;
+  pthread_mutex_unlock(&s->pages_lock);
+}
+
+static void release(server_opened *opened) {
+  hl_scene_release(opened->scene);
+  free(opened->start);
+  *opened = (server_opened){0};
+}
+
+/* The place for another scene; null: requests hold all of them. */
+static server_opened *make_room(server *s) {
+  server_opened *best = NULL;
+  for (int o = 0; o < MOST_OPENED; o++) {
+    server_opened *one = &s->opened[o];
+    if (one->scene == NULL) return one;
+    if (one->users == 0 && (best == NULL || one->last_use < best->last_use)) best = one;
+  }
+  if (best != NULL) release(best);
+  return best;
+}
+
+server_opened *opened_add(server *s, hl_scene *scene, const char *title) {
+  pthread_mutex_lock(&s->pages_lock);
+  long long number = s->next_opened++;
+  pthread_mutex_unlock(&s->pages_lock);
+  char *start = describe_start(s, scene, title, number);
+  if (start == NULL) return NULL;
+  pthread_mutex_lock(&s->pages_lock);
+  server_opened *opened = make_room(s);
+  if (opened != NULL) {
+    hl_scene_retain(scene);
+    *opened = (server_opened){
+        .number = number, .scene = scene, .start = start, .users = 1, .last_use = ++s->uses};
+  }
+  pthread_mutex_unlock(&s->pages_lock);
+  if (opened == NULL) free(start);
+  return opened;
+}
+
+void opened_end(server *s) {
+  for (int o = 0; o < MOST_OPENED; o++) release(&s->opened[o]);
+}

@@ -1,0 +1,63 @@
+// The panel that opens another volume: a list of the folder that the viewer was started in, and files that are dropped
+// anywhere on the viewer. Only where the channel can open files: not in notebooks.
+
+import { button, make, section } from "./controls.js";
+
+const ASK_EVERY = 250; // milliseconds, for how far a file is read
+
+const size = (bytes) => (bytes < 1 << 20 ? `${Math.ceil(bytes / 1024)} KiB` : `${Math.round(bytes / (1 << 20))} MiB`);
+
+export function openPanel({ channel, report, reopen, root }) {
+  const { element, body } = section("Open", false);
+  element.hidden = !channel.open;
+  const list = make("ul", { class: "files", "aria-label": "Files and folders" }), bar = make("progress", { max: 1, hidden: true, "aria-label": "Reading the file" });
+  const where = make("p", { class: "facts" });
+
+  async function show(at) {
+    try {
+      const folder = await channel.folder(at), up = at.includes("/") ? at.slice(0, at.lastIndexOf("/")) : "";
+      const inside = (name) => (at ? `${at}/${name}` : name);
+      where.textContent = at ? `in ${at}` : "in the folder that the viewer was started in; or drop a file anywhere";
+      list.replaceChildren(
+        ...(at ? [make("li", {}, button("‹ back", () => show(up)))] : []),
+        ...folder.entries.map((entry) => make("li", {}, entry.folder
+          ? button(`${entry.name} ›`, () => show(inside(entry.name)), { class: "file" })
+          : button(entry.name, () => load(() => channel.open(inside(entry.name)), entry.name), { class: "file", title: size(entry.bytes) }))));
+      if (folder.entries.length === 0) list.append(make("li", {}, "nothing here that can be opened"));
+    } catch (error) {
+      report(error.message);
+    }
+  }
+
+  // Reads a file while the bar tells how far it is; then the viewer shows it.
+  async function load(open, name) {
+    element.open = true;
+    bar.hidden = false;
+    bar.removeAttribute("value");
+    report(`opening ${name} …`);
+    const asking = setInterval(async () => {
+      const { part } = await channel.opening().catch(() => ({ part: 0 }));
+      if (part > 0) bar.value = part;
+    }, ASK_EVERY);
+    try {
+      reopen(await open());
+    } catch (error) {
+      report(error.message);
+    } finally {
+      clearInterval(asking);
+      bar.hidden = true;
+    }
+  }
+
+  if (channel.open) {
+    root.addEventListener("dragover", (event) => event.preventDefault());
+    root.addEventListener("drop", (event) => {
+      event.preventDefault();
+      const [file] = event.dataTransfer.files;
+      if (file) load(() => channel.upload(file), file.name);
+    });
+    element.addEventListener("toggle", () => { if (element.open && list.childElementCount === 0) show(""); });
+  }
+  body.append(where, bar, list);
+  return { element, update: () => {} };
+}

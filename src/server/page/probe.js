@@ -1,0 +1,122 @@
+// The probe: what lies under the cursor. At rest three small pictures are asked for, as floats: of the data values in
+// place of colours, and of white matter without highlights, with and without shadows. A pixel of the first, divided by its opacity, is the
+// mean value of what is seen there, weighted by how much each sample is seen; the ratio of the others is the part of
+// the lights that arrives there.
+
+import { make, shortNumber } from "./controls.js";
+
+const PIXELS = 90000; // of a small picture
+
+// The floats of a .npy file of the program: { width, height, rgba }, top row first.
+export function readNpy(bytes) {
+  const view = new DataView(bytes), begin = 10 + view.getUint16(8, true);
+  const [, height, width] = new TextDecoder().decode(new Uint8Array(bytes, 10, begin - 10)).match(/\((\d+), (\d+), 4\)/).map(Number);
+  return { width, height, rgba: new Float32Array(bytes.slice(begin)) };
+}
+
+function small(scene) {
+  const { width, height } = scene.image, factor = Math.min(1, Math.sqrt(PIXELS / (width * height)));
+  const { exposure: _, ...image } = scene.image;
+  return {
+    ...scene, image: { ...image, width: Math.max(1, Math.round(width * factor)), height: Math.max(1, Math.round(height * factor)) },
+    render: { ...scene.render, sheet_spacing: Math.max(scene.render.sheet_spacing, 1) },
+  };
+}
+
+const recolored = (scene, change) => ({
+  ...scene, volumes: scene.volumes.map((volume, v) => ({ ...volume, ...change(volume, v) })),
+});
+
+// Colours from 0 to 1 over each volume's range.
+export const valueScene = (scene, start) => recolored(small({ ...scene, render: { ...scene.render, shadows: "off" } }), (volume, v) => {
+  const [low, high] = start.volumes[v].range;
+  const color = high > low ? [[low, 0, 0, 0], [high, 1, 1, 1]] : [[low, 0, 0, 0]];
+  return { shading: "flat", transfer_function: { ...volume.transfer_function, color } };
+});
+
+export const lightScene = (scene, shadows) => recolored({
+  ...small(scene), ambient: [0, 0, 0], lights: scene.lights.map((light) => ({ ...light, color: [1, 1, 1], ...(shadows ? {} : { shadows: "off" }) })),
+}, (volume) => ({
+  shading: volume.shading === "flat" ? "none" : volume.shading, material: { ...volume.material, specular: 0 },
+  transfer_function: { ...volume.transfer_function, color: [[0, 1, 1, 1]] },
+}));
+
+export class Probe {
+  #viewer;
+  #box;
+  #on = false;
+  #maps = null; // { value, lit, unlit } of the scene at rest
+  #asked = null; // the scene that they are asked for
+  #cursor = null; // [x, y] in fractions of the picture
+
+  // area: the picture's element, over which the readout is shown.
+  constructor(viewer, area) {
+    this.#viewer = viewer;
+    this.#box = make("output", { class: "probe", hidden: true, "aria-live": "off" });
+    area.append(this.#box);
+    area.addEventListener("pointermove", (event) => this.#move(event, area));
+    area.addEventListener("pointerleave", () => { this.#box.hidden = true; });
+    viewer.store.listen(() => { this.#maps = null; this.#show(); });
+  }
+
+  get on() { return this.#on; }
+  set on(on) {
+    this.#on = on;
+    this.#show();
+    if (on) this.rest();
+  }
+
+  // The picture has come to rest.
+  async rest() {
+    const { store, start, channel } = this.#viewer, scene = store.scene;
+    if (!this.#on || this.#maps !== null || this.#asked === scene) return;
+    this.#asked = scene;
+    const maps = {};
+    try {
+      for (const [name, wanted] of [["value", valueScene(scene, start)], ["lit", lightScene(scene, true)], ["unlit", lightScene(scene, false)]]) {
+        const frame = await channel.fetchFrame(wanted, { format: "npy", lane: "-probe" });
+        if (frame === null || store.scene !== scene) return;
+        maps[name] = readNpy(await frame.blob.arrayBuffer());
+      }
+      this.#maps = maps;
+      this.#show();
+    } catch (error) {
+      this.#viewer.report(error.message);
+    } finally {
+      if (this.#asked === scene) this.#asked = null;
+    }
+  }
+
+  // { value, opacity, light } at a place in fractions of the picture; null: not known yet.
+  at(x, y) {
+    if (this.#maps === null) return null;
+    const { value, lit, unlit } = this.#maps, { width, height } = value;
+    const at = 4 * (Math.min(Math.floor(y * height), height - 1) * width + Math.min(Math.floor(x * width), width - 1));
+    const opacity = value.rgba[at + 3], [low, high] = this.#viewer.start.volumes[this.#viewer.current.volume].range;
+    if (!(opacity > 0.002)) return { opacity, value: null, light: null };
+    return {
+      opacity, value: low + (value.rgba[at] / opacity) * (high - low),
+      light: unlit.rgba[at] > 1e-4 ? Math.min(lit.rgba[at] / unlit.rgba[at], 1) : null,
+    };
+  }
+
+  #move(event, area) {
+    const box = area.getBoundingClientRect();
+    this.#cursor = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+    this.#show();
+  }
+
+  #show() {
+    this.#box.hidden = !this.#on || this.#cursor === null;
+    if (this.#box.hidden) return;
+    const found = this.at(...this.#cursor);
+    if (found === null) this.#box.textContent = "…";
+    else if (found.value === null) this.#box.textContent = "nothing is seen here";
+    else
+      this.#box.textContent = `value ${shortNumber(found.value)} · opacity ${found.opacity.toFixed(2)}` +
+        (found.light === null ? " · no light" : ` · light ${found.light.toFixed(2)}`);
+    this.#box.style.left = `${100 * this.#cursor[0]}%`;
+    this.#box.style.top = `${100 * this.#cursor[1]}%`;
+    this.#box.classList.toggle("left", this.#cursor[0] > 0.5);
+  }
+}

@@ -1,0 +1,207 @@
+#!/usr/bin/env python3
+"""Opening other files, films, and two pages at once: by requests, and on the page in a headless Chromium.
+
+usage: files.py PROGRAM
+"""
+import base64
+import http.client
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.parse
+
+import hands
+from browser import Browser
+from hands import PROGRAM, check, equals_render, press, rest, scene_of
+from viewer import Viewer
+
+
+def request(viewer, method, path, body=None, **query):
+    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
+    connection.request(method, f"/{viewer.token}/{path}?{urllib.parse.urlencode(query)}", body)
+    answer = connection.getresponse()
+    result = answer.status, answer.read()
+    connection.close()
+    return result
+
+
+def folder_is_the_border(viewer):
+    """Files below the folder that the viewer was started in are listed and opened, others are not."""
+    status, body = request(viewer, "GET", "folder.json", at="")
+    names = {entry["name"]: entry["folder"] for entry in json.loads(body)["entries"]}
+    check(status == 200 and names == {"inside": True, "first.nrrd": False, "second.nrrd": False}, f"the list: {names}")
+    inside = json.loads(request(viewer, "GET", "folder.json", at="inside")[1])["entries"]
+    check([entry["name"] for entry in inside] == ["scene.json", "third.nrrd"], f"the folder in it: {inside}")
+    for at in ("..", "inside/../..", "/etc", "away", "none", "first.nrrd", "a" * 5000):
+        check(request(viewer, "GET", "folder.json", at=at)[0] == 404, f"the folder {at[:20]!r} is refused")
+    for file in ("../outside/secret.nrrd", "away/secret.nrrd", "link.nrrd", "/etc/passwd", "none.nrrd", "notes.txt", "", "inside"):
+        check(request(viewer, "POST", "open", file=file)[0] in (400, 403), f"the file {file} is refused")
+    check(request(viewer, "POST", "open", file="broken.nrrd")[0] in (400, 403), "a broken file is an error")
+    start = json.loads(request(viewer, "POST", "open", file="inside/scene.json")[1])
+    check(os.path.isabs(start["scene"]["volumes"][0]["file"]) and start["title"] == "scene.json", "a scene can be opened")
+
+
+def uploads_are_checked(viewer):
+    with open("first.nrrd", "rb") as file:
+        volume = file.read()
+    status, body = request(viewer, "POST", "upload", volume, name="dropped.nrrd")
+    start = json.loads(body)
+    check(status == 200 and start["scene"]["volumes"][0]["file"] == "dropped.nrrd" and start["opened"] > 0, "a dropped file is open")
+    scene = start["scene"]
+    scene["image"].update(width=32, height=32)
+    text = json.dumps(scene)
+    asked = {"page": "up", "number": 1, "format": "png"}
+    check(request(viewer, "POST", "frame", text, opened=start["opened"], **asked)[0] == 200, "and can be rendered")
+    check(request(viewer, "POST", "frame", text, **{**asked, "number": 2})[0] == 400, "under its own number alone")
+    check(request(viewer, "POST", "frame", text, opened=999, **{**asked, "number": 3})[0] == 400, "a number that was never given")
+    for name in ("", "a.txt", "../a.nrrd", "a/b.nrrd", ".nrrd", ".hidden.nrrd", "x" * 300 + ".nrrd"):
+        check(request(viewer, "POST", "upload", volume, name=name)[0] == 400, f"the name {name[:20]!r} is refused")
+    check(request(viewer, "POST", "upload", b"nonsense", name="a.nrrd")[0] == 400, "a file that is none")
+    left = [name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("halflight-view")]
+    check(left == [], f"nothing is left of them: {left}")
+    for _ in range(8):  # more than are kept
+        check(request(viewer, "POST", "upload", volume, name="again.nrrd")[0] == 200, "many are opened in turn")
+
+
+def films(viewer, scene):
+    """A film by request; one that is cancelled; keys that are wrong."""
+    small = json.loads(json.dumps(scene))
+    small["image"].update(width=48, height=40)
+    asked = {"page": "film", "format": "mp4", "turntable": 5}
+    status, body = request(viewer, "POST", "film", json.dumps(small), number=1, key0="lights.0.intensity=0:1,4:2", **asked)
+    if shutil.which("ffmpeg") is None:
+        check(status == 400 and b"ffmpeg" in body, "without ffmpeg the page says so")
+        return
+    with open("film.mp4", "wb") as file:
+        file.write(body)
+    frames = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames,width,height", "-of", "csv=p=0",
+                             "film.mp4"], capture_output=True, text=True).stdout.strip()
+    check(status == 200 and frames == "48,40,5", f"a film of five frames: {frames}")
+    with open("small.json", "w") as file:
+        json.dump(small, file)
+    subprocess.run([PROGRAM, "animate", "small.json", "--turntable", "5", "--key", "lights.0.intensity=0:1,4:2", "-o", "own.mp4", "--quiet"],
+                   check=True)
+    with open("own.mp4", "rb") as file:
+        check(file.read() == body, "the film of halflight animate, byte for byte")
+    check(request(viewer, "POST", "film", json.dumps(small), number=2, key0="lights.0.intensty=0:1", **asked)[0] == 400, "a wrong key")
+    small["image"].update(width=800, height=800)
+    answers = []
+    slow = threading.Thread(target=lambda: answers.append(request(viewer, "POST", "film", json.dumps(small), number=3,
+                                                                  **{**asked, "turntable": 10000})[0]))
+    slow.start()
+    for _ in range(200):
+        time.sleep(0.1)
+        progress = json.loads(request(viewer, "GET", "film.json", page="film")[1])
+        if progress["done"] > 0:
+            break
+    check(progress["frames"] == 10000 and progress["done"] > 0, f"a film tells how far it is: {progress}")
+    check(request(viewer, "POST", "cancel", page="film", number=4)[0] == 204, "it can be stopped")
+    slow.join(20)
+    check(answers == [204], "and stops")
+
+
+def fair_shares(viewer, scene):
+    """Two pages that ask for frames all the time get about as many each, each of its own camera."""
+    counts, pictures = [0, 0], [set(), set()]
+    end = time.monotonic() + 4
+
+    def ask(who):
+        mine = json.loads(json.dumps(scene))
+        mine["image"].update(width=160, height=160)
+        mine["camera"]["position"][0] += 0.02 * who
+        while time.monotonic() < end:
+            status, body = request(viewer, "POST", "frame", json.dumps(mine), page=f"fair-{who}", number=counts[who] + 1, format="png")
+            check(status == 200, "a frame of one of two pages")
+            counts[who] += 1
+            pictures[who].add(body)
+
+    threads = [threading.Thread(target=ask, args=(who,)) for who in (0, 1)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    check(len(pictures[0]) == len(pictures[1]) == 1 and pictures[0] != pictures[1], "each page has its own camera")
+    check(min(counts) >= 3 and max(counts) < 2 * min(counts), f"two pages get fair shares: {counts}")
+
+
+def on_the_page(browser):
+    """The list and a dropped file open volumes; the film panel makes one."""
+    rest(browser)
+    browser.run("[...document.querySelectorAll('summary')].find((s) => s.textContent === 'Open').click()")
+    browser.wait("[...document.querySelectorAll('.files button')].some((b) => b.textContent === 'second.nrrd')")
+    press(browser, "second.nrrd")
+    browser.wait("document.getElementById('title').textContent === 'second.nrrd'")
+    equals_render(browser, "listed")
+    check(scene_of(browser)["volumes"][0]["file"].endswith("/second.nrrd"), "the list opens a file")
+    browser.run("""(() => {
+      const data = new DataTransfer();
+      data.items.add(new File([Uint8Array.from(atob(window.volume), (c) => c.charCodeAt(0))], 'dropped.nrrd'));
+      document.querySelector('.viewer').dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+    })()""")
+    browser.wait("document.getElementById('title').textContent === 'dropped.nrrd'")
+    rest(browser)
+    shutil.copy("first.nrrd", "dropped.nrrd")
+    check(scene_of(browser)["volumes"][0]["file"] == "dropped.nrrd", "a dropped file is named without a folder")
+    browser.run("document.getElementById('view').focus()")
+    turned = "halflight.store.scene.camera.position.join()"
+    before = browser.run(turned)
+    browser.key("ArrowLeft")
+    check(browser.run(turned) != before, "keys work on after another file")
+    rest(browser)
+    if shutil.which("ffmpeg"):
+        browser.run("""(() => {
+          window.saved = []; URL.createObjectURL = (blob) => { saved.push([blob.type, blob.size]); return 'blob:none'; };
+          HTMLAnchorElement.prototype.click = () => {};
+          document.querySelector('[aria-label^="Frames of a whole turn"]').value = 4;
+        })()""")
+        browser.run("document.querySelector('[aria-label=\"A number of the scene\"]').value = 'lights.0.intensity'")
+        press(browser, "add its value at this frame")
+        check(browser.run("document.querySelector('textarea').value.startsWith('lights.0.intensity=0:')"), "a key of the value now")
+        press(browser, "make film")
+        browser.wait("saved.length > 0", timeout=60)
+        check(browser.run("saved[0][0] === 'video/mp4' && saved[0][1] > 1000"), "the page makes a film")
+    command = browser.run("""import('./film_panel.js').then((m) => m.animateCommand(halflight.store.scene, 'a b.nrrd',
+      { turntable: 3, keys: ['lights.0.intensity=0:1,2:2'], fps: 10, format: 'gif' }))""")
+    environment = dict(os.environ, PATH=f"{os.path.dirname(PROGRAM)}:{os.environ['PATH']}")
+    done = subprocess.run(["sh", "-eu", "-c", command], env=environment, capture_output=True, text=True)
+    check(done.returncode == 0, f"the copied command runs: {done.stderr}")
+    check(browser.problems == [], f"the console has errors: {browser.problems}")
+
+
+chromium = shutil.which("chromium")
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    os.environ["TMPDIR"] = tempfile.tempdir = folder + "/temporary"
+    for name in ("temporary", "outside", "work", "work/inside"):
+        os.mkdir(name)
+    os.chdir("work")
+    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
+        print("built without the viewer")
+        sys.exit(77)
+    for shape, path in (("rings", "first"), ("torus", "second"), ("fire-ball", "inside/third"), ("torus", "../outside/secret")):
+        subprocess.run([PROGRAM, "make", shape, "--size", "24", "--quiet", "-o", f"{path}.nrrd"], check=True)
+    with open("inside/scene.json", "w") as file:
+        file.write('{"halflight": 1, "volumes": [{"file": "third.nrrd"}]}')
+    os.symlink("../outside", "away")
+    os.symlink("../outside/secret.nrrd", "link.nrrd")
+    with open("notes.txt", "w") as file:
+        file.write("not a volume")
+    with Viewer(PROGRAM, "first.nrrd") as viewer:
+        start = json.loads(request(viewer, "GET", "start.json")[1])
+        folder_is_the_border(viewer)
+        films(viewer, start["scene"])
+        fair_shares(viewer, start["scene"])
+        uploads_are_checked(viewer)
+    if chromium is not None:
+        with Viewer(PROGRAM, "first.nrrd") as viewer, Browser(chromium, (720, 420)) as browser:
+            browser.open(viewer.url)
+            rest(browser)
+            with open("first.nrrd", "rb") as file:
+                browser.run(f"window.volume = '{base64.b64encode(file.read()).decode()}'; 0")
+            on_the_page(browser)
+    print(f"{hands.checks} checks passed")
