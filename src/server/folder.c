@@ -27,8 +27,8 @@ bool folder_can_open(const char *name) {
   return false;
 }
 
-bool folder_resolve(const server *s, const char *inside, char path[PATH_MAX]) {
-  char asked[PATH_MAX];
+bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
+  char asked[PATH_BYTES];
   const char *folder = s->options.folder;
   size_t length = strlen(folder);
   if (inside[0] == '/' || snprintf(asked, sizeof asked, "%s/%s", folder, inside) >= (int)sizeof asked ||
@@ -39,7 +39,7 @@ bool folder_resolve(const server *s, const char *inside, char path[PATH_MAX]) {
 
 /* What the list shows: 'd' a folder, 'f' a file that can be opened, 0 nothing. */
 static char kind_of(const server *s, const char *at, const char *name, off_t *bytes) {
-  char inside[PATH_MAX], path[PATH_MAX];
+  char inside[PATH_BYTES], path[PATH_BYTES];
   struct stat about;
   bool fits = snprintf(inside, sizeof inside, "%s%s%s", at, at[0] != '\0' ? "/" : "", name) <
               (int)sizeof inside;
@@ -64,7 +64,7 @@ static void put_entries(const server *s, FILE *out, const char *at, struct diren
 }
 
 char *describe_folder(const server *s, const char *at) {
-  char path[PATH_MAX], *text = NULL;
+  char path[PATH_BYTES], *text = NULL;
   size_t length = 0;
   struct dirent **entries = NULL;
   if (!folder_resolve(s, at, path)) return NULL;

@@ -2,7 +2,6 @@
 #ifndef HL_SERVER_PARTS_H
 #define HL_SERVER_PARTS_H
 
-#include <limits.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stddef.h>
@@ -16,7 +15,8 @@ enum {
   PAGE_NAME_LENGTH = 32,
   MOST_PAGES =
       8, /* pages that keep a renderer; a new page takes the place of the one that was idle for longest */
-  MOST_OPENED = 6, /* scenes; the one that was not used for longest makes room */
+  MOST_OPENED = 6,   /* scenes; the one that was not used for longest makes room */
+  PATH_BYTES = 4096, /* of a path: Linux's PATH_MAX, which realpath() fills */
   MOST_FILM_KEYS = 32,
   MOST_FILM_FRAMES = 100000,
   MOST_CONNECTIONS = 64,     /* at once */
@@ -108,7 +108,7 @@ typedef struct film_request {
 
 /* A file that arrives from a page, in a temporary folder of its own. */
 typedef struct server_upload {
-  char folder[PATH_MAX / 2], path[PATH_MAX];
+  char folder[PATH_BYTES / 2], path[PATH_BYTES];
   FILE *file;
 } server_upload;
 
@@ -139,7 +139,7 @@ void opened_end(server *s);
 /* folder.c */
 bool folder_can_open(const char *name); /* by its extension */
 /* The absolute path of what lies below the server's folder; false: it does not, by any link. */
-bool folder_resolve(const server *s, const char *inside, char path[PATH_MAX]);
+bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]);
 /* JSON of what can be opened in a folder below the server's (free()); null: it is none. */
 char *describe_folder(const server *s, const char *at);
 bool upload_folder(const char *name, server_upload *upload); /* the folder alone */

@@ -160,7 +160,7 @@ def on_the_page(browser):
           document.querySelector('[aria-label^="Frames of a whole turn"]').value = 4;
         })()""")
         browser.run("document.querySelector('[aria-label=\"A number of the scene\"]').value = 'lights.0.intensity'")
-        press(browser, "add its value at this frame")
+        press(browser, "add its value now")
         check(browser.run("document.querySelector('textarea').value.startsWith('lights.0.intensity=0:')"), "a key of the value now")
         press(browser, "make film")
         browser.wait("saved.length > 0", timeout=60)

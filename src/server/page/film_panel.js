@@ -89,8 +89,8 @@ export function filmPanel({ store, start, channel, report, copy }) {
   body.append(
     row(make("span", { class: "name" }, "Turn"), make("span", { class: "pair" }, turn, "frames at", fps, "a second")),
     row(make("span", { class: "name" }, "Keys"), keys), names,
-    row("", make("span", { class: "pair" }, path, at)), row("", button("add its value at this frame", addKey)),
-    ...(channel.film ? [kind.element, row("", go), row("", stop), bar, told] : []),
+    row("", path), row("", make("span", { class: "pair" }, button("add its value now", addKey), "at frame", at)),
+    ...(channel.film ? [kind.element, row("", make("span", { class: "buttons" }, go, stop)), bar, told] : []),
     row("", button("copy animate command", () => copy(animateCommand(store.scene, start.title, wanted()), "the command"))));
   kind.update();
   return { element, update: () => {} };
