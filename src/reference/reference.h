@@ -3,15 +3,17 @@
  * It computes a scene's picture slowly and accurately, to judge the sheet renderer. The two share the scene
  * and its transfer functions, but no rendering code.
  *
- *     reference.c   camera, rows of pixels, the entry point
- *     march.c       a ray through the boxes of the volumes, step by step, jumping over empty bricks
- *     field.c       reconstruction of one volume at a point: value, gradient, extinction; where it has
- * nothing rays.c        how many rays a pixel of a small picture has lights.c      points on the lights,
- * their images, and the transmittance towards them shade.c       the light that one sample sends to the eye
- *     layers.c      that light by its sources, depth and normals
- *     surfaces.c    where rays meet meshes, and the light that a surface sends to the eye
- *     maximum.c     the greatest value along a ray, in place of light
- * */
+ *     reference.c       camera, rows of pixels, the entry point
+ *     march.c           a ray through the volumes' boxes, step by step, jumping over empty bricks
+ *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
+ *     rays.c            how many rays a pixel of a small picture has
+ *     lights.c          points on the lights, their images, and the transmittance towards them
+ *     shade.c           the light that one sample sends to the eye
+ *     layers.c          that light by its sources, depth and normals
+ *     surfaces.c        where rays meet meshes
+ *     shade_surface.c   the light that a surface sends to the eye
+ *     maximum.c         the greatest value along a ray, in place of light
+ */
 #ifndef HL_REFERENCE_REFERENCE_H
 #define HL_REFERENCE_REFERENCE_H
 
@@ -205,7 +207,7 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
 void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,
                           float rgba[4]);
 
-/* ---- meshes (surfaces.c) ---- */
+/* ---- meshes (surfaces.c, shade_surface.c) ---- */
 
 hl_status hl_reference_surfaces_create(reference *all, hl_error *error);
 void hl_reference_surfaces_release(reference *all);

@@ -1,5 +1,5 @@
 /* reference/surfaces.c - the meshes of a scene for the oracle: where rays meet triangles, found in a tree of
- * boxes, and the light that a point of a surface sends to the eye. */
+ * boxes. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -199,78 +199,4 @@ double hl_reference_surfaces_passing(const reference *all, const reference_ray *
     passing *= 1 - hit.triangle->opacity;
   }
   return passing;
-}
-
-/* ---- light ---- */
-
-/* The cosine of 40 degrees: beyond that angle between a triangle and a vertex's normal there is an edge. */
-static const double ROUNDED = 0.766;
-
-static vec3 normal_of(const reference *all, const reference_hit *hit, vec3 flat) {
-  const hl_scene_mesh *mesh = hit->triangle->mesh;
-  const uint32_t *corner = mesh->mesh->description.triangles[hit->triangle->index];
-  const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];
-  vec3 sum = {0, 0, 0};
-  for (int i = 0; i < 3; i++) {
-    vec3 own = vec3_normalise(normals[corner[i]]);
-    double along = vec3_dot(own, flat);
-    if (fabs(along) < ROUNDED) own = flat;
-    sum = vec3_add(sum,
-                   vec3_scale(own, along < 0 && fabs(along) >= ROUNDED ? -hit->weight[i] : hit->weight[i]));
-  }
-  return vec3_normalise(sum);
-}
-
-static void color_of(const reference_hit *hit, double color[3]) {
-  const hl_scene_mesh *mesh = hit->triangle->mesh;
-  const hl_mesh_description *d = &mesh->mesh->description;
-  const uint32_t *corner = d->triangles[hit->triangle->index];
-  for (int c = 0; c < 3; c++) {
-    double own = d->colors == NULL ? 1 : 0;
-    for (int i = 0; i < 3 && d->colors != NULL; i++) own += hit->weight[i] * d->colors[corner[i]][c];
-    color[c] = own * mesh->color[c];
-  }
-}
-
-/* Eqs. (3) and (4) for one light. */
-static void add_light(const reference *all, size_t light, const reference_hit *hit,
-                      const reference_surface_point *at, reference_worker *worker, double picture[3]) {
-  const hl_material *material = &hit->triangle->mesh->material;
-  double reach[3];
-  arrival arrived;
-  hl_reference_light_arrive(&all->lights[light], at->point, &arrived);
-  double cosine = vec3_dot(at->normal, arrived.towards);
-  if (cosine <= 0) return;
-  hl_reference_light_reach(all, &all->lights[light], at->point, hit->triangle->mesh->receives_shadow, worker,
-                           reach);
-  vec3 reflected = vec3_subtract(vec3_scale(at->normal, 2 * cosine), arrived.towards);
-  double gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
-  for (int c = 0; c < 3; c++)
-    picture[c] = (at->color[c] * material->diffuse * cosine + gloss) * arrived.incoming[c] * reach[c];
-}
-
-void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
-                                reference_worker *worker) {
-  reference_parts *sample = &worker->sample;
-  const hl_scene_mesh *mesh = hit->triangle->mesh;
-  const vec3 *corner = hit->triangle->corner;
-  reference_surface_point at = {.point = vec3_add(ray->origin, vec3_scale(ray->direction, hit->distance)),
-                                .to_eye = vec3_scale(ray->direction, -1)};
-  vec3 flat = vec3_normalise(
-      vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0])));
-  bool behind = vec3_dot(flat, at.to_eye) < 0;
-  at.normal = mesh->smooth ? normal_of(all, hit, flat) : flat;
-  if (behind) at.normal = vec3_scale(at.normal, -1);
-  color_of(hit, at.color);
-  hl_reference_parts_clear(sample, all->scene->light_count);
-  sample->weight = 1;
-  sample->normal = at.normal;
-  sample->depth = hit->distance;
-  if (behind && !mesh->two_sided) return;
-  for (int c = 0; c < 3; c++) {
-    sample->ambient[c] = at.color[c] * mesh->material.ambient * all->scene->ambient[c];
-    sample->emission[c] = at.color[c] * mesh->material.emission;
-  }
-  for (size_t l = 0; l < all->scene->light_count; l++)
-    add_light(all, l, hit, &at, worker, sample->lights[l].picture);
 }

@@ -260,19 +260,6 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   return measured;
 }
 
-const void *hl_volume_piece(const hl_volume *volume, size_t first, size_t count, void *buffer) {
-  size_t bytes = hl_storage_bytes(volume->storage), width = volume->dimension[0];
-  if (hl_volume_is_packed(volume)) return (const unsigned char *)volume->voxels + first * bytes;
-  for (size_t done = 0; done < count;) {
-    size_t row = (first + done) / width, i = (first + done) % width;
-    size_t taken = width - i < count - done ? width - i : count - done;
-    const unsigned char *from = hl_volume_row(volume, row % volume->dimension[1], row / volume->dimension[1]);
-    memcpy((unsigned char *)buffer + done * bytes, from + i * bytes, taken * bytes);
-    done += taken;
-  }
-  return buffer;
-}
-
 void hl_volume_retain(hl_volume *volume) {
   if (volume != NULL) atomic_fetch_add(&volume->references, 1);
 }

@@ -49,6 +49,21 @@ typedef struct walk {
   bool cancelled;
 } walk;
 
+/* The stored values of `count` voxels from number `first` on ([k][j][i]): the volume's own where it is
+ * packed, else copied into buffer, which has room for them. */
+static const void *piece_of(const hl_volume *volume, size_t first, size_t count, void *buffer) {
+  size_t bytes = hl_storage_bytes(volume->storage), width = volume->dimension[0];
+  if (hl_volume_is_packed(volume)) return (const unsigned char *)volume->voxels + first * bytes;
+  for (size_t done = 0; done < count;) {
+    size_t row = (first + done) / width, i = (first + done) % width;
+    size_t taken = width - i < count - done ? width - i : count - done;
+    const unsigned char *from = hl_volume_row(volume, row % volume->dimension[1], row / volume->dimension[1]);
+    memcpy((unsigned char *)buffer + done * bytes, from + i * bytes, taken * bytes);
+    done += taken;
+  }
+  return buffer;
+}
+
 /* Moves to the next piece; false at the end and after cancellation. */
 static bool next_piece(walk *w) {
   size_t most = w->buffer == NULL ? PIECE : COPIED_PIECE;
@@ -56,7 +71,7 @@ static bool next_piece(walk *w) {
   w->piece = w->count - w->first < most ? w->count - w->first : most;
   w->cancelled = w->piece > 0 && hl_cancelled(w->volume->context);
   if (w->piece == 0 || w->cancelled) return false;
-  w->voxels = hl_volume_piece(w->volume, w->first, w->piece, w->buffer);
+  w->voxels = piece_of(w->volume, w->first, w->piece, w->buffer);
   return true;
 }
 

@@ -87,10 +87,6 @@ static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_
   return (const unsigned char *)volume->voxels + k * volume->slice_bytes + j * volume->row_bytes;
 }
 
-/* The stored values of `count` voxels from number `first` on ([k][j][i]): the volume's own where it is
- * packed, else copied into buffer, which has room for them. */
-const void *hl_volume_piece(const hl_volume *volume, size_t first, size_t count, void *buffer);
-
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
  * hl_allocate that the volume takes over, also on failure. description: the grid, the type in the file, and
  * value_scale and value_offset for values of the file's type. subject: starts the error lines. */
