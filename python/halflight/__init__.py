@@ -17,7 +17,7 @@ from .camera import Camera
 from .colors import colormaps
 from .errors import HalflightWarning, InputError, UnsupportedError
 from .image import Image
-from .lights import Directional, Disk, Light, Point, Polygon, Rect, Spot
+from .lights import Directional, Disk, EmissionImage, Light, Point, Polygon, Rect, Spot, Texture
 from .mesh import Mesh
 from .render import Renderer, reference, render
 from .scene import Scene
@@ -28,7 +28,7 @@ from .widget import show
 __version__ = _text_of(_lib.hl_version())
 
 __all__ = [
-    "Camera", "Directional", "Disk", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh", "Point", "Polygon",
-    "Rect", "Renderer", "Scene", "Spot", "TransferFunction", "UnsupportedError", "Volume", "colormaps", "info",
-    "presets", "reference", "render", "show",
+    "Camera", "Directional", "Disk", "EmissionImage", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
+    "Point", "Polygon", "Rect", "Renderer", "Scene", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
+    "colormaps", "info", "presets", "reference", "render", "show",
 ]

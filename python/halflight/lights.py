@@ -1,4 +1,4 @@
-"""Lights: frozen dataclasses, one for each of the scene file's types.
+"""Lights: frozen dataclasses, one for each of the scene file's types, and the images that they project or show.
 
 Lengths are in world units, angles in degrees, colours linear RGB. A light with ``frame="camera"`` goes with the
 camera: x to its right, y up, z towards the viewer, from the camera's target.
@@ -6,14 +6,15 @@ camera: x to its right, y up, z towards the viewer, from the camera's target.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
 from . import _settings
 from ._library import ffi, lib
 from ._words import suggests
+from .light_images import EmissionImage, Texture, emission_from, texture_from
 
-__all__ = ["Directional", "Disk", "Light", "Point", "Polygon", "Rect", "Spot"]
+__all__ = ["Directional", "Disk", "EmissionImage", "Light", "Point", "Polygon", "Rect", "Spot", "Texture"]
 
 Vector = Sequence[float]
 
@@ -34,6 +35,10 @@ class Light:
         "off", "hard" or "soft". Default: as the scene says.
     frame : str
         "world" or "camera": the axes that places and directions are in.
+    texture : Texture, optional
+        An image that the light projects, like a slide.
+    emission : EmissionImage, optional
+        An image on the light's own surface; not beside a texture.
     """
 
     color: Vector = (1.0, 1.0, 1.0)
@@ -41,23 +46,26 @@ class Light:
     falloff: str = "none"
     shadows: str | None = None
     frame: str = "world"
-    _texture: Any = field(default=None, repr=False, compare=False)  # of a light that a file describes
+    texture: Texture | None = None
+    emission: EmissionImage | None = None
     _type: ClassVar[int]
 
     def _fill(self, struct: Any, keep: list[Any], place: str) -> None:
         lib.hl_light_defaults(ffi.addressof(struct))
         struct.type = self._type
-        given = {one.name: getattr(self, one.name) for one in fields(self) if not one.name.startswith("_")}
+        given = {one.name: getattr(self, one.name) for one in fields(self)}
+        for word, kind in (("texture", Texture), ("emission", EmissionImage)):
+            if (image := given.pop(word)) is None:
+                continue
+            if not isinstance(image, kind):
+                raise TypeError(f"{place}{word}: {image!r} is no {kind.__name__}")
+            image._fill(getattr(struct, word), keep, f"{place}{word}: ")
         vertices = given.pop("vertices", None)
         if vertices is not None:
             corners = [_settings.numbers_of(f"{place}vertices[{n}]", corner) for n, corner in enumerate(vertices)]
             keep.append(array := ffi.new("double[][3]", corners))
             struct.vertices, struct.vertex_count = array, len(corners)
         _settings.fill(place, struct, lib.HL_SETTINGS_LIGHT, given)
-        if self._texture is not None:
-            scene, source = self._texture
-            keep.append(scene)
-            struct.texture, struct.emission = source.texture, source.emission
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,13 +167,12 @@ for _class in _CLASSES:
     _class.__init__ = suggests(_class.__init__)  # type: ignore[method-assign]
 
 
-def light_from(struct: Any, scene: Any) -> Light:
-    """The light of a struct, which stays valid as long as `scene`."""
+def light_from(struct: Any) -> Light:
+    """The light of a struct."""
     kind = next(one for one in _CLASSES if one._type == struct.type)
     values = _settings.read(struct, lib.HL_SETTINGS_LIGHT, struct.type)
     del values["type"]
     if kind is Polygon:
         values["vertices"] = tuple(tuple(struct.vertices[n]) for n in range(struct.vertex_count))
-    if struct.texture.pixels != ffi.NULL or struct.emission.pixels != ffi.NULL:
-        values["_texture"] = (scene, struct)
+    values["texture"], values["emission"] = texture_from(struct.texture), emission_from(struct.emission)
     return kind(**values)

@@ -157,7 +157,7 @@ class Scene:
     @property
     def lights(self) -> tuple[Light, ...]:
         """The lights."""
-        return tuple(light_from(self._struct.lights[n], self._handle) for n in range(self._struct.light_count))
+        return tuple(light_from(self._struct.lights[n]) for n in range(self._struct.light_count))
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:

@@ -33,11 +33,36 @@ def test_lights_come_back_from_the_scene(blob, light):
     assert plain(Scene(blob, lights=light).lights[0]) == plain(light)
 
 
+def test_lights_have_images(program, tmp_path, blob):
+    slide = np.zeros((4, 6, 3), np.float32)
+    slide[:, 3:] = (1, 0.5, 0.25)
+    png = (255 * slide).astype(np.uint8)
+    np.save(tmp_path / "slide.npy", slide)
+    np.save(tmp_path / "blob.npy", blob)
+    texture = halflight.Texture(slide, center=(10, 10, 60), right=(20, 0, 0), up=(0, 20, 0))
+    light = Point(position=(10, 10, 120), texture=texture)
+    scene = Scene(str(tmp_path / "blob.npy"), size=(64, 48), lights=light, ambient=0)
+    picture = np.asarray(Renderer().render(scene))
+    assert picture[..., 0].max() > 0.05 and np.allclose(picture[..., 2], picture[..., 0] / 4, atol=0.2 * picture[..., 0].max())
+    again = scene.lights[0]
+    assert again.texture == texture and np.array_equal(again.texture.image, slide)
+    assert np.array_equal(np.asarray(Renderer().render(scene.replace(lights=again))), picture)
+    named = dataclasses.replace(texture, image=tmp_path / "slide.npy")
+    filed = scene.replace(lights=dataclasses.replace(light, texture=named))
+    assert np.array_equal(np.asarray(Renderer().render(filed)), picture)
+    (tmp_path / "scene.json").write_text(filed.to_json())
+    subprocess.run([program, "render", tmp_path / "scene.json", "--quiet", "-o", tmp_path / "c.npy"], check=True)
+    assert np.array_equal(np.load(tmp_path / "c.npy"), picture)
+    window = Rect(position=(10, 10, 60), edge1=(30, 0, 0), edge2=(0, 30, 0), emission=halflight.EmissionImage(png))
+    shown = scene.replace(lights=window).lights[0].emission
+    assert shown.image.shape == (4, 6, 3) and shown.image[0, 5, 1] == pytest.approx(0.2122, abs=1e-3)  # sRGB 127
+
+
 @pytest.mark.parametrize("light", LIGHTS, ids=lambda light: type(light).__name__)
 def test_defaults_are_the_library_s(light):
     """Each default of a dataclass is the table's."""
     rows = _settings.table(_library.lib.HL_SETTINGS_LIGHT)
-    standard = {"shadows": None, "falloff": "none", "frame": "world", "vertices": ()}
+    standard = {"texture": None, "emission": None, "shadows": None, "falloff": "none", "frame": "world", "vertices": ()}
     for field in dataclasses.fields(light):
         if field.name.startswith("_"):
             continue
@@ -52,7 +77,7 @@ def test_every_setting_has_its_keyword():
     """Rows of the library's tables: of lights here, the others are written by scripts/settings."""
     table = _settings.table
     lights = {field.name for light in LIGHTS for field in dataclasses.fields(light)}
-    assert set(table(_library.lib.HL_SETTINGS_LIGHT)) - {"type"} == lights - {"_texture", "vertices"}
+    assert set(table(_library.lib.HL_SETTINGS_LIGHT)) - {"type"} == lights - {"texture", "emission", "vertices"}
     assert set(table(_library.lib.HL_SETTINGS_CAMERA)) - {"type"} == {field.name for field in dataclasses.fields(Camera)}
     look, settings = halflight.volume.Look.__annotations__, halflight.scene.Settings.__annotations__
     assert set(table(_library.lib.HL_SETTINGS_VOLUME)) - {"clip_min", "clip_max"} <= set(look)
@@ -184,9 +209,10 @@ def test_plot(small):
 
 
 def test_import_is_quick_and_needs_numpy_alone():
-    code = ("import sys, time, numpy; before = set(sys.modules); start = time.perf_counter(); import halflight; "
-            "print(time.perf_counter() - start, *sorted({m.partition('.')[0] for m in set(sys.modules) - before}))")
-    seconds, *names = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True,
-                                     text=True).stdout.split()
+    code = ("import sys, time, numpy; before = set(sys.modules); start = time.process_time(); import halflight; "
+            "print(time.process_time() - start, *sorted({m.partition('.')[0] for m in set(sys.modules) - before}))")
+    runs = [subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
+            for _ in range(3)]
+    names = runs[0][1:]
     assert "matplotlib" not in names and "tqdm" not in names
-    assert float(seconds) < 0.5  # 0.03 on an idle machine
+    assert min(float(run[0]) for run in runs) < 0.1  # of the processor's time: other programs do not count
