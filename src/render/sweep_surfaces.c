@@ -214,29 +214,32 @@ static void shade_batch(const sweep *sweep, const tile_slab *slab, const fragmen
 /* ---- the picture: slabs cut at fragments ---- */
 
 /* The fragments of a slab's round: each pixel's fragment number `round`, from below. */
-static int fragments_of_round(fragment_range range, int round, const fragment *list[TILE_PIXELS]) {
-  int count = 0, number = 0;
+static size_t fragments_of_round(fragment_range range, int round, fragment *list) {
+  size_t count = 0;
+  int number = 0;
   for (size_t i = 0; i < range.count; i++) {
     number = i > 0 && range.first[i].pixel == range.first[i - 1].pixel ? number + 1 : 0;
-    if (number == round) list[count++] = &range.first[i];
+    if (number == round) list[count++] = range.first[i];
   }
   return count;
 }
 
-static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t blocks, const fragment **list,
-                            int count) {
+/* Steps 12 to 16 for fragments, which are composited in their order. */
+static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
+                            fragment_range range) {
   const fragment *batch[SURFACE_SAMPLES];
   const surface_mesh *mesh = NULL;
   int filled = 0;
-  for (int i = 0; i < count; i++) {
-    if ((blocks >> list[i]->pixel / BLOCK_PIXELS & 1) == 0) continue;
-    const surface_mesh *own = hl_surface_of(sweep->frame->surfaces, list[i]->triangle);
+  for (size_t i = 0; i < range.count; i++) {
+    const fragment *f = &range.first[i];
+    if ((blocks >> f->pixel / BLOCK_PIXELS & 1) == 0) continue;
+    const surface_mesh *own = hl_surface_of(sweep->frame->surfaces, f->triangle);
     if (filled > 0 && (own != mesh || filled == SURFACE_SAMPLES)) {
       shade_batch(sweep, slab, batch, filled, mesh);
       filled = 0;
     }
     mesh = own;
-    batch[filled++] = list[i];
+    batch[filled++] = f;
   }
   if (filled > 0) shade_batch(sweep, slab, batch, filled, mesh);
 }
@@ -280,21 +283,27 @@ static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t 
 /* Heights beyond all sheets. */
 static const float BELOW = -1e30f, ABOVE = 1e30f;
 
-uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
-                                fragment_range range) {
-  const fragment *list[TILE_PIXELS];
+/* The slab of a tile with density: cut at the fragments of one round after the other. */
+static void shade_cut_slab(const sweep *sweep, const tile_slab *slab, uint32_t blocks, fragment_range range) {
+  fragment list[TILE_PIXELS];
   float *from = sweep->surfaces.bounds[slab->worker * 2], *to = sweep->surfaces.bounds[slab->worker * 2 + 1];
   for (int i = 0; i < TILE_PIXELS; i++) from[i] = BELOW;
   for (int round = 0;; round++) {
-    int count = fragments_of_round(range, round, list);
+    size_t count = fragments_of_round(range, round, list);
     for (int i = 0; i < TILE_PIXELS; i++) to[i] = ABOVE;
-    for (int i = 0; i < count; i++) to[list[i]->pixel] = list[i]->height;
-    if (slab->blocks != 0) (void)shade_piece(sweep, slab, from, to);
-    if (count == 0) break;
-    shade_fragments(sweep, slab, blocks, list, count);
+    for (size_t i = 0; i < count; i++) to[list[i].pixel] = list[i].height;
+    (void)shade_piece(sweep, slab, from, to);
+    if (count == 0) return;
+    shade_fragments(sweep, slab, blocks, (fragment_range){list, count});
     for (int i = 0; i < TILE_PIXELS; i++)
       from[i] = to[i]; /* above all sheets where the slab was shaded to its end */
   }
+}
+
+uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
+                                fragment_range range) {
+  if (slab->blocks == 0) shade_fragments(sweep, slab, blocks, range);
+  else shade_cut_slab(sweep, slab, blocks, range);
   return sweep->shade.back_to_front ? blocks : open_blocks(sweep, slab, blocks);
 }
 

@@ -57,22 +57,19 @@ static int clamp_pixel(int64_t subpixels) {
   return pixel > TILE - 1 ? TILE - 1 : (int)pixel;
 }
 
-static bool cover_triangle(const int64_t x[3], const int64_t y[3], uint16_t covered[TILE_PIXELS]) {
+/* A triangle's corners, 1/256 pixels from the tile's corner. */
+static bool cover_triangle(const int64_t x[3], const int64_t y[3], const pixel_span *span,
+                           uint16_t covered[TILE_PIXELS]) {
   int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-  int64_t x0 = x[0], x1 = x[0], y0 = y[0], y1 = y[0];
   edge edges[3];
   uint32_t any = 0;
-  for (int i = 1; i < 3; i++) {
-    x0 = x[i] < x0 ? x[i] : x0, x1 = x[i] > x1 ? x[i] : x1;
-    y0 = y[i] < y0 ? y[i] : y0, y1 = y[i] > y1 ? y[i] : y1;
-  }
-  if (area == 0 || x1 < 0 || y1 < 0 || x0 >= TILE * SUBPIXELS || y0 >= TILE * SUBPIXELS) return false;
+  if (area == 0) return false;
   for (int i = 0; i < 3; i++) {
     int from = area < 0 ? i : (i + 1) % 3, to = area < 0 ? (i + 1) % 3 : i;
     set_edge(&edges[i], x[from], y[from], x[to], y[to]);
   }
-  for (int row = clamp_pixel(y0); row <= clamp_pixel(y1); row++)
-    for (int column = clamp_pixel(x0); column <= clamp_pixel(x1); column++) {
+  for (int row = span->y0; row <= span->y1; row++)
+    for (int column = span->x0; column <= span->x1; column++) {
       uint32_t bits = cover_pixel(edges, column, row);
       covered[row * TILE + column] |= (uint16_t)bits;
       any |= bits;
@@ -80,10 +77,27 @@ static bool cover_triangle(const int64_t x[3], const int64_t y[3], uint16_t cove
   return any != 0;
 }
 
-bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, uint16_t covered[TILE_PIXELS]) {
+/* The tile's pixels within a polygon's bounds; false: there are none. */
+static bool find_span(const seen_polygon *polygon, int64_t left, int64_t top, pixel_span *span) {
+  int64_t x0 = INT64_MAX, y0 = INT64_MAX, x1 = INT64_MIN, y1 = INT64_MIN;
+  for (int i = 0; i < polygon->count; i++) {
+    int64_t x = polygon->x[i] - left, y = polygon->y[i] - top;
+    x0 = x < x0 ? x : x0, x1 = x > x1 ? x : x1;
+    y0 = y < y0 ? y : y0, y1 = y > y1 ? y : y1;
+  }
+  if (polygon->count == 0 || x1 < 0 || y1 < 0 || x0 >= TILE * SUBPIXELS || y0 >= TILE * SUBPIXELS)
+    return false;
+  *span = (pixel_span){clamp_pixel(x0), clamp_pixel(y0), clamp_pixel(x1), clamp_pixel(y1)};
+  return true;
+}
+
+bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, pixel_span *span,
+                   uint16_t covered[TILE_PIXELS]) {
   int64_t left = (int64_t)tile_x * TILE * SUBPIXELS, top = (int64_t)tile_y * TILE * SUBPIXELS;
   bool any = false;
-  memset(covered, 0, TILE_PIXELS * sizeof *covered);
+  if (!find_span(polygon, left, top, span)) return false;
+  for (int row = span->y0; row <= span->y1; row++)
+    memset(covered + row * TILE + span->x0, 0, (size_t)(span->x1 - span->x0 + 1) * sizeof *covered);
   for (int i = 1; i + 1 < polygon->count; i++) {
     const int corner[3] = {0, i, i + 1};
     int64_t x[3], y[3];
@@ -91,7 +105,7 @@ bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, uint16_t
       x[k] = polygon->x[corner[k]] - left;
       y[k] = polygon->y[corner[k]] - top;
     }
-    any = cover_triangle(x, y, covered) || any;
+    any = cover_triangle(x, y, span, covered) || any;
   }
   return any;
 }

@@ -11,8 +11,15 @@
  * share a row or a column. */
 extern const unsigned char hl_sample_row[16];
 
-/* covered: [TILE rows][TILE columns]; one bit for each sample. Returns whether any is covered. The polygon is
- * convex; its corners may go either way round. */
-bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, uint16_t covered[TILE_PIXELS]);
+/* A rectangle of a tile's pixels; the last column and row are included. */
+typedef struct pixel_span {
+  int x0, y0, x1, y1;
+} pixel_span;
+
+/* covered: [TILE rows][TILE columns]; one bit for each sample; set within *span, outside which nothing is
+ * covered. Returns whether any sample is covered. The polygon is convex; its corners may go either way round.
+ */
+bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, pixel_span *span,
+                   uint16_t covered[TILE_PIXELS]);
 
 #endif

@@ -203,9 +203,10 @@ static void add_triangle(const fragment_work *work, fragment_worker *worker, int
   const surface_mesh *mesh = hl_surface_of(source->surfaces, triangle);
   seen_polygon polygon;
   uint16_t covered[TILE_PIXELS];
+  pixel_span span;
   triangle_plane plane;
   hl_see_triangle(source->view, source->surfaces, triangle, &polygon);
-  if (!hl_cover_tile(&polygon, tile_x, tile_y, covered)) return;
+  if (!hl_cover_tile(&polygon, tile_x, tile_y, &span, covered)) return;
   if (!make_room(source->context, &worker->scratch, &worker->room, worker->count + TILE_PIXELS * MOST_SLABS,
                  2)) {
     worker->failed = true;
@@ -216,12 +217,13 @@ static void add_triangle(const fragment_work *work, fragment_worker *worker, int
                   linear(plane.way, tile_x * TILE + TILE / 2, tile_y * TILE + TILE / 2) > 0;
   bool counts = source->of_light ? mesh->scene->casts_shadow : mesh->scene->visible;
   fragment f = {.triangle = triangle, .opacity = counts ? opacity_of(source->surfaces, mesh, triangle) : 0};
-  for (int i = 0; i < TILE_PIXELS; i++) {
-    int x = tile_x * TILE + i % TILE, y = tile_y * TILE + i / TILE;
-    f.samples = covered[i];
-    if (f.samples != 0 && x < source->view->width && y < source->view->height)
-      add_pixel(work, worker, &plane, f, x, y);
-  }
+  for (int row = span.y0; row <= span.y1; row++)
+    for (int column = span.x0; column <= span.x1; column++) {
+      int x = tile_x * TILE + column, y = tile_y * TILE + row;
+      f.samples = covered[row * TILE + column];
+      if (f.samples != 0 && x < source->view->width && y < source->view->height)
+        add_pixel(work, worker, &plane, f, x, y);
+    }
 }
 
 /* ---- sorting ---- */
