@@ -15,9 +15,10 @@ import threading
 import time
 import urllib.parse
 
-import hands
+import checks
 from browser import Browser
-from hands import PROGRAM, check, equals_render, press, rest, scene_of
+from checks import check
+from hands import PROGRAM, equals_render, press, rest, scene_of
 from viewer import Viewer
 
 
@@ -204,4 +205,4 @@ with tempfile.TemporaryDirectory() as folder:
             with open("first.nrrd", "rb") as file:
                 browser.run(f"window.volume = '{base64.b64encode(file.read()).decode()}'; 0")
             on_the_page(browser)
-    print(f"{hands.checks} checks passed")
+    print(f"{checks.count} checks passed")

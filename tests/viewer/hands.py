@@ -9,16 +9,10 @@ import sys
 
 from PIL import Image
 
+from checks import check
+
 PROGRAM = os.path.abspath(sys.argv[1])
 STAGE = "globalThis.halflight?.frames.statistics.stage"
-checks = 0
-
-
-def check(condition, what):
-    global checks
-    checks += 1
-    if not condition:
-        sys.exit(f"FAILED: {what}")
 
 
 def rest(browser):

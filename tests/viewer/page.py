@@ -9,9 +9,10 @@ import subprocess
 import sys
 import tempfile
 
-import hands
+import checks
 from browser import Browser
-from hands import PROGRAM, STAGE, center, changes, check, equals_render, press, rest, scene_of, set_control
+from checks import check
+from hands import PROGRAM, STAGE, center, changes, equals_render, press, rest, scene_of, set_control
 from viewer import Viewer
 
 
@@ -124,4 +125,4 @@ with tempfile.TemporaryDirectory() as folder:
         equals_render(browser, "last")
         counts = browser.run("halflight.frames.statistics")
         check(browser.problems == [], f"the console has errors: {browser.problems}")
-        print(f"{hands.checks} checks passed; frames: {counts}")
+        print(f"{checks.count} checks passed; frames: {counts}")

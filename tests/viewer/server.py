@@ -13,17 +13,11 @@ import tempfile
 import threading
 import time
 
+import checks
+from checks import check
 from viewer import Viewer
 
 PROGRAM = os.path.abspath(sys.argv[1])
-checks = 0
-
-
-def check(condition, what):
-    global checks
-    checks += 1
-    if not condition:
-        sys.exit(f"FAILED: {what}")
 
 
 def request(viewer, method, path, body=None, **headers):
@@ -232,4 +226,4 @@ with tempfile.TemporaryDirectory() as folder:
         bad_clients(viewer, scene)
         ends_cleanly(viewer, scene)
     busy_port()
-print(f"{checks} checks passed")
+print(f"{checks.count} checks passed")

@@ -15,9 +15,10 @@ import tempfile
 
 import numpy
 
-import hands
+import checks
 from browser import Browser
-from hands import PROGRAM, STAGE, center, changes, check, equals_render, rest, scene_of
+from checks import check
+from hands import PROGRAM, STAGE, center, changes, equals_render, rest, scene_of
 from viewer import Viewer
 
 
@@ -220,4 +221,4 @@ with tempfile.TemporaryDirectory() as folder:
         random_hands(browser, viewer)
         browser.resize(760, 440)
         equals_render(browser, "last")
-        print(f"{hands.checks} checks passed{'' if AXE else ', without axe-core'}; frames: {browser.run('halflight.frames.statistics')}")
+        print(f"{checks.count} checks passed{'' if AXE else ', without axe-core'}; frames: {browser.run('halflight.frames.statistics')}")
