@@ -60,7 +60,7 @@ static bool is_mostly_tissue(const hl_volume *volume) {
 static bool is_body(const hl_volume *volume, const char *file, const hl_data_analysis *a) {
   if (a->kind != HL_DATA_SURFACES || a->direction < 0) return false;
   if (hl_is_hounsfield(volume)) return is_mostly_tissue(volume);
-  return is_anatomical(file) && a->filled > 0.15;
+  return (volume->is_anatomical || is_anatomical(file)) && a->filled > 0.15;
 }
 
 const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis) {
@@ -229,11 +229,14 @@ static double almost_greatest(const hl_volume *volume) {
 }
 
 /* For maximum projections: greys from the background, which is not shown, to almost the greatest value. Where
- * objects lie below the background, or on both sides of it, greys begin at the least value. */
+ * objects lie below the background, or on both sides of it, greys begin at the least value. A window that the
+ * file asks for (DICOM) narrows them. */
 static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
   const hl_data_analysis *a = w->analysis;
   bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;
   double low = above ? a->background : volume->minimum, high = almost_greatest(volume);
+  if (volume->window[1] > low && volume->window[1] < volume->maximum) high = volume->window[1];
+  if (volume->window[0] > low && volume->window[0] < high) low = volume->window[0];
   if (!(high > low)) high = volume->maximum;
   w->direction = 1;
   hl_add_opacity(w, low - a->background, 0);

@@ -20,6 +20,7 @@ typedef struct hl_load_request {
   double spacing[3];        /* world units; all 0: as in the file */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
   size_t level_voxels;      /* of a pyramid: enough along the longest side; 0: as many as there are */
+  double window[2];         /* set by readers: data values between which greys are to be shown; equal: none */
   bool is_anatomical;       /* set by readers of formats that hold bodies: the volume's space is meant */
   const char *series;       /* DICOM: number, UID or description; null: choose */
   hl_array_entry *arrays;   /* owned; [array_count]; in the file's order */

@@ -237,6 +237,8 @@ static hl_status finish(hl_load_request *request, hl_status status, hl_volume **
     hl_log(request->context, HL_LOG_WARNING, "%s", request->component_told);
   if (request->selection_told[0] != 0)
     hl_log(request->context, HL_LOG_WARNING, "%s", request->selection_told);
+  if (request->window[0] < request->window[1])
+    memcpy((*volume)->window, request->window, sizeof request->window);
   (*volume)->is_anatomical = request->is_anatomical;
   (*volume)->selection = request->selection;
   (*volume)->series = request->series_list;

@@ -57,6 +57,7 @@ struct hl_volume {
   hl_space space;
   bool is_anatomical; /* the space is meant: DICOM's, NIfTI's; other programs write left-posterior-superior
                          for any data */
+  double window[2];   /* data values between which the file asks to show greys; NAN: none */
   double minimum, maximum; /* data values over finite voxels */
   double mean;
   uint64_t nonfinite_count;

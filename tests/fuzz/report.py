@@ -25,7 +25,7 @@ TARGETS = {
     "npy": ("NumPy", ["volume/npy.c"]),
     "mrc": ("MRC, CCP4", ["volume/mrc.c"]),
     "dicom": ("DICOM, zip archives", ["volume/dicom.c", "volume/source.c", "volume/bundle_zip.c"] + [
-        f"volume/dicom/{name}.c" for name in ("directory", "elements", "frame", "header", "jpeg", "jpeg_2000", "jpeg_ls",
+        f"volume/dicom/{name}.c" for name in ("directory", "elements", "frame", "header", "jpeg", "jpeg_2000", "jpeg_codes", "jpeg_extended", "jpeg_ls",
                                               "jpeg_lossless", "rle", "set", "stack", "voxels")]),
     "raw": ("bare voxels, descriptors", ["volume/raw.c"]),
     "transfer": ("transfer functions", ["json/foreign_functions.c", "json/transfer_function.c"]),
@@ -37,6 +37,7 @@ SHARED = ("all volume files, what they share included", ["volume/"],
           ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "npy", "mrc", "dicom", "raw"])
 
 TARGETS["tiff"] = ("TIFF, OME-TIFF, ImageJ", ["volume/tiff"])
+TARGETS["slices"] = ("pictures of slices", ["volume/slice"])
 SHARED[2].append("tiff")
 
 root = pathlib.Path(__file__).resolve().parents[2]

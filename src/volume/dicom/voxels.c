@@ -226,6 +226,15 @@ static hl_status read_all(reading *r, hl_error *error) {
   return r->failed ? r->status : HL_OK;
 }
 
+/* The window that the middle slice asks for (PS3.3, C.11.2.1.2: its centre lies half a value lower). */
+static void take_window(const reading *r, double window[2]) {
+  const hl_dicom_frame *frame = frame_at(r, r->stack->place_count / 2);
+  const double *told = r->set->files[frame->file].window; /* centre and width */
+  if (!isfinite(told[0]) || !isfinite(told[1]) || told[1] < 1) return;
+  window[0] = told[0] - 0.5 - (told[1] - 1) / 2;
+  window[1] = told[0] - 0.5 + (told[1] - 1) / 2;
+}
+
 static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_volume_description grid = r->stack->grid;
   grid.type = r->as_floats && hl_voxel_type_storage(r->type) != HL_STORAGE_F32 ? HL_VOXEL_F32 : r->type;
@@ -238,6 +247,7 @@ static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **v
     for (int row = 0; row < 3; row++) grid.axis[axis][row] *= request->spacing[axis] / length;
   }
   void *voxels = r->voxels;
+  take_window(r, request->window);
   request->is_anatomical = grid.space != HL_SPACE_UNKNOWN;
   r->voxels = NULL;
   return hl_volume_adopt(r->set->context, &grid, r->set->bundle->path, voxels, volume, error);
