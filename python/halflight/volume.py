@@ -1,4 +1,4 @@
-"""Volumes: voxels with their place in the world, and how they look."""
+"""Volumes: voxels, their position in the world, and their look."""
 from __future__ import annotations
 
 import os

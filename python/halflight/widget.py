@@ -45,7 +45,7 @@ def _with_files(scene: Scene, names_of_files: list[str | None]) -> Scene:
 
 
 class _Named:
-    """A scene whose volumes can be named in its text, those of arrays too: "array 0" stands for one."""
+    """A scene whose text names every volume: by its file, or as "array 0" for one made from an array."""
 
     def __init__(self, scene: Scene) -> None:
         struct = lib.hl_scene_describe(scene._handle)
@@ -57,7 +57,7 @@ class _Named:
         self.scene = _with_files(scene, names_of_files)
 
     def read(self, text: str) -> Scene:
-        """The scene of a text, with these volumes; no file is opened."""
+        """Read a scene's text. Its volumes are those of this scene; no file is opened."""
         raw = text.encode()
         return Scene._of(made(lib.hl_scene_from_json_like, "hl_scene", lib.hl_scene_release, context, raw, len(raw),
                               ffi.NULL, b"scene", self.scene._handle))

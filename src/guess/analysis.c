@@ -126,9 +126,10 @@ static bool is_floating(const hl_volume *volume) {
 
 /* Where a volume's values lie, relative to the sample's range. */
 typedef struct spread {
-  double low, high;  /* hardly any voxel has a value below or above */
-  double zero;       /* the data value 0 */
-  bool fills, signs; /* no air around the matter; values clearly on both sides of the data value 0 */
+  double low, high; /* hardly any voxel has a value below or above */
+  double zero;      /* the data value 0 */
+  bool fills,
+      signs; /* fills: there is no air around the matter; signs: values lie clearly on both sides of 0 */
 } spread;
 
 static spread spread_of(const hl_sample *sample, double background) {

@@ -56,8 +56,8 @@ typedef struct shade_light {
   light_texture texture;  /* the picture that the light projects */
   light_cone cone;        /* of a spot light */
   sector_fraction sector; /* of a light within the content */
-  int nearest,
-      cubic; /* how the lookup interpolates, instead of bilinearly; sub-lights are never read cubic */
+  int nearest, cubic; /* nearest: the lookup takes the nearest pixel; cubic: by cubic convolution (never of
+                         sub-lights); else bilinearly */
 } shade_light;
 
 typedef struct shade_job {

@@ -84,7 +84,8 @@ fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size
 
 /* ---- the picture: samples of surfaces ---- */
 
-/* Where the ray of a fragment's samples meets it, and the fragment's normal and colour there. */
+/* A point of a surface that is lit: where a ray of the eye meets a fragment, with the normal and the colour
+ * there. */
 typedef struct surface_point {
   vec3 position, normal, towards_eye;
   double color[3];

@@ -67,9 +67,10 @@ LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
 
 enum { SUBLIGHT_TAPS = 8 };
 
-/* How a row of sixteen pixels reads a row of the slab's copies. Pixel i lies near 2 i half pixels from the
- * first one; as the two pixels' edges differ a little, it deviates by first to first + count - 1 halves.
- * weight[k] is 1 for pixels that deviate by first + k halves, else 0. */
+/* How sixteen pixels in a row read a row of the slab's copies. Without a difference in size, pixel i would
+ * lie 2 i half pixels after the first one. The slab's pixels are a little larger or smaller: pixel i deviates
+ * by `first` to first + count - 1 half pixels. weight[k] is 1 for pixels that deviate by first + k, else 0.
+ */
 typedef struct row_taps {
   int first, count; /* count 0: too many */
   lanes_int half;   /* of each pixel, held inside the slab */

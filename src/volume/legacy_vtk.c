@@ -60,7 +60,7 @@ static hl_status read_type(const vtk_header *header, const char *name, hl_voxel_
       {"unsigned_short", HL_VOXEL_U16},
       {"short", HL_VOXEL_I16},
       {"unsigned_int", HL_VOXEL_U32},
-      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes its indices as int, whatever their width in memory */
+      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes indices as int, whatever their width in memory */
       {"unsigned_long|vtktypeuint64", HL_VOXEL_U64},
       {"long|vtktypeint64", HL_VOXEL_I64},
       {"float", HL_VOXEL_F32},

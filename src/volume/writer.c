@@ -270,7 +270,8 @@ static hl_status make_mrc(const char *path, const hl_volume_description *grid, h
     put_real(header, ORIGIN + 4 * axis, grid->origin[axis]);
   }
   put_integer(header, MODE, (size_t)modes[grid->type]);
-  put_real(header, DMIN + 4, -1); /* least 0, greatest -1, mean -2 and deviation -1: not told */
+  /* marks the statistics as unknown: least 0, greatest -1, mean -2, deviation -1 */
+  put_real(header, DMIN + 4, -1);
   put_real(header, DMIN + 8, -2);
   put_real(header, DMIN + 140, -1);
   put_integer(header, GROUP, VOLUME);

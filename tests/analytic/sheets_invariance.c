@@ -1,4 +1,4 @@
-/* analytic/sheets_invariance.c - what must not change a picture: threads, instruction sets, history,
+/* analytic/sheets_invariance.c - pictures do not depend on threads, instruction sets, earlier frames or
  * interruptions. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -258,8 +258,8 @@ static void test_rows_that_lie_apart(void **state) {
   }
 }
 
-/* Again with the same renderer, with a fresh one, and after another scene of another size has used its
- * buffers. */
+/* Renders once more with the same renderer, with a new one, and with one whose buffers another scene of
+ * another size has used. */
 static void test_history(void **state) {
   (void)state;
   static float first[MOST_FLOATS], again[MOST_FLOATS];

@@ -95,7 +95,7 @@ static void check_volume(hl_volume *volume) {
     hl_transfer_function_release(fuzz_context(), &function);
 }
 
-/* The same content from memory, of other components, at another spacing. */
+/* Reads the same content from memory, with another component and spacing. */
 static void load_otherwise(const char *path, const uint8_t *data, size_t size) {
   static const int components[] = {HL_COMPONENT_MAGNITUDE, 1};
   for (size_t n = 0; n < 2; n++) {

@@ -1,6 +1,6 @@
-"""What every renderer is to draw: the scene of scene.json and its volume, in the files that each of them reads.
+"""Writes the scene of scene.json and its volume into the files that each of the renderers reads.
 
-All is written into build/peers. job.json has the scene with what follows from it: the camera's axes, the direction of the
+The files go to build/peers. job.json holds the scene and what is computed from it: the camera's axes, the direction of the
 light, and the transfer function as a table of 256 extinctions and colours.
 """
 import json

@@ -88,7 +88,7 @@ static void reading_goes_by_content(void **state) {
   end_context(context);
 }
 
-/* Each way a file cannot be written, for each format. */
+/* Every way in which writing a file can fail, for each format. */
 static void bad_places_are_named(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -135,8 +135,8 @@ static void full_device_is_reported(void **state) {
   end_context(context);
 }
 
-/* A disk that is full after so many bytes, by the limit on file sizes: never half a file, and the old one
- * stands. */
+/* A disk that is full after so many bytes (by the limit on file sizes): no half file is left, and an older
+ * file stays. */
 static void disk_that_fills_up_keeps_the_old_file(void **state) {
   (void)state;
   hl_context *context = make_context();

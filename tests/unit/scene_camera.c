@@ -137,7 +137,7 @@ static double greatest_reach(const hl_scene_volume *scene, vec3 along, vec3 forw
   return greatest;
 }
 
-/* What is found by looking at a few voxels is what all of them say. */
+/* A sample of a few voxels tells the same as all voxels. */
 static void frames_by_the_farthest_voxels(void **state) {
   (void)state;
   parts p;
@@ -259,7 +259,7 @@ static void lights_stand_where_the_camera_sees_them(void **state) {
   (void)state;
   hl_camera c = {.position = {0, -5, 0}, .up = {0, 0, 1}};
   double d[3];
-  hl_light_direction(&c, 0, 0, d); /* a headlight shines along the sight */
+  hl_light_direction(&c, 0, 0, d); /* a headlight shines along the line of sight */
   assert_true(d[0] == 0 && d[1] == 1 && d[2] == 0);
   hl_light_direction(&c, 90, 0, d); /* from the right: travels to -x */
   assert_near(d[0], -1, 1e-12);
@@ -313,7 +313,7 @@ static void box_of_bar(const hl_camera *camera, double box[4]) {
   }
 }
 
-/* What is seen is in the middle and fills the picture, specks or not. */
+/* The visible voxels fill the picture and are in its middle, with specks and without. */
 static void specks_do_not_count(void **state) {
   (void)state;
   for (int n = 0; n < 12; n++) {
@@ -366,8 +366,8 @@ static void a_turn_keeps_target_and_distance(void **state) {
   }
 }
 
-/* A camera tells the view that it was turned to, to the last bit of its angles; up and front are unit and at
- * a right angle. */
+/* hl_camera_view returns the view that the camera was turned to, to the last bit of its angles; up and front
+ * are unit vectors at a right angle. */
 static void views_are_found_again(void **state) {
   (void)state;
   parts p;

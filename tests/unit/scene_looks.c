@@ -160,8 +160,8 @@ static void labels_have_colors_of_their_own(void **state) {
   hl_context_destroy(context);
 }
 
-/* What is common in a flow is clear, its extremes are not; where all values are equally common, all are
- * seen. */
+/* A flow's common values are clear, its extremes are not; where all values are equally common, all are
+ * visible. */
 static void flows_show_their_extremes(void **state) {
   (void)state;
   hl_context *context = make_context();

@@ -70,7 +70,8 @@ static void test_cubic_keeps_squares(void **state) {
     assert_true(fabs((double)bilinear[lane] - plane((double)at.u[lane], (double)at.v[lane])) < 2e-6);
 }
 
-/* Beside an edge cubic convolution overshoots, light does not; outside of the buffer there is no shadow. */
+/* Cubic convolution overshoots beside an edge, but the light that it finds does not; outside the buffer there
+ * is no shadow. */
 static void test_light_stays_light(void **state) {
   (void)state;
   static float pixels[STRIDE * STRIDE];
@@ -118,7 +119,7 @@ static void test_cubic_stays_within(void **state) {
   assert_true(between > 100);
 }
 
-/* Squares of lanes that lie together and of those that do not. */
+/* Lanes whose squares of pixels lie close together, and lanes whose squares do not. */
 static void test_short_squares(void **state) {
   (void)state;
   static uint16_t table[STRIDE * STRIDE];

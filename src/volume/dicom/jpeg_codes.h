@@ -39,7 +39,7 @@ void hl_jpeg_fill(hl_jpeg_reader *r);
 /* A code's value; -1: there is no such code. 32 bits must be there. */
 int hl_jpeg_take_code(hl_jpeg_reader *r, const hl_jpeg_table *table);
 
-/* The number of `count` bits, 1 to 16, that are the sign and size of a difference (T.81, figure F.12). */
+/* The signed difference that `count` bits, 1 to 16, stand for (T.81, figure F.12). */
 int hl_jpeg_take_number(hl_jpeg_reader *r, int count);
 
 /* Passes over a restart marker; the bits before it are padding. */
