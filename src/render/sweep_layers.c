@@ -14,6 +14,7 @@ static void set_up_white_volumes(sweep *sweep) {
     layers->white_volumes[g] = sweep->shade_volumes[g];
     layers->white_volumes[g].classifier = &layers->white[g];
     layers->white_volumes[g].phong = 0;
+    layers->white_volumes[g].anisotropy = 0;
     layers->white_volumes[g].lit = 1;
   }
 }

@@ -306,6 +306,30 @@ static double sum_at(const layer_set *layers, size_t lights, int pixel, int c) {
   return sum;
 }
 
+/* A phase function changes the light that a medium sends to the eye, and not the transmittance to it: under
+ * lights of several types, and by every method. */
+static void test_scattering_is_no_shadow(void **state) {
+  (void)state;
+  static layer_set even, scattered;
+  stage set;
+  open_scene(&set, 1);
+  hl_light *board = stage_add_point(&set, (vec3){-20, 10, 25});
+  board->type = HL_LIGHT_RECT;
+  board->edge1[0] = board->edge2[1] = 4;
+  for (int way = 0; way < 5; way++) { /* three methods of soft shadows, hard shadows, the reference */
+    static const hl_soft_method methods[] = {HL_SOFT_CASCADE, HL_SOFT_PAPER, HL_SOFT_SUBLIGHTS};
+    set.scene.render.soft_method = methods[way % 3];
+    set.scene.render.shadows = way == 3 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT;
+    set.volumes[0].anisotropy = set.volumes[1].anisotropy = 0;
+    render_all(&set, way == 4, &even);
+    set.volumes[0].anisotropy = set.volumes[1].anisotropy = 0.8;
+    render_all(&set, way == 4, &scattered);
+    assert_memory_equal(even.shadows, scattered.shadows, sizeof even.shadows);
+    assert_memory_not_equal(even.pictures, scattered.pictures, sizeof even.pictures);
+  }
+  stage_close(&set);
+}
+
 /* From near, and from so far that several pixels are averaged. */
 static void test_sum_is_the_picture(void **state) {
   (void)state;
@@ -469,12 +493,19 @@ static void test_refusals(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_depth_of_box),    cmocka_unit_test(test_depth_of_box_in_perspective),
-      cmocka_unit_test(test_shadow_of_plate), cmocka_unit_test(test_texture_is_no_shadow),
-      cmocka_unit_test(test_normal_of_ramp),  cmocka_unit_test(test_sum_is_the_picture),
-      cmocka_unit_test(test_relighting),      cmocka_unit_test(test_sheets_against_reference),
-      cmocka_unit_test(test_picture_stays),   cmocka_unit_test(test_same_bytes),
-      cmocka_unit_test(test_some_layers),     cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_depth_of_box),
+      cmocka_unit_test(test_depth_of_box_in_perspective),
+      cmocka_unit_test(test_shadow_of_plate),
+      cmocka_unit_test(test_texture_is_no_shadow),
+      cmocka_unit_test(test_normal_of_ramp),
+      cmocka_unit_test(test_sum_is_the_picture),
+      cmocka_unit_test(test_relighting),
+      cmocka_unit_test(test_sheets_against_reference),
+      cmocka_unit_test(test_picture_stays),
+      cmocka_unit_test(test_same_bytes),
+      cmocka_unit_test(test_some_layers),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_scattering_is_no_shadow),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
