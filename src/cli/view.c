@@ -106,8 +106,9 @@ static hl_status name_absolutely(view_job *job, hl_scene **scene, hl_error *erro
   hl_scene_description d = *hl_scene_describe(*scene);
   hl_scene_volume *volumes = malloc(d.volume_count * sizeof *volumes + 1);
   hl_light *lights = malloc(d.light_count * sizeof *lights + 1);
+  hl_scene_mesh *meshes = malloc(d.mesh_count * sizeof *meshes + 1);
   path_list *list = calloc(1, sizeof *list);
-  bool good = volumes != NULL && lights != NULL && list != NULL;
+  bool good = volumes != NULL && lights != NULL && meshes != NULL && list != NULL;
   for (size_t v = 0; good && v < d.volume_count; v++) {
     volumes[v] = d.volumes[v];
     good = make_absolute(&volumes[v].file, list);
@@ -116,7 +117,12 @@ static hl_status name_absolutely(view_job *job, hl_scene **scene, hl_error *erro
     lights[l] = d.lights[l];
     good = make_absolute(&lights[l].texture.file, list) && make_absolute(&lights[l].emission.file, list);
   }
+  for (size_t m = 0; good && m < d.mesh_count; m++) {
+    meshes[m] = d.meshes[m];
+    good = make_absolute(&meshes[m].file, list);
+  }
   d.volumes = volumes;
+  d.meshes = meshes;
   d.lights = lights;
   hl_scene *named = NULL;
   hl_status status = good ? hl_scene_create(job->host.context, &d, &named, error) : HL_ERROR_MEMORY;
@@ -127,6 +133,7 @@ static hl_status name_absolutely(view_job *job, hl_scene **scene, hl_error *erro
   }
   for (size_t p = 0; list != NULL && p < list->count; p++) free(list->paths[p]);
   free(list);
+  free(meshes);
   free(lights);
   free(volumes);
   return status;

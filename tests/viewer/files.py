@@ -45,6 +45,7 @@ def folder_is_the_border(viewer):
     check(request(viewer, "POST", "open", file="broken.nrrd")[0] in (400, 403), "a broken file is an error")
     start = json.loads(request(viewer, "POST", "open", file="inside/scene.json")[1])
     check(os.path.isabs(start["scene"]["volumes"][0]["file"]) and start["title"] == "scene.json", "a scene can be opened")
+    check(os.path.isabs(start["scene"]["meshes"][0]["file"]), "its meshes are named wherever the page's scene is saved")
 
 
 def uploads_are_checked(viewer):
@@ -187,7 +188,9 @@ with tempfile.TemporaryDirectory() as folder:
     for shape, path in (("rings", "first"), ("torus", "second"), ("fire-ball", "inside/third"), ("torus", "../outside/secret")):
         subprocess.run([PROGRAM, "make", shape, "--size", "24", "--quiet", "-o", f"{path}.nrrd"], check=True)
     with open("inside/scene.json", "w") as file:
-        file.write('{"halflight": 1, "volumes": [{"file": "third.nrrd"}]}')
+        file.write('{"halflight": 1, "volumes": [{"file": "third.nrrd"}], "meshes": [{"file": "triangle.obj"}]}')
+    with open("inside/triangle.obj", "w") as file:
+        file.write("v 0 0 0\nv 9 0 0\nv 0 9 9\nf 1 2 3\n")
     os.symlink("../outside", "away")
     os.symlink("../outside/secret.nrrd", "link.nrrd")
     with open("notes.txt", "w") as file:
