@@ -131,30 +131,13 @@ static hl_status load_directory(hl_bundle *one, hl_load_request *request, hl_vol
   return status;
 }
 
-/* Reads the rest of a stream that is no plain file into one block. */
-static hl_status read_whole(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error) {
-  size_t capacity = 0, got = 1;
-  for (*length = 0; got > 0; *length += got) {
-    if (capacity - *length < HL_STREAM_BUFFER_BYTES) {
-      size_t wanted = 2 * capacity + 2 * (size_t)HL_STREAM_BUFFER_BYTES;
-      unsigned char *larger = hl_reallocate(stream->context, *bytes, wanted, 1);
-      if (larger == NULL) return hl_fail_memory(error, wanted, stream->path);
-      *bytes = larger;
-      capacity = wanted;
-    }
-    hl_status status = hl_stream_read(stream, *bytes + *length, HL_STREAM_BUFFER_BYTES, &got, error);
-    if (status != HL_OK) return status;
-  }
-  return HL_OK;
-}
-
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_context *context = request->context;
   unsigned char *whole = NULL;
   hl_bundle one = {.context = context};
   hl_status status = hl_bundle_of_file(context, (*stream)->path, &one, error);
   if (status == HL_OK && !hl_stream_is_plain_file(*stream)) {
-    status = read_whole(*stream, &whole, &one.memory_size, error);
+    status = hl_stream_read_rest(*stream, &whole, &one.memory_size, error);
     one.memory = whole;
   }
   bool claimed = false;

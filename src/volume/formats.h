@@ -14,6 +14,7 @@
   HL_FORMAT(npy)       \
   HL_FORMAT(tiff)      \
   HL_FORMAT(mrc)       \
+  HL_FORMAT(nanovdb)   \
   HL_FORMAT(zarr)      \
   HL_FORMAT(dicom)     \
   HL_FORMAT(slices)    \

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
 
@@ -293,4 +294,25 @@ hl_status hl_stream_line(hl_stream *stream, char line[HL_LINE_BYTES], bool *ende
 uint64_t hl_stream_at_most(const hl_stream *stream) {
   uint64_t buffered = stream->end - stream->begin, more = stream->ended ? 0 : stream->at_most(stream);
   return more > UINT64_MAX - buffered ? UINT64_MAX : buffered + more;
+}
+
+hl_status hl_stream_read_rest(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error) {
+  size_t capacity = 0, got = 1;
+  hl_status status = HL_OK;
+  for (*length = 0; status == HL_OK && got > 0; *length += got) {
+    if (*length == capacity) {
+      size_t wanted = capacity == 0 ? (size_t)HL_STREAM_BUFFER_BYTES : 2 * capacity;
+      unsigned char *larger = hl_reallocate(stream->context, *bytes, wanted, 1);
+      if (larger == NULL) return hl_fail_memory(error, wanted, stream->path);
+      *bytes = larger;
+      capacity = wanted;
+    }
+    got = 0;
+    status = hl_stream_read(stream, *bytes + *length, capacity - *length, &got, error);
+    if (status == HL_OK && hl_cancelled(stream->context))
+      return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path);
+  }
+  if (status == HL_OK && stream->cut_short)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: the compressed data are cut short", stream->path);
+  return status;
 }

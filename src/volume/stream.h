@@ -64,6 +64,9 @@ void hl_stream_take(hl_stream *stream, size_t count);
 hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *count, hl_error *error);
 /* Reads exactly the requested bytes, or fails. */
 hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_error *error);
+/* Reads all that is left, of a pipe or of compressed data whose parts are needed in any order. *bytes: null
+ * before; owned by the caller, also on failure. */
+hl_status hl_stream_read_rest(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error);
 hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error);
 /* Reads one line, without its line end: LF, CR LF or, if the first line ends with it, CR. *ended: there are
  * no more lines. */

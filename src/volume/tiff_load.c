@@ -18,7 +18,6 @@
 
 enum {
   PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read before other threads would have started */
-  FIRST_BYTES = 1 << 16
 };
 
 /* A file and the offsets of its directories. */
@@ -357,28 +356,6 @@ static void release(stack_reading *r) {
   tiff_plan_release(&r->plan);
 }
 
-/* Reads all of a pipe or of compressed data into memory, as pages are read in any order. */
-static hl_status read_whole(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error) {
-  size_t capacity = 0, got = 1;
-  hl_status status = HL_OK;
-  for (*length = 0; status == HL_OK && got > 0; *length += got) {
-    if (*length == capacity) {
-      size_t wanted = capacity == 0 ? FIRST_BYTES : 2 * capacity;
-      unsigned char *larger = hl_reallocate(stream->context, *bytes, wanted, 1);
-      if (larger == NULL) return hl_fail_memory(error, wanted, stream->path);
-      *bytes = larger;
-      capacity = wanted;
-    }
-    got = 0;
-    status = hl_stream_read(stream, *bytes + *length, capacity - *length, &got, error);
-    if (status == HL_OK && hl_cancelled(stream->context))
-      return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path);
-  }
-  if (status == HL_OK && stream->cut_short)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the compressed data are cut short", stream->path);
-  return status;
-}
-
 hl_status hl_tiff_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   stack_reading r = {.context = request->context, .request = request};
   tiff_file file = {.descriptor = -1};
@@ -386,7 +363,7 @@ hl_status hl_tiff_load(hl_stream **stream, hl_load_request *request, hl_volume *
   unsigned char *whole = NULL;
   hl_status status = HL_OK;
   if (!hl_stream_memory(*stream, &r.memory, &r.memory_size) && !hl_stream_is_plain_file(*stream)) {
-    status = read_whole(*stream, &whole, &r.memory_size, error);
+    status = hl_stream_read_rest(*stream, &whole, &r.memory_size, error);
     r.memory = whole;
   }
   if (status == HL_OK)

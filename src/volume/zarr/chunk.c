@@ -5,15 +5,12 @@
 #include "volume/zarr/chunk.h"
 
 #include <string.h>
-#include <zlib.h>
 #ifdef HL_HAS_ZSTD
 #include <zstd.h>
 #endif
-#ifdef HL_HAS_BLOSC
-#include <blosc.h>
-#endif
 
 #include "core/memory.h"
+#include "volume/unpack.h"
 
 void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker) {
   hl_release(unpacker->context, unpacker->packed);
@@ -63,27 +60,21 @@ static hl_status make_room(hl_zarr_unpacker *u, hl_error *error) {
   return u->voxels != NULL ? HL_OK : hl_fail_memory(error, bytes, "a chunk");
 }
 
-static voidpf zlib_allocate(voidpf context, uInt count, uInt size) {
-  return hl_allocate(context, count, size);
-}
-static void zlib_release(voidpf context, voidpf memory) { hl_release(context, memory); }
-
 static hl_status unpack_deflate(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
-  enum { GREATEST_RATIO = 1032, EITHER_HEADER = 15 + 32 }; /* zlib.h: zlib or gzip, by its first bytes */
-  if (packed.unpacked / GREATEST_RATIO > packed.length) return fail_damaged(u, "deflate", error);
-  hl_status status = make_room(u, error);
-  if (status != HL_OK) return status;
-  z_stream zlib = {.zalloc = zlib_allocate,
-                   .zfree = zlib_release,
-                   .opaque = u->context,
-                   .next_in = (Bytef *)packed.bytes,
-                   .avail_in = (uInt)packed.length,
-                   .next_out = u->voxels,
-                   .avail_out = (uInt)packed.unpacked};
-  if (inflateInit2(&zlib, EITHER_HEADER) != Z_OK) return hl_fail_memory(error, 50000, "decompression");
-  int answer = inflate(&zlib, Z_FINISH);
-  inflateEnd(&zlib);
-  return answer == Z_STREAM_END && zlib.avail_out == 0 ? HL_OK : fail_damaged(u, "deflate", error);
+  bool sound = hl_deflate_can_hold(packed.length, packed.unpacked);
+  hl_status status = sound ? make_room(u, error) : HL_OK;
+  if (sound && status == HL_OK)
+    status = hl_unpack_deflate(u->context, packed.bytes, packed.length, u->voxels, packed.unpacked, &sound,
+                               error);
+  return sound || status != HL_OK ? status : fail_damaged(u, "deflate", error);
+}
+
+static hl_status unpack_blosc(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
+  bool sound = hl_blosc_can_hold(packed.bytes, packed.length, packed.unpacked);
+  hl_status status = sound ? make_room(u, error) : HL_OK;
+  if (sound && status == HL_OK)
+    status = hl_unpack_blosc(u->path, packed.bytes, packed.length, u->voxels, packed.unpacked, &sound, error);
+  return sound || status != HL_OK ? status : fail_damaged(u, "blosc", error);
 }
 
 #ifdef HL_HAS_ZSTD
@@ -101,38 +92,19 @@ static hl_status unpack_zstd(hl_zarr_unpacker *u, packed_bytes packed, hl_error 
 }
 #endif
 
-#ifdef HL_HAS_BLOSC
-static hl_status unpack_blosc(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
-  size_t promised;
-  if (blosc_cbuffer_validate(packed.bytes, packed.length, &promised) != 0 || promised != packed.unpacked)
-    return fail_damaged(u, "blosc", error);
-  hl_status status = make_room(u, error);
-  if (status != HL_OK) return status;
-  int made = blosc_decompress_ctx(packed.bytes, u->voxels, packed.unpacked, 1);
-  return made >= 0 && (size_t)made == packed.unpacked ? HL_OK : fail_damaged(u, "blosc", error);
-}
-#endif
-
 static hl_status unpack(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
-  const char *library = "?";
   switch (u->array->codecs.compressor) {
-    case HL_ZARR_RAW: return HL_OK;
     case HL_ZARR_DEFLATE: return unpack_deflate(u, packed, error);
+    case HL_ZARR_BLOSC: return unpack_blosc(u, packed, error);
     case HL_ZARR_ZSTD:
 #ifdef HL_HAS_ZSTD
       return unpack_zstd(u, packed, error);
+#else
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: chunks packed by zstd, and this program was built without libzstd", u->path);
 #endif
-      library = "libzstd";
-      break;
-    case HL_ZARR_BLOSC:
-#ifdef HL_HAS_BLOSC
-      return unpack_blosc(u, packed, error);
-#endif
-      library = "c-blosc";
-      break;
+    default: return HL_OK;
   }
-  return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: packed chunks, and this program was built without %s",
-                 u->path, library);
 }
 
 /* ---- the whole ---- */

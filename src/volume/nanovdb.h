@@ -1,0 +1,10 @@
+/* volume/nanovdb.h - reads NanoVDB's grids: nanovdb_load.c, or nanovdb_absent.c in a build without
+ * PNanoVDB.h. */
+#ifndef HL_VOLUME_NANOVDB_H
+#define HL_VOLUME_NANOVDB_H
+
+#include "volume/format.h"
+
+hl_status hl_nanovdb_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+
+#endif

@@ -1,0 +1,9 @@
+/* volume/nanovdb_absent.c - NanoVDB files in a build without PNanoVDB.h. */
+#include "volume/nanovdb.h"
+
+hl_status hl_nanovdb_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  (void)request, (void)volume;
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: a NanoVDB file, and this program was built without PNanoVDB.h (libnanovdb-dev)",
+                 (*stream)->path);
+}

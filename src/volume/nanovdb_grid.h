@@ -1,0 +1,30 @@
+/* volume/nanovdb_grid.h - the tree of a NanoVDB grid, read through PNanoVDB.h into a dense volume.
+ *
+ * A grid is a block of memory in which offsets lead from a node to its children. Every look-up goes through
+ * PNanoVDB's check of bounds: offsets that lead out of the block read zeros. */
+#ifndef HL_VOLUME_NANOVDB_GRID_H
+#define HL_VOLUME_NANOVDB_GRID_H
+
+#include "volume/format.h"
+
+typedef struct nanovdb_grid {
+  hl_context *context;
+  const char *path;     /* for error lines */
+  unsigned char *bytes; /* borrowed; [size]; aligned to 64 bytes */
+  size_t size;
+  uint32_t kind; /* PNANOVDB_GRID_TYPE_... */
+  int component; /* of vectors and colours; or HL_COMPONENT_MAGNITUDE */
+} nanovdb_grid;
+
+/* Type and components of the voxels of a kind of grid; type 0: not read. */
+void nanovdb_kind(uint32_t kind, hl_voxel_type *type, size_t *components);
+
+/* Checks the block, and sets the description's dimensions, origin and axes: the box of the active voxels. */
+hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description *description,
+                                hl_error *error);
+
+/* Fills voxels [k][j][i] of that box in stored form; type: of the volume. */
+hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
+                            hl_error *error);
+
+#endif
