@@ -124,13 +124,6 @@ static uint64_t level_bytes(const hl_level_size *level) {
   return bytes;
 }
 
-static size_t longest_side(const hl_level_size *level) {
-  size_t longest = 0;
-  for (int axis = 0; axis < 3; axis++)
-    if (level->dimensions[axis] > longest) longest = level->dimensions[axis];
-  return longest;
-}
-
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error) {
   hl_selection *selection = &request->selection;
@@ -140,15 +133,12 @@ hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_l
   if (status != HL_OK || request->level >= 0) return status;
   size_t level = 0;
   while (level + 1 < count && limit > 0 && level_bytes(&levels[level]) > limit / 2) level++;
-  bool for_memory = level > 0;
-  while (level + 1 < count && request->level_voxels > 0 &&
-         longest_side(&levels[level + 1]) >= request->level_voxels)
-    level++;
   selection->level = (int)level;
   if (level > 0)
     hl_log(request->context, HL_LOG_WARNING,
-           "%.300s: level %zu of %zu is taken, %s: choose by \"level\" (--level)", path, level, count,
-           for_memory ? "which the memory limit leaves room for" : "which is enough for the picture");
+           "%.300s: level %zu of %zu is taken, the finest that the memory limit leaves room for: choose by "
+           "\"level\" (--level)",
+           path, level, count);
   return HL_OK;
 }
 

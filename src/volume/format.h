@@ -19,7 +19,6 @@ typedef struct hl_load_request {
   int component;            /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
   double spacing[3];        /* world units; all 0: as in the file */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
-  size_t level_voxels;      /* of a pyramid: enough along the longest side; 0: as many as there are */
   double window[2];         /* set by readers: data values between which greys are to be shown; equal: none */
   bool is_anatomical;       /* set by readers of formats that hold bodies: the volume's space is meant */
   const char *series;       /* DICOM: number, UID or description; null: choose */
@@ -67,7 +66,7 @@ typedef struct hl_level_size {
 } hl_level_size;
 
 /* Sets request->selection's level among `count`, the finest first: the wanted one, else the finest that
- * leaves half of the memory limit, and no finer than request->level_voxels asks for. */
+ * leaves half of the memory limit. */
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error);
 
