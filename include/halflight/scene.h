@@ -170,7 +170,13 @@ typedef struct hl_scene_mesh {
 } hl_scene_mesh;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
-typedef enum hl_kernel { HL_KERNEL_BSPLINE = 0, HL_KERNEL_GAUSSIAN = 1, HL_KERNEL_LINEAR = 2 } hl_kernel;
+typedef enum hl_kernel {
+  HL_KERNEL_BSPLINE = 0,
+  HL_KERNEL_GAUSSIAN = 1,
+  HL_KERNEL_LINEAR = 2,
+  HL_KERNEL_INTERPOLATING =
+      3 /* the B-spline over coefficients with which it passes through the voxels' values: sharper */
+} hl_kernel;
 typedef enum hl_reconstruction {
   HL_RECONSTRUCTION_AUTO = 0, /* gather; the faster method of the two wherever both were measured */
   HL_RECONSTRUCTION_SPLAT = 1,

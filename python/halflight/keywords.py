@@ -133,8 +133,8 @@ class RenderSettings(TypedDict, total=False):
         The distance of neighbouring sheets; more than 4 is as 4. Smallest voxel edges, 0.01 to 100. Default:
         0.5.
     kernel : str
-        The function that spreads a voxel's value around it. "bspline", "gaussian", "linear". Default:
-        "bspline".
+        The function that spreads a voxel's value around it. "bspline", "gaussian", "linear", "interpolating".
+        Default: "bspline".
     reconstruction : str
         Whether voxels are splatted onto sheets or samples gather voxels. "auto", "splat", "gather". Default:
         "auto".

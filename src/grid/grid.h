@@ -68,7 +68,8 @@ typedef struct grid {
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
   bool cut; /* some relevant brick reaches the box's faces: rays need to know where they cross them */
-  float *finite_voxels; /* a copy of the voxels with non-finite ones replaced by empty, or null */
+  float *finite_voxels; /* a copy of the voxels with non-finite ones replaced by empty, of which
+ interpolating kernels keep coefficients (prefilter.h); or null */
   uint64_t kept_voxels; /* 64 for each relevant brick, fewer at the borders */
 } grid;
 

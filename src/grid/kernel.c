@@ -13,6 +13,17 @@ static const kernel bspline = {
     .degree = HL_BSPLINE_DEGREE,
 };
 
+/* The same over coefficients with which it passes through the voxels' values. */
+static const kernel interpolating = {
+    .name = "interpolating",
+    .support = 2,
+    .variance = 1.0 / 3,
+    .inner = {2.0f / 3, 0, -1, 0.5f},
+    .outer = {1.0f / 6, -0.5f, 0.5f, -1.0f / 6},
+    .degree = HL_BSPLINE_DEGREE,
+    .interpolates = true,
+};
+
 /* The Gaussian exp(-2 d^2) cut at 2 and divided by the sum of its four neighbours at the same phase, so that
  * it sums to 1 (derived: the sum of the four depends only on the fractional part of d). The coefficients are
  * a least-squares fit of degree 5, constrained to sum to 1, to be continuous and to end at 0; the error is at
@@ -42,6 +53,7 @@ const kernel *hl_kernel_get(hl_kernel which) {
   switch (which) {
     case HL_KERNEL_GAUSSIAN: return &gaussian;
     case HL_KERNEL_LINEAR: return &linear;
+    case HL_KERNEL_INTERPOLATING: return &interpolating;
     case HL_KERNEL_BSPLINE: break;
   }
   return &bspline;

@@ -7,6 +7,8 @@
 #ifndef HL_GRID_KERNEL_H
 #define HL_GRID_KERNEL_H
 
+#include <stdbool.h>
+
 #include <halflight/scene.h>
 
 enum { HL_KERNEL_DEGREE = 5, HL_BSPLINE_DEGREE = 3 /* true for the cubic B-spline only */ };
@@ -18,6 +20,7 @@ typedef struct kernel {
   float inner[HL_KERNEL_DEGREE + 1]; /* |d| in [0,1]: coefficients of a^0 .. a^5, a = |d| */
   float outer[HL_KERNEL_DEGREE + 1]; /* |d| in [1,2]: coefficients, a = |d| - 1 */
   int degree;                        /* the highest non-zero power */
+  bool interpolates;                 /* it is summed over coefficients (prefilter.h) in place of voxels */
 } kernel;
 
 const kernel *hl_kernel_get(hl_kernel which);

@@ -1,23 +1,46 @@
 /* grid/make_grid.c - see make_grid.h. */
 #include "grid/make_grid.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "grid/bounds.h"
+#include "grid/prefilter.h"
 #include "grid/relevant.h"
 
 /* ---- copies of voxels ---- */
 
+/* Where finite_voxels come from: the grid's voxels, of the volume's storage. */
+typedef struct copy_job {
+  const grid *grid;
+  hl_storage storage;
+  float greatest; /* distance of copied values from 0 */
+} copy_job;
+
+/* Coefficients are up to 27 times as far from 0 as values are: 3 times along each axis, by the sum of the
+ * filter's weights (derived). Greater values would leave the range of floats, and are taken for this one. */
+static const float GREATEST_FILTERED = FLT_MAX / 64;
+
+static float stored_of(hl_storage storage, const void *row, size_t x) {
+  if (storage == HL_STORAGE_U8) return ((const uint8_t *)row)[x];
+  if (storage == HL_STORAGE_U16) return ((const uint16_t *)row)[x];
+  return ((const float *)row)[x];
+}
+
 static void replace_slice(void *data, size_t index, int worker) {
   (void)worker;
-  const grid *grid = data;
+  const copy_job *job = data;
+  const grid *grid = job->grid;
   size_t count_x = (size_t)grid->dimension[0], count_y = (size_t)grid->dimension[1];
   float *to = grid->finite_voxels + index * count_x * count_y;
   for (size_t y = 0; y < count_y; y++, to += count_x) {
-    const float *from = (const float *)(const void *)hl_grid_row(grid, (int64_t)y, (int64_t)index);
-    for (size_t x = 0; x < count_x; x++) to[x] = isfinite(from[x]) ? from[x] : grid->empty;
+    const void *from = hl_grid_row(grid, (int64_t)y, (int64_t)index);
+    for (size_t x = 0; x < count_x; x++) {
+      float value = stored_of(job->storage, from, x);
+      to[x] = isfinite(value) ? fminf(fmaxf(value, -job->greatest), job->greatest) : grid->empty;
+    }
   }
 }
 
@@ -28,9 +51,12 @@ static void set_voxels(grid *grid, const void *voxels, size_t row_bytes, size_t 
   grid->slice_bytes = slice_bytes;
 }
 
-/* Copies f32 voxels, with empty in place of every non-finite one. */
-static void replace_nonfinite(hl_pool *pool, grid *grid) {
-  hl_pool_run(pool, (size_t)grid->dimension[2], replace_slice, grid);
+/* Copies voxels as floats, with empty in place of every non-finite one; an interpolating kernel's become
+ * coefficients. */
+static void replace_voxels(hl_pool *pool, hl_storage storage, const kernel *kernel, grid *grid) {
+  copy_job job = {grid, storage, kernel->interpolates ? GREATEST_FILTERED : FLT_MAX};
+  hl_pool_run(pool, (size_t)grid->dimension[2], replace_slice, &job);
+  if (kernel->interpolates) hl_prefilter(pool, grid);
   size_t row_bytes = (size_t)grid->dimension[0] * sizeof *grid->finite_voxels;
   set_voxels(grid, grid->finite_voxels, row_bytes, (size_t)grid->dimension[1] * row_bytes);
 }
@@ -77,8 +103,8 @@ static void copy_slice(void *data, size_t index, int worker) {
 
 /* ---- the grid ---- */
 
-static void set_size(const hl_volume *volume, grid *grid) {
-  grid->storage = volume->storage;
+static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) {
+  grid->storage = kernel->interpolates ? HL_STORAGE_F32 : volume->storage;
   for (int axis = 0; axis < 3; axis++) {
     grid->dimension[axis] = (int32_t)volume->dimension[axis];
     grid->brick_count[axis] = grid->dimension[axis] / HL_BRICK_CELLS + 1;
@@ -88,7 +114,7 @@ static void set_size(const hl_volume *volume, grid *grid) {
 /* The memory of a grid whose size is set. */
 static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
                     const grid_functions *functions, hl_layout *layout) {
-  if (volume->nonfinite_count > 0)
+  if (volume->nonfinite_count > 0 || kernel->interpolates)
     grid->finite_voxels = hl_layout_take(layout, hl_volume_voxel_count(volume), sizeof *grid->finite_voxels);
   lay_out_columns(grid, functions, layout);
   hl_bricks_lay_out(grid, layout);
@@ -100,7 +126,7 @@ uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid
                        int threads) {
   grid grid = {0};
   hl_layout counted = {0};
-  set_size(volume, &grid);
+  set_size(volume, kernel, &grid);
   lay_out(&grid, volume, kernel, functions, &counted);
   return counted.bytes + hl_bounds_bytes(&grid, threads);
 }
@@ -131,10 +157,10 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
   if (!affine3_invert(source->index_to_frame, &grid->frame_to_index))
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
   hl_scene_volume_box(source->volume, grid->box_low, grid->box_high);
-  set_size(volume, grid);
+  set_size(volume, source->kernel, grid);
   hl_status status = allocate(context, functions, source, grid, error);
   if (status != HL_OK) return status;
-  if (grid->finite_voxels != NULL) replace_nonfinite(pool, grid);
+  if (grid->finite_voxels != NULL) replace_voxels(pool, volume->storage, source->kernel, grid);
   if (grid->columns != NULL) hl_pool_run(pool, (size_t)grid->dimension[2], copy_slice, grid);
   status = hl_bricks_bound(context, pool, functions, grid, error);
   bool smooth = source->kernel->degree == HL_BSPLINE_DEGREE;

@@ -24,7 +24,12 @@ static inline double stored_at(const reference_volume *volume, hl_storage storag
   return isfinite(value) ? (double)value : volume->empty_stored;
 }
 
+static const double *coefficient_row(const reference_volume *volume, size_t j, size_t k) {
+  return volume->coefficients + (k * volume->grid->dimension[1] + j) * volume->grid->dimension[0];
+}
+
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]) {
+  if (volume->coefficients != NULL) return coefficient_row(volume, voxel[1], voxel[2])[voxel[0]];
   const void *row = hl_volume_row(volume->grid, voxel[1], voxel[2]);
   return stored_at(volume, volume->grid->storage, row, voxel[0]);
 }
@@ -122,8 +127,20 @@ static inline double weigh_stored(const reference_volume *volume, hl_storage sto
   return sum;
 }
 
+static double weigh_coefficients(const reference_volume *volume, const size_t voxel[3][4], const double *x,
+                                 const double *y, const double *z) {
+  double sum = 0;
+  for (int k = 0; k < 4; k++)
+    for (int j = 0; j < 4; j++) {
+      const double *row = coefficient_row(volume, voxel[1][j], voxel[2][k]);
+      for (int i = 0; i < 4; i++) sum += z[k] * y[j] * x[i] * row[voxel[0][i]];
+    }
+  return sum;
+}
+
 static double weigh(const reference_volume *volume, const taps *at, const double *x, const double *y,
                     const double *z) {
+  if (volume->coefficients != NULL) return weigh_coefficients(volume, at->voxel, x, y, z);
   switch (volume->grid->storage) {
     case HL_STORAGE_U8: return weigh_stored(volume, HL_STORAGE_U8, at->voxel, x, y, z);
     case HL_STORAGE_U16: return weigh_stored(volume, HL_STORAGE_U16, at->voxel, x, y, z);
@@ -131,11 +148,16 @@ static double weigh(const reference_volume *volume, const taps *at, const double
   }
 }
 
+/* The interpolating kernel overshoots; what leaves the volume's range counts as the range's end. */
+static double in_range(const reference_volume *volume, double value) {
+  return volume->coefficients == NULL ? value : fmin(fmax(value, volume->least), volume->greatest);
+}
+
 double hl_reference_value(const reference_volume *volume, vec3 point) {
   taps at;
   find_taps(volume, point, false, &at);
   double stored = weigh(volume, &at, at.weight[0], at.weight[1], at.weight[2]);
-  return volume->grid->value_scale * stored + volume->grid->value_offset;
+  return in_range(volume, volume->grid->value_scale * stored + volume->grid->value_offset);
 }
 
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point) {
@@ -189,6 +211,8 @@ static bool brick_visible(const reference_volume *volume, size_t i, size_t j, si
       }
   double a = volume->grid->value_scale * low + volume->grid->value_offset;
   double b = volume->grid->value_scale * high + volume->grid->value_offset;
+  a = in_range(volume, a);
+  b = in_range(volume, b);
   return hl_transfer_function_visible(&volume->described->transfer_function, fmin(a, b), fmax(a, b));
 }
 
@@ -302,5 +326,16 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
    * matter. */
   bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
   made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;
+  if (made->kernel == HL_KERNEL_INTERPOLATING) {
+    made->least = fmin(grid->minimum, made->empty_value);
+    made->greatest = fmax(grid->maximum, made->empty_value);
+    hl_status status = hl_reference_coefficients_create(all->context, made, error);
+    if (status != HL_OK) return status;
+  }
   return create_bricks(all->context, made, pool, error);
+}
+
+void hl_reference_volume_release(hl_context *context, reference_volume *volume) {
+  hl_release(context, volume->clearance);
+  hl_release(context, volume->coefficients);
 }

@@ -6,6 +6,7 @@
  *     reference.c       camera, rows of pixels, the entry point
  *     march.c           a ray through the volumes' boxes, step by step, jumping over empty bricks
  *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
+ *     coefficients.c    what the interpolating kernel sums in place of voxels
  *     rays.c            how many rays a pixel of a small picture has
  *     lights.c          points on the lights, their images, and the transmittance towards them
  *     shade.c           the light that one sample sends to the eye
@@ -41,6 +42,9 @@ typedef struct reference_volume {
   double surface_gradient;  /* least gradient of a surface, data value per world unit */
   double smallest_edge;     /* shortest edge of a voxel, world units */
   size_t bricks[3];         /* i, j, k */
+  double *coefficients;     /* owned; [k][j][i], stored values: what the interpolating kernel sums in place of
+                             * voxels; else null */
+  double least, greatest;   /* with coefficients: values beyond these count as these */
   unsigned char *clearance; /* owned; [k][j][i] of bricks: 0 where the brick may be visible, else the distance
                              * in bricks (chessboard metric) to the nearest such brick, at most 255 */
 } reference_volume;
@@ -172,6 +176,10 @@ int hl_reference_rays(const reference *all, double edge);
 /* How far a ray from `point` (index space) stays in transparent bricks, in units of `direction`; 0 where the
  * point's own brick may be visible. */
 double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction);
+
+/* Fills volume->coefficients. */
+hl_status hl_reference_coefficients_create(hl_context *context, reference_volume *volume, hl_error *error);
+void hl_reference_volume_release(hl_context *context, reference_volume *volume);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);

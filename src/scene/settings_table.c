@@ -36,6 +36,7 @@ static const hl_setting_choice soft_methods[] = {HL_SOFT_METHODS{NULL, 0}};
 static const hl_setting_choice kernels[] = {{"bspline", HL_KERNEL_BSPLINE},
                                             {"gaussian", HL_KERNEL_GAUSSIAN},
                                             {"linear", HL_KERNEL_LINEAR},
+                                            {"interpolating", HL_KERNEL_INTERPOLATING},
                                             {NULL, 0}};
 static const hl_setting_choice reconstructions[] = {{"auto", HL_RECONSTRUCTION_AUTO},
                                                     {"splat", HL_RECONSTRUCTION_SPLAT},

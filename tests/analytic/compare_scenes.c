@@ -119,6 +119,11 @@ static void make_balls_linear(stage *set) {
   make_balls_medium(set);
   set->scene.render.kernel = HL_KERNEL_LINEAR;
 }
+static void make_balls_interpolating(stage *set) {
+  make_balls(set);
+  set->type = HL_VOXEL_U8;
+  set->scene.render.kernel = HL_KERNEL_INTERPOLATING;
+}
 static void make_balls_splat(stage *set) {
   make_balls_medium(set);
   set->scene.render.reconstruction = HL_RECONSTRUCTION_SPLAT;
@@ -376,6 +381,7 @@ static const scenario SCENARIOS[] = {
     {"balls-u16", make_balls_words, 0.006, {0}},
     {"balls-gaussian", make_balls_gaussian, 0.006, {0}},
     {"balls-linear", make_balls_linear, 0.006, {0}},
+    {"balls-interpolating", make_balls_interpolating, 0.006, {0}},
     {"balls-splat", make_balls_splat, 0.006, {0}},
     {"balls-perspective", make_balls_perspective, 0.006, {0}},
     {"balls-point-light", make_balls_point_light, 0.006, {0.0035, 0.007, 0.0015}},

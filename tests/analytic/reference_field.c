@@ -40,7 +40,7 @@ static void field_open(field *made, const float *voxels) {
 
 static void field_make(field *made, hl_kernel kernel) {
   hl_error error;
-  hl_release(made->set.context, made->volume.clearance);
+  hl_reference_volume_release(made->set.context, &made->volume);
   made->set.scene.render.kernel = kernel;
   assert_int_equal(
       hl_reference_volume_create(&made->all, &made->set.volumes[0], made->pool, &made->volume, &error),
@@ -48,7 +48,7 @@ static void field_make(field *made, hl_kernel kernel) {
 }
 
 static void field_close(field *made) {
-  hl_release(made->set.context, made->volume.clearance);
+  hl_reference_volume_release(made->set.context, &made->volume);
   hl_pool_destroy(made->pool);
   stage_close(&made->set);
 }
@@ -76,6 +76,22 @@ static float constant(double i, double j, double k) { return i + j + k < -1 ? 0 
 static float sparse(double i, double j, double k) {
   double a = hypot(hypot(i - 4, j - 5), k - 3), b = hypot(hypot(i - 22, j - 17), k - 13);
   return (float)fmax(fmax(2.2 - a, 1.2 - b), 0);
+}
+
+/* The interpolating kernel passes through the voxels' values, at the grid's borders as well. */
+static void test_interpolating_keeps_values(void **state) {
+  (void)state;
+  field f;
+  float *voxels = make_voxels(rough);
+  field_open(&f, voxels);
+  field_make(&f, HL_KERNEL_INTERPOLATING);
+  const float *voxel = voxels;
+  for (size_t z = 0; z < SIZE[2]; z++)
+    for (size_t y = 0; y < SIZE[1]; y++)
+      for (size_t x = 0; x < SIZE[0]; x++)
+        assert_near(hl_reference_value(&f.volume, (vec3){(double)x, (double)y, (double)z}), *voxel++, 1e-12);
+  field_close(&f);
+  free(voxels);
 }
 
 static void test_constant_stays_constant(void **state) {
@@ -221,9 +237,10 @@ static void test_nonfinite_voxels(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_constant_stays_constant), cmocka_unit_test(test_ramp_is_exact),
-      cmocka_unit_test(test_kernel_values),           cmocka_unit_test(test_gradient_is_the_slope),
-      cmocka_unit_test(test_clear_ways_are_clear),    cmocka_unit_test(test_nonfinite_voxels),
+      cmocka_unit_test(test_constant_stays_constant), cmocka_unit_test(test_interpolating_keeps_values),
+      cmocka_unit_test(test_ramp_is_exact),           cmocka_unit_test(test_kernel_values),
+      cmocka_unit_test(test_gradient_is_the_slope),   cmocka_unit_test(test_clear_ways_are_clear),
+      cmocka_unit_test(test_nonfinite_voxels),
   };
   return cmocka_run_group_tests_name("reference_field", tests, NULL, NULL);
 }

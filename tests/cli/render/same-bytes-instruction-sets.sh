@@ -3,7 +3,7 @@
 tool ball 20 ball_20x20x20_uint8.raw
 compared=0
 for how in splat gather; do
-  for kernel in bspline gaussian linear; do
+  for kernel in bspline gaussian linear interpolating; do
     set -- --size 61x47 --quiet --reconstruction $how --kernel $kernel
     halflight render ball_20x20x20_uint8.raw "$@" --instruction-set scalar -o scalar.npy
     tool coverage scalar.npy >box
