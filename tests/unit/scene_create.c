@@ -184,7 +184,7 @@ SPOIL(clip_inverted, p->scene_volume.clipped = 1; p->scene_volume.clip_min[1] = 
 SPOIL(shadows_unknown, p->description.render.shadows = HL_SHADOWS_DEFAULT)
 SPOIL(samples_zero, p->description.render.light_samples = 0)
 SPOIL(spacing_zero, p->description.render.sheet_spacing = 0)
-SPOIL(kernel_unknown, p->description.render.kernel = (hl_kernel)3)
+SPOIL(kernel_unknown, p->description.render.kernel = (hl_kernel)4)
 SPOIL(resolution_huge, p->description.render.shadow_resolution = 100000)
 SPOIL(threads_negative, p->description.render.threads = -2)
 SPOIL(size_wrong, p->description.struct_size = 8)
