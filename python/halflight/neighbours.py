@@ -66,11 +66,10 @@ def _nibabel(source: Any) -> Found:
 def _itk(source: Any) -> Found:
     """SimpleITK's images and ITK's: x runs fastest, world coordinates are left, back, head."""
     if hasattr(source, "GetPixelIDTypeAsString"):
-        array = sys.modules["SimpleITK"].GetArrayViewFromImage(source)
+        array, direction = sys.modules["SimpleITK"].GetArrayViewFromImage(source), source.GetDirection()
     else:
-        array = sys.modules["itk"].array_view_from_image(source)
-    direction = source.GetDirection()
-    direction = direction if hasattr(direction, "__len__") else np.array(direction.GetVnlMatrix())
+        itk = sys.modules["itk"]
+        array, direction = itk.array_view_from_image(source), itk.array_from_matrix(source.GetDirection())
     place = {"spacing": list(source.GetSpacing())[::-1], "origin": list(source.GetOrigin()),
              "direction": np.asarray(direction, dtype=float)}
     return Found(array, "zyx", place, lib.HL_SPACE_LPS, source)
