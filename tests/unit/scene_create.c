@@ -348,7 +348,7 @@ static const refusal refusals[] = {
      HL_ERROR_INPUT, samples_zero},
     {"/render/sheet_spacing: 0 is out of range: give voxels between sheets, from 0.01 to 100", HL_ERROR_INPUT,
      spacing_zero},
-    {"/render/kernel: 3 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, kernel_unknown},
+    {"/render/kernel: 4 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, kernel_unknown},
     {"/render/shadow_resolution: 100000 is out of range: give pixels from 1 to 16384, or auto",
      HL_ERROR_INPUT, resolution_huge},
     {"/render/threads: -2 is negative: give a number of threads up to 1024, 0 for one per processor",
