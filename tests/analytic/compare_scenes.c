@@ -381,7 +381,6 @@ static const scenario SCENARIOS[] = {
     {"balls-u16", make_balls_words, 0.006, {0}},
     {"balls-gaussian", make_balls_gaussian, 0.006, {0}},
     {"balls-linear", make_balls_linear, 0.006, {0}},
-    {"balls-interpolating", make_balls_interpolating, 0.006, {0}},
     {"balls-splat", make_balls_splat, 0.006, {0}},
     {"balls-perspective", make_balls_perspective, 0.006, {0}},
     {"balls-point-light", make_balls_point_light, 0.006, {0.0035, 0.007, 0.0015}},
@@ -422,6 +421,7 @@ static const scenario SCENARIOS[] = {
     {"spot", make_spot, 0.006, {0}},
     {"spot-inside", make_spot_inside, 0.006, {0}},
     {"spot-in-smoke", make_spot_in_smoke, 0.006, {0}},
+    {"balls-interpolating", make_balls_interpolating, 0.006, {0}},
 };
 
 const scenario *compare_scenarios(size_t *count) {
