@@ -14,26 +14,8 @@ hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, u
 
 #else
 
-#include <setjmp.h>
-#include <stdio.h>
-
-#include <jpeglib.h>
-
 #include "core/memory.h"
-
-typedef struct jpeg_fault {
-  struct jpeg_error_mgr manager;
-  jmp_buf jump;
-  char message[JMSG_LENGTH_MAX];
-} jpeg_fault;
-
-static void on_error(j_common_ptr info) {
-  jpeg_fault *fault = (jpeg_fault *)(void *)info->err;
-  info->err->format_message(info, fault->message);
-  longjmp(fault->jump, 1);
-}
-
-static void pass_over(j_common_ptr info) { (void)info; }
+#include "volume/jpeg_fault.h"
 
 /* After this call or a jump out of it the decoder is to be destroyed. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_slice_file *file, hl_slice_shape *shape,
@@ -65,11 +47,9 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_slice_file *f
 hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
                              hl_error *error) {
   struct jpeg_decompress_struct info = {0};
-  jpeg_fault fault = {.message = ""};
+  hl_jpeg_fault fault = {.message = ""};
   volatile hl_status status = HL_OK;
-  info.err = jpeg_std_error(&fault.manager);
-  fault.manager.error_exit = on_error;
-  fault.manager.output_message = pass_over;
+  hl_jpeg_catch(&info, &fault);
   if (setjmp(fault.jump) == 0) {
     jpeg_create_decompress(&info);
     status = run(&info, file, shape, samples, error);

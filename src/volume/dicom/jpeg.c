@@ -32,25 +32,9 @@ static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *e
 
 #else
 
-#include <setjmp.h>
-#include <stdio.h>
 #include <string.h>
 
-#include <jpeglib.h>
-
-typedef struct jpeg_fault {
-  struct jpeg_error_mgr manager;
-  jmp_buf jump;
-  char message[JMSG_LENGTH_MAX];
-} jpeg_fault;
-
-static void stop(j_common_ptr info) {
-  jpeg_fault *fault = (jpeg_fault *)(void *)info->err;
-  info->err->format_message(info, fault->message);
-  longjmp(fault->jump, 1);
-}
-
-static void pass_over(j_common_ptr info) { (void)info; }
+#include "volume/jpeg_fault.h"
 
 /* After this call or a jump out of it the decoder is to be destroyed. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed *packed,
@@ -76,11 +60,9 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed 
 
 static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *error) {
   struct jpeg_decompress_struct info = {0};
-  jpeg_fault fault = {.message = ""};
+  hl_jpeg_fault fault = {.message = ""};
   volatile hl_status status = HL_OK;
-  info.err = jpeg_std_error(&fault.manager);
-  fault.manager.error_exit = stop;
-  fault.manager.output_message = pass_over;
+  hl_jpeg_catch(&info, &fault);
   if (setjmp(fault.jump) == 0) {
     jpeg_create_decompress(&info);
     status = run(&info, packed, values, error);
