@@ -83,6 +83,13 @@ typedef struct hl_context_options {
   /* Called with the path of every file that is opened for reading: scenes, volumes, the data files that their
    * headers name, transfer functions, pictures. A program can use it to avoid writing over one of them. */
   void (*reads)(void *user_data, const char *path);
+  /* Asked for a file of a format that another program converts, "OpenVDB": gives the bytes of the file that
+   * it makes (NanoVDB), which are read in its place, or fails: with HL_ERROR_UNSUPPORTED where there is no
+   * such program. The library runs no program itself. */
+  hl_status (*convert)(void *user_data, const char *format, const char *path, const void **bytes,
+                       size_t *byte_count, hl_error *error);
+  /* Takes the bytes of `convert` back. */
+  void (*converted)(void *user_data, const void *bytes, size_t byte_count);
 } hl_context_options;
 
 typedef struct hl_context hl_context; /* usable from several threads at once */

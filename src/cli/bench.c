@@ -270,17 +270,17 @@ static double median_ms(const bench_run *run, int frames, int stage) {
 
 static void print_pair(json_writer *json, const char *key, uint64_t filled, uint64_t skipped) {
   json_open_object(json, key);
-  json_integer(json, "filled", filled);
-  json_integer(json, "skipped", skipped);
+  json_whole_number(json, "filled", filled);
+  json_whole_number(json, "skipped", skipped);
   json_close(json);
 }
 
 /* The work of the last frame. */
 static void print_work(json_writer *json, const char *key, const hl_render_statistics *s) {
   json_open_object(json, key);
-  json_integer(json, "sheets", (uint64_t)s->sheets);
-  json_integer(json, "voxels_kept", s->voxels_kept);
-  json_integer(json, "samples_shaded", s->samples_shaded);
+  json_whole_number(json, "sheets", (uint64_t)s->sheets);
+  json_whole_number(json, "voxels_kept", s->voxels_kept);
+  json_whole_number(json, "samples_shaded", s->samples_shaded);
   json_open_object(json, "pixels");
   print_pair(json, "image", s->pixels_filled_image, s->pixels_skipped_image);
   print_pair(json, "light", s->pixels_filled_light, s->pixels_skipped_light);
@@ -297,13 +297,13 @@ static void print_result(json_writer *json, const bench_result *result) {
   json_open_object(json, NULL);
   json_text(json, "version", hl_version());
   json_text(json, "input", result->input);
-  json_integer(json, "width", (uint64_t)result->width);
-  json_integer(json, "height", (uint64_t)result->height);
-  json_integer(json, "frames", (uint64_t)result->frames);
+  json_whole_number(json, "width", (uint64_t)result->width);
+  json_whole_number(json, "height", (uint64_t)result->height);
+  json_whole_number(json, "frames", (uint64_t)result->frames);
   json_text(json, "move", move_names[result->move]);
-  json_integer(json, "threads", (uint64_t)statistics->threads);
+  json_whole_number(json, "threads", (uint64_t)statistics->threads);
   json_text(json, "instruction_set", hl_instruction_set_name(statistics->instruction_set));
-  json_integer(json, "voxels_total", statistics->voxels_total);
+  json_whole_number(json, "voxels_total", statistics->voxels_total);
   json_open_object(json, "frame_ms");
   for (int i = 0; i < SETTING_COUNT; i++)
     json_number(json, bench_settings[i].name, median_ms(&result->run[i], result->frames, WHOLE_FRAME));

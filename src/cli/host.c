@@ -9,6 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "openvdb.h"
+
 /* Set by the signal handler, read by the library's cancel callback. */
 static volatile sig_atomic_t interrupted = 0;
 
@@ -72,6 +74,18 @@ static void on_reads(void *user_data, const char *path) {
   read_files_add(&((cli_host *)user_data)->read, path);
 }
 
+static hl_status on_convert(void *user_data, const char *format, const char *path, const void **bytes,
+                            size_t *byte_count, hl_error *error) {
+  const cli_host *host = user_data;
+  if (strcmp(format, "OpenVDB") != 0) return HL_ERROR_UNSUPPORTED;
+  return openvdb_convert(path, host->memory_limit, on_cancelled, user_data, bytes, byte_count, error);
+}
+
+static void on_converted(void *user_data, const void *bytes, size_t byte_count) {
+  (void)user_data;
+  openvdb_release(bytes, byte_count);
+}
+
 static bool terminal_can_redraw(void) {
   const char *terminal = getenv("TERM");
   return isatty(STDERR_FILENO) && terminal != NULL && strcmp(terminal, "dumb") != 0;
@@ -111,6 +125,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
   host->cancelled = options->cancelled;
+  host->memory_limit = options->memory_limit > 0 ? options->memory_limit : physical_memory();
   host->progressed = options->progressed;
   host->bar = options->progress && !options->quiet && terminal_can_redraw();
   host->color = color_wanted();
@@ -125,7 +140,9 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.progress = on_progress;
   context_options.cancelled = on_cancelled;
   context_options.reads = on_reads;
-  context_options.memory_limit = options->memory_limit > 0 ? options->memory_limit : physical_memory();
+  context_options.convert = on_convert;
+  context_options.converted = on_converted;
+  context_options.memory_limit = host->memory_limit;
   context_options.instruction_set = options->instruction_set;
   context_options.data_folder = choose_data_folder(options->data_folder);
   hl_error error = {0};

@@ -18,6 +18,7 @@ typedef struct cli_host {
   double drawn_at;                     /* seconds; bars are redrawn ten times a second at most */
   bool (*cancelled)(void);             /* or null */
   void (*progressed)(double fraction); /* or null */
+  uint64_t memory_limit;               /* bytes; 0: unknown */
   cli_read_files read;                 /* the files that the context has read */
   char subject[32];                    /* the input's name beside the bar, cut to keep the line short */
 } cli_host;

@@ -47,28 +47,28 @@ static void print_json_arrays(json_writer *json, const hl_volume *volume) {
     json_open_object(json, NULL);
     json_text(json, "name", array.name);
     json_text(json, "type", hl_voxel_type_name(array.type));
-    json_integer(json, "components", array.components);
+    json_whole_number(json, "components", array.components);
     json_bool(json, "of_cells", array.of_cells != 0);
     json_bool(json, "chosen", array.chosen != 0);
     json_close(json);
     if (array.chosen) chosen = array;
   }
   json_close(json);
-  json_integer(json, "components", chosen.components);
+  json_whole_number(json, "components", chosen.components);
   if (chosen.component == HL_COMPONENT_MAGNITUDE) json_text(json, "component", "magnitude");
-  else json_integer(json, "component", (uint64_t)chosen.component);
+  else json_whole_number(json, "component", (uint64_t)chosen.component);
 }
 
 /* How many time steps, channels and resolutions there are, and which were read. */
 static void print_json_selection(json_writer *json, const hl_volume *volume) {
   hl_volume_selection selection = {.struct_size = sizeof selection};
   if (hl_volume_get_selection(volume, &selection) != HL_OK) return;
-  json_integer(json, "times", selection.times);
-  json_integer(json, "time", (uint64_t)selection.time);
-  json_integer(json, "channels", selection.channels);
-  json_integer(json, "channel", (uint64_t)selection.channel);
-  json_integer(json, "levels", selection.levels);
-  json_integer(json, "level", (uint64_t)selection.level);
+  json_whole_number(json, "times", selection.times);
+  json_whole_number(json, "time", (uint64_t)selection.time);
+  json_whole_number(json, "channels", selection.channels);
+  json_whole_number(json, "channel", (uint64_t)selection.channel);
+  json_whole_number(json, "levels", selection.levels);
+  json_whole_number(json, "level", (uint64_t)selection.level);
 }
 
 static void print_selection(const hl_volume *volume) {
@@ -90,7 +90,7 @@ static void print_json_series(json_writer *json, const hl_volume *volume) {
     if (isfinite(series.number)) json_number(json, "number", series.number);
     json_text(json, "modality", series.modality);
     json_text(json, "description", series.description);
-    json_integers(json, "dimensions", dimensions, 3);
+    json_whole_numbers(json, "dimensions", dimensions, 3);
     json_bool(json, "chosen", series.chosen != 0);
     json_close(json);
   }
@@ -130,7 +130,7 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   json_writer json = {0};
   json_open_object(&json, NULL);
   json_text(&json, "file", path);
-  json_integers(&json, "dimensions", dimensions, 3);
+  json_whole_numbers(&json, "dimensions", dimensions, 3);
   json_text(&json, "type", hl_voxel_type_name(info->type));
   json_numbers(&json, "spacing", info->spacing, 3);
   json_numbers(&json, "origin", info->origin, 3);
@@ -146,12 +146,12 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   json_text(&json, "space", hl_space_name(info->space));
   json_numbers(&json, "range", info->range, 2);
   json_number(&json, "mean", info->mean);
-  json_integer(&json, "nonfinite_count", info->nonfinite_count);
+  json_whole_number(&json, "nonfinite_count", info->nonfinite_count);
   print_json_arrays(&json, volume);
   print_json_selection(&json, volume);
   print_json_series(&json, volume);
   json_text(&json, "taken_for", kind);
-  json_integers(&json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
+  json_whole_numbers(&json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
   json_close(&json);
   return finish_stdout();
 }

@@ -60,7 +60,7 @@ void json_bool(json_writer *writer, const char *key, bool value) {
   fputs(value ? "true" : "false", stdout);
 }
 
-void json_integer(json_writer *writer, const char *key, uint64_t value) {
+void json_whole_number(json_writer *writer, const char *key, uint64_t value) {
   begin_value(writer, key);
   printf("%" PRIu64, value);
 }
@@ -79,7 +79,7 @@ void json_numbers(json_writer *writer, const char *key, const double *values, si
   putchar(']');
 }
 
-void json_integers(json_writer *writer, const char *key, const uint64_t *values, size_t count) {
+void json_whole_numbers(json_writer *writer, const char *key, const uint64_t *values, size_t count) {
   begin_value(writer, key);
   for (size_t i = 0; i < count; i++) printf("%s%" PRIu64, i == 0 ? "[" : ", ", values[i]);
   putchar(']');

@@ -53,20 +53,20 @@ static void print_seconds(json_writer *json, const render_result *result) {
 
 static void print_tiles(json_writer *json, const char *key, uint64_t filled, uint64_t skipped) {
   json_open_object(json, key);
-  json_integer(json, "filled", filled);
-  json_integer(json, "skipped", skipped);
+  json_whole_number(json, "filled", filled);
+  json_whole_number(json, "skipped", skipped);
   json_close(json);
 }
 
 static void print_work(json_writer *json, const hl_render_statistics *statistics) {
-  json_integer(json, "sheets", (uint64_t)statistics->sheets);
-  json_integer(json, "sweeps", (uint64_t)statistics->sweeps);
+  json_whole_number(json, "sheets", (uint64_t)statistics->sheets);
+  json_whole_number(json, "sweeps", (uint64_t)statistics->sweeps);
   json_open_object(json, "voxels");
-  json_integer(json, "total", statistics->voxels_total);
-  json_integer(json, "kept", statistics->voxels_kept);
-  json_integer(json, "culled", statistics->voxels_total - statistics->voxels_kept);
+  json_whole_number(json, "total", statistics->voxels_total);
+  json_whole_number(json, "kept", statistics->voxels_kept);
+  json_whole_number(json, "culled", statistics->voxels_total - statistics->voxels_kept);
   json_close(json);
-  json_integer(json, "samples_shaded", statistics->samples_shaded);
+  json_whole_number(json, "samples_shaded", statistics->samples_shaded);
   json_open_object(json, "tiles");
   print_tiles(json, "image", statistics->tiles_filled_image, statistics->tiles_skipped_image);
   print_tiles(json, "light", statistics->tiles_filled_light, statistics->tiles_skipped_light);
@@ -86,16 +86,16 @@ int render_print_json(const render_result *result) {
   json_text(&json, "input", result->input);
   json_text(&json, "output", result->output);
   if (result->taken_for != NULL) json_text(&json, "taken_for", result->taken_for);
-  json_integer(&json, "width", (uint64_t)description->width);
-  json_integer(&json, "height", (uint64_t)description->height);
+  json_whole_number(&json, "width", (uint64_t)description->width);
+  json_whole_number(&json, "height", (uint64_t)description->height);
   json_text(&json, "method", result->reference ? "reference" : "sheets");
   json_text(&json, "shadows", shadows_name(description->render.shadows));
   json_text(&json, "compositing", is_maximum(description) ? "maximum" : "light");
   json_text(&json, "soft_method", soft_method_name(description->render.soft_method));
   print_seconds(&json, result);
   print_work(&json, statistics);
-  json_integer(&json, "peak_memory_bytes", peak_memory_bytes());
-  json_integer(&json, "threads", (uint64_t)statistics->threads);
+  json_whole_number(&json, "peak_memory_bytes", peak_memory_bytes());
+  json_whole_number(&json, "threads", (uint64_t)statistics->threads);
   json_text(&json, "instruction_set", hl_instruction_set_name(statistics->instruction_set));
   json_close(&json);
   return finish_stdout();

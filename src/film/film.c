@@ -54,7 +54,7 @@ static json_t *step_into(json_t *at, const char *name) {
 /* A number that is whole in the scene stays whole. (The program's own writer of JSON has a json_integer().)
  */
 static json_t *number_like(const json_t *before, double value) {
-  return json_is_integer(before) ? json_pack("I", (json_int_t)llround(value)) : json_real(value);
+  return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
 }
 
 /* Writes a value at a path. A key that its object lacks is added, as the scene has the key's default there;

@@ -5,24 +5,20 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
+#include "process/process.h"
 
 enum { MOST_WORDS = 48, MOST_CODEC_WORDS = 12 };
 
 struct movie {
   char *path, *unfinished; /* owned */
   int pipe;                /* into ffmpeg; -1: closed */
-  FILE *messages;          /* what ffmpeg says */
-  pid_t child;             /* 0: it has ended */
+  process ffmpeg;
 };
 
 const char *const movie_extensions[] = {".mp4", ".mov", ".mkv", ".webm", ".gif", NULL};
@@ -84,39 +80,15 @@ static void command_line(const struct kind *kind, const char *rate, const char *
   words[count] = NULL;
 }
 
-/* ffmpeg runs in a process group of its own: at Ctrl-C this program ends it and removes its file. */
-static int spawn(movie *m, const char **words, int input) {
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  int problem = posix_spawn_file_actions_init(&actions);
-  if (problem != 0) return problem;
-  if ((problem = posix_spawnattr_init(&attributes)) == 0) {
-    sigset_t usual;
-    sigemptyset(&usual);
-    sigaddset(&usual, SIGPIPE);
-    posix_spawnattr_setsigdefault(&attributes, &usual);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
-    posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, fileno(m->messages), STDERR_FILENO);
-    problem = posix_spawnp(&m->child, words[0], &actions, &attributes, (char *const *)words, environ);
-    if (problem != 0) m->child = 0;
-    posix_spawnattr_destroy(&attributes);
-  }
-  posix_spawn_file_actions_destroy(&actions);
-  return problem;
-}
-
 static hl_status start(movie *m, double frames_per_second, hl_error *error) {
   const char *words[MOST_WORDS];
   char rate[40];
   int ends[2];
   snprintf(rate, sizeof rate, "%d/1000", (int)(1000 * frames_per_second + 0.5));
   command_line(kind_of(m->path), rate, m->unfinished, words);
-  if (m->messages == NULL || pipe2(ends, O_CLOEXEC) != 0) return fail_io(error, m->path, strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0) return fail_io(error, m->path, strerror(errno));
   m->pipe = ends[1];
-  int problem = spawn(m, words, ends[0]);
+  int problem = process_start(&m->ffmpeg, words, ends[0]);
   close(ends[0]);
   if (problem == 0) return HL_OK;
   snprintf(error->message, sizeof error->message, "ffmpeg cannot be run: %s", strerror(problem));
@@ -133,7 +105,6 @@ hl_status movie_begin(const char *path, double frames_per_second, movie **result
   }
   m->pipe = -1;
   m->path = strdup(path);
-  m->messages = tmpfile();
   hl_status status = HL_OK;
   if (m->path == NULL || asprintf(&m->unfinished, "%s.%d.unfinished", path, (int)getpid()) < 0) {
     m->unfinished = NULL;
@@ -160,30 +131,25 @@ hl_status movie_add(movie *m, const unsigned char *png, size_t length, hl_error 
   return HL_OK;
 }
 
-/* Waits for ffmpeg, which ends when the pipe is closed. Whether it succeeded. */
-static bool wait_for_end(movie *m) {
-  int how = 0;
+static void close_pipe(movie *m) {
   if (m->pipe >= 0) close(m->pipe);
   m->pipe = -1;
-  while (m->child > 0 && waitpid(m->child, &how, 0) < 0 && errno == EINTR) continue;
-  m->child = 0;
-  return WIFEXITED(how) && WEXITSTATUS(how) == 0;
 }
 
 static void release(movie *m) {
-  if (m->messages != NULL) fclose(m->messages);
+  process_end(&m->ffmpeg);
   free(m->path);
   free(m->unfinished);
   free(m);
 }
 
+/* ffmpeg ends when the pipe is closed. */
 hl_status movie_end(movie *m, hl_error *error) {
-  char said[400] = "ffmpeg has failed";
+  char said[400];
   hl_status status = HL_OK;
-  bool good = wait_for_end(m);
-  if (!good) {
-    rewind(m->messages);
-    if (fgets(said, sizeof said, m->messages) != NULL) said[strcspn(said, "\n")] = '\0';
+  close_pipe(m);
+  if (!process_wait(&m->ffmpeg)) {
+    process_said(&m->ffmpeg, "ffmpeg", said, sizeof said);
     status = fail_io(error, m->path, said);
   } else if (rename(m->unfinished, m->path) != 0) status = fail_io(error, m->path, strerror(errno));
   if (status != HL_OK) unlink(m->unfinished);
@@ -193,8 +159,8 @@ hl_status movie_end(movie *m, hl_error *error) {
 
 void movie_abandon(movie *m) {
   if (m == NULL) return;
-  if (m->child > 0) kill(m->child, SIGKILL);
-  wait_for_end(m);
+  process_end(&m->ffmpeg);
+  close_pipe(m);
   if (m->unfinished != NULL) unlink(m->unfinished);
   release(m);
 }

@@ -15,6 +15,7 @@
   HL_FORMAT(tiff)      \
   HL_FORMAT(mrc)       \
   HL_FORMAT(nanovdb)   \
+  HL_FORMAT(openvdb)   \
   HL_FORMAT(zarr)      \
   HL_FORMAT(dicom)     \
   HL_FORMAT(slices)    \

@@ -68,8 +68,6 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
     size_t mark_length;
     const char *advice;
   } marks[] = {
-      {0, " BDV", 4,
-       "an OpenVDB file: convert it by `nanovdb_convert NAME.vdb NAME.nvdb` (libnanovdb-tools)"},
       {0, "\x89PNG", 4, "a picture, not a volume"},
       {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, ...): export the volume as NRRD or NIfTI"},
       {0, "BZh", 3, "compressed with bzip2: decompress it first"},

@@ -257,7 +257,8 @@ hl_status hl_nanovdb_load(hl_stream **stream, hl_load_request *request, hl_volum
   hl_bundle one = {.context = context};
   grid_list list = {.path = (*stream)->path};
   hl_status status = hl_bundle_of_file(context, list.path, &one, error);
-  if (status == HL_OK && !hl_stream_is_plain_file(*stream)) {
+  if (status == HL_OK && !hl_stream_memory(*stream, &one.memory, &one.memory_size) &&
+      !hl_stream_is_plain_file(*stream)) {
     status = hl_stream_read_rest(*stream, &whole, &one.memory_size, error);
     one.memory = whole;
   }

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-bool hl_jpeg_next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **content, size_t *length) {
+/* The next marker segment: its marker and content. False at the end and where there is none. */
+static bool next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **content, size_t *length) {
   while (r->at + 4 <= r->length && r->bytes[r->at] == 0xff && r->bytes[r->at + 1] == 0xff) r->at++;
   if (r->at + 4 > r->length || r->bytes[r->at] != 0xff) return false;
   size_t told = (size_t)r->bytes[r->at + 2] << 8 | r->bytes[r->at + 3];
@@ -33,7 +34,8 @@ static void make_codes(hl_jpeg_table *table, const unsigned char *counts) {
   table->known = true;
 }
 
-bool hl_jpeg_take_tables(hl_jpeg_reader *r, const unsigned char *bytes, size_t length) {
+/* Takes the tables of a segment; false if one is damaged. */
+static bool take_tables(hl_jpeg_reader *r, const unsigned char *bytes, size_t length) {
   while (length >= 17) {
     size_t count = 0;
     for (int n = 1; n <= 16; n++) count += bytes[n];
@@ -47,6 +49,26 @@ bool hl_jpeg_take_tables(hl_jpeg_reader *r, const unsigned char *bytes, size_t l
     length -= 17 + count;
   }
   return true;
+}
+
+hl_status hl_jpeg_read_headers(hl_jpeg_reader *r, const hl_dicom_packed *packed, const char *name,
+                               hl_jpeg_take_function *take, void *decoder, hl_error *error) {
+  const unsigned char *content;
+  size_t length;
+  int marker = 0;
+  r->bytes = packed->bytes;
+  r->length = packed->length;
+  r->at = 2; /* behind the picture's own marker */
+  hl_status status = HL_OK;
+  while (status == HL_OK && marker != HL_JPEG_SCAN) {
+    if (!next_segment(r, &marker, &content, &length))
+      return hl_dicom_fail_packed(packed, name, "it ends before its pixels", error);
+    if (marker == HL_JPEG_TABLES_OF_CODES && !take_tables(r, content, length))
+      return hl_dicom_fail_packed(packed, name, "a table of codes is damaged", error);
+    if (marker == HL_JPEG_RESTART_INTERVAL && length >= 2) r->restart = (size_t)content[0] << 8 | content[1];
+    status = take(decoder, marker, content, length, error);
+  }
+  return status;
 }
 
 void hl_jpeg_fill(hl_jpeg_reader *r) {

@@ -24,14 +24,29 @@ typedef struct hl_jpeg_reader {
   uint64_t bits; /* the next ones, from bit `bit_count` - 1 downwards */
   int bit_count;
   size_t missing;                         /* bytes read beyond the end */
+  size_t restart;                         /* units between restarts; 0: none */
   hl_jpeg_table table[2][HL_JPEG_TABLES]; /* of DC codes and differences; of AC codes */
 } hl_jpeg_reader;
 
-/* The next marker segment: its marker and content. False at the end and where there is none. */
-bool hl_jpeg_next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **content, size_t *length);
+/* The markers of segments. */
+enum {
+  HL_JPEG_FRAME = 0xc0,          /* of baseline JPEG */
+  HL_JPEG_FRAME_EXTENDED = 0xc1, /* sequential, with Huffman codes */
+  HL_JPEG_FRAME_LOSSLESS = 0xc3,
+  HL_JPEG_TABLES_OF_CODES = 0xc4,
+  HL_JPEG_SCAN = 0xda,
+  HL_JPEG_QUANTIZATION = 0xdb,
+  HL_JPEG_RESTART_INTERVAL = 0xdd
+};
 
-/* Takes the tables of a segment DHT; false if one is damaged. */
-bool hl_jpeg_take_tables(hl_jpeg_reader *r, const unsigned char *bytes, size_t length);
+/* Takes a segment that the reader does not keep itself: all but tables of codes and the restart interval. */
+typedef hl_status hl_jpeg_take_function(void *decoder, int marker, const unsigned char *content,
+                                        size_t length, hl_error *error);
+
+/* Reads the marker segments up to the first scan's codes, the scan's segment included. name: of the kind of
+ * JPEG in error lines. */
+hl_status hl_jpeg_read_headers(hl_jpeg_reader *r, const hl_dicom_packed *packed, const char *name,
+                               hl_jpeg_take_function *take, void *decoder, hl_error *error);
 
 /* Fills the bits up to 48 at least; zeros after a marker or the end. */
 void hl_jpeg_fill(hl_jpeg_reader *r);

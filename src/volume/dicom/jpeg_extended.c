@@ -13,7 +13,7 @@ typedef struct decoder {
   hl_jpeg_reader reader;
   int precision, quantization, id; /* id: of the component */
   const hl_jpeg_table *dc, *ac;
-  size_t rows, columns, restart;
+  size_t rows, columns;
   uint16_t steps[HL_JPEG_TABLES][64]; /* of quantization, in zigzag order; 0: not told */
 } decoder;
 
@@ -64,22 +64,13 @@ static hl_status take_scan(decoder *d, const unsigned char *bytes, size_t length
   return HL_OK;
 }
 
-static hl_status read_headers(decoder *d, hl_error *error) {
-  const unsigned char *content;
-  size_t length;
-  int marker;
-  d->reader.at = 2;
-  while (hl_jpeg_next_segment(&d->reader, &marker, &content, &length)) {
-    hl_status status = HL_OK;
-    if (marker == 0xc4 && !hl_jpeg_take_tables(&d->reader, content, length))
-      status = refuse(d, "a table of codes is damaged", error);
-    if (marker == 0xdb) status = take_steps(d, content, length, error);
-    if (marker == 0xc0 || marker == 0xc1) status = take_frame(d, content, length, error);
-    if (marker == 0xdd && length >= 2) d->restart = (size_t)content[0] << 8 | content[1];
-    if (marker == 0xda) return take_scan(d, content, length, error);
-    if (status != HL_OK) return status;
-  }
-  return refuse(d, "it ends before its pixels", error);
+static hl_status take(void *decoder_, int marker, const unsigned char *content, size_t length,
+                      hl_error *error) {
+  decoder *d = decoder_;
+  if (marker == HL_JPEG_QUANTIZATION) return take_steps(d, content, length, error);
+  if (marker == HL_JPEG_FRAME || marker == HL_JPEG_FRAME_EXTENDED)
+    return take_frame(d, content, length, error);
+  return marker == HL_JPEG_SCAN ? take_scan(d, content, length, error) : HL_OK;
 }
 
 /* ---- blocks of 8 x 8 ---- */
@@ -161,7 +152,7 @@ static hl_status take_blocks(decoder *d, uint16_t *values, hl_error *error) {
   int previous = 0;
   for (size_t top = 0; top < d->rows; top += 8)
     for (size_t left = 0; left < d->columns; left += 8, done++) {
-      if (d->restart > 0 && done > 0 && done % d->restart == 0) {
+      if (d->reader.restart > 0 && done > 0 && done % d->reader.restart == 0) {
         hl_jpeg_take_restart(&d->reader);
         previous = 0;
       }
@@ -177,9 +168,7 @@ hl_status hl_dicom_decode_jpeg_extended(const hl_dicom_packed *packed, void *val
   decoder *d = hl_allocate_zeroed(packed->context, 1, sizeof *d);
   if (d == NULL) return hl_fail_memory(error, sizeof *d, packed->path);
   d->packed = packed;
-  d->reader.bytes = packed->bytes;
-  d->reader.length = packed->length;
-  hl_status status = read_headers(d, error);
+  hl_status status = hl_jpeg_read_headers(&d->reader, packed, "JPEG", take, d, error);
   if (status == HL_OK) status = take_blocks(d, values, error);
   hl_release(packed->context, d);
   return status;

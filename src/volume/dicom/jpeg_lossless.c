@@ -15,7 +15,7 @@ typedef struct decoder {
   const hl_dicom_packed *packed;
   hl_jpeg_reader reader;
   int precision, predictor, shift; /* shift: the point transform */
-  size_t rows, columns, components, restart;
+  size_t rows, columns, components;
   component component[COMPONENTS_MOST];
 } decoder;
 
@@ -61,22 +61,11 @@ static hl_status take_scan(decoder *d, const unsigned char *bytes, size_t length
   return HL_OK;
 }
 
-/* Reads marker segments up to the first scan's codes. */
-static hl_status read_headers(decoder *d, hl_error *error) {
-  const unsigned char *content;
-  size_t length;
-  int marker;
-  d->reader.at = 2;
-  while (hl_jpeg_next_segment(&d->reader, &marker, &content, &length)) {
-    hl_status status = HL_OK;
-    if (marker == 0xc4 && !hl_jpeg_take_tables(&d->reader, content, length))
-      status = refuse(d, "a table of codes is damaged", error);
-    if (marker == 0xc3) status = take_frame(d, content, length, error);
-    if (marker == 0xdd && length >= 2) d->restart = (size_t)content[0] << 8 | content[1];
-    if (marker == 0xda) return take_scan(d, content, length, error);
-    if (status != HL_OK) return status;
-  }
-  return refuse(d, "it ends before its pixels", error);
+static hl_status take(void *decoder_, int marker, const unsigned char *content, size_t length,
+                      hl_error *error) {
+  decoder *d = decoder_;
+  if (marker == HL_JPEG_FRAME_LOSSLESS) return take_frame(d, content, length, error);
+  return marker == HL_JPEG_SCAN ? take_scan(d, content, length, error) : HL_OK;
 }
 
 /* ---- samples ---- */
@@ -131,9 +120,9 @@ static void store_row(const decoder *d, const uint16_t *row, size_t y, void *val
 /* Restarts stand at the ends of rows (T.81, H.1.1). */
 static hl_status take_rows(decoder *d, uint16_t *rows, void *values, hl_error *error) {
   size_t count = d->columns * d->components, since = 0;
-  if (d->restart % d->columns != 0) return refuse(d, "a restart within a row", error);
+  if (d->reader.restart % d->columns != 0) return refuse(d, "a restart within a row", error);
   for (size_t y = 0; y < d->rows; y++) {
-    if (d->restart > 0 && since == d->restart) {
+    if (d->reader.restart > 0 && since == d->reader.restart) {
       hl_jpeg_take_restart(&d->reader);
       since = 0;
     }
@@ -151,10 +140,8 @@ hl_status hl_dicom_decode_jpeg_lossless(const hl_dicom_packed *packed, void *val
   decoder *d = hl_allocate_zeroed(packed->context, 1, sizeof *d);
   if (d == NULL) return hl_fail_memory(error, sizeof *d, packed->path);
   d->packed = packed;
-  d->reader.bytes = packed->bytes;
-  d->reader.length = packed->length;
   uint16_t *rows = NULL;
-  hl_status status = read_headers(d, error);
+  hl_status status = hl_jpeg_read_headers(&d->reader, packed, "lossless JPEG", take, d, error);
   if (status == HL_OK) {
     size_t count = 2 * d->columns * d->components;
     rows = hl_allocate_zeroed(packed->context, count, sizeof *rows);

@@ -1,0 +1,103 @@
+/* cli/openvdb.c - runs Debian's nanovdb_convert in a temporary folder and gives its file as memory.
+ *
+ * The converter sees names of this file's choice only: the input is a link in the folder. */
+#define _GNU_SOURCE
+#include "openvdb.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "process/process.h"
+
+typedef struct workplace {
+  char folder[PATH_MAX / 2], input[PATH_MAX], output[PATH_MAX];
+} workplace;
+
+static hl_status fail_io(hl_error *error, const char *what) {
+  snprintf(error->message, sizeof error->message, "nanovdb_convert: %.900s", what);
+  return HL_ERROR_IO;
+}
+
+static hl_status make_workplace(const char *path, workplace *w, hl_error *error) {
+  const char *temporary = getenv("TMPDIR");
+  if (temporary == NULL || temporary[0] == '\0') temporary = "/tmp";
+  char whole[PATH_MAX];
+  int length = snprintf(w->folder, sizeof w->folder, "%s/halflight-XXXXXX", temporary);
+  if (length >= (int)sizeof w->folder || mkdtemp(w->folder) == NULL) {
+    w->folder[0] = '\0';
+    return fail_io(error, "no folder for temporary files: set TMPDIR");
+  }
+  snprintf(w->input, sizeof w->input, "%s/in.vdb", w->folder);
+  snprintf(w->output, sizeof w->output, "%s/out.nvdb", w->folder);
+  if (realpath(path, whole) == NULL || symlink(whole, w->input) != 0) return fail_io(error, strerror(errno));
+  return HL_OK;
+}
+
+static void remove_workplace(const workplace *w) {
+  if (w->folder[0] == '\0') return;
+  unlink(w->input);
+  unlink(w->output);
+  rmdir(w->folder);
+}
+
+/* Waits for the end; the user may ask to stop before. */
+static hl_status await(process *p, int (*cancelled)(void *), void *user_data, hl_error *error) {
+  const struct timespec pause = {.tv_nsec = 5000000};
+  char said[400];
+  bool succeeded;
+  while (!process_has_ended(p, &succeeded)) {
+    if (cancelled(user_data)) return HL_ERROR_CANCELLED;
+    nanosleep(&pause, NULL);
+  }
+  if (succeeded) return HL_OK;
+  process_said(p, "it", said, sizeof said);
+  fail_io(error, said);
+  return HL_ERROR_INPUT;
+}
+
+static hl_status run(const workplace *w, uint64_t limit, int (*cancelled)(void *), void *user_data,
+                     hl_error *error) {
+  const char *const words[] = {"nanovdb_convert", w->input, w->output, NULL};
+  process converter;
+  int problem = process_start(&converter, words, -1);
+  hl_status status = problem == 0        ? HL_OK
+                     : problem == ENOENT ? HL_ERROR_UNSUPPORTED
+                                         : fail_io(error, strerror(problem));
+  if (limit > 0) process_limit(&converter, limit, limit);
+  if (status == HL_OK) status = await(&converter, cancelled, user_data, error);
+  process_end(&converter);
+  return status;
+}
+
+static hl_status map(const char *path, const void **bytes, size_t *byte_count, hl_error *error) {
+  struct stat about;
+  int file = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  void *memory = MAP_FAILED;
+  if (file >= 0 && fstat(file, &about) == 0 && about.st_size > 0)
+    memory = mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, file, 0);
+  if (file >= 0) close(file);
+  if (memory == MAP_FAILED) return fail_io(error, "it wrote nothing");
+  *bytes = memory;
+  *byte_count = (size_t)about.st_size;
+  return HL_OK;
+}
+
+hl_status openvdb_convert(const char *path, uint64_t limit, int (*cancelled)(void *user_data),
+                          void *user_data, const void **bytes, size_t *byte_count, hl_error *error) {
+  workplace w;
+  hl_status status = make_workplace(path, &w, error);
+  if (status == HL_OK) status = run(&w, limit, cancelled, user_data, error);
+  if (status == HL_OK) status = map(w.output, bytes, byte_count, error);
+  remove_workplace(&w);
+  return status;
+}
+
+void openvdb_release(const void *bytes, size_t byte_count) { munmap((void *)bytes, byte_count); }

@@ -1,0 +1,41 @@
+/* volume/openvdb.c - OpenVDB's own files, which another program makes NanoVDB of: the context's `convert`. */
+#include <stdio.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "volume/nanovdb.h"
+
+static bool has_content(const unsigned char *bytes, size_t length) {
+  return length >= 4 && memcmp(bytes, " BDV", 4) == 0;
+}
+
+static hl_status fail_unconverted(const char *path, hl_error *error) {
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: an OpenVDB file: convert it by `nanovdb_convert NAME.vdb NAME.nvdb` (libnanovdb-tools)",
+                 path);
+}
+
+/* Reads what the file was converted to, under the file's own name. */
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  const hl_context_options *options = &request->context->options;
+  const char *path = (*stream)->path;
+  const void *bytes = NULL;
+  size_t byte_count = 0;
+  hl_stream *converted = NULL;
+  hl_error reason = {0};
+  if (options->convert == NULL || !hl_stream_is_plain_file(*stream)) return fail_unconverted(path, error);
+  hl_status status = options->convert(options->user_data, "OpenVDB", path, &bytes, &byte_count, &reason);
+  if (status == HL_ERROR_UNSUPPORTED) return fail_unconverted(path, error);
+  if (status != HL_OK) return hl_fail(error, status, "%s: %.800s", path, reason.message);
+  status = hl_stream_open_memory(request->context, path, bytes, byte_count, &converted, error);
+  if (status == HL_OK) status = hl_nanovdb_load(&converted, request, volume, error);
+  hl_stream_close(converted);
+  if (options->converted != NULL) options->converted(options->user_data, bytes, byte_count);
+  return status;
+}
+
+const hl_format hl_format_openvdb = {.name = "OpenVDB",
+                                     .endings = {".vdb"},
+                                     .beginning = "\" BDV\"",
+                                     .has_content = has_content,
+                                     .load = load};
