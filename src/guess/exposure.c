@@ -1,10 +1,13 @@
-/* guess/exposure.c - estimates the brightness of a picture by marching a few thousand rays.
+/* guess/exposure.c - estimates the brightness of a picture and the thickness of the surfaces in it by
+ * marching a few thousand rays.
  *
  * Steps are as long as the shortest voxel edge. A sample is the B-spline at the nearest voxel's centre, lit
  * as by the renderer (docs/scene.md, "Brightness and colour") except for shadows, for which the caller gives
  * one fraction.
  */
 #include "guess/exposure.h"
+
+#include <stdlib.h>
 
 #include "core/context.h"
 #include "core/memory.h"
@@ -15,6 +18,8 @@
 #define TARGET    0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
 #define BRIGHTEST 0.99  /* fraction of the pixels that are darker */
 #define OPAQUE    0.98
+#define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
+#define THINNEST  0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
 
@@ -63,10 +68,8 @@ static int entry_of(const exposure *e, double value) {
 }
 
 /* The light that a sample sends to the eye, eqs. (3) and (4). */
-static void shade(const exposure *e, int entry, double value, const double slope[3], vec3 to_eye,
-                  double sent[3]) {
+static void shade(const exposure *e, int entry, double value, vec3 gradient, vec3 to_eye, double sent[3]) {
   const hl_material *material = &e->volume->material;
-  vec3 gradient = mat3_apply(mat3_transpose(e->world_to_index.linear), vec3_of(slope));
   bool surface = e->volume->shading == HL_SHADING_PHONG && vec3_length(gradient) > e->flat;
   vec3 normal = vec3_scale(vec3_normalise(gradient), value > e->empty ? -1 : 1);
   double gloss = 0, matt[3];
@@ -100,28 +103,52 @@ static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, dou
   return part[1] > part[0] && isfinite(part[1]);
 }
 
-/* The brightest channel of a pixel; -1 where the pixel is mostly background. */
-static double brightness_along(const exposure *e, vec3 origin, vec3 direction) {
+/* How thick a surface is, in steps: the depth at which the optical depth becomes 1, from the place on where
+ * matter begins to be visible, if values rise there as steeply as at a sample. Infinite where no depth hides
+ * anything. steepness: values per step. */
+static double thickness_at(const exposure *e, int entry, double value, double steepness) {
+  const hl_volume *volume = e->volume->volume;
+  double per_entry = (volume->maximum - volume->minimum) / (TABLE - 1), optical_depth = 0;
+  int away = value > e->empty ? 1 : -1, first = entry;
+  while (first - away >= 0 && first - away < TABLE && e->opacity[first - away] > 0) first -= away;
+  for (int n = first; n >= 0 && n < TABLE; n += away) {
+    optical_depth -= log1p(-fmin(e->opacity[n], 0.9999)) * per_entry / steepness;
+    if (optical_depth >= 1) return (abs(n - first) + 1) * per_entry / steepness;
+  }
+  return INFINITY;
+}
+
+typedef struct pixel {
+  double brightness; /* of the brightest channel; -1 where the pixel is mostly background */
+  double thickness;  /* of the first surface that the ray meets, in steps; infinite where it meets none */
+} pixel;
+
+static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
   const hl_volume *volume = e->volume->volume;
   vec3 from = affine3_apply(e->world_to_index, origin),
        along = mat3_apply(e->world_to_index.linear, direction);
   vec3 to_eye = vec3_scale(direction, -1);
   double part[2], alpha = 0, seen[3] = {0, 0, 0};
-  if (!cross_grid(e->volume, from, along, part)) return -1;
+  pixel p = {-1, INFINITY};
+  if (!cross_grid(e->volume, from, along, part)) return p;
   for (double t = part[0] + 0.5 * e->step; t < part[1] && alpha < OPAQUE; t += e->step) {
-    vec3 p = vec3_add(from, vec3_scale(along, t));
-    const long at[3] = {lround(p.x), lround(p.y), lround(p.z)};
+    vec3 place = vec3_add(from, vec3_scale(along, t));
+    const long at[3] = {lround(place.x), lround(place.y), lround(place.z)};
     double near = hl_volume_value(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3], sent[3];
     if (!isfinite(near) || !(e->opacity[entry_of(e, near)] > 0)) continue;
     double value = smooth_value(volume, at, slope);
     if (!isfinite(value)) continue;
     int entry = entry_of(e, value);
     double share = (1 - alpha) * e->opacity[entry];
-    shade(e, entry, value, slope, to_eye, sent);
+    vec3 gradient = mat3_apply(mat3_transpose(e->world_to_index.linear), vec3_of(slope));
+    if (alpha < FAINT && e->opacity[entry] > FAINT && vec3_length(gradient) > e->flat)
+      p.thickness = thickness_at(e, entry, value, vec3_length(gradient) * e->step);
+    shade(e, entry, value, gradient, to_eye, sent);
     for (int c = 0; c < 3; c++) seen[c] += share * sent[c];
     alpha += share;
   }
-  return alpha > 0.5 ? fmax(seen[0], fmax(seen[1], seen[2])) : -1;
+  if (alpha > 0.5) p.brightness = fmax(seen[0], fmax(seen[1], seen[2]));
+  return p;
 }
 
 static bool begin(const hl_scene_description *scene, double empty, double left, exposure *e) {
@@ -153,34 +180,52 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
   return true;
 }
 
-static size_t look(const exposure *e, float *brightness) {
-  size_t count = 0;
+/* The brightness of all pixels that show anything, and the thickness of all surfaces that they show. */
+typedef struct pixels {
+  float brightness[SIDE * SIDE], thickness[SIDE * SIDE];
+  size_t bright_count, surface_count;
+} pixels;
+
+static void look(const exposure *e, pixels *seen) {
   for (int y = 0; y < SIDE; y++)
     for (int x = 0; x < SIDE; x++) {
       vec3 aside = vec3_add(vec3_scale(e->right, (2 * x + 1.0) / SIDE - 1),
                             vec3_scale(e->up, 1 - (2 * y + 1.0) / SIDE));
-      double b = brightness_along(e, vec3_of(e->scene->camera.position),
-                                  vec3_normalise(vec3_add(e->forward, aside)));
-      if (b >= 0) brightness[count++] = (float)b;
+      pixel p = look_along(e, vec3_of(e->scene->camera.position),
+                           vec3_normalise(vec3_add(e->forward, aside)));
+      if (p.brightness >= 0) seen->brightness[seen->bright_count++] = (float)p.brightness;
+      if (p.brightness >= 0 && isfinite(p.thickness))
+        seen->thickness[seen->surface_count++] = (float)p.thickness;
     }
-  return count;
 }
 
-hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, double left, double *factor,
+static hl_status judge(hl_context *context, pixels *seen, hl_exposure *exposure, hl_error *error) {
+  if (!hl_sort(context, seen->brightness, seen->bright_count) ||
+      !hl_sort(context, seen->thickness, seen->surface_count))
+    return hl_fail_memory(error, sizeof seen->brightness, "an exposure");
+  if (seen->bright_count > 0) {
+    double bright = fmax(hl_quantile(seen->brightness, seen->bright_count, BRIGHTEST), 1e-9);
+    exposure->factor = round(100 * fmin(fmax(TARGET / bright, 0.5), 2)) / 100;
+  }
+  if (seen->surface_count > 0)
+    exposure->thickness = hl_quantile(seen->thickness, seen->surface_count, THINNEST);
+  return HL_OK;
+}
+
+hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, double left, hl_exposure *result,
                             hl_error *error) {
   hl_context *context = scene->volumes[0].volume->context;
   exposure *e = hl_allocate(context, 1, sizeof *e);
-  float *brightness = hl_allocate(context, SIDE * SIDE, sizeof *brightness);
-  hl_status status = e != NULL && brightness != NULL ? HL_OK
-                                                     : hl_fail_memory(error, sizeof *e, "an exposure");
-  *factor = 1;
-  size_t count = status == HL_OK && begin(scene, empty, left, e) ? look(e, brightness) : 0;
-  if (count > 0 && !hl_sort(context, brightness, count))
-    status = hl_fail_memory(error, count * sizeof *brightness, "an exposure");
-  else if (count > 0)
-    *factor =
-        round(100 * fmin(fmax(TARGET / fmax(hl_quantile(brightness, count, BRIGHTEST), 1e-9), 0.5), 2)) / 100;
-  hl_release(context, brightness);
+  pixels *seen = hl_allocate(context, 1, sizeof *seen);
+  hl_status status = HL_OK;
+  *result = (hl_exposure){1, INFINITY};
+  if (e == NULL || seen == NULL) status = hl_fail_memory(error, sizeof *seen, "an exposure");
+  else if (begin(scene, empty, left, e)) {
+    seen->bright_count = seen->surface_count = 0;
+    look(e, seen);
+    status = judge(context, seen, result, error);
+  }
+  hl_release(context, seen);
   hl_release(context, e);
   return status;
 }

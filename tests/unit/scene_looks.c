@@ -186,6 +186,55 @@ static void flows_show_their_extremes(void **state) {
   hl_context_destroy(context);
 }
 
+/* A ball whose values rise evenly towards its middle, 10 a voxel. */
+static double cone(int i, int j, int k) { return fmax(0, 10 * (20 - distance(i, j, k, 24, 24, 24))); }
+
+/* A scene of a volume of values[], seen whole, with opacities from 0 at `clear` to `most` at 200. */
+static hl_volume *ball_scene(hl_context *context, double clear, double most, parts *p) {
+  parts_make(p);
+  hl_volume *volume = make_volume(context, N, values);
+  p->opacity[0] = (hl_opacity_point){clear, 0};
+  p->opacity[1] = (hl_opacity_point){200, most};
+  p->scene_volume.volume = volume;
+  p->scene_volume.transfer_function.unit_distance = 1;
+  p->scene_volume.transfer_function.opacity_count = 2;
+  p->scene_volume.transfer_function.color_count = 1;
+  p->scene_volume.material = (hl_material){.ambient = 1, .diffuse = 1};
+  p->scene_volume.clipped = 0;
+  memset(&p->light.texture, 0, sizeof p->light.texture);
+  assert_int_equal(hl_camera_frame(&p->description, 30, 20, 1, &p->description.camera), HL_OK);
+  return volume;
+}
+
+/* The optical depth from the place where the values are `clear` to t voxels on, where they rise by 10 a
+ * voxel: of opacity r v after a value v, the integral of -ln(1 - r v) dv is ((1 - r v) ln(1 - r v) + r v) / r
+ * (derived). */
+static double optical_depth(double clear, double most, double t) {
+  double rate = most / (200 - clear), left = 1 - rate * 10 * t;
+  return (left * log(left) + 1 - left) / rate / 10;
+}
+
+/* Steep functions have thin surfaces: an optical depth of 1 begins and ends within their thickness. */
+static void surfaces_are_measured(void **state) {
+  (void)state;
+  static const double cases[][2] = {{20, 0.9}, {60, 0.9}, {100, 0.97}, {20, 0.5}};
+  hl_context *context = make_context();
+  fill(cone);
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    parts p;
+    hl_exposure exposure = {0, 0};
+    hl_volume *volume = ball_scene(context, cases[n][0], cases[n][1], &p);
+    assert_int_equal(hl_scene_exposure(&p.description, 0, 1, &exposure, NULL), HL_OK);
+    double depth = optical_depth(cases[n][0], cases[n][1], exposure.thickness);
+    if (!(fabs(depth - 1) < 0.06)) fail_msg("case %zu: %g, depth %g", n, exposure.thickness, depth);
+    hl_volume_release(volume);
+    hl_volume_release(p.volume);
+    hl_context_destroy(p.context);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* A matt ball in the light of a lamp at the eye is as bright as its colour in its middle: the factor is 0.871
  * (240 of 255) over colour times intensity. Ambient light adds up with it, the part that is left takes from
  * it. */
@@ -194,31 +243,20 @@ static void lights_are_fitted(void **state) {
   hl_context *context = make_context();
   fill(ball_of_bytes);
   parts p;
-  parts_make(&p);
-  hl_volume *volume = make_volume(context, N, values);
-  p.opacity[0] = (hl_opacity_point){60, 0};
-  p.opacity[1] = (hl_opacity_point){200, 0.9};
-  p.scene_volume.volume = volume;
-  p.scene_volume.transfer_function.unit_distance = 1;
-  p.scene_volume.transfer_function.opacity_count = 2;
-  p.scene_volume.transfer_function.color_count = 1;
-  p.scene_volume.material = (hl_material){.ambient = 1, .diffuse = 1};
-  p.scene_volume.clipped = 0;
-  memset(&p.light.texture, 0, sizeof p.light.texture);
-  assert_int_equal(hl_camera_frame(&p.description, 30, 20, 1, &p.description.camera), HL_OK);
+  hl_volume *volume = ball_scene(context, 60, 0.9, &p);
   hl_light_direction(&p.description.camera, 0, 0, p.light.direction);
   static const struct {
     double color, intensity, ambient, left, factor;
   } cases[] = {{1, 1, 0, 1, 0.871},   {0.5, 1, 0, 1, 1.742}, {0.5, 2, 0, 1, 0.871},
                {0.5, 1, 1, 1, 0.871}, {1, 1, 0, 0.5, 1.742}, {0.1, 1, 0, 1, 2}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-    double factor = 0;
+    hl_exposure exposure = {0, 0};
     for (int c = 0; c < 3; c++)
       p.color[0].color[c] = cases[n].color, p.description.ambient[c] = cases[n].ambient;
     p.light.intensity = cases[n].intensity;
-    assert_int_equal(hl_scene_exposure(&p.description, 0, cases[n].left, &factor, NULL), HL_OK);
-    if (fabs(factor / cases[n].factor - 1) > 0.04)
-      fail_msg("case %zu: %g in place of %g", n, factor, cases[n].factor);
+    assert_int_equal(hl_scene_exposure(&p.description, 0, cases[n].left, &exposure, NULL), HL_OK);
+    if (fabs(exposure.factor / cases[n].factor - 1) > 0.04)
+      fail_msg("case %zu: %g in place of %g", n, exposure.factor, cases[n].factor);
   }
   hl_volume_release(volume);
   hl_volume_release(p.volume);
@@ -234,6 +272,7 @@ int main(void) {
       cmocka_unit_test(labels_have_colors_of_their_own),
       cmocka_unit_test(flows_show_their_extremes),
       cmocka_unit_test(lights_are_fitted),
+      cmocka_unit_test(surfaces_are_measured),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
