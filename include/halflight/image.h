@@ -26,6 +26,13 @@ HL_API const float *hl_image_pixels_const(const hl_image *image);
 HL_API HL_WARN_UNUSED hl_status hl_image_add_layer(hl_image *image, const char *name, const char *channels,
                                                    float **values, hl_error *error);
 
+/* How a PNG shows light that is brighter than white. */
+typedef enum hl_tone {
+  HL_TONE_CLIP = 0,  /* each channel is cut at 1 */
+  HL_TONE_FILMIC = 1 /* above 0.6 of white the brightest channel comes ever more slowly near 1 and the others
+                        keep their ratio to it: nothing is cut and hues stay; darker light is left as it is */
+} hl_tone;
+
 typedef struct hl_image_write_options {
   size_t struct_size;         /* set by hl_image_write_options_defaults() */
   int png_depth;              /* 8 or 16 */
@@ -34,6 +41,7 @@ typedef struct hl_image_write_options {
   const char *scene_json;     /* stored in the PNG as the text chunk "halflight:scene"; may be null */
   double exposure; /* stops, -32 to 32; PNG only: the picture's light is multiplied by 2^exposure, the
                       background is not */
+  hl_tone tone;    /* PNG only: of the picture's light after the exposure; the background keeps its colour */
 } hl_image_write_options;
 
 HL_API void hl_image_write_options_defaults(hl_image_write_options *options);

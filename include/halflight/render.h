@@ -59,7 +59,7 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer,
                                                           hl_render_statistics *statistics, hl_error *error);
 
 /* Options for writing the scene's pictures, by hl_image_write() or hl_image_to_srgb8(): the defaults with the
- * scene's background and exposure. scene may be null: the defaults alone. */
+ * scene's background, exposure and tone. scene may be null: the defaults alone. */
 HL_API void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *options);
 
 typedef struct hl_reference_options {

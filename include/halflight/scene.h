@@ -6,6 +6,7 @@
 #ifndef HALFLIGHT_SCENE_H
 #define HALFLIGHT_SCENE_H
 
+#include "image.h"
 #include "mesh.h"
 #include "shape.h"
 #include "volume.h"
@@ -230,6 +231,7 @@ typedef struct hl_scene_description {
   double exposure;         /* stops: a PNG shows the volumes' light times 2^exposure; 0 by default */
   const hl_scene_mesh *meshes;
   size_t mesh_count;
+  hl_tone tone; /* how a PNG shows light that is brighter than white; default HL_TONE_CLIP */
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* immutable and counted */

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import colors
 from ._library import call, context, ffi, lib, made
-from ._settings import number
+from ._settings import number, table, to_field
 from ._words import choice, suggests
 from .scene import Scene
 
@@ -90,12 +90,15 @@ class Image:
         """(height, width, 4)."""
         return tuple(self._pixels.shape)
 
-    def _options(self, background: Any = None, exposure: float | None = None, depth: int = 8) -> Any:
+    def _options(self, background: Any = None, exposure: float | None = None, tone: str | None = None,
+                 depth: int = 8) -> Any:
         options = ffi.new("hl_image_write_options *")
         lib.hl_scene_write_options(self.scene._handle, options)
         options.png_depth = depth
         if exposure is not None:
             options.exposure = number("exposure", exposure)
+        if tone is not None:
+            options.tone = to_field("tone", table(lib.HL_SETTINGS_IMAGE)["tone"], tone)
         if background is not None:
             options.background_transparent = isinstance(background, str) and background == "transparent"
             if not options.background_transparent:
@@ -103,7 +106,8 @@ class Image:
         return options
 
     @suggests
-    def to_srgb8(self, background: Any = None, exposure: float | None = None) -> np.ndarray[Any, np.dtype[np.uint8]]:
+    def to_srgb8(self, background: Any = None, exposure: float | None = None,
+                 tone: str | None = None) -> np.ndarray[Any, np.dtype[np.uint8]]:
         """The picture for screens.
 
         Parameters
@@ -112,6 +116,8 @@ class Image:
             Default: the scene's. Names and "#rrggbb" are sRGB, numbers linear.
         exposure : float, optional
             Stops; default: the scene's.
+        tone : "clip" or "filmic", optional
+            How light brighter than white is shown; default: the scene's.
 
         Returns
         -------
@@ -119,7 +125,7 @@ class Image:
             sRGB; alpha is 255, or unassociated over "transparent".
         """
         codes = np.empty(self._pixels.shape, np.uint8)
-        call(lib.hl_image_to_srgb8, self._handle, self._options(background, exposure),
+        call(lib.hl_image_to_srgb8, self._handle, self._options(background, exposure, tone),
              ffi.from_buffer("uint8_t[]", codes), codes.strides[0])
         return codes
 
@@ -132,7 +138,7 @@ class Image:
 
     @suggests
     def save(self, path: str | os.PathLike[str], *, depth: int = 8, background: Any = None,
-             exposure: float | None = None) -> None:
+             exposure: float | None = None, tone: str | None = None) -> None:
         """Write a .png (sRGB, over the background, with the scene in it), .exr or .npy (linear; with layers).
 
         Parameters
@@ -142,17 +148,17 @@ class Image:
             an .npy; a .png is written without them.
         depth : 8 or 16
             Bits per channel of a .png.
-        background, exposure : optional
+        background, exposure, tone : optional
             As in `to_srgb8`; of a .png.
         """
         file = os.fspath(path)
         if not file.lower().endswith(".png"):
             for word, given in (("depth", depth != 8), ("background", background is not None),
-                                ("exposure", exposure is not None)):
+                                ("exposure", exposure is not None), ("tone", tone is not None)):
                 if given:
                     raise ValueError(f"{word} is for .png pictures, not for '{file}': .exr and .npy hold linear floats")
         call(lib.hl_image_write, context, self._handle if not file.lower().endswith(".png") else self._plain(),
-             os.fsencode(file), self._with_scene(self._options(background, exposure, depth)))
+             os.fsencode(file), self._with_scene(self._options(background, exposure, tone, depth)))
 
     def _with_scene(self, options: Any) -> Any:
         text = self._scene_text()

@@ -113,9 +113,13 @@ class PictureSettings(TypedDict, total=False):
     ----------
     exposure : float
         A PNG shows the volumes' light times 2^exposure. Stops, -32 to 32. Default: 0.
+    tone : str
+        How a PNG shows light brighter than white: cut, or ever more slowly near white, its hue kept. "clip",
+        "filmic". Default: "clip".
     """
 
     exposure: float
+    tone: str
 
 
 class RenderSettings(TypedDict, total=False):
@@ -180,6 +184,7 @@ class FurtherSettings(TypedDict, total=False):
     receives_shadow: bool
     emission: float
     exposure: float
+    tone: str
     soft_method: str
     light_samples: int
     sheet_spacing: float

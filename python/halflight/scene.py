@@ -188,6 +188,12 @@ class Scene:
         return exposure
 
     @property
+    def tone(self) -> str:
+        """How a PNG shows light brighter than white: "clip" or "filmic"."""
+        tone: str = _settings.from_field(_settings.table(lib.HL_SETTINGS_IMAGE)["tone"], self._struct.tone)
+        return tone
+
+    @property
     def settings(self) -> Mapping[str, Any]:
         """The `render` keys."""
         return _settings.read(self._struct.render, lib.HL_SETTINGS_RENDER)

@@ -65,6 +65,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .count = 1,
          .setting_kind = HL_SETTINGS_IMAGE,
          .setting = "exposure"},
+    [RENDER_TONE] = {.name = "tone",
+                     .kind = OPTION_CHOICE,
+                     .help = "how a .png shows light brighter than white\n(default clip)",
+                     .setting_kind = HL_SETTINGS_IMAGE,
+                     .setting = "tone"},
     [RENDER_LAYERS] =
         {.name = "layers",
          .kind = OPTION_SWITCH,
@@ -335,6 +340,24 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
 };
 
+/* Exposure and tone are for pictures on a screen. */
+static int check_linear_output(const cli_value *values, bool named) {
+  static const int of_png[] = {RENDER_EXPOSURE, RENDER_TONE};
+  const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
+  for (size_t n = 0; n < sizeof of_png / sizeof *of_png; n++) {
+    const char *name = render_options[of_png[n]].name;
+    if (!values[of_png[n]].given) continue;
+    if (named && !has_extension(output->text, ".png"))
+      return fail(EXIT_CODE_USAGE,
+                  "--%s is for .png pictures, not for '%s': .exr and .npy hold linear light as it is", name,
+                  output->text);
+    if (format->given && format->choice != 0)
+      return fail(EXIT_CODE_USAGE, "--%s is for .png pictures: %s holds linear light as it is", name,
+                  format->text);
+  }
+  return EXIT_CODE_OK;
+}
+
 int render_check_options(const cli_value *values) {
   const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
   bool named = output->given && strcmp(output->text, "-") != 0;
@@ -356,13 +379,8 @@ int render_check_options(const cli_value *values) {
                   render_options[pictures[n]].name);
   int exit_code = render_check_clip(&values[RENDER_CLIP]);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  if (values[RENDER_EXPOSURE].given && named && !has_extension(output->text, ".png"))
-    return fail(EXIT_CODE_USAGE,
-                "--exposure is for .png pictures, not for '%s': .exr and .npy hold linear light as it is",
-                output->text);
-  if (values[RENDER_EXPOSURE].given && format->given && format->choice != 0)
-    return fail(EXIT_CODE_USAGE, "--exposure is for .png pictures: %s holds linear light as it is",
-                format->text);
+  exit_code = check_linear_output(values, named);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
   if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
     return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
   for (int which = RENDER_LIGHT_POINTS; which <= RENDER_STEP; which++)

@@ -228,6 +228,7 @@ static void change_settings(const cli_value *values, hl_scene_description *descr
   if (values[RENDER_AMBIENT].given)
     memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
   if (values[RENDER_EXPOSURE].given) description->exposure = values[RENDER_EXPOSURE].number[0];
+  if (values[RENDER_TONE].given) description->tone = (hl_tone)values[RENDER_TONE].choice;
   const cli_value *background = &values[RENDER_BACKGROUND];
   if (!background->given) return;
   description->background_transparent = background->chosen;

@@ -59,6 +59,7 @@ static const struct {
     {"shading", "shade shader material lighting phong"},
     {"ambient", "ambient-light ambient-color fill-light ambient-occlusion environment"},
     {"exposure", "brightness gain gamma intensity stops"},
+    {"tone", "tonemap tone-map tone-mapping tonemapping filmic highlights rolloff"},
     {"look", "style mode mip blend-mode projection rendering-mode"},
     {"light",
      "light-direction light-dir light-position light-pos light-azimuth light-elevation sun key-light lamp "

@@ -3,7 +3,8 @@
  * In: linear premultiplied floats, a linear background. Out: RGB over the background or, with
  * background_transparent, unassociated RGBA.
  *
- * Exposure, compositing and alpha division are done in linear light; the curve is applied last (srgb.h).
+ * Exposure, tone (tone.h), compositing and alpha division are done in linear light; the curve is applied last
+ * (srgb.h).
  *
  * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws visible contours, 10
  * pixels wide and more. Errors measured on a penumbra-like gradient of 0.004 to 0.034 linear over 256 x 256
@@ -19,6 +20,7 @@
 #include <string.h>
 
 #include "image/format.h"
+#include "image/tone.h"
 
 /* The 8 x 8 ordered (Bayer) pattern: the bits of x ^ y and y, interlaced and mirrored, give each of 0..63
  * once. Offsets in codes, -63/128 .. 63/128. */
@@ -46,20 +48,27 @@ static bool is_empty(const float pixel[4]) {
   return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0 && pixel[3] == 0;
 }
 
-/* The linear value, before encoding, of a pixel's colour c. */
-static float hl_stored_value(const hl_codes *codes, const float pixel[4], int c) {
-  if (!codes->transparent) return pixel[c] * codes->exposure + (1 - pixel[3]) * codes->background[c];
+/* What the light of a pixel is multiplied by: exposure, and the tone of light so bright. */
+static float factor_of(const hl_codes *codes, const float pixel[4]) {
+  const float light[3] = {pixel[0] * codes->exposure, pixel[1] * codes->exposure, pixel[2] * codes->exposure};
+  return codes->exposure * hl_tone_factor(codes->tone, light);
+}
+
+/* The linear value, before encoding, of a pixel's colour c. factor: on the pixel's light. */
+static float stored_value(const hl_codes *codes, const float pixel[4], float factor, int c) {
+  if (!codes->transparent) return pixel[c] * factor + (1 - pixel[3]) * codes->background[c];
   /* Unassociated colour is light divided by alpha, at most 1. Emission may give more light than alpha: the
    * colour then saturates. */
-  return pixel[3] > 0 ? pixel[c] / pixel[3] * codes->exposure : 0;
+  return pixel[3] > 0 ? pixel[c] / pixel[3] * factor : 0;
 }
 
 void hl_codes_of_row(const hl_codes *codes, const float *pixels, int width, int y, unsigned char *to) {
   for (const float *pixel = pixels; pixel < pixels + 4 * (size_t)width; pixel += 4) {
     int x = (int)((pixel - pixels) / 4);
     float offset = codes->depth == 16 || is_empty(pixel) ? 0.0f : dither_offset(x, y);
+    float factor = factor_of(codes, pixel);
     for (int c = 0; c < 3; c++)
-      to = put_code(to, hl_srgb_encode_offset(&codes->encoder, hl_stored_value(codes, pixel, c), offset),
+      to = put_code(to, hl_srgb_encode_offset(&codes->encoder, stored_value(codes, pixel, factor, c), offset),
                     codes->depth);
     if (codes->transparent)
       to = put_code(to, quantise(pixel[3], codes->encoder.maximum, offset), codes->depth);
@@ -72,6 +81,7 @@ hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *opti
   *codes = (hl_codes){.depth = depth, .transparent = options->background_transparent != 0};
   for (int c = 0; c < 3; c++) codes->background[c] = (float)options->background[c];
   codes->exposure = (float)hl_exposure_factor(options->exposure);
+  codes->tone = options->tone;
   return hl_srgb_encoder_create(context, depth == 16 ? 65535 : 255, &codes->encoder, error);
 }
 

@@ -14,6 +14,7 @@ typedef struct hl_codes {
   bool opaque_alpha;   /* four codes a pixel, alpha always the greatest code */
   float background[3]; /* linear */
   float exposure;      /* factor on the picture's light */
+  hl_tone tone;        /* after the exposure */
 } hl_codes;
 
 hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth,

@@ -24,6 +24,9 @@ hl_status hl_image_check_options(const hl_image_write_options *options, const ch
   if (!(fabs(options->exposure) <= HL_IMAGE_EXPOSURE_MAX))
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s: exposure is %g, expected stops from -%d to %d", caller,
                    options->exposure, (int)HL_IMAGE_EXPOSURE_MAX, (int)HL_IMAGE_EXPOSURE_MAX);
+  if (options->tone != HL_TONE_CLIP && options->tone != HL_TONE_FILMIC)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: tone is %d, expected an hl_tone", caller,
+                   (int)options->tone);
   for (int c = 0; c < 3; c++)
     if (!isfinite(options->background[c]))
       return hl_fail(error, HL_ERROR_ARGUMENT, "%s: background[%d] is not a finite number", caller, c);

@@ -491,4 +491,5 @@ void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *optio
   memcpy(options->background, description->background, sizeof options->background);
   options->background_transparent = description->background_transparent;
   options->exposure = description->exposure;
+  options->tone = description->tone;
 }

@@ -51,6 +51,7 @@ static const hl_setting_choice lookups[] = {{"auto", HL_LOOKUP_AUTO},
                                             {NULL, 0}};
 static const hl_setting_choice compositings[] = {
     {"light", HL_COMPOSITING_LIGHT}, {"maximum", HL_COMPOSITING_MAXIMUM}, {NULL, 0}};
+static const hl_setting_choice tones[] = {{"clip", HL_TONE_CLIP}, {"filmic", HL_TONE_FILMIC}, {NULL, 0}};
 static const hl_setting_choice automatic_resolution[] = {{"auto", 0}, {NULL, 0}};
 
 #define ONE(type) (1u << (type))
@@ -89,7 +90,9 @@ static const hl_setting image_rows[] = {
     {.key = "exposure", FIELD(hl_scene_description, exposure), .type = HL_SETTING_NUMBER, .unit = "stops",
      .low = -HL_LIMIT_EXPOSURE, .high = HL_LIMIT_EXPOSURE, .optional = 1, .option = "exposure",
      .sentence = "A PNG shows the volumes' light times 2^exposure.",
-     .mend = "give stops from {low} to {high}: each doubles the light"}};
+     .mend = "give stops from {low} to {high}: each doubles the light"},
+    {.key = "tone", FIELD(hl_scene_description, tone), A_CHOICE(tones), .optional = 1, .option = "tone",
+     .sentence = "How a PNG shows light brighter than white: cut, or ever more slowly near white, its hue kept."}};
 
 static const hl_setting camera_rows[] = {
     {.key = "type", FIELD(hl_camera, type), A_CHOICE(camera_types), .option = "ortho",

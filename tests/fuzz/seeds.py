@@ -71,7 +71,7 @@ def scenes():
         write("scene", f"function-{n}.json", text({"halflight": 1, "volumes": [dict(volume, transfer_function=function)]}))
         write("transfer", f"own-{n}.json", text(function))
     write("scene", "shine.json", text({
-        "halflight": 1, "image": {"width": 8, "height": 6, "exposure": -1.5}, "volumes": [
+        "halflight": 1, "image": {"width": 8, "height": 6, "exposure": -1.5, "tone": "filmic"}, "volumes": [
             dict(volume, shading="flat", material={"emission": 2.5}, transform={"scale": [1, 2, 0.5]}, visible=True)]}))
     write("scene", "maximum.json", text({
         "halflight": 1, "image": {"width": 8, "height": 6}, "volumes": [

@@ -137,8 +137,8 @@ def test_volume_looks_come_back(blob):
 
 
 def test_a_replaced_scene_changes_only_what_is_named(small):
-    other = small.replace(size=(32, 24), exposure=1)
-    assert other.size == (32, 24) and other.exposure == 1 and small.size == (64, 48)
+    other = small.replace(size=(32, 24), exposure=1, tone="filmic")
+    assert other.size == (32, 24) and other.exposure == 1 and other.tone == "filmic" and small.tone == "clip" and small.size == (64, 48)
     assert other.camera == small.camera and [plain(one) for one in other.lights] == [plain(one) for one in small.lights]
     assert small.replace(shadows="off").settings["shadows"] == "off"
     assert small.replace(background="transparent").background == "transparent"

@@ -158,6 +158,83 @@ static void exposure_out_of_range_is_refused(void **state) {
   end_context(context);
 }
 
+/* 1 - .4^2 / (m - .2) over the brightest channel m above .6, the same factor for all three, after the
+ * exposure; darker light and the background as they are. */
+static void filmic_tone_bends_bright_light(void **state) {
+  (void)state;
+  static const float lights[][3] = {{0.59f, 0.2f, 0.01f}, {1, 0.5f, 0.25f}, {0.3f, 8, 2}, {1e30f, 1e30f, 0}};
+  fixture f = begin();
+  hl_image *image = make_image(f.context, 1, 1);
+  for (size_t n = 0; n < sizeof lights / sizeof *lights; n++)
+    for (int stops = 0; stops < 2; stops++)
+      for (int transparent = 0; transparent < 2; transparent++) {
+        hl_image_write_options options;
+        hl_image_write_options_defaults(&options);
+        options.png_depth = 16, options.exposure = stops, options.background_transparent = transparent;
+        options.tone = HL_TONE_FILMIC;
+        for (int c = 0; c < 3; c++) options.background[c] = 0.02;
+        double light[3], brightest = 0;
+        for (int c = 0; c < 3; c++) {
+          light[c] = (double)lights[n][c] * (1 + stops);
+          brightest = fmax(brightest, light[c]);
+          pixel_at(image, 0, 0)[c] = lights[n][c];
+        }
+        pixel_at(image, 0, 0)[3] = 0.5f;
+        assert_int_equal(hl_image_write(f.context, image, f.path, &options, NULL), HL_OK);
+        png_samples s = load_samples(f.path);
+        for (int c = 0; c < 3; c++) {
+          double shown = light[c] * (brightest > 0.6 ? (1 - 0.16 / (brightest - 0.2)) / brightest : 1);
+          int expected = closed_form_code(transparent ? shown / 0.5 : shown + 0.01, 65535);
+          assert_true(abs(sample(&s, 0, 0, c) - expected) <= 1); /* a float's rounding */
+        }
+        free(s.bytes);
+      }
+  hl_image_destroy(image);
+  end(&f);
+}
+
+/* Greys from black to far beyond white never get darker than the one before, and clip up to white alone. */
+static void filmic_tone_is_monotone(void **state) {
+  (void)state;
+  enum { N = 4096 };
+  hl_context *context = make_context();
+  hl_image *image = make_image(context, N, 1);
+  uint8_t codes[2][4 * N];
+  for (int x = 0; x < N; x++) {
+    float light = 64.0f * (float)x * (float)x / (N * (float)N);
+    memcpy(pixel_at(image, x, 0), (float[4]){light, light, light, 1}, 16);
+  }
+  for (int tone = HL_TONE_CLIP; tone <= HL_TONE_FILMIC; tone++) {
+    hl_image_write_options options;
+    hl_image_write_options_defaults(&options);
+    options.tone = (hl_tone)tone;
+    assert_int_equal(hl_image_to_srgb8(image, &options, codes[tone], 4 * N, NULL), HL_OK);
+  }
+  int darkest_of_white = 4 * (N / 8), falls = 0;
+  for (int i = 0; i < 4 * N; i += 4) {
+    if (i >= 4 * 8) falls += codes[1][i] + 1 < codes[1][i - 4 * 8]; /* 8: the dither's period */
+    if (codes[0][i] < 204 && i < darkest_of_white) assert_int_equal(codes[0][i], codes[1][i]);
+  }
+  assert_int_equal(falls, 0);
+  assert_int_equal(codes[1][0], 0);
+  assert_int_equal(codes[0][darkest_of_white], 255);
+  assert_true(codes[1][darkest_of_white] < 235 && codes[1][4 * N - 4] >= 253);
+  hl_image_destroy(image);
+  end_context(context);
+}
+
+static void tone_out_of_range_is_refused(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_image *image = make_image(context, 1, 1);
+  hl_image_write_options options;
+  hl_image_write_options_defaults(&options);
+  options.tone = (hl_tone)2;
+  assert_int_equal(hl_image_write(context, image, "/tmp/unwritten.png", &options, NULL), HL_ERROR_ARGUMENT);
+  hl_image_destroy(image);
+  end_context(context);
+}
+
 static void flat_backgrounds_stay_flat(void **state) {
   (void)state;
   fixture f = begin();
@@ -504,6 +581,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(composites_in_linear_light),
                                      cmocka_unit_test(exposure_multiplies_the_light),
                                      cmocka_unit_test(exposure_out_of_range_is_refused),
+                                     cmocka_unit_test(filmic_tone_bends_bright_light),
+                                     cmocka_unit_test(filmic_tone_is_monotone),
+                                     cmocka_unit_test(tone_out_of_range_is_refused),
                                      cmocka_unit_test(flat_backgrounds_stay_flat),
                                      cmocka_unit_test(transparent_pictures_keep_colour_and_alpha),
                                      cmocka_unit_test(nan_is_black),

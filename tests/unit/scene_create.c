@@ -164,6 +164,7 @@ SPOIL(scale_zero, p->scene_volume.scale = 0)
 SPOIL(axis_scale_zero, p->scene_volume.axis_scale[1] = 0)
 SPOIL(compositing_unknown, p->description.render.compositing = (hl_compositing)2)
 SPOIL(exposure_nan, p->description.exposure = NAN)
+SPOIL(tone_unknown, p->description.tone = (hl_tone)2)
 SPOIL(emission_negative, p->scene_volume.material.emission = -1)
 SPOIL(axis_zero, p->scene_volume.rotate_angle_deg = 10; p->scene_volume.rotate_axis[2] = 0)
 SPOIL(angle_nan, p->scene_volume.rotate_angle_deg = NAN)
@@ -305,6 +306,7 @@ static const refusal refusals[] = {
      axis_scale_zero},
     {"/image/exposure: nan is not a number: give stops from -32 to 32: each doubles the light",
      HL_ERROR_INPUT, exposure_nan},
+    {"/image/tone: 2 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT, tone_unknown},
     {"/volumes/0/material/emission: -1 is negative: give the part of the colour that shines by itself, from "
      "0 to 1e6",
      HL_ERROR_INPUT, emission_negative},

@@ -90,7 +90,8 @@ static void assert_round_trip(hl_context *context, const hl_scene *scene) {
   assert_memory_equal(&a->camera.position, &b->camera.position, sizeof a->camera.position);
   assert_memory_equal(&a->render, &b->render,
                       offsetof(hl_render_settings, compositing)); /* padding follows */
-  assert_true(a->render.compositing == b->render.compositing && a->exposure == b->exposure);
+  assert_true(a->render.compositing == b->render.compositing && a->exposure == b->exposure &&
+              a->tone == b->tone);
   for (size_t l = 0; l < a->light_count; l++)
     assert_memory_equal(a->lights[l].color, b->lights[l].color, sizeof a->lights[l].color);
   for (size_t v = 0; v < a->volume_count; v++) {

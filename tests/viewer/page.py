@@ -78,6 +78,7 @@ def other_panels(browser):
     changes(browser, "clip", lambda: browser.run(f"{clip}.value = 0; {clip}.dispatchEvent(new Event('input'))"), "volumes")
     changes(browser, "background", lambda: set_control(browser, "Background", "#203050"), "image")
     changes(browser, "exposure", lambda: set_control(browser, "Exposure", 1), "image")
+    changes(browser, "tone", lambda: browser.run("document.querySelector('[aria-label=Tone] input[value=filmic]').click()"), "image")
 
 
 def keyboard_and_names(browser):

@@ -16,7 +16,7 @@ export function readNpy(bytes) {
 
 function small(scene) {
   const { width, height } = scene.image, factor = Math.min(1, Math.sqrt(PIXELS / (width * height)));
-  const { exposure: _, ...image } = scene.image;
+  const { exposure: _, tone: __, ...image } = scene.image;
   return {
     ...scene, image: { ...image, width: Math.max(1, Math.round(width * factor)), height: Math.max(1, Math.round(height * factor)) },
     render: { ...scene.render, sheet_spacing: Math.max(scene.render.sheet_spacing, 1) },

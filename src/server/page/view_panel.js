@@ -1,4 +1,4 @@
-// The panel of the view: projection, sides to look from, background, exposure.
+// The panel of the view: projection, sides to look from, background, exposure, tone.
 
 import { lookAlong, withType } from "./camera.js";
 import { hexOf, linearOf } from "./color.js";
@@ -21,9 +21,14 @@ export function viewPanel({ store, frameEverything }) {
     label: "Exposure", low: -4, high: 4, unit: "stops", get: () => store.scene.image.exposure ?? 0,
     set: (stops) => store.change("exposure", (scene) => ({ ...scene, image: { ...scene.image, exposure: Math.abs(stops) < 0.03 ? 0 : stops } })),
   });
+  const tone = segments({
+    label: "Tone", choices: [["clip", "Clip"], ["filmic", "Filmic"]], get: () => store.scene.image.tone ?? "clip",
+    set: (name) => store.change("tone", (scene) => ({ ...scene, image: { ...scene.image, tone: name } })),
+  });
   body.append(row(make("span", { class: "name" }, "From"), sides),
-    row("", button("frame everything", frameEverything)), projection.element, background.element, exposure.element);
-  const update = () => { for (const part of [projection, background, exposure]) part.update(); };
+    row("", button("frame everything", frameEverything)), projection.element, background.element, exposure.element,
+    tone.element);
+  const update = () => { for (const part of [projection, background, exposure, tone]) part.update(); };
   update();
   return { element, update };
 }

@@ -19,3 +19,14 @@ tool png-pixel a.png 8 8 | cmp - b.text
 halflight render slab.json --quiet -o a.npy
 halflight render plain.json --quiet -o b.npy
 cmp a.npy b.npy
+# Nor do they change by the tone, which takes the light of the PNG and keeps its hue.
+sed 's/"exposure": 1/"exposure": 2, "tone": "filmic"/' slab.json >filmic.json
+halflight render filmic.json --quiet -o c.npy
+cmp a.npy c.npy
+halflight render filmic.json --quiet -o c.png
+halflight render plain.json --quiet --exposure 2 --tone filmic -o d.png
+tool png-pixel d.png 8 8 >d.text
+tool png-pixel c.png 8 8 | cmp - d.text
+tool png-pixel c.png 8 8 | python3 -c '
+asked, got = (130, 196, 242), [int(code) for code in input().split()]
+print("bent:", all(abs(a - b) <= 1 for a, b in zip(asked, got)))'

@@ -1,0 +1,1 @@
+halflight render x.nrrd -o x.npy --tone filmic
