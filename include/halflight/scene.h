@@ -97,6 +97,36 @@ typedef struct hl_light {
                                  this or a texture, not both */
 } hl_light;
 
+typedef enum hl_sky_type {
+  HL_SKY_NONE = 0,
+  HL_SKY_UNIFORM = 1,  /* one colour */
+  HL_SKY_GRADIENT = 2, /* from the horizon to the zenith and to the ground, linear in the sine of the
+                          elevation */
+  HL_SKY_IMAGE = 3     /* an environment: an equirectangular image */
+} hl_sky_type;
+
+/* Light from all directions, attenuated by all that casts shadows. A surface gets
+ * diffuse / pi times the integral of radiance x transmittance x cosine, a medium the mean of radiance x
+ * transmittance x phase function over all directions: an even sky of radiance 1 that nothing hides lights
+ * both by 1. It makes no highlights.
+ *
+ * The image's top row is the zenith, its bottom row the opposite point. Its middle column lies in the
+ * direction up x right, and right of it lies `right`: the world's x axis made perpendicular to up, or its y
+ * axis where up is within 8 degrees of x. So with up along z, the middle lies towards +y and is not mirrored
+ * as seen from within. Bilinear between the middles of pixels. */
+typedef struct hl_sky {
+  hl_sky_type type;
+  double color[3];                         /* uniform: radiance */
+  double zenith[3], horizon[3], ground[3]; /* gradient: radiance */
+  const char *file;    /* image: where the pixels came from, for hl_scene_to_json; may be null */
+  const float *pixels; /* image: [height][width][3]: linear RGB, copied by hl_scene_create() */
+  int width, height;
+  double rotation_deg; /* image: turned by so much about up, counterclockwise as seen from above */
+  double up[3];        /* direction of the zenith, of any length; world */
+  int hemisphere;      /* non-zero: nothing shines below the horizon */
+  double strength;     /* a factor on all colours */
+} hl_sky;
+
 typedef struct hl_opacity_point {
   double value, opacity;
 } hl_opacity_point;
@@ -232,6 +262,7 @@ typedef struct hl_scene_description {
   const hl_scene_mesh *meshes;
   size_t mesh_count;
   hl_tone tone; /* how a PNG shows light that is brighter than white; default HL_TONE_CLIP */
+  hl_sky sky;
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* immutable and counted */

@@ -22,7 +22,8 @@ typedef enum hl_setting_kind {
   HL_SETTINGS_MATERIAL = 5,          /* hl_material; a volume's "material" */
   HL_SETTINGS_TRANSFER_FUNCTION = 6, /* hl_transfer_function; a volume's "transfer_function" */
   HL_SETTINGS_RENDER = 7,            /* hl_render_settings; "render" */
-  HL_SETTINGS_MESH = 8               /* hl_scene_mesh; each of "meshes" */
+  HL_SETTINGS_MESH = 8,              /* hl_scene_mesh; each of "meshes" */
+  HL_SETTINGS_SKY = 9                /* hl_sky; "sky" */
 } hl_setting_kind;
 
 /* The type of the field, and of its value in a scene file. */
@@ -51,8 +52,9 @@ typedef struct hl_setting {
   double standard[3];               /* the default: its first number, or three */
   const hl_setting_choice *choices; /* null: none */
   size_t offset;                    /* of the field in the struct */
-  unsigned only_for; /* lights and cameras: the types that have the key, bit (1 << type) each; 0: all */
-  int optional;      /* non-zero: hl_scene_to_json() leaves the key out where it has its default */
+  unsigned
+      only_for; /* lights, cameras and skies: the types that have the key, bit (1 << type) each; 0: all */
+  int optional; /* non-zero: hl_scene_to_json() leaves the key out where it has its default */
   const char *sentence;
   const char *mend; /* how an error asks for a value in range; {low} and {high} stand for the range's ends */
   const char *option; /* of `halflight render`, without dashes; null: none */

@@ -106,6 +106,44 @@ class MeshSettings(TypedDict, total=False):
     receives_shadow: bool
 
 
+class SkySettings(TypedDict, total=False):
+    """Keywords of `Sky`, from the scene file's sky.
+
+    Parameters
+    ----------
+    type : str
+        Where the colours of the light from all directions come from. "none", "uniform", "gradient", "image".
+        Default: "none".
+    color : Sequence[float]
+        The radiance from every direction. Linear RGB. Default: [1, 1, 1].
+    zenith : Sequence[float]
+        The radiance from straight above. Linear RGB. Default: [0.8, 0.9, 1].
+    horizon : Sequence[float]
+        The radiance from the horizon. Linear RGB. Default: [1, 1, 1].
+    ground : Sequence[float]
+        The radiance from straight below. Linear RGB. Default: [0.3, 0.27, 0.24].
+    rotation_deg : float
+        The angle that the image is turned by about up, counterclockwise as seen from above. Degrees, -1e6 to
+        1e6. Default: 0.
+    up : Sequence[float]
+        The direction of the zenith. Default: [0, 0, 1].
+    hemisphere : bool
+        Nothing shines below the horizon. Default: False.
+    strength : float
+        A factor on the sky's colours. 0 to 1e6. Default: 1.
+    """
+
+    type: str
+    color: Sequence[float]
+    zenith: Sequence[float]
+    horizon: Sequence[float]
+    ground: Sequence[float]
+    rotation_deg: float
+    up: Sequence[float]
+    hemisphere: bool
+    strength: float
+
+
 class PictureSettings(TypedDict, total=False):
     """Keywords of `Scene`, from the scene file's image and top level.
 

@@ -7,6 +7,21 @@
 #include "json/read.h"
 #include "scene/limits.h"
 
+/* The fields that an image is loaded into. */
+typedef struct hl_json_image {
+  const char **file;
+  const float **pixels; /* [height][width][3] */
+  int *width, *height;
+} hl_json_image;
+
+/* Loads the image that an object's "file" names, or takes it from the reader's `like`. Its file's name and
+ * pixels are owned by the caller, after a failure too. */
+hl_status hl_json_load_image(hl_json_reader *reader, const json_t *value, const hl_json_image *to);
+
+/* The object "sky" (null: none). Its image is released by hl_json_release_sky(), after a failure too. */
+hl_status hl_json_read_sky(hl_json_reader *reader, const json_t *value, hl_sky *sky);
+void hl_json_release_sky(hl_context *context, hl_sky *sky);
+
 /* The image that a light projects (null: none); its pixels and file name are owned by *texture. */
 hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture);
 

@@ -33,6 +33,7 @@ static void release(hl_context *context, gathered *g) {
   }
   hl_release(context, g->shelf.loaded);
   hl_json_release_meshes(context, &g->meshes);
+  hl_json_release_sky(context, &g->description.sky);
   json_decref(g->shelf.stood_in);
   hl_release(context, g->volumes);
   for (size_t l = 0; g->lights != NULL && l < g->description.light_count; l++) {
@@ -193,8 +194,8 @@ static hl_status read_version(hl_json_reader *reader, const json_t *root) {
 }
 
 static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
-  static const char *const others[] = {"halflight", "description", "image",  "camera",  "lights", "groups",
-                                       "volumes",   "meshes",      "render", "$schema", NULL};
+  static const char *const others[] = {"halflight", "description", "image",  "camera", "lights",  "sky",
+                                       "groups",    "volumes",     "meshes", "render", "$schema", NULL};
   hl_scene_description *d = &g->description;
   const char *schema = NULL;
   hl_status status = hl_json_settings_object(reader, root, HL_SETTINGS_SCENE, -1, others);
@@ -213,6 +214,7 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   d->meshes = g->meshes.meshes;
   d->mesh_count = g->meshes.count;
   if (status == HL_OK) status = read_camera(reader, json_object_get(root, "camera"), d);
+  if (status == HL_OK) status = hl_json_read_sky(reader, json_object_get(root, "sky"), &d->sky);
   return status == HL_OK ? read_lights(reader, root, g) : status;
 }
 

@@ -180,6 +180,14 @@ static void write_light(writer *w, const hl_light *light) {
   close_bracket(w, "}");
 }
 
+static void write_sky(writer *w, const hl_sky *sky) {
+  if (sky->type == HL_SKY_NONE) return;
+  open_bracket(w, "sky", "{");
+  write_settings(w, HL_SETTINGS_SKY, (int)sky->type, sky);
+  if (sky->type == HL_SKY_IMAGE) write_name(w, "file", sky->file);
+  close_bracket(w, "}");
+}
+
 static void write_transfer_function(writer *w, const hl_transfer_function *function) {
   open_bracket(w, "transfer_function", "{");
   write_settings(w, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
@@ -343,6 +351,7 @@ static void write_scene(writer *w, const hl_scene_description *d) {
   open_bracket(w, "lights", "[");
   for (size_t l = 0; l < d->light_count; l++) write_light(w, &d->lights[l]);
   close_bracket(w, "]");
+  write_sky(w, &d->sky);
   open_bracket(w, "volumes", "[");
   for (size_t v = 0; v < d->volume_count; v++) write_volume(w, &d->volumes[v]);
   close_bracket(w, "]");
@@ -396,27 +405,31 @@ static hl_status check_mesh(const hl_scene_mesh *mesh, size_t index, hl_error *e
                  "/meshes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", index);
 }
 
-static hl_status check_light_image(const float *pixels, const char *file, const char *key, size_t light,
-                                   hl_error *error) {
+/* place: the object that names the image, "/lights/0/texture". */
+static hl_status check_image(const float *pixels, const char *file, const char *place, hl_error *error) {
   if (pixels == NULL) return HL_OK;
   if (file == NULL)
-    return hl_fail(
-        error, HL_ERROR_ARGUMENT,
-        "/lights/%zu/%s/file: the image came from memory: write it to a file and name that in the scene",
-        light, key);
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "%s/file: the image came from memory: write it to a file and name that in the scene",
+                   place);
   if (is_utf8(file)) return HL_OK;
-  return hl_fail(error, HL_ERROR_ARGUMENT,
-                 "/lights/%zu/%s/file: is not UTF-8, as JSON texts must be: rename it", light, key);
+  return hl_fail(error, HL_ERROR_ARGUMENT, "%s/file: is not UTF-8, as JSON texts must be: rename it", place);
+}
+
+static hl_status check_light_images(const hl_light *light, size_t index, hl_error *error) {
+  char place[64];
+  snprintf(place, sizeof place, "/lights/%zu/texture", index);
+  hl_status status = check_image(light->texture.pixels, light->texture.file, place, error);
+  snprintf(place, sizeof place, "/lights/%zu/emission", index);
+  return status == HL_OK ? check_image(light->emission.pixels, light->emission.file, place, error) : status;
 }
 
 /* Refuses scenes that a text cannot describe: voxels or pixels without a file, names that are not UTF-8. */
-
 static hl_status check_writable(const hl_scene_description *d, hl_error *error) {
+  hl_status sky = check_image(d->sky.pixels, d->sky.file, "/sky", error);
+  if (sky != HL_OK) return sky;
   for (size_t l = 0; l < d->light_count; l++) {
-    const hl_light *light = &d->lights[l];
-    hl_status status = check_light_image(light->texture.pixels, light->texture.file, "texture", l, error);
-    if (status == HL_OK)
-      status = check_light_image(light->emission.pixels, light->emission.file, "emission", l, error);
+    hl_status status = check_light_images(&d->lights[l], l, error);
     if (status != HL_OK) return status;
   }
   for (size_t v = 0; v < d->volume_count; v++) {

@@ -17,6 +17,7 @@ void hl_reference_parts_add(reference_parts *parts, const reference_parts *other
   for (int c = 0; c < 3; c++) {
     parts->ambient[c] += scale * other->ambient[c];
     parts->emission[c] += scale * other->emission[c];
+    parts->sky[c] += scale * other->sky[c];
   }
   for (size_t l = 0; l < light_count; l++)
     for (int c = 0; c < 3; c++) {

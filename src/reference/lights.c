@@ -265,9 +265,8 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
 
-/* exp(-optical depth) along one ray. */
-static void find_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
-                               double passing[3]) {
+void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
+                                double passing[3]) {
   double depth[3] = {0, 0, 0};
   march walk;
   hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, ray, scratch, &walk);
@@ -307,7 +306,7 @@ static void find_passing(const reference *all, const reference_light *light, vec
     ray.farthest = vec3_length(offset);
     ray.direction = vec3_normalise(offset);
   }
-  find_transmittance(all, &ray, scratch, passing);
+  hl_reference_transmittance(all, &ray, scratch, passing);
 }
 
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,

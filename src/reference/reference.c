@@ -166,7 +166,7 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
 /* The pixel is the sum of the ray's contributions. */
 static void write_pixel(const reference_parts *ray, size_t light_count, float rgba[4]) {
   for (int c = 0; c < 3; c++) {
-    double sum = ray->ambient[c] + ray->emission[c];
+    double sum = ray->ambient[c] + ray->emission[c] + ray->sky[c];
     for (size_t l = 0; l < light_count; l++) sum += ray->lights[l].picture[c];
     rgba[c] = (float)sum;
   }
@@ -248,7 +248,7 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
                                                  &all->lights[l], error);
     if (status != HL_OK) return status;
   }
-  return HL_OK;
+  return hl_reference_sky_create(all, options->light_points, error);
 }
 
 static void release(reference *all) {
@@ -258,6 +258,7 @@ static void release(reference *all) {
     hl_release(all->context, all->lights[l].points);
   hl_release(all->context, all->volumes);
   hl_release(all->context, all->lights);
+  hl_release(all->context, all->sky.cells);
   hl_reference_surfaces_release(all);
 }
 

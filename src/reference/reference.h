@@ -9,6 +9,7 @@
  *     coefficients.c    what the interpolating kernel sums in place of voxels
  *     rays.c            how many rays a pixel of a small picture has
  *     lights.c          points on the lights, their images, and the transmittance towards them
+ *     sky.c             cells of the sky, and their light that reaches a sample
  *     shade.c           the light that one sample sends to the eye
  *     layers.c          that light by its sources, depth and normals
  *     surfaces.c        where rays meet meshes
@@ -27,6 +28,7 @@
 #include "core/vector.h"
 #include "scene/light_shape.h"
 #include "scene/scene.h"
+#include "scene/sky.h"
 
 /* One volume of the scene, made ready for questions at points of its index space. */
 typedef struct reference_volume {
@@ -88,6 +90,18 @@ typedef struct reference_surfaces {
   size_t triangle_count, node_count;
 } reference_surfaces;
 
+/* A part of the sky. */
+typedef struct reference_sky_cell {
+  vec3 direction, mean; /* world: the unit vector to its middle, and the mean of all unit vectors to it */
+  double radiance[3];   /* its mean */
+} reference_sky_cell;
+
+typedef struct reference_sky {
+  reference_sky_cell *cells; /* owned; [count]; null: no sky */
+  size_t count;
+  double solid_angle; /* of a cell */
+} reference_sky;
+
 typedef struct reference {
   hl_context *context;
   hl_pool *pool;
@@ -95,6 +109,7 @@ typedef struct reference {
   reference_volume *volumes; /* owned; [scene->volume_count] */
   reference_light *lights;   /* owned; [scene->light_count] */
   reference_surfaces surfaces;
+  reference_sky sky;
   double step;         /* world units */
   int rays;            /* rays along each side of a pixel */
   double most_opacity; /* greatest opacity that one sample may add to a pixel */
@@ -145,7 +160,7 @@ typedef struct light_part {
 /* The contributions to a sample or to a ray: sums weighted by extinction (sample) or by opacity (ray). */
 typedef struct reference_parts {
   double weight; /* sum of the weights; of a ray: alpha */
-  double ambient[3], emission[3];
+  double ambient[3], emission[3], sky[3];
   vec3 normal;
   double depth;
   light_part *lights; /* [light_count] */
@@ -207,6 +222,31 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
  * transmittance. attenuated false: the transmittance counts as 1. */
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
                               reference_worker *worker, double reach[3]);
+
+/* exp(-optical depth) along a ray, times what surfaces let through, in each channel. scratch:
+ * [volume_count]. */
+void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
+                                double passing[3]);
+/* Henyey and Greenstein's phase function times 4 pi, for light from `towards` (unit vector) to the eye. */
+double hl_reference_phase(double anisotropy, vec3 to_eye, vec3 towards);
+
+/* What the sky lights. */
+typedef struct reference_sky_receiver {
+  vec3 point, normal, to_eye; /* world; unit vectors; the normal is 0 in a medium */
+  double surface;             /* 0: medium, 1: surface */
+  double diffuse, anisotropy; /* of the surface; of the medium */
+  bool receives_shadow;
+} reference_sky_receiver;
+
+/* A sky's light at a receiver: all of it, and what reaches it; an even sky of radiance 1 gives 1. */
+typedef struct reference_sky_light {
+  double open[3], reaching[3];
+} reference_sky_light;
+
+/* Cuts the scene's sky into about cell_count cells. */
+hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *error);
+void hl_reference_sky_arrive(const reference *all, const reference_sky_receiver *at, reference_worker *worker,
+                             reference_sky_light *light);
 
 /* Adds the light that the point sends along to_eye, times its weight, to the worker's sample. */
 void hl_reference_shade(const reference *all, const reference_sample *at, reference_worker *worker);

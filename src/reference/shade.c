@@ -65,7 +65,7 @@ typedef struct surface {
 } surface;
 
 /* p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos = -E.L: 1 in all directions for g = 0. */
-static double phase(double g, vec3 to_eye, vec3 towards) {
+double hl_reference_phase(double g, vec3 to_eye, vec3 towards) {
   return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
 }
 
@@ -83,11 +83,29 @@ static void shade_light(const reference *all, const reference_sample *at, const 
     gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   }
   double matt = here->amount * material->diffuse * fmax(cosine, 0) +
-                (1 - here->amount) * phase(at->volume->described->anisotropy, at->to_eye, arrived->towards);
+                (1 - here->amount) *
+                    hl_reference_phase(at->volume->described->anisotropy, at->to_eye, arrived->towards);
   if (matt <= 0 && gloss <= 0) return;
   const double *reach = light_reach(all, at->volume, light, at->point, worker);
   for (int c = 0; c < 3; c++)
     part->picture[c] = (here->own[c] * matt + here->amount * gloss) * arrived->incoming[c] * reach[c];
+}
+
+/* The sky's part. */
+static void shade_sky(const reference *all, const reference_sample *at, const surface *here,
+                      reference_worker *worker, double picture[3]) {
+  const hl_scene_volume *described = at->volume->described;
+  reference_sky_light light;
+  hl_reference_sky_arrive(all,
+                          &(reference_sky_receiver){.point = at->point,
+                                                    .normal = here->normal,
+                                                    .to_eye = at->to_eye,
+                                                    .surface = here->amount,
+                                                    .anisotropy = described->anisotropy,
+                                                    .receives_shadow = described->receives_shadow,
+                                                    .diffuse = described->material.diffuse},
+                          worker, &light);
+  for (int c = 0; c < 3; c++) picture[c] += at->weight * here->own[c] * light.reaching[c];
 }
 
 /* Flat colours receive no shadow: their shadow layers show full light. */
@@ -111,6 +129,7 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
     sample->emission[c] += weight * here.own[c] * (flat ? 1 : material->emission);
     if (!flat) sample->ambient[c] += weight * here.own[c] * material->ambient * all->scene->ambient[c];
   }
+  if (!flat) shade_sky(all, at, &here, worker, sample->sky);
   if (flat) add_no_light(all, weight, sample);
   for (size_t l = 0; l < all->scene->light_count && !flat; l++) {
     light_part part;

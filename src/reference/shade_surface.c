@@ -49,6 +49,21 @@ static void add_light(const reference *all, size_t light, const reference_hit *h
     picture[c] = (at->color[c] * material->diffuse * cosine + gloss) * arrived.incoming[c] * reach[c];
 }
 
+static void add_sky(const reference *all, const reference_hit *hit, const reference_surface_point *at,
+                    reference_worker *worker, double picture[3]) {
+  const hl_scene_mesh *mesh = hit->triangle->mesh;
+  reference_sky_light light;
+  hl_reference_sky_arrive(all,
+                          &(reference_sky_receiver){.point = at->point,
+                                                    .normal = at->normal,
+                                                    .to_eye = at->to_eye,
+                                                    .surface = 1,
+                                                    .receives_shadow = mesh->receives_shadow,
+                                                    .diffuse = mesh->material.diffuse},
+                          worker, &light);
+  for (int c = 0; c < 3; c++) picture[c] = at->color[c] * light.reaching[c];
+}
+
 void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
                                 reference_worker *worker) {
   reference_parts *sample = &worker->sample;
@@ -71,6 +86,7 @@ void hl_reference_surface_shade(const reference *all, const reference_hit *hit, 
     sample->ambient[c] = at.color[c] * mesh->material.ambient * all->scene->ambient[c];
     sample->emission[c] = at.color[c] * mesh->material.emission;
   }
+  add_sky(all, hit, &at, worker, sample->sky);
   for (size_t l = 0; l < all->scene->light_count; l++)
     add_light(all, l, hit, &at, worker, sample->lights[l].picture);
 }

@@ -459,6 +459,9 @@ static hl_status check_request(const hl_renderer *renderer, const hl_scene *scen
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_renderer_render: statistics->struct_size is %zu, expected %zu",
                    statistics->struct_size, sizeof *statistics);
+  if (description->sky.type != HL_SKY_NONE)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/sky: is in pictures of the reference alone yet: remove it, or render with --reference");
   return hl_layers_check(layers, description, error);
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/vector.h"
 #include "scene/placement.h"
+#include "scene/sky.h"
 
 static hl_status check_camera(const hl_camera *camera, hl_error *error) {
   hl_checker check = {error, "/camera"};
@@ -107,6 +108,7 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
   hl_status status = hl_settings_check(HL_SETTINGS_IMAGE, d, 0, "/image", error);
   if (status == HL_OK) status = check_camera(&d->camera, error);
   if (status == HL_OK) status = hl_check_settings(&root, HL_SETTINGS_SCENE, d, 0);
+  if (status == HL_OK) status = hl_sky_check(&d->sky, error);
   if (status == HL_OK) status = hl_check_count(&root, "lights", d->lights, d->light_count, HL_LIMIT_LIGHTS);
   if (status == HL_OK)
     status = hl_check_count(&root, "volumes", d->volumes, d->volume_count, HL_LIMIT_VOLUMES);
@@ -132,6 +134,9 @@ hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *s
   if (scene->mesh_count > 0)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "/meshes: a scene with meshes has no layers yet: remove the meshes, or ask for no layers");
+  if (scene->sky.type != HL_SKY_NONE)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/sky: a scene with a sky has no layers yet: remove the sky, or ask for no layers");
   if (scene->render.compositing == HL_COMPOSITING_MAXIMUM)
     return hl_fail(
         error, HL_ERROR_UNSUPPORTED,

@@ -48,26 +48,6 @@ static hl_status check_shape(const hl_checker *check, const hl_light *light) {
   return HL_OK;
 }
 
-/* [height][width][3] */
-static hl_status check_pixels(const hl_checker *check, const float *pixels, int width, int height) {
-  const char *size = "give an image of at most 32768 pixels a side, 67108864 in all";
-  hl_status status;
-  if ((status = hl_check_range(check, "width", width, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK)
-    return status;
-  if ((status = hl_check_range(check, "height", height, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK)
-    return status;
-  size_t count = (size_t)width * (size_t)height;
-  if (count > HL_LIMIT_TEXTURE_PIXELS)
-    return hl_fail(check->error, HL_ERROR_INPUT, "%s: has %d x %d pixels: %s", check->place, width, height,
-                   size);
-  for (size_t i = 0; i < 3 * count; i++)
-    if (!(pixels[i] >= 0 && (double)pixels[i] <= HL_LIMIT_TEXTURE_VALUE))
-      return hl_fail(check->error, HL_ERROR_INPUT,
-                     "%s/file: pixel (%zu, %zu) has %.9g in channel %zu: give linear RGB from 0 to 1e6",
-                     check->place, i / 3 % (size_t)width, i / 3 / (size_t)width, (double)pixels[i], i % 3);
-  return HL_OK;
-}
-
 /* Checks the texture; the light's rays must cross its screen. */
 static hl_status check_texture(const hl_checker *parent, const hl_light *light) {
   const hl_light_texture *texture = &light->texture;
@@ -75,7 +55,7 @@ static hl_status check_texture(const hl_checker *parent, const hl_light *light) 
   hl_status status;
   if (texture->pixels == NULL) return HL_OK;
   snprintf(check.place, sizeof check.place, "%s/texture", parent->place);
-  if ((status = check_pixels(&check, texture->pixels, texture->width, texture->height)) != HL_OK)
+  if ((status = hl_check_pixels(&check, texture->pixels, texture->width, texture->height)) != HL_OK)
     return status;
   if ((status = hl_check_point(&check, "screen/center", texture->screen_center)) != HL_OK) return status;
   if ((status = hl_check_direction(&check, "screen/right", texture->screen_right)) != HL_OK) return status;
@@ -100,7 +80,7 @@ static hl_status check_emission(const hl_checker *parent, const hl_light *light)
   hl_status status;
   if (emission->pixels == NULL) return HL_OK;
   snprintf(check.place, sizeof check.place, "%s/emission", parent->place);
-  if ((status = check_pixels(&check, emission->pixels, emission->width, emission->height)) != HL_OK)
+  if ((status = hl_check_pixels(&check, emission->pixels, emission->width, emission->height)) != HL_OK)
     return status;
   if ((status = hl_check_direction(&check, "up", emission->up)) != HL_OK) return status;
   if (light->texture.pixels != NULL)

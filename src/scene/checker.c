@@ -58,3 +58,22 @@ hl_status hl_check_count(const hl_checker *check, const char *key, const void *p
                    check->place, key, count, limit);
   return HL_OK;
 }
+
+hl_status hl_check_pixels(const hl_checker *check, const float *pixels, int width, int height) {
+  const char *size = "give an image of at most 32768 pixels a side, 67108864 in all";
+  hl_status status;
+  if ((status = hl_check_range(check, "width", width, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK)
+    return status;
+  if ((status = hl_check_range(check, "height", height, 1, HL_LIMIT_TEXTURE_SIDE, size)) != HL_OK)
+    return status;
+  size_t count = (size_t)width * (size_t)height;
+  if (count > HL_LIMIT_TEXTURE_PIXELS)
+    return hl_fail(check->error, HL_ERROR_INPUT, "%s: has %d x %d pixels: %s", check->place, width, height,
+                   size);
+  for (size_t i = 0; i < 3 * count; i++)
+    if (!(pixels[i] >= 0 && (double)pixels[i] <= HL_LIMIT_TEXTURE_VALUE))
+      return hl_fail(check->error, HL_ERROR_INPUT,
+                     "%s/file: pixel (%zu, %zu) has %.9g in channel %zu: give linear RGB from 0 to 1e6",
+                     check->place, i / 3 % (size_t)width, i / 3 / (size_t)width, (double)pixels[i], i % 3);
+  return HL_OK;
+}

@@ -27,6 +27,9 @@ hl_status hl_check_range(const hl_checker *check, const char *key, double value,
 hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]);
 hl_status hl_check_direction(const hl_checker *check, const char *key, const double v[3]);
 
+/* Checks the pixels of an image, [height][width][3], linear RGB. */
+hl_status hl_check_pixels(const hl_checker *check, const float *pixels, int width, int height);
+
 /* Checks that an array exists and has at most `limit` entries. */
 hl_status hl_check_count(const hl_checker *check, const char *key, const void *points, size_t count,
                          size_t limit);

@@ -18,6 +18,7 @@
 #define HL_LIMIT_BRIGHTNESS    1e20 /* of a light, a voxel's edge away; sums and products still fit floats */
 #define HL_LIMIT_REACH         1e12 /* distances and lengths, in smallest voxel edges */
 #define HL_LIMIT_TEXTURE_VALUE 1e6
+#define HL_LIMIT_RADIANCE      1e6  /* of a sky's colours, and of their factor */
 #define HL_LIMIT_VOXEL_VALUE   1e36 /* differences and sums of such values still fit floats */
 #define HL_LIMIT_LIGHT_SAMPLES 64
 #define HL_LIMIT_THREADS       1024

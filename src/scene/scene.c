@@ -43,6 +43,7 @@ void hl_scene_description_defaults(hl_scene_description *description) {
   hl_settings_defaults(HL_SETTINGS_IMAGE, description);
   hl_settings_defaults(HL_SETTINGS_CAMERA, &description->camera);
   hl_settings_defaults(HL_SETTINGS_RENDER, &description->render);
+  hl_settings_defaults(HL_SETTINGS_SKY, &description->sky);
 }
 
 static void release_volume(hl_context *context, hl_scene_volume *volume) {
@@ -74,6 +75,8 @@ static void destroy(hl_scene *scene) {
     hl_light_images_release(context, (hl_light *)&d->lights[l]);
   }
   hl_release(context, (void *)d->lights);
+  hl_release(context, (void *)d->sky.file);
+  hl_release(context, (void *)d->sky.pixels);
   hl_release(context, (void *)d->description);
   hl_release(context, scene);
 }
@@ -174,7 +177,7 @@ void hl_light_images_release(hl_context *context, hl_light *light) {
   forget_images(light);
 }
 
-/* A light's texture or emission. */
+/* A light's texture or emission, or a sky's image. */
 typedef struct light_picture {
   const float *pixels; /* [height][width][3]; null: none */
   int width, height;
@@ -227,6 +230,16 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
   return status;
 }
 
+/* Copies a sky's image; skies of other types have none. */
+static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) {
+  hl_sky *to = &scene->description.sky;
+  to->file = NULL;
+  to->pixels = NULL;
+  if (from->type != HL_SKY_IMAGE) return HL_OK;
+  return copy_picture(scene->context, (light_picture){from->pixels, from->width, from->height, from->file},
+                      &to->pixels, &to->file, error);
+}
+
 /* The camera's up, or another where it lies along the line of sight. */
 static void mend_up(hl_camera *camera) {
   vec3 right, up, forward;
@@ -257,12 +270,15 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   made->description.meshes = NULL;
   made->description.mesh_count = 0;
   made->description.description = NULL;
+  made->description.sky.file = NULL;
+  made->description.sky.pixels = NULL;
   made->description.light_count = made->description.volume_count = 0;
   mend_up(&made->description.camera);
   status = copy_text(context, description->description, &made->description.description, error);
   if (status == HL_OK) status = copy_lights(made, description, error);
   if (status == HL_OK) status = copy_volumes(made, description, error);
   if (status == HL_OK) status = copy_meshes(made, description, error);
+  if (status == HL_OK) status = copy_sky(made, &description->sky, error);
   if (status == HL_OK) status = hl_lights_place(context, &made->description, &made->placed, error);
   if (status != HL_OK) {
     destroy(made);

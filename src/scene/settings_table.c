@@ -52,9 +52,15 @@ static const hl_setting_choice lookups[] = {{"auto", HL_LOOKUP_AUTO},
 static const hl_setting_choice compositings[] = {
     {"light", HL_COMPOSITING_LIGHT}, {"maximum", HL_COMPOSITING_MAXIMUM}, {NULL, 0}};
 static const hl_setting_choice tones[] = {{"clip", HL_TONE_CLIP}, {"filmic", HL_TONE_FILMIC}, {NULL, 0}};
+static const hl_setting_choice skies[] = {{"none", HL_SKY_NONE},
+                                          {"uniform", HL_SKY_UNIFORM},
+                                          {"gradient", HL_SKY_GRADIENT},
+                                          {"image", HL_SKY_IMAGE},
+                                          {NULL, 0}};
 static const hl_setting_choice automatic_resolution[] = {{"auto", 0}, {NULL, 0}};
 
 #define ONE(type) (1u << (type))
+#define SHINING   (ONE(HL_SKY_UNIFORM) | ONE(HL_SKY_GRADIENT) | ONE(HL_SKY_IMAGE))
 #define PLACED    (ONE(HL_LIGHT_POINT) | ONE(HL_LIGHT_SPOT) | ONE(HL_LIGHT_RECT) | ONE(HL_LIGHT_DISK))
 
 /* Parts that many rows have in common. */
@@ -274,6 +280,33 @@ static const hl_setting render_rows[] = {
     {.key = "compositing", FIELD(hl_render_settings, compositing), A_CHOICE(compositings), .optional = 1,
      .sentence = "What a pixel shows: lit matter, or the greatest value along its ray, without light."}};
 
+#define A_RADIANCE                                                                          \
+  .type = HL_SETTING_COLOR, .unit = "linear RGB", .high = HL_LIMIT_RADIANCE,                \
+  .mend = "give linear RGB, each from {low} to {high}"
+
+static const hl_setting sky_rows[] = {
+    {.key = "type", FIELD(hl_sky, type), A_CHOICE(skies), .standard = {HL_SKY_NONE},
+     .sentence = "Where the colours of the light from all directions come from."},
+    {.key = "color", FIELD(hl_sky, color), A_RADIANCE, .standard = {1, 1, 1},
+     .only_for = ONE(HL_SKY_UNIFORM), .sentence = "The radiance from every direction."},
+    {.key = "zenith", FIELD(hl_sky, zenith), A_RADIANCE, .standard = {0.8, 0.9, 1},
+     .only_for = ONE(HL_SKY_GRADIENT), .sentence = "The radiance from straight above."},
+    {.key = "horizon", FIELD(hl_sky, horizon), A_RADIANCE, .standard = {1, 1, 1},
+     .only_for = ONE(HL_SKY_GRADIENT), .sentence = "The radiance from the horizon."},
+    {.key = "ground", FIELD(hl_sky, ground), A_RADIANCE, .standard = {0.3, 0.27, 0.24},
+     .only_for = ONE(HL_SKY_GRADIENT), .sentence = "The radiance from straight below."},
+    {.key = "rotation_deg", FIELD(hl_sky, rotation_deg), .type = HL_SETTING_NUMBER, .unit = "degrees",
+     .low = -1e6, .high = 1e6, .only_for = ONE(HL_SKY_IMAGE), 
+     .sentence = "The angle that the image is turned by about up, counterclockwise as seen from above.",
+     .mend = "give degrees from {low} to {high}"},
+    {.key = "up", FIELD(hl_sky, up), A_DIRECTION, .standard = {0, 0, 1}, .only_for = SHINING,
+     .sentence = "The direction of the zenith."},
+    {.key = "hemisphere", FIELD(hl_sky, hemisphere), A_FLAG, .only_for = SHINING,
+     .sentence = "Nothing shines below the horizon."},
+    {.key = "strength", FIELD(hl_sky, strength), .type = HL_SETTING_NUMBER, .unit = "",
+     .high = HL_LIMIT_RADIANCE, .standard = {1}, .only_for = SHINING,
+     .sentence = "A factor on the sky's colours.", .mend = "give a factor from {low} to {high}"}};
+
 /* clang-format on */
 
 #define TABLE(rows) \
@@ -290,6 +323,7 @@ static const struct {
     [HL_SETTINGS_MATERIAL] = TABLE(material_rows),
     [HL_SETTINGS_RENDER] = TABLE(render_rows),
     [HL_SETTINGS_MESH] = TABLE(mesh_rows),
+    [HL_SETTINGS_SKY] = TABLE(sky_rows),
     [HL_SETTINGS_TRANSFER_FUNCTION] = TABLE(transfer_function_rows),
 };
 

@@ -1,0 +1,87 @@
+/* json/images.c - the images that a scene's lights and sky name. */
+#include <string.h>
+
+#include <halflight/image.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "json/parts.h"
+
+/* The image of `like` that was read from this file; pixels null: none. */
+typedef struct known_image {
+  const float *pixels; /* [height][width][3] */
+  int width, height;
+} known_image;
+
+static bool is_from(const char *file, const float *pixels, const char *path) {
+  return file != NULL && pixels != NULL && strcmp(file, path) == 0;
+}
+
+static known_image find_known(const hl_scene_description *like, const char *path) {
+  const hl_sky *sky = &like->sky;
+  if (is_from(sky->file, sky->pixels, path)) return (known_image){sky->pixels, sky->width, sky->height};
+  for (size_t l = 0; l < like->light_count; l++) {
+    const hl_light_texture *texture = &like->lights[l].texture;
+    const hl_light_emission *emission = &like->lights[l].emission;
+    if (is_from(texture->file, texture->pixels, path))
+      return (known_image){texture->pixels, texture->width, texture->height};
+    if (is_from(emission->file, emission->pixels, path))
+      return (known_image){emission->pixels, emission->width, emission->height};
+  }
+  return (known_image){NULL, 0, 0};
+}
+
+static float *room_for(hl_json_reader *reader, int width, int height, const hl_json_image *to) {
+  float *pixels = hl_allocate(reader->context, (size_t)width * (size_t)height, 3 * sizeof *pixels);
+  *to->pixels = pixels;
+  *to->width = width;
+  *to->height = height;
+  return pixels;
+}
+
+static hl_status fail_room(hl_json_reader *reader, const hl_json_image *to) {
+  return hl_fail_memory(reader->error, (uint64_t)*to->width * (uint64_t)*to->height * 3 * sizeof(float),
+                        "a light's image");
+}
+
+static hl_status copy_known(hl_json_reader *reader, const char *file, const hl_json_image *to) {
+  known_image known = find_known(reader->like, *to->file);
+  if (known.pixels == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file",
+                        "\"%.200s\" is no image of the open scene: open it anew", file);
+  float *pixels = room_for(reader, known.width, known.height, to);
+  if (pixels == NULL) return fail_room(reader, to);
+  memcpy(pixels, known.pixels, 3 * (size_t)known.width * (size_t)known.height * sizeof *pixels);
+  return HL_OK;
+}
+
+/* Copies an image's colours without alpha: premultiplied, they are the image over black. */
+static hl_status take_pixels(hl_json_reader *reader, const hl_image *image, const hl_json_image *to) {
+  size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
+  const float *from = hl_image_pixels_const(image);
+  float *pixels = room_for(reader, hl_image_width(image), hl_image_height(image), to);
+  if (pixels == NULL) return fail_room(reader, to);
+  for (size_t i = 0; i < count; i++)
+    for (size_t c = 0; c < 3; c++) pixels[3 * i + c] = from[4 * i + c];
+  return HL_OK;
+}
+
+hl_status hl_json_load_image(hl_json_reader *reader, const json_t *value, const hl_json_image *to) {
+  const char *file = NULL;
+  hl_status status = hl_json_text(reader, value, "file", &file);
+  if (status != HL_OK) return status;
+  if (file == NULL || file[0] == 0)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "file", "%s: name the image's file",
+                        file == NULL ? "is missing" : "is empty");
+  char *path = hl_path_join(reader->context, reader->folder, file);
+  if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
+  *to->file = path;
+  if (reader->like != NULL) return copy_known(reader, file, to);
+  hl_image *image = NULL;
+  status = hl_image_read(reader->context, path, &image, reader->error);
+  if (status == HL_OK) status = take_pixels(reader, image, to);
+  hl_image_destroy(image);
+  if (status == HL_OK) return HL_OK;
+  hl_json_enter(reader, "file");
+  return hl_json_prefix(reader, reader->place), status;
+}
