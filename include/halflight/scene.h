@@ -142,10 +142,6 @@ typedef struct hl_transfer_function {
   size_t opacity_count;
   const hl_color_point *color; /* sorted by value; linear RGB */
   size_t color_count;
-  /* What extinction is multiplied by, 0 to 1, where the data's gradient has a length (`value`: data units per
-   * world unit); sorted by value. None: 1 everywhere. */
-  const hl_opacity_point *gradient_opacity;
-  size_t gradient_opacity_count;
 } hl_transfer_function;
 
 typedef enum hl_shading {
@@ -158,6 +154,14 @@ typedef struct hl_material {
   double ambient, diffuse, specular, shininess; /* ka kd ks n */
   double emission; /* ke: fraction of the colour that shines without any light; default 0 */
 } hl_material;
+
+/* A surface on which a volume has one value, as if it were a sheet of paper: seen and shadowed from any angle
+ * it takes the same fraction of light. The volume's material lights it, with its gradient as normal. */
+typedef struct hl_isosurface {
+  double value;
+  double color[3]; /* linear RGB */
+  double opacity;  /* 0 to 1 */
+} hl_isosurface;
 
 typedef struct hl_scene_volume {
   const char *name;   /* may be null */
@@ -185,6 +189,8 @@ typedef struct hl_scene_volume {
                                HL_INDEX_DEFAULT */
   double anisotropy; /* g of Henyey and Greenstein's phase function, by which a medium scatters light; above
                         0: mostly onwards, below 0: mostly back; default 0: evenly */
+  const hl_isosurface *iso; /* [iso_count]; beside what the transfer function shows */
+  size_t iso_count;
 } hl_scene_volume;
 
 /* A mesh among the volumes. Its colour is that of its vertices, where it has some, times `color`. */
@@ -276,6 +282,7 @@ HL_API void hl_scene_description_defaults(hl_scene_description *description);
 HL_API void hl_light_defaults(hl_light *light);
 HL_API void hl_scene_volume_defaults(hl_scene_volume *volume);
 HL_API void hl_scene_mesh_defaults(hl_scene_mesh *mesh);
+HL_API void hl_isosurface_defaults(hl_isosurface *surface);
 
 /* Checks and copies the description, and retains the volumes. Errors name the field as a JSON pointer
  * ("/lights/0/radius"). */

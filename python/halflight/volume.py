@@ -8,7 +8,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from . import _settings, arrays, neighbours
+from . import _settings, arrays, isosurface, neighbours
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords
 from .keywords import MaterialSettings, VolumeSettings
@@ -32,12 +32,16 @@ class Look(VolumeSettings, MaterialSettings, total=False):
         The corners of the box that is kept, in the world before the transform.
     scale : float or 3 floats
         Along the world's axes, before the rotation.
+    iso : a value, (value, color, opacity), or a list of them
+        Surfaces on which the volume has one value, in place of what an automatic transfer function shows. Colour and
+        opacity may be left out.
     """
 
     name: str
     transfer_function: TransferFunction
     clip: tuple[Sequence[float], Sequence[float]] | None
     scale: float | Sequence[float]
+    iso: Any
 
 
 _OF_FILES = ("array", "component", "series", "time", "channel", "level")
@@ -245,6 +249,7 @@ class Volume:
         look["name"] = None if struct.name == ffi.NULL else text_of(struct.name)
         look["transfer_function"] = function_from(struct.transfer_function)
         look["clip"] = (tuple(struct.clip_min), tuple(struct.clip_max)) if struct.clipped else None
+        look["iso"] = isosurface.isosurfaces_from(struct)
         look["scale"] = tuple(struct.scale * one for one in struct.axis_scale)
         return look | self._changes
 
@@ -324,6 +329,9 @@ class Volume:
                 raise TypeError(f"{place}name: {name!r} is no text")
             keep.append(text := ffi.new("char[]", name.encode()))
             struct.name = text
+        if (iso := changes.pop("iso", None)) is not None:
+            isosurface.fill(struct, iso, keep, place)
+            changes.setdefault("transfer_function", TransferFunction([(0, 0)]) if struct.iso_count > 0 else None)
         if (function := changes.pop("transfer_function", None)) is not None:
             if not isinstance(function, TransferFunction):
                 raise TypeError(f"{place}transfer_function: {function!r} is no TransferFunction")

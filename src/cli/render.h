@@ -35,6 +35,7 @@ enum render_option {
   RENDER_RANGE,
   RENDER_RANGE_OF_ALL,
   RENDER_THRESHOLD,
+  RENDER_ISO,
   RENDER_CLIP,
   RENDER_SHADING,
   RENDER_AMBIENT,
@@ -122,6 +123,15 @@ void render_volume_name(const hl_scene_volume *volume, size_t index, char *name,
 
 /* Refuses --tf and --colormap NAME=... for names that no volume has. */
 int render_check_names(const cli_value *values, const hl_scene_description *description);
+
+/* Refuses values of --iso that cannot be read. */
+int render_check_iso(const cli_value *iso);
+
+/* Gives volume number `index` the surfaces of --iso that are for it, and makes its transfer function, whose
+ * points are the caller's, clear where no option sets it. surfaces: room for all values of --iso, which the
+ * volume borrows. Returns the exit code. */
+int render_iso(const cli_host *host, const cli_value *values, size_t index, hl_scene_volume *volume,
+               hl_isosurface *surfaces);
 
 /* Refuses values of --clip that cannot be read. */
 int render_check_clip(const cli_value *clip);

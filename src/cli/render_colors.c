@@ -74,12 +74,14 @@ static void list_names(const hl_scene_description *description, char *names, siz
   }
 }
 
-static int check_names(const char *option, const cli_value *given, const hl_scene_description *description) {
+/* many: the option may be given several times for one volume. */
+static int check_names(const char *option, const cli_value *given, bool many,
+                       const hl_scene_description *description) {
   char names[600];
   list_names(description, names, sizeof names);
   for (int n = 0; n < given->count; n++) {
     const char *text = given->texts[n], *rest = after_name(text);
-    if (rest == NULL && given->count > 1)
+    if (rest == NULL && given->count > 1 && !many)
       return fail(EXIT_CODE_USAGE,
                   "--%s: '%s' beside another --%s: say whose each is, NAME=... (volumes: %s)", option, text,
                   option, names);
@@ -91,9 +93,10 @@ static int check_names(const char *option, const cli_value *given, const hl_scen
 }
 
 int render_check_names(const cli_value *values, const hl_scene_description *description) {
-  int exit_code = check_names("tf", &values[RENDER_TF], description);
-  return exit_code == EXIT_CODE_OK ? check_names("colormap", &values[RENDER_COLORMAP], description)
-                                   : exit_code;
+  int exit_code = check_names("tf", &values[RENDER_TF], false, description);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = check_names("colormap", &values[RENDER_COLORMAP], false, description);
+  return exit_code == EXIT_CODE_OK ? check_names("iso", &values[RENDER_ISO], true, description) : exit_code;
 }
 
 /* The value that a repeatable option gives one volume, the last one if there are several; null: none. */
@@ -151,8 +154,6 @@ static void spread(hl_transfer_function *function, const double visible[2], cons
     opacity[n].value = range[0] + (opacity[n].value - visible[0]) * factor;
   for (size_t n = 0; n < function->color_count; n++)
     color[n].value = range[0] + (color[n].value - visible[0]) * factor;
-  hl_opacity_point *gradient = (hl_opacity_point *)function->gradient_opacity;
-  for (size_t n = 0; n < function->gradient_opacity_count; n++) gradient[n].value *= factor;
 }
 
 /* Makes values clear below the threshold and nearly opaque, over a voxel's edge, from it on. A ramp below the
@@ -176,33 +177,26 @@ static int make_opaque_from(const cli_host *host, const hl_volume *volume, doubl
   points[1] = (hl_opacity_point){threshold, 0.95};
   function->opacity = points;
   function->opacity_count = POINTS;
-  function->gradient_opacity_count = 0;
   function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]);
   return EXIT_CODE_OK;
 }
 
-static void *copy_points(const void *points, size_t bytes) {
-  void *copy = malloc(bytes + 1);
-  if (copy != NULL && bytes > 0) memcpy(copy, points, bytes);
-  return copy;
-}
-
 /* Copies the points; the copies are owned by the caller (render_release_function). */
 static int copy_function(const hl_transfer_function *from, hl_transfer_function *to) {
-  *to = *from;
-  to->opacity = copy_points(from->opacity, from->opacity_count * sizeof *from->opacity);
-  to->color = copy_points(from->color, from->color_count * sizeof *from->color);
-  to->gradient_opacity = copy_points(from->gradient_opacity,
-                                     from->gradient_opacity_count * sizeof *from->gradient_opacity);
-  return to->opacity != NULL && to->color != NULL && to->gradient_opacity != NULL
-             ? EXIT_CODE_OK
-             : fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
+  size_t opacity_bytes = from->opacity_count * sizeof *from->opacity,
+         color_bytes = from->color_count * sizeof *from->color;
+  hl_opacity_point *opacity = malloc(opacity_bytes + 1);
+  hl_color_point *color = malloc(color_bytes + 1);
+  if (opacity_bytes > 0 && opacity != NULL) memcpy(opacity, from->opacity, opacity_bytes);
+  if (color_bytes > 0 && color != NULL) memcpy(color, from->color, color_bytes);
+  *to = (hl_transfer_function){from->unit_distance, opacity, from->opacity_count, color, from->color_count};
+  return opacity != NULL && color != NULL ? EXIT_CODE_OK
+                                          : fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
 }
 
 void render_release_function(hl_transfer_function *function) {
   free((void *)function->opacity);
   free((void *)function->color);
-  free((void *)function->gradient_opacity);
 }
 
 /* Gives a function the points of `loaded`. Its own opacity is kept if `loaded` has none. */
@@ -213,8 +207,6 @@ static int replace(const hl_transfer_function *loaded, hl_transfer_function *fun
     both.unit_distance = old.unit_distance;
     both.opacity = old.opacity;
     both.opacity_count = old.opacity_count;
-    both.gradient_opacity = old.gradient_opacity;
-    both.gradient_opacity_count = old.gradient_opacity_count;
   }
   int exit_code = copy_function(&both, &copy);
   render_release_function(&old);

@@ -184,6 +184,13 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                           .count = 1,
                           .low = -INFINITY,
                           .high = INFINITY},
+    [RENDER_ISO] = {.name = "iso",
+                    .kind = OPTION_TEXT,
+                    .argument = "[NAME=]VALUE[:COLOR[:OPACITY]]",
+                    .help = "the surface on which the volume has this value, in\nplace of the transfer "
+                            "function (beside it with "
+                            "--tf\nor --look); again for more (--iso 80:skyblue:0.3)",
+                    .repeatable = true},
     [RENDER_CLIP] =
         {.name = "clip",
          .kind = OPTION_TEXT,
@@ -378,6 +385,7 @@ int render_check_options(const cli_value *values) {
       return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s",
                   render_options[pictures[n]].name);
   int exit_code = render_check_clip(&values[RENDER_CLIP]);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_iso(&values[RENDER_ISO]);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   exit_code = check_linear_output(values, named);
   if (exit_code != EXIT_CODE_OK) return exit_code;

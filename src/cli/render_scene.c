@@ -20,7 +20,8 @@ typedef struct scene_change {
   hl_light *lights;         /* owned; [description.light_count] */
   hl_scene_volume *volumes; /* owned; [description.volume_count] */
   hl_transfer_function
-      *functions; /* owned with their points; [description.volume_count]; null: none changed */
+      *functions;          /* owned with their points; [description.volume_count]; null: none changed */
+  hl_isosurface *surfaces; /* owned; [description.volume_count][values of --iso]; null: none */
 } scene_change;
 
 static void subtract(const double a[3], const double b[3], double difference[3]) {
@@ -176,8 +177,8 @@ static int change_volume(scene_change *change, size_t index) {
   hl_scene_volume *volume = &change->volumes[index];
   if (values[RENDER_SHADING].given) volume->shading = (hl_shading)values[RENDER_SHADING].choice;
   int exit_code = values[RENDER_CLIP].given ? render_clip(&values[RENDER_CLIP], volume) : EXIT_CODE_OK;
-  bool looks = render_look_recolors(values, change->bare);
-  if (exit_code != EXIT_CODE_OK || (!looks && !render_recolors(values))) return exit_code;
+  bool looks = render_look_recolors(values, change->bare), iso = values[RENDER_ISO].given;
+  if (exit_code != EXIT_CODE_OK || (!looks && !iso && !render_recolors(values))) return exit_code;
   hl_transfer_function look = {0};
   hl_error error = {0};
   hl_status status = looks ? render_look_function(change->host, values, volume->volume, &look, &error)
@@ -188,18 +189,24 @@ static int change_volume(scene_change *change, size_t index) {
                                        &change->functions[index]);
   volume->transfer_function = change->functions[index];
   hl_transfer_function_release(change->host->context, &look);
-  return exit_code;
+  if (exit_code != EXIT_CODE_OK || !iso) return exit_code;
+  hl_isosurface *own = change->surfaces + index * (size_t)values[RENDER_ISO].count;
+  return render_iso(change->host, values, index, volume, own);
 }
 
 static int change_volumes(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
   bool changed = render_look_recolors(values, change->bare) || render_recolors(values) ||
-                 values[RENDER_SHADING].given || values[RENDER_CLIP].given;
+                 values[RENDER_SHADING].given || values[RENDER_CLIP].given || values[RENDER_ISO].given;
   if (!changed || description->volume_count == 0) return EXIT_CODE_OK;
   change->volumes = calloc(description->volume_count, sizeof *change->volumes);
   change->functions = calloc(description->volume_count, sizeof *change->functions);
-  if (change->volumes == NULL || change->functions == NULL)
+  if (values[RENDER_ISO].given)
+    change->surfaces = calloc(description->volume_count * (size_t)values[RENDER_ISO].count,
+                              sizeof *change->surfaces);
+  if (change->volumes == NULL || change->functions == NULL ||
+      (values[RENDER_ISO].given && change->surfaces == NULL))
     return fail(EXIT_CODE_FAILURE, "out of memory for the scene's volumes");
   memcpy(change->volumes, description->volumes, description->volume_count * sizeof *change->volumes);
   description->volumes = change->volumes;
@@ -256,6 +263,7 @@ static void change_release(scene_change *change) {
     for (size_t i = 0; i < change->description.volume_count; i++)
       render_release_function(&change->functions[i]);
   free(change->functions);
+  free(change->surfaces);
   free(change->volumes);
   free(change->lights);
 }

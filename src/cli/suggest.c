@@ -54,7 +54,8 @@ static const struct {
      "clim window level window-level vmin vmax scalar-range data-range color-range rescale-range clims min "
      "max "
      "limits contrast"},
-    {"threshold", "iso isovalue isosurface iso-value contour level-set cutoff surface lower-threshold"},
+    {"threshold", "cutoff surface lower-threshold"},
+    {"iso", "isovalue isosurface iso-value contour contours level-set isosurfaces iso-surface"},
     {"clip", "crop cut roi cutplane clipping slab extent subset box clip-box slice bbox clipping-plane"},
     {"shading", "shade shader material lighting phong"},
     {"ambient", "ambient-light ambient-color fill-light ambient-occlusion environment"},

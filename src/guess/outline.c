@@ -77,7 +77,7 @@ static hl_status add_slices(hl_outline *outline, const hl_seen *seen, affine3 pl
   return status;
 }
 
-static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
+static hl_status add_shown(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
   hl_seen seen;
   bool any;
   size_t rows = volume->volume->dimension[1];
@@ -91,6 +91,19 @@ static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, 
   }
   hl_seen_release(&seen);
   return status;
+}
+
+/* Adds what a volume shows: by its transfer function, and within its isosurfaces of the least value. */
+static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
+  hl_status status = add_shown(outline, volume, error);
+  double least = INFINITY;
+  for (size_t i = 0; i < volume->iso_count; i++) least = fmin(least, volume->iso[i].value);
+  if (status != HL_OK || volume->iso_count == 0 || !volume->visible) return status;
+  const hl_opacity_point points[2] = {{least, 0}, {least + 1e-9 * fmax(fabs(least), 1), 0.99}};
+  hl_scene_volume solid = *volume;
+  solid.transfer_function = (hl_transfer_function){.opacity = points, .opacity_count = 2};
+  solid.transfer_function.unit_distance = mat3_shortest_column(volume->volume->index_to_world.linear);
+  return add_shown(outline, &solid, error);
 }
 
 static hl_status add_box(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {

@@ -79,6 +79,13 @@ typedef struct hl_mesh_shelf {
 hl_status hl_json_read_meshes(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf);
 void hl_json_release_meshes(hl_context *context, hl_mesh_shelf *shelf);
 
+/* The array "iso" (null: none) of a volume; the surfaces are owned by *volume. */
+hl_status hl_json_read_iso(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume);
+
+/* A transfer function that shows nothing. Its points are owned by *function. */
+hl_status hl_json_clear_function(hl_json_reader *reader, const hl_volume *volume,
+                                 hl_transfer_function *function);
+
 /* The volume that a transfer function is read for. */
 typedef struct hl_function_subject {
   const hl_volume *volume; /* null: a file of its own; functions that depend on the voxels are refused */

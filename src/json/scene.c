@@ -25,8 +25,10 @@ typedef struct gathered {
 } gathered;
 
 static void release(hl_context *context, gathered *g) {
-  for (size_t v = 0; v < g->description.volume_count; v++)
+  for (size_t v = 0; v < g->description.volume_count; v++) {
     hl_transfer_function_release(context, &g->volumes[v].transfer_function);
+    hl_release(context, (void *)g->volumes[v].iso);
+  }
   for (size_t v = 0; v < g->shelf.count; v++) {
     hl_volume_release(g->shelf.loaded[v].volume);
     hl_release(context, g->shelf.loaded[v].source);

@@ -87,6 +87,20 @@ static hl_status read_solid(hl_json_reader *reader, const hl_volume *volume, hl_
   return set_solid_opacity(reader, solid_opacity, function);
 }
 
+hl_status hl_json_clear_function(hl_json_reader *reader, const hl_volume *volume,
+                                 hl_transfer_function *function) {
+  *function = (hl_transfer_function){.unit_distance = mat3_shortest_column(volume->index_to_world.linear)};
+  hl_opacity_point *opacity = hl_allocate_zeroed(reader->context, 1, sizeof *opacity);
+  hl_color_point *color = hl_allocate_zeroed(reader->context, 1, sizeof *color);
+  function->opacity = opacity, function->opacity_count = 1;
+  function->color = color, function->color_count = 1;
+  if (opacity == NULL || color == NULL)
+    return hl_fail_memory(reader->error, sizeof *color, "a transfer function");
+  opacity->value = color->value = volume->minimum;
+  for (int c = 0; c < 3; c++) color->color[c] = 1;
+  return HL_OK;
+}
+
 static hl_status read_points(hl_json_reader *reader, const json_t *value, bool is_solid,
                              hl_transfer_function *function) {
   hl_status status = HL_OK;
@@ -104,12 +118,6 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
     hl_release(reader->context, (void *)function->opacity);
     function->opacity = (hl_opacity_point *)rows;
     function->opacity_count = count;
-  }
-  if (has(value, "gradient_opacity")) {
-    if ((status = read_rows(reader, value, "gradient_opacity", 2, &rows, &count)) != HL_OK) return status;
-    hl_release(reader->context, (void *)function->gradient_opacity);
-    function->gradient_opacity = (hl_opacity_point *)rows;
-    function->gradient_opacity_count = count;
   }
   if (json_is_number(json_array_get(json_object_get(value, "color"), 0)))
     return read_plain_color(reader, value, function);
@@ -205,8 +213,8 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
 
 static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                               hl_transfer_function *function) {
-  static const char *const keys[] = {
-      "unit_distance", "opacity", "gradient_opacity", "color", "colormap", "range", "preset", "file", NULL};
+  static const char *const keys[] = {"unit_distance", "opacity", "color", "colormap",
+                                     "range",         "preset",  "file",  NULL};
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = read_start(reader, value, subject, function);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);

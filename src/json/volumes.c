@@ -19,7 +19,7 @@ static const char *const volume_keys[] = {"name",       "stand_in",          "fi
                                           "material",   "attenuation_color", "visible", "casts_shadow",
                                           "clip",       "receives_shadow",   "array",   "component",
                                           "time",       "channel",           "level",   "spacing",
-                                          "series",     "scattering",        NULL};
+                                          "series",     "scattering",        "iso",     NULL};
 
 /* How a file is read. */
 static const char *const of_file[] = {"array", "component", "time", "channel", "level", "series", "spacing"};
@@ -370,6 +370,9 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);
   if (status == HL_OK) status = choose_shading(reader, value, volume);
   if (status != HL_OK) return status;
+  if ((status = hl_json_read_iso(reader, json_object_get(value, "iso"), volume)) != HL_OK) return status;
+  if (volume->iso_count > 0 && json_object_get(value, "transfer_function") == NULL)
+    return hl_json_clear_function(reader, volume->volume, &volume->transfer_function);
   hl_function_subject subject = {volume->volume, is_solid(volume), shelf->projected};
   return hl_json_read_transfer_function(reader, json_object_get(value, "transfer_function"), subject,
                                         &volume->transfer_function);

@@ -188,18 +188,15 @@ static void write_sky(writer *w, const hl_sky *sky) {
   close_bracket(w, "}");
 }
 
-static void write_opacity(writer *w, const char *key, const hl_opacity_point *points, size_t count) {
-  open_bracket(w, key, "[");
-  for (size_t p = 0; p < count; p++) write_row(w, NULL, (double[2]){points[p].value, points[p].opacity}, 2);
-  close_bracket(w, "]");
-}
-
 static void write_transfer_function(writer *w, const hl_transfer_function *function) {
   open_bracket(w, "transfer_function", "{");
   write_settings(w, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
-  write_opacity(w, "opacity", function->opacity, function->opacity_count);
-  if (function->gradient_opacity_count > 0)
-    write_opacity(w, "gradient_opacity", function->gradient_opacity, function->gradient_opacity_count);
+  open_bracket(w, "opacity", "[");
+  for (size_t p = 0; p < function->opacity_count; p++) {
+    const hl_opacity_point *point = &function->opacity[p];
+    write_row(w, NULL, (double[2]){point->value, point->opacity}, 2);
+  }
+  close_bracket(w, "]");
   open_bracket(w, "color", "[");
   for (size_t p = 0; p < function->color_count; p++) {
     const hl_color_point *point = &function->color[p];
@@ -293,6 +290,17 @@ static void write_source(writer *w, const hl_scene_volume *volume) {
   if (volume->spacing[0] > 0) write_row(w, "spacing", volume->spacing, 3);
 }
 
+static void write_iso(writer *w, const hl_scene_volume *volume) {
+  if (volume->iso_count == 0) return;
+  open_bracket(w, "iso", "[");
+  for (size_t i = 0; i < volume->iso_count; i++) {
+    open_bracket(w, NULL, "{");
+    write_settings(w, HL_SETTINGS_ISO, 0, &volume->iso[i]);
+    close_bracket(w, "}");
+  }
+  close_bracket(w, "]");
+}
+
 static void write_volume(writer *w, const hl_scene_volume *volume) {
   open_bracket(w, NULL, "{");
   if (volume->name != NULL) write_name(w, "name", volume->name);
@@ -300,6 +308,7 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
   else write_source(w, volume);
   write_transform(w, volume);
   write_transfer_function(w, &volume->transfer_function);
+  write_iso(w, volume);
   write_key(w, HL_SETTINGS_VOLUME, "shading", volume);
   write_material(w, &volume->material);
   write_key(w, HL_SETTINGS_VOLUME, "attenuation_color", volume);

@@ -170,15 +170,11 @@ vec3 hl_reference_gradient(const reference_volume *volume, vec3 point) {
   return vec3_scale(mat3_apply(volume->gradient_to_world, stored), volume->grid->value_scale);
 }
 
-double hl_reference_extinction(const reference_volume *volume, double value, vec3 point) {
+double hl_reference_extinction(const reference_volume *volume, double value) {
   const hl_transfer_function *function = &volume->described->transfer_function;
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(function, value);
-  if (!(opacity > 0)) return 0;
-  double extinction = -log1p(-fmin(opacity, 0.9999)) / function->unit_distance;
-  if (function->gradient_opacity_count == 0) return extinction;
-  return extinction *
-         hl_transfer_function_gradient_opacity(function, vec3_length(hl_reference_gradient(volume, point)));
+  return opacity > 0 ? -log1p(-fmin(opacity, 0.9999)) / function->unit_distance : 0;
 }
 
 /* ---- where the volume is transparent ----
@@ -200,6 +196,13 @@ static void brick_voxels(size_t brick, size_t n, size_t *first, size_t *last) {
   *last = least(corner + BRICK_CELLS, n - 1);
 }
 
+/* Whether the field may take one of the isosurfaces' values. */
+static bool holds_iso(const hl_scene_volume *volume, double low, double high) {
+  for (size_t i = 0; i < volume->iso_count; i++)
+    if (volume->iso[i].value >= low && volume->iso[i].value <= high) return true;
+  return false;
+}
+
 static bool brick_visible(const reference_volume *volume, size_t i, size_t j, size_t k) {
   size_t first[3], last[3], voxel[3];
   const size_t brick[3] = {i, j, k};
@@ -217,7 +220,8 @@ static bool brick_visible(const reference_volume *volume, size_t i, size_t j, si
   double b = volume->grid->value_scale * high + volume->grid->value_offset;
   a = in_range(volume, a);
   b = in_range(volume, b);
-  return hl_transfer_function_visible(&volume->described->transfer_function, fmin(a, b), fmax(a, b));
+  return hl_transfer_function_visible(&volume->described->transfer_function, fmin(a, b), fmax(a, b)) ||
+         holds_iso(volume->described, fmin(a, b), fmax(a, b));
 }
 
 /* Fills one layer of bricks per call. */

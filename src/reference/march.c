@@ -24,6 +24,12 @@ static void clip_to_box(crossing *part, double nearest, double farthest) {
   }
 }
 
+void hl_reference_cross_box(crossing *part, const reference_ray *ray, double nearest, double farthest) {
+  part->origin = affine3_apply(part->volume->world_to_index, ray->origin);
+  part->direction = mat3_apply(part->volume->world_to_index.linear, ray->direction);
+  clip_to_box(part, nearest, farthest);
+}
+
 void hl_reference_march_begin(const reference *all, reference_role role, const reference_ray *ray,
                               crossing *crossings, march *walk) {
   *walk = (march){.crossings = crossings, .longest_step = all->step, .end = ray->nearest};
@@ -31,10 +37,8 @@ void hl_reference_march_begin(const reference *all, reference_role role, const r
     const reference_volume *volume = &all->volumes[v];
     if (!(role == REFERENCE_SEEN ? volume->described->visible : volume->described->casts_shadow)) continue;
     crossing *part = &crossings[walk->count];
-    *part = (crossing){.volume = volume,
-                       .origin = affine3_apply(volume->world_to_index, ray->origin),
-                       .direction = mat3_apply(volume->world_to_index.linear, ray->direction)};
-    clip_to_box(part, ray->nearest, ray->farthest);
+    *part = (crossing){.volume = volume};
+    hl_reference_cross_box(part, ray, ray->nearest, ray->farthest);
     if (part->enter < part->leave) walk->count++;
   }
 }

@@ -69,8 +69,7 @@ static double total_extinction(const march *walk) {
   for (size_t v = 0; v < walk->count; v++) {
     const crossing *part = &walk->crossings[v];
     if (part->occupied)
-      total += hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here),
-                                       part->here);
+      total += hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here));
   }
   return total;
 }
@@ -84,7 +83,7 @@ static void sample(const reference *all, const march *walk, vec3 point, vec3 to_
     const crossing *part = &walk->crossings[v];
     if (!part->occupied) continue;
     double value = hl_reference_value(part->volume, part->here);
-    double extinction = hl_reference_extinction(part->volume, value, part->here);
+    double extinction = hl_reference_extinction(part->volume, value);
     if (extinction <= 0) continue;
     if (made->weight == 0)
       for (size_t l = 0; l < all->scene->light_count; l++)
@@ -156,8 +155,7 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
     if (!met || ray->weight >= OPAQUE) break;
     double before = ray->weight;
     hl_reference_surface_shade(all, &hit, &way, worker);
-    hl_reference_parts_add(ray, &worker->sample, (1 - before) * hit.triangle->opacity,
-                           all->scene->light_count);
+    hl_reference_parts_add(ray, &worker->sample, (1 - before) * hit.opacity, all->scene->light_count);
     if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY) first = hit.distance;
     way.nearest = hit.distance;
   }

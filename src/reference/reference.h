@@ -13,6 +13,7 @@
  *     shade.c           the light that one sample sends to the eye
  *     layers.c          that light by its sources, depth and normals
  *     surfaces.c        where rays meet meshes
+ *     isosurfaces.c     where rays meet surfaces of one value
  *     shade_surface.c   the light that a surface sends to the eye
  *     maximum.c         the greatest value along a ray, in place of light
  */
@@ -200,13 +201,14 @@ double hl_reference_stored_value(const reference_volume *volume, const size_t vo
 double hl_reference_value(const reference_volume *volume, vec3 point);
 /* Data value per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
-/* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u, times gradient opacity. value:
- * that at the point. */
-double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);
+/* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u */
+double hl_reference_extinction(const reference_volume *volume, double value);
 
 /* Sets the volumes of a march. */
 typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference_role;
 
+/* Fills a crossing of part->volume by the ray between two distances. */
+void hl_reference_cross_box(crossing *part, const reference_ray *ray, double nearest, double farthest);
 void hl_reference_march_begin(const reference *all, reference_role role, const reference_ray *ray,
                               crossing *crossings, march *walk);
 /* Moves all crossings to a distance within the current stretch. Returns how far every volume is transparent
@@ -261,22 +263,34 @@ void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, ref
 hl_status hl_reference_surfaces_create(reference *all, hl_error *error);
 void hl_reference_surfaces_release(reference *all);
 
-/* Where a ray meets a triangle. */
+/* Where a ray meets a triangle, or a volume's isosurface. */
 typedef struct reference_hit {
-  const reference_triangle *triangle;
+  const reference_triangle *triangle; /* null: an isosurface */
   double distance;
-  double weight[3]; /* of the triangle's corners */
+  double weight[3];               /* of the triangle's corners */
+  const hl_isosurface *iso;       /* null: a triangle */
+  const reference_volume *volume; /* of the isosurface */
+  double opacity;
 } reference_hit;
 
 /* A point of a surface that is shaded. */
 typedef struct reference_surface_point {
   vec3 point, normal, to_eye; /* world; unit vectors; the normal is on the eye's side */
   double color[3];
+  hl_material material;
+  bool receives_shadow;
 } reference_surface_point;
 
-/* The first triangle farther along the ray than `after` and nearer than ray->farthest; false: none. */
+/* The first triangle or isosurface farther along the ray than `after` and nearer than ray->farthest; false:
+ * none. */
 bool hl_reference_surface_next(const reference *all, reference_role role, const reference_ray *ray,
                                double after, reference_hit *hit);
+/* The first isosurface farther along the ray than `after` and nearer than hit->distance: sets *hit if there
+ * is one. */
+void hl_reference_iso_next(const reference *all, reference_role role, const reference_ray *ray, double after,
+                           reference_hit *hit);
+/* The unit vector to where the isosurface's inside, of greater values, is not; point: world. */
+vec3 hl_reference_iso_normal(const reference_hit *hit, vec3 point);
 /* The fraction of light that passes all surfaces on a ray, which may begin on a surface. */
 double hl_reference_surfaces_passing(const reference *all, const reference_ray *ray);
 /* Sets the worker's sample to what the surface sends back along the ray, with weight 1. */

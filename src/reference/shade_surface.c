@@ -33,60 +33,77 @@ static void color_of(const reference_hit *hit, double color[3]) {
 }
 
 /* Eqs. (3) and (4) for one light. */
-static void add_light(const reference *all, size_t light, const reference_hit *hit,
-                      const reference_surface_point *at, reference_worker *worker, double picture[3]) {
-  const hl_material *material = &hit->triangle->mesh->material;
+static void add_light(const reference *all, size_t light, const reference_surface_point *at,
+                      reference_worker *worker, double picture[3]) {
+  const hl_material *material = &at->material;
   double reach[3];
   arrival arrived;
   hl_reference_light_arrive(&all->lights[light], at->point, &arrived);
   double cosine = vec3_dot(at->normal, arrived.towards);
   if (cosine <= 0) return;
-  hl_reference_light_reach(all, &all->lights[light], at->point, hit->triangle->mesh->receives_shadow, worker,
-                           reach);
+  hl_reference_light_reach(all, &all->lights[light], at->point, at->receives_shadow, worker, reach);
   vec3 reflected = vec3_subtract(vec3_scale(at->normal, 2 * cosine), arrived.towards);
   double gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   for (int c = 0; c < 3; c++)
     picture[c] = (at->color[c] * material->diffuse * cosine + gloss) * arrived.incoming[c] * reach[c];
 }
 
-static void add_sky(const reference *all, const reference_hit *hit, const reference_surface_point *at,
-                    reference_worker *worker, double picture[3]) {
-  const hl_scene_mesh *mesh = hit->triangle->mesh;
+static void add_sky(const reference *all, const reference_surface_point *at, reference_worker *worker,
+                    double picture[3]) {
   reference_sky_light light;
   hl_reference_sky_arrive(all,
                           &(reference_sky_receiver){.point = at->point,
                                                     .normal = at->normal,
                                                     .to_eye = at->to_eye,
                                                     .surface = 1,
-                                                    .receives_shadow = mesh->receives_shadow,
-                                                    .diffuse = mesh->material.diffuse},
+                                                    .receives_shadow = at->receives_shadow,
+                                                    .diffuse = at->material.diffuse},
                           worker, &light);
   for (int c = 0; c < 3; c++) picture[c] = at->color[c] * light.reaching[c];
+}
+
+/* The normal and the colour where the ray meets a triangle. Returns whether it meets the side behind. */
+static bool find_mesh_point(const reference *all, const reference_hit *hit, reference_surface_point *at) {
+  const hl_scene_mesh *mesh = hit->triangle->mesh;
+  const vec3 *corner = hit->triangle->corner;
+  vec3 flat = vec3_normalise(
+      vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0])));
+  bool behind = vec3_dot(flat, at->to_eye) < 0;
+  at->normal = mesh->smooth ? normal_of(all, hit, flat) : flat;
+  if (behind) at->normal = vec3_scale(at->normal, -1);
+  color_of(hit, at->color);
+  at->material = mesh->material;
+  at->receives_shadow = mesh->receives_shadow;
+  return behind;
+}
+
+static void find_iso_point(const reference_hit *hit, reference_surface_point *at) {
+  const hl_scene_volume *volume = hit->volume->described;
+  at->normal = hl_reference_iso_normal(hit, at->point);
+  if (vec3_dot(at->normal, at->to_eye) < 0) at->normal = vec3_scale(at->normal, -1);
+  for (int c = 0; c < 3; c++) at->color[c] = hit->iso->color[c];
+  at->material = volume->shading == HL_SHADING_FLAT ? (hl_material){.emission = 1} : volume->material;
+  at->receives_shadow = volume->receives_shadow;
 }
 
 void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
                                 reference_worker *worker) {
   reference_parts *sample = &worker->sample;
-  const hl_scene_mesh *mesh = hit->triangle->mesh;
-  const vec3 *corner = hit->triangle->corner;
   reference_surface_point at = {.point = vec3_add(ray->origin, vec3_scale(ray->direction, hit->distance)),
                                 .to_eye = vec3_scale(ray->direction, -1)};
-  vec3 flat = vec3_normalise(
-      vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0])));
-  bool behind = vec3_dot(flat, at.to_eye) < 0;
-  at.normal = mesh->smooth ? normal_of(all, hit, flat) : flat;
-  if (behind) at.normal = vec3_scale(at.normal, -1);
-  color_of(hit, at.color);
+  bool dark = false;
+  if (hit->iso != NULL) find_iso_point(hit, &at);
+  else dark = find_mesh_point(all, hit, &at) && !hit->triangle->mesh->two_sided;
   hl_reference_parts_clear(sample, all->scene->light_count);
   sample->weight = 1;
   sample->normal = at.normal;
   sample->depth = hit->distance;
-  if (behind && !mesh->two_sided) return;
+  if (dark) return;
   for (int c = 0; c < 3; c++) {
-    sample->ambient[c] = at.color[c] * mesh->material.ambient * all->scene->ambient[c];
-    sample->emission[c] = at.color[c] * mesh->material.emission;
+    sample->ambient[c] = at.color[c] * at.material.ambient * all->scene->ambient[c];
+    sample->emission[c] = at.color[c] * at.material.emission;
   }
-  add_sky(all, hit, &at, worker, sample->sky);
+  add_sky(all, &at, worker, sample->sky);
   for (size_t l = 0; l < all->scene->light_count; l++)
-    add_light(all, l, hit, &at, worker, sample->lights[l].picture);
+    add_light(all, l, &at, worker, sample->lights[l].picture);
 }

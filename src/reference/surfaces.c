@@ -185,10 +185,14 @@ bool hl_reference_surface_next(const reference *all, reference_role role, const 
       double weight[3] = {0, 0, 0}, distance = meet(&surfaces->triangles[t], ray, weight);
       if (!(distance > after && distance < hit->distance) || !takes_part(&surfaces->triangles[t], role))
         continue;
-      *hit = (reference_hit){&surfaces->triangles[t], distance, {weight[0], weight[1], weight[2]}};
+      *hit = (reference_hit){.triangle = &surfaces->triangles[t],
+                             .distance = distance,
+                             .weight = {weight[0], weight[1], weight[2]},
+                             .opacity = surfaces->triangles[t].opacity};
     }
   }
-  return hit->triangle != NULL;
+  hl_reference_iso_next(all, role, ray, after, hit);
+  return hit->triangle != NULL || hit->iso != NULL;
 }
 
 double hl_reference_surfaces_passing(const reference *all, const reference_ray *ray) {
@@ -196,7 +200,7 @@ double hl_reference_surfaces_passing(const reference *all, const reference_ray *
   reference_hit hit;
   for (double after = ray->nearest + least; passing > 0; after = hit.distance + 1e-9 * least) {
     if (!hl_reference_surface_next(all, REFERENCE_CASTS_SHADOW, ray, after, &hit)) break;
-    passing *= 1 - hit.triangle->opacity;
+    passing *= 1 - hit.opacity;
   }
   return passing;
 }

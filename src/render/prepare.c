@@ -7,18 +7,14 @@
 #include "core/memory.h"
 #include "grid/make_grid.h"
 #include "grid/relevant.h"
-
-static bool same_points(const void *a, const void *b, size_t bytes) {
-  return bytes == 0 || memcmp(a, b, bytes) == 0;
-}
+#include "isosurface/isosurface.h"
 
 static bool same_function(const hl_transfer_function *a, const hl_transfer_function *b) {
   return a->unit_distance == b->unit_distance && a->opacity_count == b->opacity_count &&
-         a->color_count == b->color_count && a->gradient_opacity_count == b->gradient_opacity_count &&
-         same_points(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) &&
-         same_points(a->color, b->color, a->color_count * sizeof *a->color) &&
-         same_points(a->gradient_opacity, b->gradient_opacity,
-                     a->gradient_opacity_count * sizeof *a->gradient_opacity);
+         a->color_count == b->color_count &&
+         (a->opacity_count == 0 ||
+          memcmp(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) == 0) &&
+         (a->color_count == 0 || memcmp(a->color, b->color, a->color_count * sizeof *a->color) == 0);
 }
 
 static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *scene) {
@@ -31,14 +27,11 @@ static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *sc
 typedef struct function_points {
   hl_opacity_point *opacity; /* owns the block */
   hl_color_point *color;
-  hl_opacity_point *gradient_opacity;
 } function_points;
 
 static void lay_out_points(const hl_transfer_function *function, function_points *points, hl_layout *layout) {
   points->opacity = hl_layout_take(layout, function->opacity_count, sizeof *points->opacity);
   points->color = hl_layout_take(layout, function->color_count, sizeof *points->color);
-  points->gradient_opacity = hl_layout_take(layout, function->gradient_opacity_count,
-                                            sizeof *points->gradient_opacity);
 }
 
 static hl_layout count_points(const hl_transfer_function *function) {
@@ -50,8 +43,8 @@ static hl_layout count_points(const hl_transfer_function *function) {
 
 uint64_t hl_prepared_bytes(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
                            int threads) {
-  return hl_grid_bytes(scene->volume, hl_kernel_get(kernel), functions, threads) +
-         hl_classifier_bytes(&scene->transfer_function) + count_points(&scene->transfer_function).bytes;
+  return hl_grid_bytes(scene->volume, hl_kernel_get(kernel), functions, threads) + hl_classifier_bytes() +
+         count_points(&scene->transfer_function).bytes;
 }
 
 static hl_status keep_key(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene,
@@ -65,13 +58,9 @@ static hl_status keep_key(hl_context *context, prepared_volume *prepared, const 
     memcpy(points.opacity, function->opacity, function->opacity_count * sizeof *points.opacity);
   if (function->color_count > 0)
     memcpy(points.color, function->color, function->color_count * sizeof *points.color);
-  if (function->gradient_opacity_count > 0)
-    memcpy(points.gradient_opacity, function->gradient_opacity,
-           function->gradient_opacity_count * sizeof *points.gradient_opacity);
   prepared->function = *function;
   prepared->function.opacity = points.opacity;
   prepared->function.color = points.color;
-  prepared->function.gradient_opacity = points.gradient_opacity;
   prepared->clipped = scene->clipped;
   memcpy(prepared->clip, scene->clip_min, sizeof scene->clip_min);
   memcpy(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max);
@@ -84,8 +73,16 @@ static void release_function(hl_context *context, prepared_volume *prepared) {
   hl_classifier_release(context, &prepared->classifier);
 }
 
+static void release_iso(hl_context *context, prepared_volume *prepared) {
+  for (size_t i = 0; i < prepared->iso_count; i++) hl_mesh_release(prepared->iso[i].mesh);
+  hl_release(context, prepared->iso);
+  prepared->iso = NULL;
+  prepared->iso_count = 0;
+}
+
 void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   release_function(context, prepared);
+  release_iso(context, prepared);
   hl_grid_release(context, &prepared->grid);
   hl_volume_release(prepared->volume);
   memset(prepared, 0, sizeof *prepared);
@@ -158,4 +155,49 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
     }
   }
   return HL_OK;
+}
+
+/* ---- isosurfaces ---- */
+
+/* The mesh of a surface of the frame before; null: there was none. */
+static const prepared_iso *known_iso(const prepared_volume *prepared, const hl_scene_volume *scene,
+                                     double value) {
+  for (size_t i = 0; i < prepared->iso_count; i++)
+    if (prepared->iso[i].value == value &&
+        memcmp(prepared->iso[i].axis_scale, scene->axis_scale, sizeof scene->axis_scale) == 0)
+      return &prepared->iso[i];
+  return NULL;
+}
+
+static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_volume *scene,
+                             prepared_volume *prepared, hl_error *error) {
+  prepared_iso *made = hl_allocate_zeroed(context, scene->iso_count, sizeof *made);
+  hl_status status = HL_OK;
+  if (made == NULL) return hl_fail_memory(error, scene->iso_count * sizeof *made, "isosurfaces");
+  for (size_t i = 0; i < scene->iso_count && status == HL_OK; i++) {
+    const prepared_iso *known = known_iso(prepared, scene, scene->iso[i].value);
+    made[i].value = scene->iso[i].value;
+    memcpy(made[i].axis_scale, scene->axis_scale, sizeof made[i].axis_scale);
+    if (known != NULL) {
+      made[i].mesh = known->mesh;
+      hl_mesh_retain(known->mesh);
+    } else {
+      status = hl_isosurface_create(pool, scene, &prepared->grid, hl_kernel_get(prepared->kernel),
+                                    made[i].value, &made[i].mesh, error);
+    }
+  }
+  release_iso(context, prepared);
+  prepared->iso = made;
+  prepared->iso_count = scene->iso_count;
+  if (status != HL_OK) release_iso(context, prepared);
+  return status;
+}
+
+hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
+                                 prepared_volume *prepared, hl_error *error) {
+  hl_status status = HL_OK;
+  for (size_t i = 0; i < scene->volume_count && status == HL_OK; i++)
+    if (scene->volumes[i].iso_count > 0 || prepared[i].iso_count > 0)
+      status = prepare_iso(context, pool, &scene->volumes[i], &prepared[i], error);
+  return status;
 }

@@ -7,6 +7,13 @@
 #include "grid/grid.h"
 #include "render/hot.h"
 
+/* An isosurface of a volume; kept between frames likewise. */
+typedef struct prepared_iso {
+  double value;
+  double axis_scale[3]; /* of the volume */
+  hl_mesh *mesh;        /* owned; null: empty */
+} prepared_iso;
+
 /* A volume made ready; kept between frames while its voxels, kernel, clip box and transfer function stay the
  * same. */
 typedef struct prepared_volume {
@@ -19,12 +26,17 @@ typedef struct prepared_volume {
   hl_transfer_function function; /* points owned; the classifier was made of these */
   double clip[6];
   int clipped;
+  prepared_iso *iso; /* owned; [iso_count] */
+  size_t iso_count;
 } prepared_volume;
 
 /* Brings prepared[0 .. count) up to date with the scene's volumes; reuses what has not changed. scene: in
  * frame space (frame.h). */
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, prepared_volume *prepared, hl_error *error);
+/* Brings the volumes' isosurfaces up to date, after the volumes. */
+hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
+                                 prepared_volume *prepared, hl_error *error);
 /* Releases those of prepared[0 .. count) whose grids the scene's volumes cannot use any more. */
 void hl_prepared_release_stale(hl_context *context, const hl_scene_description *scene,
                                prepared_volume *prepared);

@@ -7,6 +7,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "grid/relevant.h"
+#include "isosurface/isosurface.h"
 #include "render/estimate.h"
 #include "render/frame.h"
 #include "render/maximum.h"
@@ -402,6 +403,17 @@ static void write_layers(const frame_work *work, const hl_scene_description *sce
   hl_layer_pixels_write(&work->layers, &grid, pool);
 }
 
+/* Adds the volumes' isosurfaces to the meshes. They have their volume's transform and material. */
+static void add_isosurfaces(const hl_renderer *renderer, framed_scene *framed) {
+  hl_scene_description *scene = &framed->scene;
+  for (size_t v = 0; v < scene->volume_count; v++)
+    for (size_t i = 0; i < renderer->prepared[v].iso_count; i++) {
+      hl_mesh *mesh = renderer->prepared[v].iso[i].mesh;
+      if (mesh != NULL)
+        framed->meshes[scene->mesh_count++] = hl_scene_mesh_of_iso(&scene->volumes[v], i, mesh);
+    }
+}
+
 static hl_status render_frame(hl_renderer *renderer, const frame_request *request, frame_work *work,
                               hl_render_statistics *statistics, hl_error *error) {
   double start = hl_clock_seconds();
@@ -418,6 +430,9 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
         error);
   if (status == HL_OK)
     status = hl_prepare_volumes(renderer->context, renderer->pool, hot, scene, renderer->prepared, error);
+  if (status == HL_OK)
+    status = hl_prepare_isosurfaces(renderer->context, renderer->pool, scene, renderer->prepared, error);
+  if (status == HL_OK) add_isosurfaces(renderer, &work->framed);
   if (status == HL_OK) status = set_up_frame(renderer, scene, request, work, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;

@@ -158,10 +158,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, size_t tile, int wo
                                         .density = slab.current,
                                         .enter = slab.enter,
                                         .leave = slab.leave,
-                                        .uncut = slab.uncut,
-                                        .grid = &sweep->content.grids[g],
-                                        .kernel = sweep->content.kernel,
-                                        .to_index = sweep->shade_volumes[g].to_index};
+                                        .uncut = slab.uncut};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
     count++;
   }

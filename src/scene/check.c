@@ -125,12 +125,22 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
   if (status == HL_OK && d->mesh_count > 0 && d->render.compositing == HL_COMPOSITING_MAXIMUM)
     status = hl_fail(error, HL_ERROR_UNSUPPORTED,
                      "/meshes: are not in maximum projections: remove them, or render with light");
+  for (size_t v = 0; v < d->volume_count && status == HL_OK; v++)
+    if (d->volumes[v].iso_count > 0 && d->render.compositing == HL_COMPOSITING_MAXIMUM)
+      status = hl_fail(error, HL_ERROR_UNSUPPORTED,
+                       "/volumes/%zu/iso: is not in maximum projections: remove it, or render with light", v);
   return status == HL_OK ? hl_settings_check(HL_SETTINGS_RENDER, &d->render, 0, "/render", error) : status;
 }
 
 hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *scene, hl_error *error) {
   size_t light_count = scene->light_count;
   if (layers == NULL) return HL_OK;
+  for (size_t v = 0; v < scene->volume_count; v++)
+    if (scene->volumes[v].iso_count > 0)
+      return hl_fail(
+          error, HL_ERROR_UNSUPPORTED,
+          "/volumes/%zu/iso: a scene with isosurfaces has no layers yet: remove them, or ask for no layers",
+          v);
   if (scene->mesh_count > 0)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "/meshes: a scene with meshes has no layers yet: remove the meshes, or ask for no layers");

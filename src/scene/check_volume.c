@@ -22,21 +22,21 @@ static hl_status check_order(const hl_checker *check, const char *key, size_t in
 }
 
 static hl_status check_value(const hl_checker *check, const char *key, size_t index, double value) {
-  char element[64];
+  char element[48];
   snprintf(element, sizeof element, "%s/%zu/0", key, index);
   return hl_check_range(check, element, value, -1e30, 1e30, "give a data value between -1e30 and 1e30");
 }
 
-static hl_status check_opacity_points(const hl_checker *check, const char *key,
-                                      const hl_opacity_point *points, size_t count) {
-  hl_status status = hl_check_count(check, key, points, count, HL_LIMIT_POINTS);
-  for (size_t p = 0; status == HL_OK && p < count; p++) {
-    const hl_opacity_point *point = &points[p];
-    char element[64];
-    snprintf(element, sizeof element, "%s/%zu/1", key, p);
-    if ((status = check_value(check, key, p, point->value)) != HL_OK) return status;
+static hl_status check_opacity_points(const hl_checker *check, const hl_transfer_function *function) {
+  hl_status status = hl_check_count(check, "opacity", function->opacity, function->opacity_count,
+                                    HL_LIMIT_POINTS);
+  for (size_t p = 0; status == HL_OK && p < function->opacity_count; p++) {
+    const hl_opacity_point *point = &function->opacity[p];
+    char element[48];
+    snprintf(element, sizeof element, "opacity/%zu/1", p);
+    if ((status = check_value(check, "opacity", p, point->value)) != HL_OK) return status;
     if (p > 0)
-      status = check_order(check, key, p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
+      status = check_order(check, "opacity", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
     if (status == HL_OK)
       status = hl_check_range(check, element, point->opacity, 0, 1, "give an opacity from 0 to 1");
   }
@@ -65,11 +65,7 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   hl_checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "%s", place);
   hl_status status = hl_check_settings(&check, HL_SETTINGS_TRANSFER_FUNCTION, function, 0);
-  if (status == HL_OK)
-    status = check_opacity_points(&check, "opacity", function->opacity, function->opacity_count);
-  if (status == HL_OK)
-    status = check_opacity_points(&check, "gradient_opacity", function->gradient_opacity,
-                                  function->gradient_opacity_count);
+  if (status == HL_OK) status = check_opacity_points(&check, function);
   return status == HL_OK ? check_color_points(&check, function) : status;
 }
 
@@ -180,6 +176,16 @@ static hl_status check_look(const hl_checker *check, const hl_scene_volume *volu
   return status == HL_OK ? hl_check_key(check, HL_SETTINGS_VOLUME, "attenuation_color", volume) : status;
 }
 
+static hl_status check_iso(const hl_checker *check, const hl_scene_volume *volume) {
+  hl_status status = hl_check_count(check, "iso", volume->iso, volume->iso_count, HL_LIMIT_ISO);
+  for (size_t i = 0; i < volume->iso_count && status == HL_OK; i++) {
+    char place[120];
+    snprintf(place, sizeof place, "%s/iso/%zu", check->place, i);
+    status = hl_settings_check(HL_SETTINGS_ISO, &volume->iso[i], 0, place, check->error);
+  }
+  return status;
+}
+
 hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_error *error) {
   hl_checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "/volumes/%zu", index);
@@ -191,5 +197,6 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
   if (status == HL_OK) status = check_transform(&check, volume);
   if (status == HL_OK) status = check_placement(&check, volume);
   if (status == HL_OK) status = check_look(&check, volume);
+  if (status == HL_OK) status = check_iso(&check, volume);
   return status == HL_OK ? check_clip(&check, volume) : status;
 }

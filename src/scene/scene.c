@@ -36,6 +36,12 @@ void hl_scene_mesh_defaults(hl_scene_mesh *mesh) {
   hl_settings_defaults(HL_SETTINGS_MATERIAL, &mesh->material);
 }
 
+void hl_isosurface_defaults(hl_isosurface *surface) {
+  if (surface == NULL) return;
+  *surface = (hl_isosurface){.value = 0};
+  hl_settings_defaults(HL_SETTINGS_ISO, surface);
+}
+
 void hl_scene_description_defaults(hl_scene_description *description) {
   if (description == NULL) return;
   *description = (hl_scene_description){.struct_size = sizeof(hl_scene_description)};
@@ -53,6 +59,7 @@ static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_release(context, (void *)volume->series);
   hl_release(context, (void *)volume->shapes);
   hl_transfer_function_release(context, &volume->transfer_function);
+  hl_release(context, (void *)volume->iso);
   hl_volume_release(volume->volume);
 }
 
@@ -100,22 +107,17 @@ static hl_status copy_text(hl_context *context, const char *text, const char **c
 
 hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
                                     hl_transfer_function *to, hl_error *error) {
-  void *opacity = NULL, *color = NULL, *gradient = NULL;
+  void *opacity = NULL, *color = NULL;
   hl_status status = copy_array(context, from->opacity, from->opacity_count, sizeof *from->opacity,
                                 "a transfer function", &opacity, error);
   if (status != HL_OK) return status;
   status = copy_array(context, from->color, from->color_count, sizeof *from->color, "a transfer function",
                       &color, error);
-  if (status == HL_OK)
-    status = copy_array(context, from->gradient_opacity, from->gradient_opacity_count,
-                        sizeof *from->gradient_opacity, "gradient opacity", &gradient, error);
   if (status != HL_OK) {
     hl_release(context, opacity);
-    hl_release(context, color);
     return status;
   }
-  *to = (hl_transfer_function){from->unit_distance, opacity,  from->opacity_count,         color,
-                               from->color_count,   gradient, from->gradient_opacity_count};
+  *to = (hl_transfer_function){from->unit_distance, opacity, from->opacity_count, color, from->color_count};
   return HL_OK;
 }
 
@@ -126,6 +128,7 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
   *to = *from;
   to->name = to->file = to->shapes = to->array = to->series = NULL;
   to->transfer_function = (hl_transfer_function){0};
+  to->iso = NULL;
   hl_volume_retain(to->volume);
   hl_status status = copy_text(context, from->name, &to->name, error);
   if (status == HL_OK) status = copy_text(context, from->file, &to->file, error);
@@ -134,6 +137,10 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
   if (status == HL_OK) status = copy_text(context, from->series, &to->series, error);
   if (status == HL_OK)
     status = hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);
+  if (status != HL_OK) return status;
+  void *iso = NULL;
+  status = copy_array(context, from->iso, from->iso_count, sizeof *from->iso, "isosurfaces", &iso, error);
+  to->iso = iso;
   return status;
 }
 

@@ -247,6 +247,18 @@ static const hl_setting mesh_rows[] = {
     {.key = "receives_shadow", FIELD(hl_scene_mesh, receives_shadow), A_FLAG, .standard = {1},
      .sentence = "The mesh is darkened by shadows."}};
 
+static const hl_setting iso_rows[] = {
+    {.key = "value", FIELD(hl_isosurface, value), .type = HL_SETTING_NUMBER, .unit = "data units",
+     .low = -HL_LIMIT_VOXEL_VALUE, .high = HL_LIMIT_VOXEL_VALUE,
+     .sentence = "The value that the volume has everywhere on the surface.", .option = "iso",
+     .mend = "give one of the volume's values"},
+    {.key = "color", FIELD(hl_isosurface, color), .type = HL_SETTING_COLOR, .unit = "linear RGB", .high = 1,
+     .standard = {0.8, 0.8, 0.8}, .sentence = "The surface's colour.",
+     .mend = "give linear RGB, each from {low} to {high}"},
+    {.key = "opacity", FIELD(hl_isosurface, opacity), .type = HL_SETTING_NUMBER, .unit = "", .high = 1,
+     .standard = {1}, .sentence = "The fraction of light that the surface stops, from any angle.",
+     .mend = "give a fraction from {low} to {high}"}};
+
 static const hl_setting render_rows[] = {
     {.key = "shadows", FIELD(hl_render_settings, shadows), A_CHOICE(shadows), .standard = {HL_SHADOWS_SOFT},
      .option = "shadows", .sentence = "The shadows of all lights that do not say otherwise."},
@@ -324,6 +336,7 @@ static const struct {
     [HL_SETTINGS_RENDER] = TABLE(render_rows),
     [HL_SETTINGS_MESH] = TABLE(mesh_rows),
     [HL_SETTINGS_SKY] = TABLE(sky_rows),
+    [HL_SETTINGS_ISO] = TABLE(iso_rows),
     [HL_SETTINGS_TRANSFER_FUNCTION] = TABLE(transfer_function_rows),
 };
 

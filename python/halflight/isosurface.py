@@ -1,0 +1,59 @@
+"""Surfaces on which a volume has one value: the keyword `iso` of volumes."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _settings, colors
+from ._library import ffi, lib
+
+__all__ = ["fill", "isosurfaces_from"]
+
+_WORDS = ("value", "color", "opacity")
+
+
+def _parts_of(place: str, given: Any) -> dict[str, Any]:
+    """A number, (value, color, opacity) of which the last ones may be absent, or a mapping, by words."""
+    if isinstance(given, Mapping):
+        for word in given:
+            if word not in _WORDS:
+                raise TypeError(f"{place}: there is no '{word}': use value, color and opacity")
+        parts = dict(given)
+    elif isinstance(given, tuple) and 1 <= len(given) <= 3:
+        parts = dict(zip(_WORDS, given, strict=False))
+    elif not isinstance(given, (str, bytes, tuple)) and np.ndim(given) == 0:
+        parts = {"value": given}
+    else:
+        raise TypeError(f"{place}: {given!r} is no value and no (value, color, opacity)")
+    if "value" not in parts:
+        raise TypeError(f"{place}: has no value")
+    return parts
+
+
+def _list_of(iso: Any) -> Sequence[Any]:
+    """The surfaces; one alone may stand without a list."""
+    return iso if isinstance(iso, list) else [iso]
+
+
+def fill(struct: Any, iso: Any, keep: list[Any], place: str) -> None:
+    """Set the isosurfaces of an hl_scene_volume, which are valid as long as `keep`."""
+    given = _list_of(iso)
+    array = ffi.new("hl_isosurface[]", len(given))
+    for n, one in enumerate(given):
+        at = f"{place}iso[{n}]"
+        parts = _parts_of(at, one)
+        lib.hl_isosurface_defaults(ffi.addressof(array[n]))
+        array[n].value = _settings.number(f"{at}: value", parts["value"])
+        if parts.get("color") is not None:
+            array[n].color = colors.linear_color(f"{at}: color", parts["color"])
+        if parts.get("opacity") is not None:
+            array[n].opacity = _settings.number(f"{at}: opacity", parts["opacity"])
+    keep.append(array)
+    struct.iso, struct.iso_count = array, len(given)
+
+
+def isosurfaces_from(struct: Any) -> list[tuple[float, tuple[float, ...], float]]:
+    """The isosurfaces of an hl_scene_volume: (value, color, opacity)."""
+    return [(one.value, tuple(one.color), one.opacity) for one in struct.iso[0:struct.iso_count]]

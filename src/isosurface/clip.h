@@ -1,0 +1,11 @@
+/* isosurface/clip.h - triangles cut at half spaces. */
+#ifndef HL_ISOSURFACE_CLIP_H
+#define HL_ISOSURFACE_CLIP_H
+
+#include "isosurface/triangles.h"
+
+/* Keeps what lies in a box of index space. */
+hl_status hl_iso_clip_box(hl_context *context, iso_triangles *triangles, const double low[3],
+                          const double high[3], hl_error *error);
+
+#endif

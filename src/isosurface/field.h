@@ -1,0 +1,25 @@
+/* isosurface/field.h - what the kernel makes of a grid's voxels at any point: its value and its gradient.
+ *
+ * Points are in index space, values in stored units. Beyond the grid's faces the border's voxels continue. */
+#ifndef HL_ISOSURFACE_FIELD_H
+#define HL_ISOSURFACE_FIELD_H
+
+#include "grid/grid.h"
+
+enum { FIELD_TAPS = 4 };
+
+/* The four voxels along an axis that a coordinate depends on, and their weights. */
+typedef struct field_taps {
+  int32_t first;
+  double weight[FIELD_TAPS];
+} field_taps;
+
+field_taps hl_field_taps(const kernel *kernel, double at);
+
+/* Copies a box of voxels: values [size[2]][size[1]][size[0]]. */
+void hl_field_window(const grid *grid, const int32_t first[3], const int32_t size[3], double *values);
+
+/* *slope: by index coordinates. */
+double hl_field_value_and_slope(const grid *grid, const kernel *kernel, vec3 at, vec3 *slope);
+
+#endif

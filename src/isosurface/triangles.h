@@ -1,0 +1,28 @@
+/* isosurface/triangles.h - the triangles of an isosurface while they are made: in index space, with the unit
+ * normals of the field, which point to where the surface's inside is not. */
+#ifndef HL_ISOSURFACE_TRIANGLES_H
+#define HL_ISOSURFACE_TRIANGLES_H
+
+#include "isosurface/lattice.h"
+
+typedef struct iso_triangles {
+  float (*positions)[3];    /* owned; [vertex_count]; index space */
+  float (*normals)[3];      /* owned; [vertex_count]; unit, by index coordinates */
+  uint32_t (*triangles)[3]; /* owned; [triangle_count]; counter-clockwise as seen from outside */
+  size_t vertex_count, triangle_count;
+} iso_triangles;
+
+/* Cuts the lattice's cells. Release in any case. */
+hl_status hl_iso_extract(hl_pool *pool, lattice *lattice, iso_triangles *made, hl_error *error);
+
+/* Halves the edges that lie far from the surface, and moves their middles onto it. */
+hl_status hl_iso_refine(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, hl_error *error);
+
+void hl_iso_triangles_release(hl_context *context, iso_triangles *triangles);
+
+/* The unit vector away from the inside, for a slope of the field. */
+static inline vec3 hl_iso_normal(const lattice *lattice, vec3 slope) {
+  return vec3_scale(vec3_normalise(slope), -lattice->sign);
+}
+
+#endif

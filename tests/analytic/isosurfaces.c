@@ -1,0 +1,363 @@
+/* analytic/isosurfaces.c - surfaces on which a volume has one value: where they lie, what they take of light,
+ * and their shadows, with known answers.
+ *
+ * The B-spline of voxels x^2 is x^2 + 1/3 (its variance along an axis), so that voxels |p - c|^2 have the
+ * field |p - c|^2 + 1: a surface of one value is a sphere, exactly. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "grid/make_grid.h"
+#include "isosurface/cubes.h"
+#include "isosurface/isosurface.h"
+#include "reference_stage.h"
+#include "render/hot.h"
+#include "scene/placement.h"
+
+enum { SIDE = 64, PIXELS = SIDE * SIDE, VOXELS = 44 };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* Voxels that hold minus the squared distance from `centre`, in voxels from the grid's middle: a ball's
+ * inside has the greater values. Voxels are one unit wide, the grid's middle is the origin. */
+static hl_scene_volume *add_ball(stage *set, vec3 centre) {
+  static float voxels[VOXELS * VOXELS * VOXELS];
+  const size_t dimensions[3] = {VOXELS, VOXELS, VOXELS};
+  const double middle = VOXELS / 2.0 - 0.5, spacing[3] = {1, 1, 1};
+  for (int i = 0; i < VOXELS * VOXELS * VOXELS; i++) {
+    vec3 p = {i % VOXELS - middle, i / VOXELS % VOXELS - middle, i / VOXELS / VOXELS - middle};
+    vec3 off = vec3_subtract(p, centre);
+    voxels[i] = (float)-vec3_dot(off, off);
+  }
+  hl_scene_volume *ball = stage_add_grid(set, dimensions, spacing,
+                                         (vec3){-VOXELS / 2.0, -VOXELS / 2.0, -VOXELS / 2.0}, voxels);
+  stage_set_opacity(set, ball, 0, 1);
+  ball->material = (hl_material){.diffuse = 1};
+  ball->shading = HL_SHADING_PHONG;
+  return ball;
+}
+
+static hl_isosurface surface_of(double radius, double opacity) {
+  return (hl_isosurface){.value = -radius * radius - 1, .color = {1, 1, 1}, .opacity = opacity};
+}
+
+static void open_stage(stage *set) {
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 40;
+  stage_look(set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+}
+
+/* ---- where the surface lies ---- */
+
+/* The mesh of a scene's only isosurface, in the world. */
+static hl_mesh *mesh_of(const stage *set, double value) {
+  hl_mesh *mesh = NULL;
+  hl_pool *pool = NULL;
+  hl_error error = {0};
+  grid grid;
+  const hl_scene_volume *volume = &set->volumes[0];
+  const kernel *kernel = hl_kernel_get(set->scene.render.kernel);
+  const grid_source source = {volume, kernel, volume->volume->index_to_world,
+                              hl_scene_volume_empty_value(volume)};
+  const grid_functions *functions = &hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->grid;
+  hl_status status = hl_pool_create(set->context, 1, &pool, &error);
+  if (status == HL_OK) status = hl_grid_create(set->context, pool, functions, &source, &grid, &error);
+  if (status == HL_OK) status = hl_isosurface_create(pool, volume, &grid, kernel, value, &mesh, &error);
+  if (status != HL_OK) fail_msg("%s", error.message);
+  hl_grid_release(set->context, &grid);
+  hl_pool_destroy(pool);
+  return mesh;
+}
+
+static vec3 point_of(const hl_mesh_description *d, const uint32_t corner[3], const double weight[3]) {
+  vec3 sum = {0, 0, 0};
+  for (int i = 0; i < 3; i++) {
+    const float *p = d->positions[corner[i]];
+    sum = vec3_add(sum, vec3_scale((vec3){p[0], p[1], p[2]}, weight[i]));
+  }
+  return sum;
+}
+
+/* Vertices to a ten thousandth of a voxel, every point of a triangle to 0.02 voxels; normals are the
+ * sphere's; the surface is closed, and its volume is the ball's. */
+static void test_ball(void **state) {
+  (void)state;
+  static const double weights[7][3] = {{1, 0, 0},
+                                       {0, 1, 0},
+                                       {0, 0, 1},
+                                       {0.5, 0.5, 0},
+                                       {0, 0.5, 0.5},
+                                       {0.5, 0, 0.5},
+                                       {1.0 / 3, 1.0 / 3, 1.0 / 3}};
+  static const double radii[] = {5, 7, 12.4, 18.6};
+  for (size_t r = 0; r < sizeof radii / sizeof *radii; r++) {
+    stage set;
+    open_stage(&set);
+    vec3 centre = {0.31, -0.22, 0.17 * (double)r};
+    (void)add_ball(&set, centre);
+    hl_mesh *mesh = mesh_of(&set, -radii[r] * radii[r] - 1);
+    const hl_mesh_description *d = hl_mesh_describe(mesh);
+    double volume = 0;
+    for (size_t t = 0; t < d->triangle_count; t++) {
+      vec3 corner[3];
+      for (int w = 0; w < 7; w++) {
+        vec3 off = vec3_subtract(point_of(d, d->triangles[t], weights[w]), centre);
+        assert_near(vec3_length(off), radii[r], w < 3 ? 1e-4 : 0.02);
+        if (w < 3) corner[w] = off;
+      }
+      volume += vec3_dot(corner[0], vec3_cross(corner[1], corner[2])) / 6;
+    }
+    for (size_t v = 0; v < d->vertex_count; v++) {
+      vec3 off = vec3_subtract((vec3){d->positions[v][0], d->positions[v][1], d->positions[v][2]}, centre);
+      vec3 normal = {d->normals[v][0], d->normals[v][1], d->normals[v][2]};
+      assert_near(vec3_dot(vec3_normalise(off), normal), 1, 1e-5);
+    }
+    double exact = 4 * HL_PI / 3 * radii[r] * radii[r] * radii[r];
+    assert_near(volume / exact, 1, 0.05 / radii[r]);
+    assert_true(mesh->closed);
+    hl_mesh_release(mesh);
+    stage_close(&set);
+  }
+}
+
+/* Every pattern of corners, and the same from the other side: all edges that cross are in its triangles, the
+ * loops close, and a pattern's complement has the same edges. */
+static void test_patterns(void **state) {
+  (void)state;
+  static cube_triangles patterns[CUBE_PATTERNS];
+  hl_cube_patterns(patterns);
+  for (int p = 0; p < CUBE_PATTERNS; p++) {
+    unsigned crossed = 0, used = 0;
+    for (int edge = 0; edge < CUBE_EDGES; edge++) {
+      int a = hl_cube_edge_corner(edge), b = a | 1 << edge / 4;
+      if ((p >> a & 1) != (p >> b & 1)) crossed |= 1u << edge;
+    }
+    for (int t = 0; t < patterns[p].count; t++)
+      for (int i = 0; i < 3; i++) used |= 1u << patterns[p].edge[t][i];
+    assert_int_equal(used, crossed);
+  }
+  assert_int_equal(patterns[1].count, 1);
+  assert_int_equal(patterns[0x0f].count, 2);
+  assert_int_equal(patterns[0x69].count, 4);
+}
+
+/* Noise that crosses the value everywhere, also on the box's faces: within the box the surface has no hole.
+ */
+static void test_noise_is_watertight(void **state) {
+  (void)state;
+  enum { N = 13 };
+  static float voxels[N * N * N];
+  const size_t dimensions[3] = {N, N, N};
+  const double spacing[3] = {1, 1, 1};
+  for (int i = 0; i < N * N * N; i++) {
+    int x = i % N, y = i / N % N, z = i / N / N;
+    bool border = x < 2 || y < 2 || z < 2 || x > N - 3 || y > N - 3 || z > N - 3;
+    voxels[i] = border ? 0 : (float)((i * 2654435761u >> 8 & 255) / 100.0);
+  }
+  stage set;
+  open_stage(&set);
+  (void)stage_add_grid(&set, dimensions, spacing, (vec3){0, 0, 0}, voxels);
+  hl_mesh *mesh = mesh_of(&set, 1.1);
+  assert_true(mesh->closed);
+  assert_true(hl_mesh_describe(mesh)->triangle_count > 500);
+  hl_mesh_release(mesh);
+  stage_close(&set);
+}
+
+/* ---- pictures ---- */
+
+/* The silhouette is a disk, antialiased, and the same at any spacing of sheets. */
+static void test_silhouette(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4], coarse[PIXELS * 4];
+  stage set;
+  open_stage(&set);
+  double radius = 14.3, pixel = 40.0 / SIDE, sum = 0;
+  hl_isosurface surface = surface_of(radius, 1);
+  hl_scene_volume *ball = add_ball(&set, (vec3){0, 0, 0});
+  ball->iso = &surface, ball->iso_count = 1;
+  (void)stage_add_directional(&set, (vec3){0.3, 0.2, -1});
+  stage_render_sheets(&set, pixels);
+  set.scene.render.sheet_spacing = 2;
+  stage_render_sheets(&set, coarse);
+  for (int i = 0; i < PIXELS; i++) {
+    double x = (i % SIDE + 0.5 - SIDE / 2) * pixel, y = (i / SIDE + 0.5 - SIDE / 2) * pixel;
+    double inside = (radius - sqrt(x * x + y * y)) / pixel, alpha = (double)pixels[4 * i + 3];
+    if (fabs(inside) > 0.75) assert_near(alpha, inside > 0, 1e-6);
+    else assert_near(alpha, fmin(fmax(inside + 0.5, 0), 1), 0.2);
+    assert_near((double)coarse[4 * i + 3], alpha, 1e-6);
+    sum += alpha;
+  }
+  assert_near(sqrt(sum * pixel * pixel / HL_PI), radius, 0.02);
+  stage_close(&set);
+}
+
+/* Translucent surfaces take the same fraction of light at every angle, each before what is behind it: the
+ * colours of three balls within each other, seen through their middle and at the outer one's rim. */
+static void test_translucent(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  stage set;
+  open_stage(&set);
+  hl_isosurface surfaces[3] = {surface_of(6, 1), surface_of(16, 0.3), surface_of(11, 0.5)};
+  hl_scene_volume *ball = add_ball(&set, (vec3){0, 0, 0});
+  ball->iso = surfaces, ball->iso_count = 3;
+  ball->material = (hl_material){.emission = 1};
+  for (int s = 0; s < 3; s++)
+    for (int c = 0; c < 3; c++) surfaces[s].color[c] = c == s;
+  for (int k = 0; k < 2; k++) {
+    set.scene.light_count = 0;
+    (void)stage_add_directional(&set,
+                                k == 0 ? (vec3){0.2, 0.3, -1} : (vec3){0.2, 0.3, 1}); /* before, behind */
+    stage_render_sheets(&set, pixels);
+    const float *middle = pixels + 4 * (SIDE / 2 * SIDE + SIDE / 2), *rim = middle + 4 * 21;
+    const float *outer = middle + 4 * 24;
+    assert_near((double)middle[0], 0.7 * 0.5, 1e-5);
+    assert_near((double)middle[1], 0.3, 1e-5);
+    assert_near((double)middle[2], 0.7 * 0.5, 1e-5);
+    assert_near((double)rim[3], 1 - 0.7 * 0.7, 1e-5);
+    assert_near((double)outer[3], 1 - 0.7 * 0.7, 1e-5);
+  }
+  stage_close(&set);
+}
+
+static void choose_shadows(stage *set, int kind) {
+  set->scene.render.shadows = kind == 0 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT;
+  set->scene.render.soft_method = (hl_soft_method)(kind == 0 ? 0 : kind - 1);
+  set->scene.render.light_samples = 4;
+  set->lights[0].angular_diameter_deg = kind == 0 ? 0 : 8;
+}
+
+/* A translucent ball's shadow on a wall below it, and the wall's on nothing: behind the ball's middle the
+ * wall has the light that two crossings leave. By every method. */
+static void test_shadow(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int kind = 0; kind < 4; kind++) {
+    stage set;
+    open_stage(&set);
+    hl_isosurface surface = surface_of(9, 0.4);
+    hl_scene_volume *ball = add_ball(&set, (vec3){0, 0, 4});
+    ball->iso = &surface, ball->iso_count = 1;
+    ball->visible = 0;
+    hl_scene_volume *wall = stage_add_box(&set, (vec3){-18, -18, -21}, (vec3){18, 18, -19});
+    stage_set_opacity(&set, wall, 0.9999, 0.1);
+    wall->shading = HL_SHADING_NONE;
+    wall->material = (hl_material){.diffuse = 1};
+    (void)stage_add_directional(&set, (vec3){0, 0, -1});
+    choose_shadows(&set, kind);
+    stage_render_sheets(&set, pixels);
+    const float *middle = pixels + 4 * (SIDE / 2 * SIDE + SIDE / 2), *far = middle + 4 * 27;
+    assert_near((double)middle[0] / (double)far[0], 0.6 * 0.6, kind == 1 ? 0.02 : 0.01);
+    stage_close(&set);
+  }
+}
+
+/* Against the reference, which finds roots of the field along its rays: two surfaces, one translucent, of
+ * noise in haze, with hard shadows. */
+static void test_against_the_reference(void **state) {
+  (void)state;
+  static float sheets[PIXELS * 4], exact[PIXELS * 4], voxels[16 * 16 * 16];
+  const size_t dimensions[3] = {16, 16, 16};
+  const double spacing[3] = {2, 2, 2};
+  for (int i = 0; i < 16 * 16 * 16; i++)
+    voxels[i] = stage_noise(i % 16 * 0.3, i / 16 % 16 * 0.3, i / 256 * 0.3);
+  stage set;
+  open_stage(&set);
+  hl_isosurface surfaces[2] = {{.value = 0.62, .color = {1, 0.5, 0.2}, .opacity = 1},
+                               {.value = 0.5, .color = {0.2, 0.5, 1}, .opacity = 0.3}};
+  hl_scene_volume *noise = stage_add_grid(&set, dimensions, spacing, (vec3){-16, -16, -16}, voxels);
+  stage_set_opacity(&set, noise, 0.01, 1);
+  noise->iso = surfaces, noise->iso_count = 2;
+  noise->material = (hl_material){.ambient = 1, .diffuse = 0.7, .specular = 0.3, .shininess = 20};
+  for (int c = 0; c < 3; c++) set.scene.ambient[c] = 0.1;
+  (void)stage_add_directional(&set, (vec3){0.4, 0.3, -1});
+  set.scene.width = set.scene.height = SIDE / 2;
+  set.scene.camera.height = 32; /* the box's edges lie on the picture's */
+  set.scene.render.shadow_resolution = 400;
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.rays = 4;
+  options.step = 0.5;
+  stage_render_sheets(&set, sheets);
+  stage_render(&set, &options, exact);
+  double squares = 0, sum = 0;
+  for (int i = 0; i < PIXELS; i++) { /* a quarter of the pixels, four channels */
+    double difference = (double)sheets[i] - (double)exact[i];
+    squares += difference * difference;
+    sum += difference;
+  }
+  assert_near(sqrt(squares / (PIXELS)), 0, 0.022);
+  assert_near(sum / PIXELS, 0, 0.004);
+  stage_close(&set);
+}
+
+/* The same bytes on any number of threads, and with the renderer's kept surfaces. */
+static void test_threads(void **state) {
+  (void)state;
+  static float first[PIXELS * 4], other[PIXELS * 4];
+  stage set;
+  open_stage(&set);
+  hl_isosurface surfaces[2] = {surface_of(12, 0.5), surface_of(8, 1)};
+  hl_scene_volume *ball = add_ball(&set, (vec3){0.3, 0.1, 0});
+  ball->iso = surfaces, ball->iso_count = 2;
+  (void)stage_add_directional(&set, (vec3){0.4, 0.3, -1});
+  for (int run = 0; run < 3; run++) {
+    set.scene.render.threads = (const int[]){1, 2, 5}[run];
+    stage_render_sheets(&set, run == 0 ? first : other);
+    if (run > 0) assert_memory_equal(first, other, sizeof first);
+  }
+  hl_renderer *renderer = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_renderer_create(set.context, &renderer, &error), HL_OK);
+  for (int run = 0; run < 2; run++) {
+    stage_render_with(&set, renderer, other);
+    assert_memory_equal(first, other, sizeof first);
+  }
+  surfaces[0].value -= 5; /* one is made anew, the other kept */
+  stage_render_with(&set, renderer, other);
+  stage_render_sheets(&set, first);
+  assert_memory_equal(first, other, sizeof first);
+  hl_renderer_destroy(renderer);
+  stage_close(&set);
+}
+
+/* A clip box cuts the surface off. */
+static void test_clip(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  stage set;
+  open_stage(&set);
+  hl_isosurface surface = surface_of(12, 1);
+  hl_scene_volume *ball = add_ball(&set, (vec3){0, 0, 0});
+  ball->iso = &surface, ball->iso_count = 1;
+  ball->clipped = 1;
+  memcpy(ball->clip_min, (double[3]){-30, -30, -30}, sizeof ball->clip_min);
+  memcpy(ball->clip_max, (double[3]){3.1, 30, 30}, sizeof ball->clip_max);
+  (void)stage_add_directional(&set, (vec3){0, 0, -1});
+  stage_render_sheets(&set, pixels);
+  double covered = 0;
+  for (int x = 0; x < SIDE; x++) covered += (double)pixels[4 * (SIDE / 2 * SIDE + x) + 3];
+  assert_near(covered * 40 / SIDE, 12 + 3.1, 0.05);
+  stage_close(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ball),
+                                     cmocka_unit_test(test_patterns),
+                                     cmocka_unit_test(test_noise_is_watertight),
+                                     cmocka_unit_test(test_silhouette),
+                                     cmocka_unit_test(test_translucent),
+                                     cmocka_unit_test(test_shadow),
+                                     cmocka_unit_test(test_against_the_reference),
+                                     cmocka_unit_test(test_threads),
+                                     cmocka_unit_test(test_clip)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
