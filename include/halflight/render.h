@@ -29,13 +29,14 @@ typedef struct hl_render_statistics {
   uint64_t tiles_filled_image, tiles_filled_light;   /* sheet tiles reconstructed */
   uint64_t tiles_skipped_image, tiles_skipped_light; /* skipped because they were already opaque or dark */
   /* wall-clock seconds per stage; the light's fill includes its composite into the shadow buffer. The image
-   * is filled and shaded in one stage, whose time is split as the threads spent it. */
+   * is filled and shaded while the light is, and the time is split as the threads spent it. */
   double seconds_sort, seconds_fill_image, seconds_fill_light, seconds_shade, seconds_soften;
   double seconds_composite_light; /* the part of seconds_fill_light that is spent on classification and
                                      compositing */
   uint64_t pixels_filled_image,
       pixels_filled_light; /* sheet pixels reconstructed, including those for finding hidden blocks */
   uint64_t pixels_skipped_image, pixels_skipped_light; /* in occupied places, but already opaque or dark */
+  uint64_t waits; /* how often all threads waited for each other in the loops over the sheets; 0 with one */
 } hl_render_statistics;
 
 HL_API HL_WARN_UNUSED hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer,

@@ -253,6 +253,8 @@ typedef struct hl_render_settings {
   int shadow_resolution; /* pixels along the longer side; 0: auto */
   int threads;           /* 0: one per processor */
   hl_compositing compositing;
+  int slabs_at_once; /* slabs between two waits of the threads for each other, which change no picture; 0:
+                        auto */
 } hl_render_settings;
 
 typedef struct hl_scene_description {

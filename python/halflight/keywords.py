@@ -193,6 +193,9 @@ class RenderSettings(TypedDict, total=False):
     compositing : str
         What a pixel shows: lit matter, or the greatest value along its ray, without light. "light",
         "maximum". Default: "light".
+    slabs_at_once : int
+        Slabs between two waits of the threads for each other; changes no picture. 0: automatic. 0 to 64.
+        Default: 0.
     """
 
     shadows: str
@@ -206,6 +209,7 @@ class RenderSettings(TypedDict, total=False):
     shadow_resolution: int | str
     threads: int
     compositing: str
+    slabs_at_once: int
 
 
 class FurtherSettings(TypedDict, total=False):
@@ -232,3 +236,4 @@ class FurtherSettings(TypedDict, total=False):
     shadow_lookup: str
     shadow_resolution: int | str
     compositing: str
+    slabs_at_once: int

@@ -281,6 +281,7 @@ static void print_work(json_writer *json, const char *key, const hl_render_stati
   json_whole_number(json, "sheets", (uint64_t)s->sheets);
   json_whole_number(json, "voxels_kept", s->voxels_kept);
   json_whole_number(json, "samples_shaded", s->samples_shaded);
+  json_whole_number(json, "waits", s->waits);
   json_open_object(json, "pixels");
   print_pair(json, "image", s->pixels_filled_image, s->pixels_skipped_image);
   print_pair(json, "light", s->pixels_filled_light, s->pixels_skipped_light);
@@ -355,6 +356,7 @@ static uint64_t skipped_image(const hl_render_statistics *s) { return s->pixels_
 static uint64_t pixels_light(const hl_render_statistics *s) { return s->pixels_filled_light; }
 static uint64_t skipped_light(const hl_render_statistics *s) { return s->pixels_skipped_light; }
 static uint64_t samples(const hl_render_statistics *s) { return s->samples_shaded; }
+static uint64_t waits(const hl_render_statistics *s) { return s->waits; }
 
 static void print_text(const bench_result *result) {
   const hl_render_statistics *statistics = &first_measured(result)->statistics;
@@ -372,6 +374,7 @@ static void print_text(const bench_result *result) {
   print_count("light pixels", result, pixels_light);
   print_count("  skipped", result, skipped_light);
   print_count("samples shaded", result, samples);
+  print_count("waits", result, waits);
 }
 
 /* ---- the command ---- */

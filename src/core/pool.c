@@ -72,7 +72,8 @@ struct hl_pool {
   pthread_cond_t wake; /* generation or stop changed */
   /* used by the calling thread only */
   _Alignas(64) int64_t asked,
-      read; /* last call of the cancel callback and last reading of the clock, nanoseconds */
+      read;       /* last call of the cancel callback and last reading of the clock, nanoseconds */
+  uint64_t waits; /* runs that other threads took part in */
   int readings,
       unread; /* number of calls from one reading of the clock to the next, and how many of these are left */
 };
@@ -219,6 +220,7 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
   wake_sleepers(pool);
   work(pool, 0);
   wait_until_done(pool, job, count);
+  pool->waits++;
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
@@ -273,6 +275,8 @@ void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value) {
 void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes) { hl_pool_set(pool, memory, bytes, 0); }
 
 int hl_pool_threads(const hl_pool *pool) { return pool->threads; }
+
+uint64_t hl_pool_waits(const hl_pool *pool) { return pool->waits; }
 
 bool hl_pool_is_own(const hl_pool *pool) { return pool->process == getpid(); }
 

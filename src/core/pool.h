@@ -25,6 +25,8 @@ void hl_pool_destroy(hl_pool *pool); /* null is allowed */
  * destroyed. */
 bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
+/* How often, since the pool was made, a run ended with a wait for other threads. */
+uint64_t hl_pool_waits(const hl_pool *pool);
 
 /* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns
  * when all are done. Not to be called from inside such a function. */

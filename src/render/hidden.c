@@ -44,9 +44,9 @@ static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   tile_slab uncovered = *slab;
   uncovered.blocks = seen;
   uint32_t open = sweep->content.hot->render.cover(
-      &sweep->shade, &uncovered, sweep->pixels + slab->tile * 4 * TILE_PIXELS, &counts->samples);
+      slab->job, &uncovered, sweep->pixels + slab->tile * 4 * TILE_PIXELS, &counts->samples);
   for (uint32_t closed = seen & ~open; closed != 0; closed &= closed - 1)
-    shown_from[__builtin_ctz(closed)] = first_shown(sweep, sweep->sheet);
+    shown_from[__builtin_ctz(closed)] = first_shown(sweep, slab->job->sheet);
   return search->trying ? slab->blocks : open;
 }
 

@@ -107,9 +107,10 @@ LANES_INLINE void correct_parts(light_depths *depths, int channels, color_lanes 
   }
 }
 
-/* The light that reaches the slab's first sheet below a place, in the active lanes. */
-LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *taps, lanes3 position,
-                                  light_depths *depths, uint32_t active) {
+/* The light that reaches the slab's first sheet below a place, in the active lanes. lookup: of that sheet. */
+LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_lookup *lookup,
+                                  const shadow_taps *taps, lanes3 position, light_depths *depths,
+                                  uint32_t active) {
   uint32_t planes = lanes_bits(depths->plane | depths->face) & active;
   color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   if (light->sublight_count > 0) {
@@ -120,11 +121,11 @@ LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *t
   lanes_int faint = depths->face & ~depths->plane & (depths->beside < 1.0f);
   int fades = light->cubic && (lanes_bits(faint) & active) != 0;
   for (int c = 0; c < light->channels; c++) {
-    if (planes != active || fades) reached.c[c] = interpolated(light->lookup, taps, light->cubic, c);
+    if (planes != active || fades) reached.c[c] = interpolated(lookup, taps, light->cubic, c);
     if (planes == 0) continue;
-    lanes of_plane = reaching_plane(light->lookup, taps, depths, c);
+    lanes of_plane = reaching_plane(lookup, taps, depths, c);
     if (fades) { /* adds the cubic look-up minus the bilinear one, less of it the more the face counts */
-      lanes differ = reached.c[c] - interpolated(light->lookup, taps, 0, c);
+      lanes differ = reached.c[c] - interpolated(lookup, taps, 0, c);
       of_plane = lanes_max(of_plane + lanes_keep(faint, differ * (1.0f - depths->beside)), lanes_set(0));
     }
     reached.c[c] = lanes_select(depths->plane | depths->face, of_plane, reached.c[c]);
@@ -137,13 +138,14 @@ LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_taps *t
 LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *light, const block_slab *slab,
                                        block_density *densities, int count, lanes3 towards, lanes path) {
   lanes3 position = slab->geometry.position;
-  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &light->lookup->map;
+  const shadow_lookup *lookup = &light->lookups[job->plane];
+  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &lookup->map;
   shadow_taps taps = taps_of_position(light, map, position);
   near_pixels near = light->sublight_count > 0 ? pixels_of_sublights() : pixels_around(&taps);
   find_steps(map, light->parallel, set3(job->normal), position, &near);
   const seen_light seen = {towards, path, light->nearest ? NULL : &near};
   light_depths depths = depths_of_light(job, slab, densities, count, &seen);
-  color_lanes passing = reaching(light, &taps, position, &depths, lanes_bits(slab->seen));
+  color_lanes passing = reaching(light, lookup, &taps, position, &depths, lanes_bits(slab->seen));
   for (int c = 0; c < light->channels; c++) {
     lanes own = own_transmittance(slab->depth, slab->left, depths.enter[c], depths.more[c]);
     passing.c[c] = lanes_min(passing.c[c] * own, lanes_set(1.0f));

@@ -50,7 +50,8 @@ typedef struct shade_light {
   int shadowed;
   float path; /* of the light through the slab: parallel: sheet spacing / |l.h|; else the sheet spacing, which
                  samples divide by their own |l.h| */
-  const shadow_lookup *lookup;      /* of a light with shadows: the light that reaches a sample */
+  const shadow_lookup *lookups;     /* [planes of the buffer's ring]; of a light with shadows: the light that
+                                       reaches a sample */
   const sublight_lookup *sublights; /* [sublight_count]; if any, a sample gets the mean of their light */
   int sublight_count, channels;
   light_texture texture;  /* the picture that the light projects */
@@ -69,6 +70,7 @@ typedef struct shade_job {
   float path; /* of the eye's ray through the slab: parallel: sheet spacing / |w.h|; perspective: the sheet
                  spacing, which pixels divide by their own |w.h| */
   int sheet;  /* k: the slab lies between sheets k-1 and k */
+  int plane;  /* of the lights' rings: where the light that reaches sheet k-1 is kept */
   float height, spacing; /* of sheet k above the first, and to sheet k-1; frame units */
   int back_to_front;
   const shade_light *lights;
@@ -84,6 +86,7 @@ enum { SHADE_SCRATCH_BYTES = 17 * 1472 };
 
 /* The slab before the current sheet, in one tile. */
 typedef struct tile_slab {
+  const shade_job *job;       /* the slab's */
   size_t tile;                /* its index */
   int x, y;                   /* its column and row */
   const shade_patch *patches; /* [patch_count]; of the volumes with density */

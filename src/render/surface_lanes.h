@@ -25,14 +25,15 @@ LANES_INLINE lanes3 moved_away(const shade_light *light, const shadow_map *map, 
 }
 
 /* The light that passes everything before the slab. */
-LANES_INLINE color_lanes light_before_slab(const shade_light *light, lanes3 position, lanes3 normal) {
-  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &light->lookup->map;
+LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_light *light, lanes3 position,
+                                           lanes3 normal) {
+  const shadow_lookup *lookup = &light->lookups[job->plane];
+  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &lookup->map;
   position = moved_away(light, map, position, normal);
   if (light->sublight_count > 0) return mean_of_sublights(light, position, 0xffff);
   color_lanes passing = {{lanes_set(1.0f), lanes_set(1.0f), lanes_set(1.0f)}};
   shadow_taps taps = taps_of_position(light, map, position);
-  for (int c = 0; c < light->channels; c++)
-    passing.c[c] = interpolated(light->lookup, &taps, light->cubic, c);
+  for (int c = 0; c < light->channels; c++) passing.c[c] = interpolated(lookup, &taps, light->cubic, c);
   return passing;
 }
 
@@ -52,7 +53,7 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
   glint = lanes_keep(facing > 0.0f, glint);
   bool shadowed = light->shadowed && samples->receives_shadow;
   color_lanes passing;
-  if (shadowed) passing = light_before_slab(light, position, normal);
+  if (shadowed) passing = light_before_slab(job, light, position, normal);
   for (int c = 0; c < 3; c++) {
     if (shadowed && c < light->channels)
       transmittance = lanes_min(lanes_max(passing.c[c], lanes_set(0)), lanes_set(1.0f));

@@ -21,6 +21,12 @@ typedef struct sweep_light {
   light_emission *emission; /* owned; the picture on the light itself; null: none */
 } sweep_light;
 
+/* The sweep advances in stretches of slabs: a tile is taken through all slabs of a stretch by one thread. The
+ * lights are a stretch ahead of the picture, and both share the threads (sweep_loop.c). */
+typedef struct slab_stretch {
+  int first, end; /* the slabs before sheets first to end - 1; empty where they are equal */
+} slab_stretch;
+
 /* One thread's counts, on cache lines of its own. */
 typedef struct sweep_counts {
   _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image,
@@ -35,8 +41,10 @@ typedef struct sweep_counts {
 /* One more shading of the sweep's tiles. */
 typedef struct layer_pass {
   shade_tile_function *shade;
-  shade_job job; /* the sweep's shading with its own lights, ambient light and emission */
-  bool white;    /* of white volumes */
+  const shade_light *lights; /* [light_count] */
+  int light_count;
+  float ambient[3], emission;
+  bool white; /* of white volumes */
   float *pixels;
   size_t tile_floats;
 } layer_pass;
@@ -89,22 +97,26 @@ struct sweep {
   int tiles_x, tiles_y;
   sweep_light lights[FRAME_LIGHTS];
   shade_light shade_lights[FRAME_LIGHTS];
-  attenuate_job attenuate[FRAME_LIGHTS];
-  shade_job shade;
+  attenuate_job attenuate[FRAME_LIGHTS]; /* with what all slabs have in common */
+  shade_job shade;                       /* likewise */
   sweep_layers layers;
   surface_state surfaces;
-  /* the stage now running */
-  int sheet;
-  int task_start[FRAME_LIGHTS + 1];  /* each light's first task, and one past the last task */
+  /* the loop */
+  int ring; /* sheets whose light is kept; 1: picture and lights take turns, slab by slab */
+  slab_stretch picture_stretch, light_stretch;
+  int task_start[FRAME_LIGHTS + 2];  /* the picture's first task, each light's, and one past the last task */
   void *memory;                      /* owned; all arrays that follow */
   uint16_t *open;                    /* [tiles]; blocks not yet opaque */
-  uint32_t *tasks;                   /* [tiles of the image and of all lights]; the stage's tiles */
+  uint32_t *tasks;                   /* [tiles of the image and of all lights]; the stretches' tiles */
+  shade_job *slab_shades;            /* [stretch]; of the picture's slabs */
+  attenuate_job *slab_attenuates;    /* [lights][stretch]; of the lights' slabs */
   shade_volume *shade_volumes;       /* [volumes] */
   shade_patch *shade_patches;        /* [threads][volumes] */
   unsigned char *scratch;            /* [threads][volumes][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][volumes] */
   sweep_counts *counts;              /* [threads] */
-  double seconds_sort, seconds_image, seconds_light, seconds_soften;
+  double seconds_sort, seconds_tiles, seconds_soften;
+  uint64_t waits; /* how often all threads have waited for each other */
 };
 
 /* hidden.c. Called before the steps of a sweep that goes from back to front. Allocates and fills shown_from,
@@ -139,13 +151,13 @@ typedef struct sweep_bytes {
  * that hl_frame_visible_points() gives. threads: of the pool. */
 hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error);
 
-/* The sheet loop: steps 3 to 18 (sweep_stages.c). */
+/* The sheet loop: steps 3 to 18 (sweep_loop.c). */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
-/* Stages (sweep_stages.c), each for the slab before the sheet. */
-void hl_sweep_shade(sweep *sweep, int sheet);     /* steps 6, 8 to 16: the image */
-void hl_sweep_attenuate(sweep *sweep, int sheet); /* steps 7 to 11 and 17: the lights */
-void hl_sweep_soften(sweep *sweep, int sheet);    /* section 5 */
+/* One tile in one slab (sweep_stages.c). */
+void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker); /* steps 6, 8 to 16 */
+void hl_sweep_attenuate(sweep *sweep, int light, const attenuate_job *job, size_t tile,
+                        int worker); /* steps 7 to 11 and 17 */
 
 /* A tile's column and row. */
 static inline int hl_tile_x(const sweep *sweep, size_t tile) { return (int)(tile % (size_t)sweep->tiles_x); }

@@ -44,25 +44,66 @@ static shadow_setup setup_of_light(const sweep *sweep, const light_source *sourc
                         .content_count = frame->point_count};
 }
 
-/* Adds the bytes that begin_light() would allocate for one light, and the tiles of its view to *tasks. */
-static hl_status add_light_bytes(const sweep *sweep, int index, light_emission *emission, vec3 *points,
-                                 sweep_bytes *bytes, size_t *tasks, hl_error *error) {
-  light_shadow shadow;
-  shadow_setup setup = setup_of_light(sweep, &sweep->frame->lights[sweep->geometry->light[index]], emission,
-                                      points, hl_frame_visible_points(sweep->frame, points));
-  hl_status status = hl_light_shadow_plan(&shadow, &setup, error);
-  if (status == HL_OK && shadow.method != NULL) {
-    const view *view = &shadow.plan.view;
-    shadow_layouts of_method = hl_light_shadow_count(&shadow);
-    bytes->buffers += hl_light_shadow_buffer_bytes(&shadow);
-    bytes->memory[index] = of_method.kept.bytes;
-    bytes->passing += of_method.passing.bytes + shadow.method->state_bytes +
-                      (emission != NULL ? sizeof *emission : 0) +
-                      hl_view_sheets_bytes(&sweep->content, view, shadow.plan.spare);
-    *tasks += (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
+/* points: room for the corners of what the eye sees; must stay until the light's shadows have begun. */
+static hl_status plan_light(sweep *sweep, int index, vec3 *points, hl_error *error) {
+  sweep_light *light = &sweep->lights[index];
+  light->source = &sweep->frame->lights[sweep->geometry->light[index]];
+  hl_status status = hl_light_emission_create(sweep->content.context, light->source, &light->emission, error);
+  if (status != HL_OK) return status;
+  const shadow_setup setup = setup_of_light(sweep, light->source, light->emission, points,
+                                            hl_frame_visible_points(sweep->frame, points));
+  return hl_light_shadow_plan(&light->shadow, &setup, error);
+}
+
+static void end_light(const sweep *sweep, sweep_light *light) {
+  hl_context *context = sweep->content.context;
+  hl_view_sheets_end(&light->sheets);
+  hl_light_texture_release(context, &light->texture);
+  hl_release(context, light->emission);
+  hl_light_shadow_end(&light->shadow);
+}
+
+/* ---- how long stretches are ---- */
+
+/* Slabs of a stretch where nothing limits them, and the memory for the planes that all lights of a frame keep
+ * then (measured: docs/performance.md). With one thread nobody waits, and picture and lights take turns. */
+enum { LONGEST_STRETCH = 8 };
+static const uint64_t RING_BYTES = 64 << 20;
+
+/* Decides how many slabs a stretch has, and how many sheets the lights' buffers keep. The lights must be
+ * planned. */
+static void choose_stretch(sweep *sweep) {
+  int wanted = sweep->scene->render.slabs_at_once, stretch = wanted > 0 ? wanted : LONGEST_STRETCH;
+  uint64_t bytes = 0, budget = RING_BYTES * (uint64_t)sweep->geometry->light_count /
+                               (uint64_t)(sweep->frame->light_count > 0 ? sweep->frame->light_count : 1);
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    const light_shadow *shadow = &sweep->lights[i].shadow;
+    if (shadow->method == NULL) continue;
+    const shadow_buffer_size size = hl_light_shadow_buffer_size(shadow, 1);
+    bytes += hl_shadow_sheet_bytes(&size);
+    if (!hl_runs_in_stretches(shadow->method)) stretch = 1;
   }
-  hl_light_shadow_end(&shadow);
-  return status;
+  if (wanted == 0 && hl_pool_threads(sweep->content.pool) == 1) stretch = 1;
+  while (wanted == 0 && stretch > 1 && (2 * (uint64_t)stretch + 1) * bytes > budget) stretch--;
+  sweep->content.stretch = stretch;
+  sweep->ring = stretch == 1 ? 1 : 2 * stretch + 1;
+}
+
+/* Adds the bytes that begin_light() would allocate for one light, and the tiles of its view to *tasks. */
+static void add_light_bytes(sweep *sweep, int index, sweep_bytes *bytes, size_t *tasks) {
+  sweep_light *light = &sweep->lights[index];
+  light_shadow *shadow = &light->shadow;
+  if (shadow->method == NULL) return;
+  const view *view = &shadow->plan.view;
+  const shadow_buffer_size size = hl_light_shadow_buffer_size(shadow, sweep->ring);
+  shadow_layouts of_method = hl_light_shadow_count(shadow);
+  bytes->buffers += hl_shadow_buffer_bytes(&size);
+  bytes->memory[index] = of_method.kept.bytes;
+  bytes->passing += of_method.passing.bytes + shadow->method->state_bytes +
+                    (size_t)sweep->ring * sizeof *shadow->lookups +
+                    (light->emission != NULL ? sizeof *light->emission : 0) +
+                    hl_view_sheets_bytes(&sweep->content, view, shadow->plan.spare);
+  *tasks += (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
 }
 
 /* tasks: tiles of the picture and of all lights. */
@@ -70,6 +111,9 @@ static void lay_out(sweep *sweep, size_t tasks, int threads, hl_layout *layout) 
   size_t volumes = (size_t)sweep->content.volume_count, places = (size_t)threads * volumes;
   sweep->open = hl_layout_take(layout, sweep->tiles, sizeof *sweep->open);
   sweep->tasks = hl_layout_take(layout, tasks, sizeof *sweep->tasks);
+  size_t stretch = (size_t)sweep->content.stretch, lights = (size_t)sweep->geometry->light_count;
+  sweep->slab_shades = hl_layout_take(layout, stretch, sizeof *sweep->slab_shades);
+  sweep->slab_attenuates = hl_layout_take(layout, lights * stretch, sizeof *sweep->slab_attenuates);
   sweep->shade_volumes = hl_layout_take(layout, volumes, sizeof *sweep->shade_volumes);
   sweep->shade_patches = hl_layout_take(layout, places, sizeof *sweep->shade_patches);
   sweep->scratch = hl_layout_take(layout, places, SHADE_SCRATCH_BYTES);
@@ -88,38 +132,32 @@ hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_by
   hl_layout counted = {0};
   find_tiles(&planned);
   size_t tasks = planned.tiles;
+  hl_status status = HL_OK;
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
+    status = plan_light(&planned, i, points, error);
+  choose_stretch(&planned);
   *bytes = (sweep_bytes){
       .passing = hl_view_sheets_bytes(&planned.content, &sweep->frame->eye, PIXEL_TO_SPARE)};
   if (sweep->geometry->back_to_front)
     bytes->passing += planned.tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
-  hl_status status = HL_OK;
-  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
-    light_emission *emission = NULL;
-    status = hl_light_emission_create(sweep->content.context,
-                                      &sweep->frame->lights[sweep->geometry->light[i]], &emission, error);
-    if (status == HL_OK) status = add_light_bytes(&planned, i, emission, points, bytes, &tasks, error);
-    hl_release(sweep->content.context, emission);
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    if (status == HL_OK) add_light_bytes(&planned, i, bytes, &tasks);
+    end_light(sweep, &planned.lights[i]);
   }
   lay_out(&planned, tasks, threads, &counted);
   bytes->passing += counted.bytes;
   return status;
 }
 
-static hl_status begin_light(sweep *sweep, sweep_light *light, const light_source *source,
-                             shadow_buffer *buffer, shadow_memory *memory, vec3 *points, hl_error *error) {
+static hl_status begin_light(sweep *sweep, sweep_light *light, shadow_buffer *buffer, shadow_memory *memory,
+                             hl_error *error) {
   const frame *frame = sweep->frame;
-  light->source = source;
-  hl_status status = hl_light_emission_create(sweep->content.context, source, &light->emission, error);
   const texture_use use = {frame->points, frame->point_count, frame->middle, frame->middle_pixel};
-  if (status == HL_OK)
-    status = hl_light_texture_create(sweep->content.context, source, &use, &light->texture, error);
-  if (status != HL_OK) return status;
+  hl_status status = hl_light_texture_create(sweep->content.context, light->source, &use, &light->texture,
+                                             error);
   light_shadow *shadow = &light->shadow;
-  shadow_setup setup = setup_of_light(sweep, source, light->emission, points,
-                                      hl_frame_visible_points(frame, points));
-  status = hl_light_shadow_plan(shadow, &setup, error);
   if (status != HL_OK || shadow->method == NULL) return status;
-  status = hl_light_shadow_begin(shadow, buffer, memory, error);
+  status = hl_light_shadow_begin(shadow, sweep->ring, buffer, memory, error);
   if (status == HL_OK)
     status = hl_view_sheets_begin(&sweep->content, &shadow->plan.view, shadow->plan.spare, &light->sheets,
                                   error);
@@ -207,7 +245,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
     light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
   if (from->shadow.method == NULL) return;
   light->channels = from->shadow.buffer->channels;
-  light->lookup = &from->shadow.lookup;
+  light->lookups = from->shadow.lookups;
   light->sublights = from->shadow.sublights;
   light->sublight_count = from->shadow.sublight_count;
 }
@@ -265,15 +303,20 @@ static double longest_way(const sweep *sweep) {
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
-static hl_status begin_lights(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
+/* Plans the lights, and begins the picture's view and theirs. */
+static hl_status begin_views(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
   hl_context *context = sweep->content.context;
   vec3 *points = hl_allocate(context, (size_t)sweep->frame->point_count / 8 * CONTENT_POINTS + 1,
                              sizeof *points);
   if (points == NULL) return hl_fail_memory(error, sizeof *points, "the content's corners");
   hl_status status = HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
-    status = begin_light(sweep, &sweep->lights[i], &sweep->frame->lights[sweep->geometry->light[i]],
-                         &buffers[sweep->geometry->light[i]], &memory[i], points, error);
+    status = plan_light(sweep, i, points, error);
+  choose_stretch(sweep);
+  if (status == HL_OK)
+    status = hl_view_sheets_begin(&sweep->content, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image, error);
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
+    status = begin_light(sweep, &sweep->lights[i], &buffers[sweep->geometry->light[i]], &memory[i], error);
   hl_release(context, points);
   return status;
 }
@@ -281,9 +324,7 @@ static hl_status begin_lights(sweep *sweep, shadow_buffer *buffers, shadow_memor
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
   double start = hl_clock_seconds();
   find_tiles(sweep);
-  hl_status status = hl_view_sheets_begin(&sweep->content, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image,
-                                          error);
-  if (status == HL_OK) status = begin_lights(sweep, buffers, memory, error);
+  hl_status status = begin_views(sweep, buffers, memory, error);
   if (status == HL_OK) status = allocate(sweep, error);
   if (status != HL_OK) return status;
   hl_sweep_open(sweep);
@@ -300,13 +341,7 @@ void hl_sweep_end(sweep *sweep) {
   hl_context *context = sweep->content.context;
   hl_sweep_layers_end(sweep);
   hl_sweep_surfaces_end(sweep);
-  for (int i = 0; i < FRAME_LIGHTS; i++) {
-    sweep_light *light = &sweep->lights[i];
-    hl_view_sheets_end(&light->sheets);
-    hl_light_texture_release(context, &light->texture);
-    hl_release(context, light->emission);
-    hl_light_shadow_end(&light->shadow);
-  }
+  for (int i = 0; i < FRAME_LIGHTS; i++) end_light(sweep, &sweep->lights[i]);
   hl_view_sheets_end(&sweep->image);
   hl_release(context, sweep->memory);
 }
@@ -338,10 +373,11 @@ void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics) {
   }
   if (!sweep->preparatory) statistics->sheets += sweep->geometry->sheets.count;
   statistics->seconds_sort += sweep->seconds_sort;
-  double share = fill + shade > 0 ? fill / (fill + shade) : 1;
-  statistics->seconds_fill_image += sweep->seconds_image * share;
-  statistics->seconds_shade += sweep->seconds_image * (1 - share);
-  statistics->seconds_fill_light += sweep->seconds_light;
-  if (light > 0) statistics->seconds_composite_light += sweep->seconds_light * composite / light;
+  double all = fill + shade + light, share = all > 0 ? sweep->seconds_tiles / all : 0;
+  statistics->seconds_fill_image += fill * share;
+  statistics->seconds_shade += shade * share;
+  statistics->seconds_fill_light += light * share;
+  statistics->seconds_composite_light += composite * share;
+  statistics->waits += sweep->waits;
   statistics->seconds_soften += sweep->seconds_soften;
 }

@@ -1,6 +1,8 @@
 /* render/sweep_layers.c - the layers of a sweep: its tiles shaded once more for each of them. */
 #include "render/sweep_layers.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 
 /* Sets up copies of the volumes that are white media: their samples pass on all the light that arrives. */
@@ -49,11 +51,11 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
   layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
-  *pass = (layer_pass){sweep->content.hot->render.shade, sweep->shade, false, pixels, COLORS * TILE_PIXELS};
-  pass->job.lights = lights;
-  pass->job.light_count = light_count;
-  for (int c = 0; c < 3; c++) pass->job.ambient[c] = 0;
-  pass->job.emission = 0;
+  *pass = (layer_pass){.shade = sweep->content.hot->render.shade,
+                       .lights = lights,
+                       .light_count = light_count,
+                       .pixels = pixels,
+                       .tile_floats = COLORS * TILE_PIXELS};
   return pass;
 }
 
@@ -72,9 +74,9 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
     if (shadow != NULL) shadow->white = true;
   }
   layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
-  for (int c = 0; c < 3 && ambient != NULL; c++) ambient->job.ambient[c] = sweep->shade.ambient[c];
+  for (int c = 0; c < 3 && ambient != NULL; c++) ambient->ambient[c] = sweep->shade.ambient[c];
   layer_pass *emission = sweep->first ? add_pass(sweep, pixels->emission, NULL, 0) : NULL;
-  if (emission != NULL) emission->job.emission = sweep->shade.emission;
+  if (emission != NULL) emission->emission = sweep->shade.emission;
   layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
   if (measures != NULL) {
     measures->shade = sweep->content.hot->render.measure;
@@ -90,14 +92,6 @@ void hl_sweep_layers_end(sweep *sweep) {
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->content.context, owned[i]);
 }
 
-void hl_sweep_layers_sheet(sweep *sweep) {
-  sweep_layers *layers = &sweep->layers;
-  for (int i = 0; i < layers->pass_count; i++) {
-    layers->passes[i].job.rays = sweep->shade.rays;
-    layers->passes[i].job.height = sweep->shade.height;
-  }
-}
-
 /* The tile's patches, of the white volumes. */
 static const shade_patch *white_patches(const sweep *sweep, const tile_slab *slab) {
   shade_patch *white = sweep->layers.white_patches +
@@ -109,14 +103,25 @@ static const shade_patch *white_patches(const sweep *sweep, const tile_slab *sla
   return white;
 }
 
+/* The slab's job with the pass's own lights, ambient light and emission. */
+static shade_job job_of_pass(const layer_pass *pass, const shade_job *slab) {
+  shade_job job = *slab;
+  job.lights = pass->lights;
+  job.light_count = pass->light_count;
+  memcpy(job.ambient, pass->ambient, sizeof job.ambient);
+  job.emission = pass->emission;
+  return job;
+}
+
 void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
   if (sweep->layers.pass_count == 0) return;
   tile_slab white = *slab;
   white.patches = white_patches(sweep, slab);
   for (int i = 0; i < sweep->layers.pass_count; i++) {
     const layer_pass *pass = &sweep->layers.passes[i];
+    const shade_job job = job_of_pass(pass, slab->job);
     uint64_t samples = 0; /* statistics count the picture's own samples alone */
-    (void)pass->shade(&pass->job, pass->white ? &white : slab, pass->pixels + slab->tile * pass->tile_floats,
+    (void)pass->shade(&job, pass->white ? &white : slab, pass->pixels + slab->tile * pass->tile_floats,
                       &samples);
   }
 }

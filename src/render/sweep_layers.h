@@ -4,11 +4,9 @@
 
 #include "render/sweep.h"
 
-/* Begin is called after hl_sweep_begin; sheet gives all layers the sheet of the sweep's
- * own shading; tile shades one tile of every layer. */
+/* Begin is called at the end of hl_sweep_begin; tile shades one tile of every layer. */
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
 void hl_sweep_layers_end(sweep *sweep);
-void hl_sweep_layers_sheet(sweep *sweep);
 void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab);
 
 #endif

@@ -204,11 +204,11 @@ static void shade_batch(const sweep *sweep, const tile_slab *slab, const fragmen
     surface_point point = find_point(sweep, slab, list[i < count ? i : 0], mesh);
     set_sample(&samples, i, &point);
   }
-  sweep->content.hot->render.surface(&sweep->shade, &samples);
+  sweep->content.hot->render.surface(slab->job, &samples);
   float *pixels = sweep->pixels + slab->tile * 4 * TILE_PIXELS;
   for (int i = 0; i < count; i++) {
     const float lit[3] = {samples.lit[0][i], samples.lit[1][i], samples.lit[2][i]};
-    composite_fragment(sweep->shade.back_to_front, list[i], lit, pixels);
+    composite_fragment(slab->job->back_to_front, list[i], lit, pixels);
   }
 }
 
@@ -305,7 +305,7 @@ uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint3
                                 fragment_range range) {
   if (slab->blocks == 0) shade_fragments(sweep, slab, blocks, range);
   else shade_cut_slab(sweep, slab, blocks, range);
-  return sweep->shade.back_to_front ? blocks : open_blocks(sweep, slab, blocks);
+  return slab->job->back_to_front ? blocks : open_blocks(sweep, slab, blocks);
 }
 
 /* ---- the lights ---- */

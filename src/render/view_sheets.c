@@ -57,10 +57,12 @@ static void lay_out(view_sheets *sheets, hl_layout *layout) {
   size_t patches = sheets->occupancy.patch_count, grids = (size_t)sheets->content->volume_count;
   sheets->bundle = bundle_of_patches(patches);
   sheets->ring = sheets->bundle + 1;
+  sheets->reached = sheets->content->stretch + 2 * sheets->bundle;
+  sheets->run_count = sheets->content->stretch / RUN_SLABS + 2;
   size_t ring = (size_t)sheets->ring;
   sheets->kept = hl_layout_take(layout, patches * ring, sizeof *sheets->kept);
-  sheets->sources = hl_layout_take(layout, ring * grids, sizeof *sheets->sources);
-  sheets->runs = hl_layout_take(layout, grids, sizeof *sheets->runs);
+  sheets->sources = hl_layout_take(layout, (size_t)sheets->reached * grids, sizeof *sheets->sources);
+  sheets->runs = hl_layout_take(layout, (size_t)sheets->run_count * grids, sizeof *sheets->runs);
   sheets->patch_runs = hl_layout_take(layout, patches, sizeof *sheets->patch_runs);
   sheets->density = hl_layout_take(layout, patches * ring, TILE_PIXELS * sizeof *sheets->density);
   if (!any_cut(sheets->content)) return;
@@ -101,13 +103,18 @@ static hl_status keep_patches(view_sheets *sheets, hl_error *error) {
 /* Runs are RUN_SLABS slabs long. The first sheet of the run to which the slab before `sheet` belongs. */
 static int first_of_run(int sheet) { return (sheet - 1) / RUN_SLABS * RUN_SLABS; }
 
+static slab_run *run_of_grid(const view_sheets *sheets, int first, int grid) {
+  int run = first / RUN_SLABS % sheets->run_count;
+  return &sheets->runs[run * sheets->content->volume_count + grid];
+}
+
 /* A slab is cut where a box's face crosses it, or crosses the way of light to a sample in it: that way begins
  * up to `beside` away. */
 static void reach_run(view_sheets *sheets, int first) {
   const sheet_content *content = sheets->content;
   for (int g = 0; g < content->volume_count; g++) {
     const grid *grid = &content->grids[g];
-    slab_run *run = &sheets->runs[g];
+    slab_run *run = run_of_grid(sheets, first, g);
     run->grid = grid;
     for (int axis = 0; axis < 3; axis++) {
       double reach = sheets->beside * vec3_length(grid->frame_to_index.linear.row[axis]);
@@ -123,7 +130,7 @@ static void reach_run(view_sheets *sheets, int first) {
 static void reach_sheet(view_sheets *sheets, int sheet) {
   const sheet_content *content = sheets->content;
   for (int g = 0; g < content->volume_count; g++) {
-    fill_source *source = &sheets->sources[sheet % sheets->ring * content->volume_count + g];
+    fill_source *source = &sheets->sources[sheet % sheets->reached * content->volume_count + g];
     *source = (fill_source){.grid = &content->grids[g],
                             .kernel = content->kernel,
                             .sheet = sheet,
@@ -178,7 +185,7 @@ static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int s
 }
 
 static const fill_source *source_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
-  return &sheets->sources[sheet % sheets->ring * sheets->content->volume_count +
+  return &sheets->sources[sheet % sheets->reached * sheets->content->volume_count +
                           (int)sheets->occupancy.patch_grid[patch]];
 }
 
@@ -194,7 +201,7 @@ static void find_relevant(const view_sheets *sheets, slab_place place, uint32_t 
                         hl_occupancy_has(o, patch, run->first + i + 1))
              << i;
   relevant_blocks relevant = {0};
-  sheets->content->hot->fill.relevant_blocks(&sheets->runs[o->patch_grid[patch]],
+  sheets->content->hot->fill.relevant_blocks(run_of_grid(sheets, run->first, (int)o->patch_grid[patch]),
                                              (int)(place.tile % (size_t)o->tiles_x),
                                              (int)(place.tile / (size_t)o->tiles_x), slabs, more, &relevant);
   for (int i = 0; i < RUN_SLABS; i++) run->relevant.blocks[i] |= relevant.blocks[i];

@@ -20,7 +20,8 @@ typedef struct sheet_content {
   const grid *grids;              /* [volume_count], the frame's */
   int volume_count;
   const kernel *kernel;
-  bool splat; /* else gather */
+  bool splat;  /* else gather */
+  int stretch; /* the most slabs of a view that are reached together */
 } sheet_content;
 
 /* A patch's densities on one sheet, kept for the next slab. */
@@ -46,14 +47,16 @@ typedef struct view_sheets {
   const view *view;
   double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's: 0 */
   occupancy occupancy;
-  voxel_lists *lists;    /* owned; [grids]; splat only */
-  int bundle;            /* number of sheets that are filled in one go; a divisor of RUN_SLABS */
-  int ring;              /* number of sheets that are kept: bundle + 1; sheet k at k % ring */
-  void *memory;          /* borrowed from the reserve; holds all arrays below */
-  float *density;        /* [patches][ring][256], block-major */
-  kept_patch *kept;      /* [patches][ring]; what is in density */
-  fill_source *sources;  /* [ring][grids] */
-  slab_run *runs;        /* [grids]; the run of the last slab */
+  voxel_lists *lists;   /* owned; [grids]; splat only */
+  int bundle;           /* number of sheets that are filled in one go; a divisor of RUN_SLABS */
+  int ring;             /* number of sheets that are kept: bundle + 1; sheet k at k % ring */
+  void *memory;         /* borrowed from the reserve; holds all arrays below */
+  float *density;       /* [patches][ring][256], block-major */
+  kept_patch *kept;     /* [patches][ring]; what is in density */
+  int reached;          /* number of sheets that have sources: those of a stretch, and of its bundles */
+  fill_source *sources; /* [reached][grids]; of sheet k at k % reached */
+  slab_run *runs;       /* [runs that a stretch may touch][grids]; of run k at k % run_count */
+  int run_count;
   patch_run *patch_runs; /* [patches] */
   /* the next two: only where a box cuts anything visible; else null */
   uint32_t *entry_of;   /* [patches]; its row of entries; NO_ENTRY where none was asked for */
@@ -71,7 +74,7 @@ void hl_view_sheets_end(view_sheets *sheets);
  * only when they are made. */
 uint64_t hl_view_sheets_bytes(const sheet_content *content, const view *view, double spare);
 
-/* Call before patches of a sheet are asked for; sheets rise from 1. */
+/* Call for each slab of a stretch before its patches are asked for; sheets rise from 1. */
 void hl_view_sheets_reach(view_sheets *sheets, int sheet);
 
 /* A patch of a tile, in the slab before a sheet. */

@@ -23,6 +23,7 @@
 #define HL_LIMIT_VOXEL_VALUE   1e36 /* differences and sums of such values still fit floats */
 #define HL_LIMIT_LIGHT_SAMPLES 64
 #define HL_LIMIT_THREADS       1024
+#define HL_LIMIT_SLABS_AT_ONCE 64
 #define HL_LIMIT_SHININESS     10000
 #define HL_LIMIT_EMISSION      1e6
 #define HL_LIMIT_EXPOSURE      32 /* stops, either way */

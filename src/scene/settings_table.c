@@ -290,7 +290,11 @@ static const hl_setting render_rows[] = {
      .high = HL_LIMIT_THREADS, .option = "threads", .sentence = "0: one thread per processor.",
      .mend = "give a number of threads up to {high}, 0 for one per processor"},
     {.key = "compositing", FIELD(hl_render_settings, compositing), A_CHOICE(compositings), .optional = 1,
-     .sentence = "What a pixel shows: lit matter, or the greatest value along its ray, without light."}};
+     .sentence = "What a pixel shows: lit matter, or the greatest value along its ray, without light."},
+    {.key = "slabs_at_once", FIELD(hl_render_settings, slabs_at_once), .type = HL_SETTING_WHOLE, .unit = "",
+     .high = HL_LIMIT_SLABS_AT_ONCE, .optional = 1,
+     .sentence = "Slabs between two waits of the threads for each other; changes no picture. 0: automatic.",
+     .mend = "give a number of slabs up to {high}, 0 for automatic"}};
 
 #define A_RADIANCE                                                                          \
   .type = HL_SETTING_COLOR, .unit = "linear RGB", .high = HL_LIMIT_RADIANCE,                \

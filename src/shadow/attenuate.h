@@ -24,6 +24,7 @@ typedef struct attenuate_job {
   float path; /* parallel light: sheet spacing / |l.h|; point light: the sheet spacing, which pixels divide by
                  their own |l.h| */
   float height, spacing; /* of the sheet above the first, and to the one before; frame units */
+  int sheet;             /* k: the slab lies between sheets k-1 and k */
   const attenuate_volume *volumes;
   int volume_count;
   int channels;                      /* 1: attenuation is grey; 3 */

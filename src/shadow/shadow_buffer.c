@@ -140,10 +140,12 @@ static size_t tiles_of(const shadow_buffer *buffer) {
  * included. */
 static void lay_out(shadow_buffer *buffer, size_t plane_count, hl_layout *layout) {
   buffer->planes = hl_layout_take(layout, plane_count, buffer->plane * sizeof *buffer->planes);
+  buffer->changed = hl_layout_take(layout, tiles_of(buffer), sizeof *buffer->changed);
   buffer->tile_lit = hl_layout_take(layout, tiles_of(buffer), sizeof *buffer->tile_lit);
   buffer->tile_touched = hl_layout_take(layout, tiles_of(buffer), 2);
 }
 
+/* The planes of one sheet. */
 static size_t count_planes(int channels, bool second) { return (size_t)channels * (second ? 2 : 1); }
 
 static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t plane_count, hl_error *error) {
@@ -169,25 +171,57 @@ uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size) {
   shadow_buffer buffer = {0};
   hl_layout counted = {0};
   set_size(size->view, size->reach, &buffer);
-  lay_out(&buffer, count_planes(size->channels, size->second), &counted);
+  lay_out(&buffer, (size_t)size->ring * count_planes(size->channels, size->second), &counted);
   return counted.bytes;
+}
+
+uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size) {
+  return count_planes(size->channels, size->second) * hl_shadow_plane(size->view, size->reach) *
+         sizeof(float);
+}
+
+float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, bool second, int channel) {
+  size_t channels = (size_t)buffer->channels, slot = (size_t)(sheet % buffer->ring);
+  size_t plane = (slot * (buffer->two ? 2 : 1) + (second ? 1 : 0)) * channels + (size_t)channel;
+  return buffer->planes + plane * buffer->plane + buffer->origin;
+}
+
+void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet) {
+  buffer->sheet = sheet;
+  for (int c = 0; c < buffer->channels; c++) {
+    buffer->transmittance[c] = hl_shadow_plane_at(buffer, sheet, false, c);
+    buffer->second[c] = buffer->two ? hl_shadow_plane_at(buffer, sheet, true, c) : NULL;
+  }
+}
+
+void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet) {
+  size_t tiles_x = (size_t)buffer->tiles_x;
+  size_t at = tile / tiles_x * TILE * buffer->stride + tile % tiles_x * TILE;
+  if (buffer->ring == 1 || !hl_shadow_is_carried(buffer, tile, sheet)) return;
+  for (int second = 0; second < (buffer->two ? 2 : 1); second++)
+    for (int c = 0; c < buffer->channels; c++) {
+      const float *from = hl_shadow_plane_at(buffer, sheet - 1, second, c) + at;
+      float *to = hl_shadow_plane_at(buffer, sheet, second, c) + at;
+      for (size_t row = 0; row < TILE; row++)
+        memcpy(to + row * buffer->stride, from + row * buffer->stride, TILE * sizeof *to);
+    }
 }
 
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
                                  const shadow_buffer_size *size, hl_error *error) {
-  size_t channels = (size_t)size->channels, plane_count = count_planes(size->channels, size->second);
+  size_t plane_count = (size_t)size->ring * count_planes(size->channels, size->second);
   set_size(size->view, size->reach, buffer);
   buffer->channels = size->channels;
+  buffer->ring = size->ring;
+  buffer->two = size->second;
   hl_status status = reserve(context, buffer, plane_count, error);
   if (status != HL_OK) return status;
   hl_pool_fill(pool, buffer->planes, plane_count * buffer->plane, 1);
   for (size_t tile = 0; tile < tiles_of(buffer); tile++) buffer->tile_lit[tile] = ALL_BLOCKS;
   memset(buffer->tile_touched, 0, 2 * tiles_of(buffer));
-  for (size_t c = 0; c < HL_CHANNELS; c++) {
-    bool used = c < channels;
-    buffer->transmittance[c] = used ? buffer->planes + c * buffer->plane + buffer->origin : NULL;
-    buffer->second[c] = used && size->second ? buffer->transmittance[c] + channels * buffer->plane : NULL;
-  }
+  memset(buffer->changed, 0, tiles_of(buffer) * sizeof *buffer->changed);
+  for (int c = 0; c < HL_CHANNELS; c++) buffer->transmittance[c] = buffer->second[c] = NULL;
+  hl_shadow_buffer_reach(buffer, 0);
   return HL_OK;
 }
 

@@ -1,8 +1,12 @@
-/* shadow/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the current sheet.
+/* shadow/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the last sheets.
  *
  * It is perpendicular to the light's direction for hard shadows, parallel to the sheets for soft ones (fig.
  * 17). At the volume its pixels are little larger than the picture's. Around it is a margin of ones,
- * unattenuated light, which blurs read. */
+ * unattenuated light, which blurs read.
+ *
+ * The light runs ahead of the picture, which reads the planes of earlier sheets: so the planes of a ring of
+ * sheets are kept, sheet k's at k % ring. A tile that has changed is carried from sheet to sheet until all
+ * planes of the ring hold what it became; a tile that never changes costs nothing. */
 #ifndef HL_SHADOW_SHADOW_BUFFER_H
 #define HL_SHADOW_SHADOW_BUFFER_H
 
@@ -18,10 +22,14 @@ typedef struct shadow_buffer {
   size_t stride;                     /* floats from row to row */
   size_t plane;                      /* floats of one channel, margins included */
   size_t origin;                     /* offset of pixel (0,0) in a plane */
-  float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory */
+  int ring;                          /* number of sheets that are kept */
+  bool two;                          /* each sheet has second planes */
+  float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory; of the sheet that was reached last */
   float *second[HL_CHANNELS];  /* pixel (0,0); in memory; null: none. The method's second planes: for `paper`
                                   the  result of half a blur, for `cascade` the light that samples fade from */
-  float *planes;               /* in memory; [1 or 2][channels][plane] */
+  int sheet;                   /* that was reached last */
+  float *planes;               /* in memory; [ring][1 or 2][channels][plane] */
+  int32_t *changed;            /* in memory; [tiles]; the last sheet at which the tile's planes changed */
   uint16_t *tile_lit;          /* in memory; [tiles]; blocks that light still reaches */
   unsigned char *tile_touched; /* in memory; [2][tiles]; 1 where some transmittance is below 1 */
   void *memory;                /* owned; kept from frame to frame while it is large enough */
@@ -50,6 +58,7 @@ typedef struct shadow_buffer_size {
   int channels; /* 1 or 3 */
   bool second;  /* a second set of planes, too */
   int reach;    /* pixels that blurs read beyond a tile */
+  int ring;     /* sheets that are kept; at least 1 */
 } shadow_buffer_size;
 
 /* (Re)allocates and sets all transmittances to 1. */
@@ -59,6 +68,20 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
 size_t hl_shadow_plane(const view *view, int reach);
 /* The bytes that hl_shadow_buffer_reset() needs. */
 uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size);
+/* Bytes of one sheet's planes. */
+uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size);
+
+/* Pixel (0,0) of a channel at a sheet. second: of the second planes. */
+float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, bool second, int channel);
+/* Points `transmittance` and `second` to a sheet's planes. */
+void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
+/* Whether a tile at a sheet, or at one after it, must still be carried. */
+static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile, int sheet) {
+  return buffer->changed[tile] > 0 && buffer->changed[tile] > sheet - buffer->ring;
+}
+/* Copies a tile from the sheet before to this sheet, unless its planes hold the same already. To be called
+ * for each sheet in turn where hl_shadow_is_carried(), before the tile changes at this sheet. */
+void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet);
 /* Finds a tile's tile_lit again after a blur. both: a block is lit where the second planes have light, too.
  */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,

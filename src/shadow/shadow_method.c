@@ -17,14 +17,9 @@ hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, 
   return HL_OK;
 }
 
-static shadow_buffer_size size_of_buffer(const light_shadow *shadow) {
+shadow_buffer_size hl_light_shadow_buffer_size(const light_shadow *shadow, int ring) {
   const shadow_plan *plan = &shadow->plan;
-  return (shadow_buffer_size){&plan->view, shadow->setup.channels, plan->second, plan->reach};
-}
-
-uint64_t hl_light_shadow_buffer_bytes(const light_shadow *shadow) {
-  const shadow_buffer_size size = size_of_buffer(shadow);
-  return hl_shadow_buffer_bytes(&size);
+  return (shadow_buffer_size){&plan->view, shadow->setup.channels, plan->second, plan->reach, ring};
 }
 
 shadow_layouts hl_light_shadow_count(light_shadow *shadow) {
@@ -56,15 +51,28 @@ static hl_status hand_out(light_shadow *shadow, shadow_memory *kept, hl_error *e
   return HL_OK;
 }
 
-hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, shadow_memory *memory,
+static hl_status set_up_lookups(light_shadow *shadow, hl_error *error) {
+  const shadow_buffer *buffer = shadow->buffer;
+  size_t ring = (size_t)buffer->ring;
+  shadow->lookups = hl_allocate_zeroed(shadow->setup.context, ring, sizeof *shadow->lookups);
+  if (shadow->lookups == NULL) return hl_fail_memory(error, ring * sizeof *shadow->lookups, "look-ups");
+  for (int sheet = 0; sheet < buffer->ring; sheet++) {
+    shadow_lookup *lookup = &shadow->lookups[sheet];
+    lookup->map = hl_map_of_view(&shadow->plan.view);
+    lookup->map.stride = buffer->stride;
+    for (int c = 0; c < buffer->channels; c++)
+      lookup->transmittance[c] = hl_shadow_plane_at(buffer, sheet, false, c);
+  }
+  return HL_OK;
+}
+
+hl_status hl_light_shadow_begin(light_shadow *shadow, int ring, shadow_buffer *buffer, shadow_memory *memory,
                                 hl_error *error) {
   const shadow_setup *setup = &shadow->setup;
-  const shadow_buffer_size size = size_of_buffer(shadow);
+  const shadow_buffer_size size = hl_light_shadow_buffer_size(shadow, ring);
   shadow->buffer = buffer;
   hl_status status = hl_shadow_buffer_reset(setup->context, setup->pool, buffer, &size, error);
-  shadow->lookup.map = hl_map_of_view(&shadow->plan.view);
-  shadow->lookup.map.stride = buffer->stride;
-  for (int c = 0; c < setup->channels; c++) shadow->lookup.transmittance[c] = buffer->transmittance[c];
+  if (status == HL_OK) status = set_up_lookups(shadow, error);
   if (status == HL_OK && shadow->method->check != NULL) status = shadow->method->check(shadow, error);
   if (status == HL_OK && shadow->method->lay_out != NULL) status = hand_out(shadow, memory, error);
   if (status == HL_OK && shadow->method->begin != NULL) status = shadow->method->begin(shadow, error);
@@ -74,6 +82,7 @@ hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, sha
 void hl_light_shadow_end(light_shadow *shadow) {
   if (shadow->method != NULL && shadow->method->end != NULL) shadow->method->end(shadow);
   if (shadow->passing != NULL) hl_reserve_return(shadow->setup.reserve, shadow->passing);
+  hl_release(shadow->setup.context, shadow->lookups);
   hl_release(shadow->setup.context, shadow->state);
   *shadow = (light_shadow){0};
 }

@@ -12,7 +12,13 @@
  *       before_shading      prepares the look-ups of the picture's slab
  *       before_slab         prepares the slab's compositing into the buffer
  *       for each tile       find_lit and before_tile before the tile is composited, after_tile if it absorbed
- * light advance             brings the buffer to sheet k end                 once, after a failure too
+ *       advance             brings the buffer to sheet k
+ *     end                 once, after a failure too
+ *
+ * A method without `advance`, or with `advances`, can be run in stretches of slabs: first before_shading and
+ * before_slab for all slabs of a stretch, then all slabs of one tile after the other, then advance; the
+ * picture's slabs may follow later, from the planes that the buffer keeps. No slab of a stretch but the last
+ * is one at which `advance` changes anything.
  *
  * Functions that a method has no use for are null. */
 #ifndef HL_SHADOW_SHADOW_METHOD_H
@@ -84,8 +90,8 @@ typedef struct light_shadow {
   const shadow_method *method; /* null: the light casts no shadows, or the eye sees nothing */
   shadow_setup setup;
   shadow_plan plan;
-  shadow_buffer *buffer;            /* the renderer's */
-  shadow_lookup lookup;             /* how the picture reads the buffer */
+  shadow_buffer *buffer;  /* the renderer's */
+  shadow_lookup *lookups; /* owned; [the buffer's ring]; how the picture reads the light at each sheet */
   const sublight_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
   int sublight_count;
   void *state;         /* owned; method->state_bytes */
@@ -108,13 +114,17 @@ struct shadow_method {
   hl_status (*check)(const light_shadow *shadow, hl_error *error);
   void (*lay_out)(light_shadow *shadow, shadow_layouts *layouts);
   hl_status (*begin)(light_shadow *shadow, hl_error *error);
-  void (*before_shading)(light_shadow *shadow, int sheet);
-  void (*before_slab)(light_shadow *shadow, int sheet);
+  /* lookup: how the slab is to be looked up, of the sheet before it. */
+  void (*before_shading)(light_shadow *shadow, int sheet, shadow_lookup *lookup);
+  /* job: of all tiles of the slab. */
+  void (*before_slab)(light_shadow *shadow, int sheet, attenuate_job *job);
   /* Finds buffer->tile_lit of a tile. Null: the sweep finds it itself. One task at a time has a tile. */
   void (*find_lit)(light_shadow *shadow, size_t tile);
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
   void (*after_tile)(light_shadow *shadow, size_t tile);
   void (*advance)(light_shadow *shadow, const occupancy *occupancy, int sheet);
+  /* Whether `advance` changes anything at a sheet. Null: it may at every sheet. */
+  bool (*advances)(const light_shadow *shadow, int sheet);
   void (*end)(light_shadow *shadow);
 };
 
@@ -125,11 +135,16 @@ const shadow_method *hl_shadow_method(const light_source *source);
 
 /* Chooses the method and plans. shadow->method is null afterwards where there are no shadows to make. */
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
-/* After plan: the bytes of the buffer, which the renderer keeps, and of the method's memory. */
-uint64_t hl_light_shadow_buffer_bytes(const light_shadow *shadow);
+/* Whether the planned method can be run in stretches. */
+static inline bool hl_runs_in_stretches(const shadow_method *method) {
+  return method->advance == NULL || method->advances != NULL;
+}
+/* After plan: the size of the buffer where it keeps so many sheets; the renderer keeps the buffer. */
+shadow_buffer_size hl_light_shadow_buffer_size(const light_shadow *shadow, int ring);
+/* After plan: the bytes of the method's memory. */
 shadow_layouts hl_light_shadow_count(light_shadow *shadow);
 /* After plan: buffer and memory are the renderer's. */
-hl_status hl_light_shadow_begin(light_shadow *shadow, shadow_buffer *buffer, shadow_memory *memory,
+hl_status hl_light_shadow_begin(light_shadow *shadow, int ring, shadow_buffer *buffer, shadow_memory *memory,
                                 hl_error *error);
 /* After plan or begin, even if they failed; allowed for a struct of zeros. */
 void hl_light_shadow_end(light_shadow *shadow);

@@ -107,7 +107,6 @@ typedef struct soft_cascade {
   double shortest_chunk;                /* of the sweep */
   double shrink; /* the length of a chunk as a fraction of its start's -omega; 0: all are equally long */
   double lookup_variance; /* variance by which look-ups blur, pixels squared */
-  double slab;            /* the current slab's position in the chunk: omega from the chunk's start */
   uint64_t chunks;        /* finished */
   int channels;
   int level_count; /* levels with memory */

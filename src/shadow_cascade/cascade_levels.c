@@ -248,7 +248,9 @@ hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error) {
   cascade->level[0].count = 1; /* at the first chunk's start */
   cascade->level[0].group[0].omega = cascade->chunk_start;
   cascade->begun = true;
-  for (int c = 0; c < shadow->setup.channels; c++) shadow->lookup.older[c] = shadow->buffer->second[c];
+  for (int sheet = 0; sheet < shadow->buffer->ring; sheet++)
+    for (int c = 0; c < shadow->setup.channels; c++)
+      shadow->lookups[sheet].older[c] = hl_shadow_plane_at(shadow->buffer, sheet, true, c);
   return HL_OK;
 }
 

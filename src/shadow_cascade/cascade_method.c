@@ -333,6 +333,7 @@ static void refill_piece(void *data, size_t index, int worker) {
                         .again = again};
       task->functions->refill(&job, tile_x, piece.y);
     }
+    if (shaded || buffer->tile_touched[tile]) buffer->changed[tile] = buffer->sheet;
     buffer->tile_touched[tile] = shaded || kept;
     task->cascade->refilled[tile] |= REFILLED_NOW;
     hl_shadow_buffer_find_lit(buffer, tile_x, piece.y, true, task->functions->lit_blocks);
@@ -375,11 +376,18 @@ static void begin_chunk(soft_cascade *cascade) {
     cascade->refilled[tile] = cascade->refilled[tile] & REFILLED_NOW ? REFILLED_BEFORE : 0;
 }
 
+/* Whether the current chunk ends at a sheet. */
+static bool ends_chunk(const light_shadow *shadow, int sheet) {
+  const soft_cascade *cascade = shadow->state;
+  double omega = hl_cascade_omega(cascade, hl_sheet_height(shadow->setup.sheets, sheet));
+  return isfinite(omega) && omega - cascade->chunk_start >= cascade->chunk;
+}
+
 static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, int sheet) {
   soft_cascade *cascade = shadow->state;
   const sheet_stack *sheets = shadow->setup.sheets;
+  if (!ends_chunk(shadow, sheet)) return;
   double omega = hl_cascade_omega(cascade, hl_sheet_height(sheets, sheet));
-  if (!isfinite(omega) || omega - cascade->chunk_start < cascade->chunk) return;
   const cascade_crew crew = {shadow->setup.pool, shadow->setup.functions->cascade, &cascade->reads};
   double end = hl_cascade_chunks_on(cascade, omega, 1);
   if (cascade->shrink > 0) cascade->chunk = end - omega;
@@ -395,17 +403,18 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
 /* ---- the method ---- */
 
 /* Sets how far samples have faded from the second planes to the buffer. */
-static void before_shading(light_shadow *shadow, int sheet) {
+static void before_shading(light_shadow *shadow, int sheet, shadow_lookup *lookup) {
   const soft_cascade *cascade = shadow->state;
   double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
   double age = isfinite(middle) ? (middle - cascade->chunk_start) / cascade->chunk : 0;
-  shadow->lookup.young = (float)fmin(fmax(age, 0), 1);
+  lookup->young = (float)fmin(fmax(age, 0), 1);
 }
 
-static void before_slab(light_shadow *shadow, int sheet) {
-  soft_cascade *cascade = shadow->state;
+/* Sets the slab's position in the chunk. */
+static void before_slab(light_shadow *shadow, int sheet, attenuate_job *job) {
+  const soft_cascade *cascade = shadow->state;
   double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
-  cascade->slab = isfinite(middle) ? middle - cascade->chunk_start : 0;
+  job->position = (float)(isfinite(middle) ? middle - cascade->chunk_start : 0);
 }
 
 /* The slab is composited into the second planes too, and counted in the moments. */
@@ -414,9 +423,8 @@ static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *
   const shadow_buffer *buffer = shadow->buffer;
   size_t x = tile % (size_t)buffer->tiles_x * TILE, y = tile / (size_t)buffer->tiles_x * TILE;
   job->moment_stride = cascade->level[0].stride;
-  job->position = (float)cascade->slab;
   for (int c = 0; c < job->channels; c++) {
-    job->older[c] = buffer->second[c] + y * buffer->stride + x;
+    job->older[c] = hl_shadow_plane_at(buffer, job->sheet, true, c) + y * buffer->stride + x;
     job->moment[c] = cascade->moment[c] + y * job->moment_stride + x;
   }
 }
@@ -437,4 +445,5 @@ const shadow_method hl_shadow_cascade = {.name = "cascade",
                                          .before_tile = before_tile,
                                          .after_tile = after_tile,
                                          .advance = advance_cascade,
+                                         .advances = ends_chunk,
                                          .end = hl_cascade_end};

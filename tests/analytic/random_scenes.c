@@ -53,13 +53,16 @@ static void check_range(uint64_t seed, const float *pixels, size_t floats) {
       fail_msg("scene %llu: value %zu is %g", (unsigned long long)seed, i, (double)pixels[i]);
 }
 
+/* One thread takes picture and lights in turns; three take stretches of slabs. */
 static void check_threads(uint64_t seed, stage *set, const float *expected) {
   static float pixels[FLOATS];
   hl_error error = {0};
+  set->scene.render.slabs_at_once = 2 + (int)(seed % 12);
   if (render(set, 3, pixels, NULL, &error) != HL_OK)
     fail_msg("scene %llu: %s", (unsigned long long)seed, error.message);
   if (memcmp(pixels, expected, floats_of(set) * sizeof *pixels) != 0)
     fail_msg("scene %llu: three threads give another picture than one", (unsigned long long)seed);
+  set->scene.render.slabs_at_once = 0;
 }
 
 /* The same sheets see the same matter: only rounding may make the shadowed picture brighter. */

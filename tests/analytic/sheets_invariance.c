@@ -178,6 +178,51 @@ static void test_threads(void **state) {
   }
 }
 
+/* Slabs at once, and threads: all numbers up to seven with hard shadows and the cascade. */
+static void test_stretches(void **state) {
+  (void)state;
+  static float one[MOST_FLOATS], more[MOST_FLOATS];
+  static const int slabs[] = {1, 2, 8, 32};
+  for (int index = 0; index < SETTING_COUNT; index++) {
+    stage set;
+    stage_open(&set);
+    build_setting(&set, index);
+    set.scene.render.threads = 1;
+    set.scene.render.slabs_at_once = 1;
+    stage_render_sheets(&set, one);
+    for (int i = 0; i < 4; i++)
+      for (int threads = 1; threads <= 7; threads += index == 1 || index == 4 ? 1 : 2) {
+        set.scene.render.slabs_at_once = slabs[i];
+        set.scene.render.threads = threads;
+        stage_render_sheets(&set, more);
+        assert_same(one, more, picture_floats(&set), "slabs at once", index);
+      }
+    stage_close(&set);
+  }
+}
+
+/* Threads wait once a stretch with hard shadows; three times a slab where nothing can be run ahead. */
+static void test_waits(void **state) {
+  (void)state;
+  static float pixels[MOST_FLOATS];
+  uint64_t waits[2];
+  for (int i = 0; i < 2; i++) {
+    stage set;
+    stage_open(&set);
+    build_setting(&set, 1);
+    set.scene.light_count = 1;
+    set.scene.render.threads = 2;
+    set.scene.render.slabs_at_once = i == 0 ? 1 : 8;
+    hl_render_statistics counted = stage_render_counted(&set, pixels);
+    uint64_t slabs = (uint64_t)counted.sheets - 1;
+    assert_int_equal(counted.sweeps, 1);
+    waits[i] = counted.waits;
+    assert_true(waits[i] <= (i == 0 ? 2 * slabs : (slabs + 7) / 8 + 1));
+    stage_close(&set);
+  }
+  assert_true(waits[0] > 4 * waits[1] && waits[1] > 1);
+}
+
 static void test_instruction_sets(void **state) {
   (void)state;
   static float scalar[MOST_FLOATS], other[MOST_FLOATS];
@@ -502,6 +547,8 @@ static void test_order_of_sheets(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_threads),
+      cmocka_unit_test(test_stretches),
+      cmocka_unit_test(test_waits),
       cmocka_unit_test(test_order_of_sheets),
       cmocka_unit_test(test_instruction_sets),
       cmocka_unit_test(test_rows_that_lie_apart),

@@ -704,7 +704,7 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
                            .inverse_square = i == 1,
                            .shadowed = i < 2,
                            .path = 0.7f,
-                           .lookup = &s->lookups[i],
+                           .lookups = &s->lookups[i],
                            .sublights = s->sublights[i],
                            .sublight_count = round % 4,
                            .channels = s->job.channels,

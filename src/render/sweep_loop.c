@@ -1,0 +1,243 @@
+/* render/sweep_loop.c - the loop over the sheets: stretches of slabs, their tiles shared out to the threads.
+ *
+ * Light never depends on the picture. So the lights' stretch r + 1 and the picture's stretch r are one set of
+ * tasks, with one wait for all threads at its end. A picture of stretch r reads the planes of the sheets
+ * before its slabs, K of them; meanwhile the lights write K more, and start from the one before: so the
+ * buffers keep the planes of 2 K + 1 sheets. A task takes one tile through all slabs of a stretch, in the
+ * order of the sheets: bytes depend neither on K nor on threads.
+ *
+ * Where some light's method cannot be run in stretches, picture and lights take turns, slab by slab. */
+#include "core/context.h"
+#include "render/sweep.h"
+
+/* ---- tasks ---- */
+
+/* A tile in a single slab is little work: then two are one task. */
+static int tiles_a_task(const sweep *sweep) { return sweep->content.stretch == 1 ? 2 : 1; }
+
+/* Whether a slab's sheet or the one before may touch a tile. */
+static bool is_touched(const occupancy *occupancy, size_t tile, int sheet) {
+  const uint64_t *after = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
+  const uint64_t *before = after - occupancy->tile_words;
+  return (before[tile / 64] | after[tile / 64]) >> tile % 64 & 1;
+}
+
+/* Bits of the tiles, in one word, that the sheets of a stretch may touch. */
+static uint64_t touched_tiles(const occupancy *occupancy, slab_stretch stretch, size_t word) {
+  uint64_t bits = 0;
+  for (int sheet = stretch.first - 1; sheet < stretch.end; sheet++)
+    bits |= occupancy->by_sheet[(size_t)sheet * (size_t)occupancy->tile_words + word];
+  return bits;
+}
+
+/* Bits of the tiles, in one word, that must be carried to the sheets of a stretch. */
+static uint64_t carried_tiles(const shadow_buffer *buffer, slab_stretch stretch, size_t word) {
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, end = word * 64 + 64;
+  uint64_t bits = 0;
+  for (size_t tile = word * 64; tile < end && tile < tiles && buffer->ring > 1; tile++)
+    bits |= (uint64_t)hl_shadow_is_carried(buffer, tile, stretch.first) << tile % 64;
+  return bits;
+}
+
+/* The tiles of a view that a stretch needs. buffer: of a light's view; else null. */
+static int list_tiles(const occupancy *occupancy, const shadow_buffer *buffer, slab_stretch stretch,
+                      uint32_t *list) {
+  int count = 0;
+  if (stretch.first == stretch.end) return 0;
+  for (size_t word = 0; word < (size_t)occupancy->tile_words; word++) {
+    uint64_t bits = touched_tiles(occupancy, stretch, word);
+    if (buffer != NULL) bits |= carried_tiles(buffer, stretch, word);
+    for (; bits != 0; bits &= bits - 1) list[count++] = (uint32_t)word * 64 + (uint32_t)__builtin_ctzll(bits);
+  }
+  return count;
+}
+
+/* Whether a slab lies beyond the light, on the side that its rays travel to in this sweep. */
+static bool is_beyond(const sweep *sweep, const light_source *source, int sheet) {
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
+}
+
+static bool is_reached(const sweep *sweep, const light_shadow *shadow, int sheet) {
+  return is_beyond(sweep, shadow->setup.source, sheet + 1 - shadow->method->first_slab);
+}
+
+static void shade_stretch(sweep *sweep, size_t tile, int worker) {
+  const slab_stretch stretch = sweep->picture_stretch;
+  for (int sheet = stretch.first; sheet < stretch.end; sheet++)
+    if (is_touched(&sweep->image.occupancy, tile, sheet))
+      hl_sweep_shade(sweep, &sweep->slab_shades[sheet - stretch.first], tile, worker);
+}
+
+static void attenuate_stretch(sweep *sweep, int index, size_t tile, int worker) {
+  const slab_stretch stretch = sweep->light_stretch;
+  const sweep_light *light = &sweep->lights[index];
+  const attenuate_job *jobs = sweep->slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
+  for (int sheet = stretch.first; sheet < stretch.end; sheet++) {
+    hl_shadow_buffer_carry(light->shadow.buffer, tile, sheet);
+    if (is_reached(sweep, &light->shadow, sheet) && is_touched(&light->sheets.occupancy, tile, sheet))
+      hl_sweep_attenuate(sweep, index, &jobs[sheet - stretch.first], tile, worker);
+  }
+}
+
+static void stretch_task(void *data, size_t index, int worker) {
+  sweep *sweep = data;
+  int each = tiles_a_task(sweep), last = sweep->task_start[sweep->geometry->light_count + 1];
+  int first = (int)index * each, end = first + each < last ? first + each : last;
+  for (int task = first, light = -1; task < end; task++) {
+    while (task >= sweep->task_start[light + 2]) light++;
+    if (light < 0) shade_stretch(sweep, sweep->tasks[task], worker);
+    else attenuate_stretch(sweep, light, sweep->tasks[task], worker);
+  }
+}
+
+/* ---- what all tiles of a slab have in common ---- */
+
+static void reach_picture(sweep *sweep) {
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  const slab_stretch stretch = sweep->picture_stretch;
+  for (int sheet = stretch.first; sheet < stretch.end; sheet++) {
+    shade_job *job = &sweep->slab_shades[sheet - stretch.first];
+    *job = sweep->shade;
+    hl_view_sheets_reach(&sweep->image, sheet);
+    hl_view_sheet_rays(&sweep->frame->eye, sheets->normal,
+                       hl_sheet_height(sheets, sheet) - 0.5 * sheets->spacing, affine3_identity(),
+                       &job->rays);
+    job->height = (float)(sheet * sheets->spacing);
+    job->sheet = sheet;
+    job->plane = (sheet - 1) % sweep->ring;
+  }
+}
+
+static void reach_light_slab(sweep *sweep, int index, int sheet, attenuate_job *job) {
+  sweep_light *light = &sweep->lights[index];
+  const sheet_stack *sheets = &sweep->geometry->sheets;
+  light_shadow *shadow = &light->shadow;
+  *job = sweep->attenuate[index];
+  hl_view_sheets_reach(&light->sheets, sheet);
+  hl_view_sheet_rays(&shadow->buffer->view, sheets->normal, hl_sheet_height(sheets, sheet),
+                     affine3_identity(), &job->rays);
+  job->height = (float)(sheet * sheets->spacing);
+  job->sheet = sheet;
+  if (shadow->method->before_slab != NULL) shadow->method->before_slab(shadow, sheet, job);
+}
+
+static void reach_light(sweep *sweep, int index) {
+  const slab_stretch stretch = sweep->light_stretch;
+  attenuate_job *jobs = sweep->slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
+  for (int sheet = stretch.first; sheet < stretch.end; sheet++)
+    reach_light_slab(sweep, index, sheet, &jobs[sheet - stretch.first]);
+}
+
+/* Sets how the picture looks up the light before the slabs of a stretch; the lights have reached its first
+ * slab. */
+static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    light_shadow *shadow = &sweep->lights[i].shadow;
+    if (shadow->method == NULL || shadow->method->before_shading == NULL) continue;
+    for (int sheet = stretch.first; sheet < stretch.end; sheet++)
+      shadow->method->before_shading(shadow, sheet, &shadow->lookups[(sheet - 1) % sweep->ring]);
+  }
+}
+
+/* ---- stretches ---- */
+
+/* Takes the picture and the lights through a stretch each; either may be empty. */
+static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light) {
+  double start = hl_clock_seconds();
+  sweep->picture_stretch = picture;
+  sweep->light_stretch = light;
+  reach_picture(sweep);
+  int count = list_tiles(&sweep->image.occupancy, NULL, picture, sweep->tasks);
+  sweep->task_start[1] = count;
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    const sweep_light *of = &sweep->lights[i];
+    if (of->shadow.method != NULL) {
+      reach_light(sweep, i);
+      count += list_tiles(&of->sheets.occupancy, of->shadow.buffer, light, sweep->tasks + count);
+    }
+    sweep->task_start[i + 2] = count;
+  }
+  size_t each = (size_t)tiles_a_task(sweep);
+  if (count > 0) hl_pool_run(sweep->content.pool, ((size_t)count + each - 1) / each, stretch_task, sweep);
+  sweep->seconds_tiles += hl_clock_seconds() - start;
+}
+
+/* Whether some light's buffer changes as a whole at a sheet. */
+static bool any_advances(const sweep *sweep, int sheet) {
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    const light_shadow *shadow = &sweep->lights[i].shadow;
+    const shadow_method *method = shadow->method;
+    if (method == NULL || method->advance == NULL || !is_beyond(sweep, shadow->setup.source, sheet)) continue;
+    if (method->advances == NULL || method->advances(shadow, sheet)) return true;
+  }
+  return false;
+}
+
+/* The stretch from a sheet on: as long as possible, and no longer than to where a light's buffer changes as a
+ * whole. */
+static slab_stretch stretch_from(const sweep *sweep, int first) {
+  int longest = sweep->geometry->sheets.count - first, end = first;
+  if (longest > sweep->content.stretch) longest = sweep->content.stretch;
+  while (end - first < longest && (end == first || !any_advances(sweep, end - 1))) end++;
+  return (slab_stretch){first, end};
+}
+
+/* Section 5, at the end of a stretch. */
+static void advance_lights(sweep *sweep, slab_stretch stretch) {
+  double start = hl_clock_seconds();
+  int sheet = stretch.end - 1;
+  for (int i = 0; i < sweep->geometry->light_count && stretch.first < stretch.end; i++) {
+    sweep_light *light = &sweep->lights[i];
+    light_shadow *shadow = &light->shadow;
+    if (shadow->method == NULL || shadow->method->advance == NULL || !is_beyond(sweep, light->source, sheet))
+      continue;
+    hl_shadow_buffer_reach(shadow->buffer, sheet);
+    shadow->method->advance(shadow, &light->sheets.occupancy, sheet);
+  }
+  sweep->seconds_soften += hl_clock_seconds() - start;
+}
+
+/* The paper's loop over the sheets (section 3.1, eighteen steps).
+ *
+ *    1. transform voxels to the half-way vector's frame      hl_sweep_begin
+ *    2. bucket sort them by height                           hl_sweep_begin
+ *    3. opacity map = 0                                      hl_sweep_begin
+ *    4. shadow buffer = full light                           hl_sweep_begin
+ *    5. for each sheet
+ *    6, 7.   image and shadow sheets = 0                     hl_sweep_shade, hl_sweep_attenuate
+ *    8 - 11. add every footprint to both                     hl_sweep_shade, hl_sweep_attenuate
+ *   12 - 15. gradient, classification, shadow, illumination  hl_sweep_shade
+ *   16.      composite to the frame buffer                   hl_sweep_shade
+ *   17.      classify and composite the shadow sheet         hl_sweep_attenuate
+ *            (soft: convolve for the next sheet)             advance_lights
+ *   18. end
+ *
+ * The slab between a sheet and the one before is classified, lit and composited, not the sheet: so nothing
+ * that a sharp transfer function shows falls between sheets. A slab is lit by the light that has passed the
+ * slabs before it. The first and the last sheet lie outside the content. */
+hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
+  const int sheets = sweep->geometry->sheets.count;
+  const bool ahead = sweep->ring > 1;
+  uint64_t waits = hl_pool_waits(sweep->content.pool);
+  slab_stretch picture = {1, 1}, light = {1, 1};
+  while (picture.end < sheets) {
+    picture = light;
+    light = stretch_from(sweep, light.end);
+    prepare_lookups(sweep, light);
+    if (ahead) {
+      run_stretches(sweep, picture, light);
+    } else {
+      picture = light;
+      run_stretches(sweep, picture, (slab_stretch){1, 1});
+      run_stretches(sweep, (slab_stretch){1, 1}, light);
+    }
+    advance_lights(sweep, light);
+    if (!sweep->preparatory)
+      hl_progress(sweep->content.context, "render", (double)(picture.end - 1) / sheets);
+    if (hl_pool_cancelled(sweep->content.pool))
+      return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
+  }
+  sweep->waits += hl_pool_waits(sweep->content.pool) - waits;
+  return HL_OK;
+}
