@@ -16,6 +16,7 @@ enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample to each pixel; in pixels */
   lanes3 along_u, along_v;              /* one pixel along u and along v, on the sheet; frame space */
+  const sublight_shifts *shifts;        /* of sub-lights' buffers; else null */
 } near_pixels;
 
 /* The root of 1/6. Bilinear look-ups, averaged over all positions between pixels, weigh by a tent of variance
@@ -48,7 +49,7 @@ LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal,
 }
 
 LANES_INLINE near_pixels pixels_around(const shadow_taps *taps) {
-  near_pixels near;
+  near_pixels near = {.shifts = NULL};
   for (int i = 0; i < NEAR_PIXELS; i++) {
     near.u[i] = lanes_set((float)(i % 2)) - taps->fx;
     near.v[i] = lanes_set((float)(i / 2)) - taps->fy;
@@ -56,8 +57,8 @@ LANES_INLINE near_pixels pixels_around(const shadow_taps *taps) {
   return near;
 }
 
-LANES_INLINE near_pixels pixels_of_sublights(void) {
-  near_pixels near;
+LANES_INLINE near_pixels pixels_of_sublights(const sublight_shifts *shifts) {
+  near_pixels near = {.shifts = shifts};
   for (int i = 0; i < NEAR_PIXELS; i++) {
     near.u[i] = lanes_set(i % 2 ? SUBLIGHT_SPREAD : -SUBLIGHT_SPREAD);
     near.v[i] = lanes_set(i / 2 ? SUBLIGHT_SPREAD : -SUBLIGHT_SPREAD);

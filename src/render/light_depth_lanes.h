@@ -225,6 +225,36 @@ LANES_INLINE void add_plane(const shade_job *job, const block_density *d, const 
   }
 }
 
+/* A light as a slab's samples see it. */
+typedef struct seen_light {
+  lanes3 towards;          /* unit direction to the light */
+  lanes path;              /* of the light through the slab */
+  const near_pixels *near; /* of its buffer; null where that is read at its nearest pixel */
+} seen_light;
+
+/* Adds what a plane's matter absorbs too much in sub-lights' buffers because slabs are shifted. Derived: the
+ * light passes the m-th slab before this one between the densities f_m and f_(m+1) = f_m - k path; a shift
+ * that raises the density by d adds the optical depth (E(f_m) - E(f_(m+1))) d / k to first order, E the
+ * extinction, P's slope. The mean over the sub-lights has the mean of their d. share: as in add_plane(). */
+LANES_INLINE void add_shifts(const shade_job *job, const block_density *d, const plane_matter *plane,
+                             const seen_light *light, lanes share, light_depths *depths) {
+  const shade_volume *volume = d->patch->volume;
+  const near_pixels *near = light->near;
+  lanes rise_u = dot3(plane->slope, near->along_u), rise_v = dot3(plane->slope, near->along_v);
+  lanes fall = plane->fall * light->path, extinction = plane->below.extinction, sum = lanes_set(0);
+  for (int m = 0; m < SHIFTED_SLABS && lanes_bits(extinction > 0.0f) != 0; m++) {
+    const float *shift = near->shifts->mean[m];
+    table_origin before = origin_at(volume->classifier, plane->below.x - fall * (float)(m + 1));
+    sum = lanes_fma(extinction - before.extinction, lanes_fma(rise_u, lanes_set(shift[0]), rise_v * shift[1]),
+                    sum);
+    extinction = before.extinction;
+  }
+  sum = sum * plane->inverse * plane->likely * share;
+  for (int c = 0; c < job->channels; c++)
+    for (int i = 0; i < NEAR_PIXELS; i++)
+      depths->near[c][i] = lanes_fma(lanes_set(volume->cast[c]), sum, depths->near[c][i]);
+}
+
 /* A way at least this fraction of the slab's counts as the whole slab's: the rest is rounding. */
 static const float WHOLE_WAY = 0.999f;
 
@@ -244,13 +274,6 @@ static const float DEEPEST = 80;
 /* Where the optical depths of the near pixels, from the faces to the slab, differ by less than this, the
  * buffer is read as if there were no face; where they differ by twice as much, the face counts fully. */
 static const float EVEN_LIGHT = 0.1f;
-
-/* A light as a slab's samples see it. */
-typedef struct seen_light {
-  lanes3 towards;          /* unit direction to the light */
-  lanes path;              /* of the light through the slab */
-  const near_pixels *near; /* of its buffer; null where that is read at its nearest pixel */
-} seen_light;
 
 /* Near a box's face: adds the optical depth of a volume's matter between the face and the slab. `before`
  * receives the depths at the near pixels. share: the fraction of the volume's matter that counts. */
@@ -330,6 +353,8 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab
                                : (d->light_first + d->light_last) /
                                      lanes_max(ways.all.first + ways.all.last, lanes_set(1e-30f));
       add_plane(job, d, &plane, &ways, lanes_min(share, lanes_set(1.0f)), near, &depths);
+      if (near->shifts != NULL)
+        add_shifts(job, d, &plane, light, lanes_keep(~ways.cut, lanes_min(share, lanes_set(1.0f))), &depths);
       depths.plane |= likely;
       extinction = extinction * (1.0f - plane.likely);
     }

@@ -141,7 +141,7 @@ LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *
   const shadow_lookup *lookup = &light->lookups[job->plane];
   const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &lookup->map;
   shadow_taps taps = taps_of_position(light, map, position);
-  near_pixels near = light->sublight_count > 0 ? pixels_of_sublights() : pixels_around(&taps);
+  near_pixels near = light->sublight_count > 0 ? pixels_of_sublights(light->shifts) : pixels_around(&taps);
   find_steps(map, light->parallel, set3(job->normal), position, &near);
   const seen_light seen = {towards, path, light->nearest ? NULL : &near};
   light_depths depths = depths_of_light(job, slab, densities, count, &seen);

@@ -54,9 +54,10 @@ typedef struct shade_light {
                                        reaches a sample */
   const sublight_lookup *sublights; /* [sublight_count]; if any, a sample gets the mean of their light */
   int sublight_count, channels;
-  light_texture texture;  /* the picture that the light projects */
-  light_cone cone;        /* of a spot light */
-  sector_fraction sector; /* of a light within the content */
+  const sublight_shifts *shifts; /* of the sub-lights' buffers */
+  light_texture texture;         /* the picture that the light projects */
+  light_cone cone;               /* of a spot light */
+  sector_fraction sector;        /* of a light within the content */
   int nearest, cubic; /* nearest: the lookup takes the nearest pixel; cubic: by cubic convolution (never of
                          sub-lights); else bilinearly */
 } shade_light;

@@ -248,6 +248,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   light->lookups = from->shadow.lookups;
   light->sublights = from->shadow.sublights;
   light->sublight_count = from->shadow.sublight_count;
+  light->shifts = from->shadow.shifts;
 }
 
 static void set_up_jobs(sweep *sweep) {

@@ -116,6 +116,15 @@ typedef struct sublight_lookup {
   float weight[HL_CHANNELS]; /* in the mean over all sub-lights; 1 for lights without an emission image */
 } sublight_lookup;
 
+/* How far the last slabs lie from their places in the sub-lights' buffers: each is multiplied in at the
+ * nearest half pixel. */
+enum { SHIFTED_SLABS = 8 };
+typedef struct sublight_shifts {
+  float mean[SHIFTED_SLABS]
+            [2]; /* along u and v, pixels, averaged over all sub-lights; the last slab comes first.
+                    0 where slabs are scaled: then their pixels are shifted either way */
+} sublight_shifts;
+
 /* The map of a view's pixels; the caller sets its stride. */
 shadow_map hl_map_of_view(const view *view);
 

@@ -94,9 +94,10 @@ typedef struct light_shadow {
   shadow_lookup *lookups; /* owned; [the buffer's ring]; how the picture reads the light at each sheet */
   const sublight_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
   int sublight_count;
-  void *state;         /* owned; method->state_bytes */
-  shadow_memory *kept; /* the renderer's */
-  void *passing;       /* lent by the reserve */
+  const sublight_shifts *shifts; /* of the sub-lights' buffers; null where there are none */
+  void *state;                   /* owned; method->state_bytes */
+  shadow_memory *kept;           /* the renderer's */
+  void *passing;                 /* lent by the reserve */
 } light_shadow;
 
 /* A method's memory besides the buffer. */

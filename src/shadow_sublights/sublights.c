@@ -103,6 +103,7 @@ static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
   fill_sublights(shadow, all);
   for (int i = 0; i < all->count; i++) begin_sublight(shadow, all, i);
   shadow->sublights = all->lookups;
+  shadow->shifts = &all->shifts;
   shadow->sublight_count = all->count;
   if (setup->emission == NULL) return HL_OK;
   return weigh_sublights(setup->context, all, setup->source, setup->settings->light_samples, error);
@@ -352,6 +353,21 @@ static void map_run(sublights *sublights, const shadow_buffer *slab, vec3 normal
   }
 }
 
+/* Tells how far the current slab is shifted: its pixel at x + half / 2 darkens a sub-light's pixel x, in
+ * place of the one at x + shift. */
+static void note_shifts(sublights *sublights) {
+  float(*mean)[2] = sublights->shifts.mean;
+  memmove(mean[1], mean[0], (SHIFTED_SLABS - 1) * sizeof *mean);
+  for (int axis = 0; axis < 2; axis++) {
+    double sum = 0;
+    for (int i = 0; i < sublights->count; i++) {
+      const sublight *sublight = &sublights->sublight[i];
+      if (sublight->shifted) sum += 0.5 * sublight->job.half[axis] - (double)sublight->job.shift[axis];
+    }
+    mean[0][axis] = (float)(sum / sublights->count);
+  }
+}
+
 static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, int sheet) {
   (void)occupancy;
   const sheet_stack *sheets = shadow->setup.sheets;
@@ -361,6 +377,7 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   hl_pool *pool = shadow->setup.pool;
   for (int i = 0; i < sublights->count; i++)
     map_sublight(sublights, &sublights->sublight[i], slab, sheets->normal, (from + to) / 2);
+  note_shifts(sublights);
   sublight_task task = {
       .sublights = sublights, .slab = slab, .functions = shadow->setup.functions->sublights};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);

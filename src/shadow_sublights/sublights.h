@@ -35,6 +35,7 @@ typedef struct sublights {
   int count, channels, tiles_x, tiles_y;
   size_t stride, plane;
   int slabs; /* composited so far */
+  sublight_shifts shifts;
   /* in one block, see lay_out_sublights() */
   sublight *sublight;       /* [count] */
   sublight_lookup *lookups; /* [count] */

@@ -216,7 +216,7 @@ static const char *coarse[] = {"\"soft_method\": \"cascade\", \"shadow_resolutio
                                "0.007",
                                "3"};
 static const char *sublights[] = {
-    "\"soft_method\": \"sublights\"", "sub-lights", "0.085", "0.04", "0.02", "3"};
+    "\"soft_method\": \"sublights\"", "sub-lights", "0.015", "0.008", "0.014", "3"};
 
 int main(void) {
   const struct CMUnitTest tests[] = {
@@ -231,6 +231,7 @@ int main(void) {
       cmocka_unit_test_prestate(test_floors_under_directional_light, coarse),
       cmocka_unit_test_prestate(test_balls, coarse),
       cmocka_unit_test_prestate(test_floors_under_directional_light, sublights),
+      cmocka_unit_test_prestate(test_floors_under_near_lights, sublights),
       cmocka_unit_test_prestate(test_balls, sublights),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
