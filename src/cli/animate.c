@@ -23,6 +23,7 @@ enum {
   ANIMATE_FPS,
   ANIMATE_SIZE,
   ANIMATE_PART,
+  ANIMATE_RANKS,
   ANIMATE_KEEP_FRAMES,
   ANIMATE_DATA,
   ANIMATE_MAX_MEMORY,
@@ -74,6 +75,7 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
     [ANIMATE_PART] = FRAMES_OPTION_PART("Running",
                                         "render only every N-th frame, from the K-th on: N runs share\n"
                                         "the work; the last one to end joins the film"),
+    [ANIMATE_RANKS] = FRAMES_OPTION_RANKS,
     [ANIMATE_KEEP_FRAMES] = {.name = "keep-frames",
                              .kind = OPTION_SWITCH,
                              .help = "leave the pictures beside the film, in its name with\n\"-frames\""},
@@ -233,7 +235,7 @@ static int run_animate(const cli_value *values, char **operands) {
                               .subject = base_name(job.input),
                               .memory_limit = values[ANIMATE_MAX_MEMORY].bytes,
                               .data_folder = values[ANIMATE_DATA].text};
-  int exit_code = frames_read_part(&values[ANIMATE_PART], &job.part, &job.parts);
+  int exit_code = frames_read_part(&values[ANIMATE_PART], &values[ANIMATE_RANKS], &job.part, &job.parts);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(&job);
   if (exit_code == EXIT_CODE_OK) {
     exit_code = host_open(&options, &job.host);

@@ -10,9 +10,34 @@
 
 enum { MOST_PICTURE_BYTES = 1 << 30 };
 
-int frames_read_part(const cli_value *value, int *part, int *parts) {
+/* Where launchers say which of how many processes this is: Open MPI; MPICH and Intel MPI; Slurm's srun. */
+static const char *const launchers[][2] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                                           {"PMI_RANK", "PMI_SIZE"},
+                                           {"SLURM_PROCID", "SLURM_NTASKS"}};
+
+static int read_rank(int *part, int *parts) {
+  for (size_t i = 0; i < sizeof launchers / sizeof *launchers; i++) {
+    const char *rank = getenv(launchers[i][0]), *size = getenv(launchers[i][1]);
+    if (rank == NULL || size == NULL) continue;
+    int used = 0, used_of_size = 0;
+    bool good = sscanf(rank, "%6d%n", part, &used) == 1 && rank[used] == '\0' &&
+                sscanf(size, "%6d%n", parts, &used_of_size) == 1 && size[used_of_size] == '\0';
+    if (good && *part >= 0 && *part < *parts) return EXIT_CODE_OK;
+    return fail(EXIT_CODE_USAGE, "--frames-over-ranks: %s is '%s' and %s is '%s': no rank of so many",
+                launchers[i][0], rank, launchers[i][1], size);
+  }
+  return fail(EXIT_CODE_USAGE,
+              "--frames-over-ranks: neither mpirun nor srun has started this process: start it so, or give "
+              "--part K/N");
+}
+
+int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, int *parts) {
   int used = 0;
   *part = 0, *parts = 1;
+  if (ranks->given && value->given)
+    return fail(EXIT_CODE_USAGE,
+                "--part and --frames-over-ranks both share out the frames: give one of them");
+  if (ranks->given) return read_rank(part, parts);
   if (!value->given) return EXIT_CODE_OK;
   bool good = sscanf(value->text, "%6d/%6d%n", part, parts, &used) == 2 && value->text[used] == '\0';
   if (!good || *part < 1 || *part > *parts)

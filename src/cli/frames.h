@@ -10,8 +10,16 @@
 #define FRAMES_OPTION_PART(heading, text) \
   { .name = "part", .kind = OPTION_TEXT, .argument = "K/N", .group = (heading), .help = (text) }
 
-/* Reads --part K/N: *part is K - 1; without the option 0 of 1. Returns the exit code. */
-int frames_read_part(const cli_value *value, int *part, int *parts);
+/* The row of --frames-over-ranks. */
+#define FRAMES_OPTION_RANKS                                                                  \
+  {                                                                                          \
+    .name = "frames-over-ranks", .kind = OPTION_SWITCH,                                      \
+    .help = "under mpirun or srun: each of their processes renders its\nshare, as by --part" \
+  }
+
+/* Reads --part K/N: *part is K - 1; without the option 0 of 1. ranks: --frames-over-ranks, by which a
+ * launcher's variables of the environment say K and N. Returns the exit code. */
+int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, int *parts);
 
 /* A picture's bytes, owned by the caller (free); null where it cannot be read. */
 unsigned char *frames_read_picture(const char *path, size_t *length);

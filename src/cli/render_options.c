@@ -321,6 +321,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
         NULL,
         "of a series of files: every N-th one, from the K-th on,\nso that N runs "
         "share the work"),
+    [RENDER_RANKS] = FRAMES_OPTION_RANKS,
     [RENDER_THREADS] = {.name = "threads",
                         .kind = OPTION_NUMBERS,
                         .argument = "N",

@@ -53,8 +53,8 @@ bool render_is_series(const cli_value *values, char **operands) {
   bool pattern = false;
   for (char **operand = operands; *operand != NULL; operand++) pattern = pattern || is_pattern(*operand);
   const cli_value *output = &values[RENDER_OUTPUT];
-  return pattern || values[RENDER_PART].given || values[RENDER_RANGE_OF_ALL].given ||
-         (output->given && has_number(output->text));
+  return pattern || values[RENDER_PART].given || values[RENDER_RANKS].given ||
+         values[RENDER_RANGE_OF_ALL].given || (output->given && has_number(output->text));
 }
 
 static void picture_path(const series_job *job, int number, char *path, size_t size) {
@@ -113,7 +113,8 @@ static int check_options(series_job *job) {
     return fail(EXIT_CODE_USAGE,
                 "a series of files needs a number in its pictures' names: -o 'frames/%%04d.png'");
   job->pattern = output->text;
-  int exit_code = frames_read_part(&job->values[RENDER_PART], &job->part, &job->parts);
+  int exit_code = frames_read_part(&job->values[RENDER_PART], &job->values[RENDER_RANKS], &job->part,
+                                   &job->parts);
   return exit_code == EXIT_CODE_OK ? render_check_options(job->values) : exit_code;
 }
 

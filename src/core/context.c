@@ -2,7 +2,6 @@
 #define _GNU_SOURCE /* madvise */
 #include "core/context.h"
 
-#include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -143,13 +142,6 @@ hl_instruction_set hl_cpu_best_instruction_set(void) {
   for (size_t i = 0; i < sizeof best_first / sizeof best_first[0]; i++)
     if (hl_cpu_has_instruction_set(best_first[i])) return best_first[i];
   return HL_INSTRUCTION_SET_SCALAR;
-}
-
-int hl_cpu_count(void) {
-  cpu_set_t set;
-  if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
-  int count = CPU_COUNT(&set);
-  return count < 1 ? 1 : count;
 }
 
 const char *hl_instruction_set_name(hl_instruction_set set) {

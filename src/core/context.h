@@ -24,7 +24,4 @@ hl_instruction_set hl_cpu_best_instruction_set(void);
 /* Whether this build has the set's functions and this processor can run them. */
 int hl_cpu_has_instruction_set(hl_instruction_set set);
 
-/* Processors this process may run on; at least 1. */
-int hl_cpu_count(void);
-
 #endif

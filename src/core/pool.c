@@ -23,6 +23,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "core/processors.h"
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 
@@ -296,7 +297,8 @@ static void start_workers(hl_pool *pool) {
 
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error) {
   *pool = NULL;
-  if (threads <= 0) threads = hl_cpu_count();
+  int processors = hl_cpu_count();
+  if (threads <= 0) threads = processors;
   if (threads > MAXIMUM_THREADS) threads = MAXIMUM_THREADS;
   hl_pool *made = hl_allocate_zeroed(context, 1, sizeof *made);
   worker *workers = hl_allocate_zeroed(context, (size_t)threads, sizeof *workers);
@@ -309,7 +311,7 @@ hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_er
   }
   made->context = context;
   made->threads = threads;
-  made->spins = threads <= hl_cpu_count() ? SPINS : 0;
+  made->spins = threads <= processors ? SPINS : 0;
   made->workers = workers;
   made->shares = shares;
   made->share_count = threads;
