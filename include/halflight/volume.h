@@ -92,9 +92,21 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *
 
 /* Instead of the index of a component. */
 enum {
-  HL_COMPONENT_DEFAULT = -1,  /* the only one; of vectors of 2 or 3 the magnitude; else the first */
-  HL_COMPONENT_MAGNITUDE = -2 /* the square root of the sum of squares, as float */
+  HL_COMPONENT_DEFAULT = -1, /* the only one; colours, where the file says that they are such; of vectors of 2
+                                or 3 the magnitude; else the first */
+  HL_COMPONENT_MAGNITUDE = -2, /* the square root of the sum of squares, as float */
+  /* Three or four components, unsigned of 8 or 16 bits, as the voxels' own colours: red, green, blue (sRGB),
+   * alpha. They are kept in 8 bits and multiply the transfer function's colours. The volume's values, which
+   * opacity comes from, are the alpha, or the luminance (luma with BT.709's weights) where there is no alpha
+   * or it is the same everywhere; */
+  HL_COMPONENT_COLOR = -3,
+  HL_COMPONENT_LUMINANCE = -4 /* and the luminance in any case */
 };
+
+/* "magnitude", "color" or "luminance"; null for an index and the default. */
+HL_API const char *hl_component_name(int component);
+/* The HL_COMPONENT_ value of such a name; HL_COMPONENT_DEFAULT for any other. */
+HL_API int hl_component_of_name(const char *name);
 
 /* Instead of the index of a time step or channel: the first; of a resolution: the finest that the memory
  * limit leaves room for. */
@@ -166,7 +178,8 @@ typedef struct hl_volume_array {
   hl_voxel_type type; /* 0: a type that cannot be read */
   int of_cells;       /* VTK: values between the points */
   int chosen;         /* the volume was read from this array */
-  int component; /* of the chosen array: index of the component that was read, or HL_COMPONENT_MAGNITUDE */
+  int component; /* of the chosen array: index of the component that was read, or an HL_COMPONENT_ value; of
+                    colours HL_COMPONENT_LUMINANCE where the opacity comes from it */
 } hl_volume_array;
 
 /* How many arrays the file has (those beyond 256 are not listed); 0: the volume came from memory or

@@ -153,8 +153,9 @@ class Volume:
     axes : str, optional
         The order of the array's axes; "zyx", the default, is ``array[z][y][x]``.
     array, component, series, time, channel, level : optional
-        Of a file with several: the array's name; the number of the component, or "magnitude"; a DICOM series by
-        number, UID or description; the number of the time step, channel and resolution.
+        Of a file with several: the array's name; the number of the component, "magnitude", or "color" or
+        "luminance" for voxels with colours; a DICOM series by number, UID or description; the number of the time
+        step, channel and resolution.
     **look : Look
         How it looks and where it stands: `name`, `transfer_function`, `clip`, `scale`, and the keywords of
         `halflight.keywords.VolumeSettings` and `MaterialSettings`.
@@ -223,8 +224,8 @@ class Volume:
         for word, value in chosen.items():
             if word in ("array", "series"):
                 keep.append(value := ffi.new("char[]", str(value).encode()))
-            elif value == "magnitude" and word == "component":
-                value = lib.HL_COMPONENT_MAGNITUDE
+            elif word == "component" and value in ("magnitude", "color", "luminance"):
+                value = lib.hl_component_of_name(value.encode())
             elif isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 0:
                 raise ValueError(f"{word}: {value!r} is no number from 0 on"
                                  + (" and not 'magnitude'" if word == "component" else ""))

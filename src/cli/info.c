@@ -55,7 +55,8 @@ static void print_json_arrays(json_writer *json, const hl_volume *volume) {
   }
   json_close(json);
   json_whole_number(json, "components", chosen.components);
-  if (chosen.component == HL_COMPONENT_MAGNITUDE) json_text(json, "component", "magnitude");
+  const char *word = hl_component_name(chosen.component);
+  if (word != NULL) json_text(json, "component", word);
   else json_whole_number(json, "component", (uint64_t)chosen.component);
 }
 
@@ -118,6 +119,9 @@ static void print_arrays(const hl_volume *volume) {
     if (array.components > 1) printf(", %zu components", array.components);
     printf("%s", array.of_cells ? ", of cells" : "");
     if (array.chosen && array.component == HL_COMPONENT_MAGNITUDE) printf(": the magnitude is shown");
+    else if (array.chosen && array.component == HL_COMPONENT_COLOR) printf(": colours, opacity from alpha");
+    else if (array.chosen && array.component == HL_COMPONENT_LUMINANCE)
+      printf(": colours, opacity from their luminance");
     else if (array.chosen && array.components > 1) printf(": component %d is shown", array.component);
     else if (array.chosen && count > 1) printf(": is shown");
     printf("\n");

@@ -17,7 +17,10 @@
 
 #define STANDARD_INPUT "/dev/stdin" /* the volume's file in a scene made from standard input */
 
-const cli_choice input_magnitudes[] = {{"magnitude", 1}, {NULL, 0}};
+const cli_choice input_components[] = {{"magnitude", HL_COMPONENT_MAGNITUDE},
+                                       {"color", HL_COMPONENT_COLOR},
+                                       {"luminance", HL_COMPONENT_LUMINANCE},
+                                       {NULL, 0}};
 
 /* ---- reading pipes ---- */
 
@@ -149,7 +152,7 @@ void input_load_options(const cli_value *reading, const cli_value *spacing, hl_v
   if (reading[READ_ARRAY].given) options->array = reading[READ_ARRAY].text;
   if (reading[READ_SERIES].given) options->series = reading[READ_SERIES].text;
   if (component->given)
-    options->component = component->chosen ? HL_COMPONENT_MAGNITUDE : (int)component->number[0];
+    options->component = component->chosen ? component->choice : (int)component->number[0];
   if (reading[READ_TIME].given) options->time = (int)reading[READ_TIME].number[0];
   if (reading[READ_CHANNEL].given) options->channel = (int)reading[READ_CHANNEL].number[0];
   if (reading[READ_LEVEL].given) options->level = (int)reading[READ_LEVEL].number[0];

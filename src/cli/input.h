@@ -30,13 +30,14 @@ typedef struct cli_input {
     .name = "array", .kind = OPTION_TEXT, .argument = "NAME", .group = (heading),                       \
     .help = "of the file's arrays this one (default: the active\none, else the first of one component)" \
   }
-#define INPUT_OPTION_COMPONENT                                                                         \
-  {                                                                                                    \
-    .name = "component", .kind = OPTION_NUMBERS, .argument = "N|magnitude",                            \
-    .help =                                                                                            \
-        "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude\n" \
-        "(default: the only one; of 2 or 3 the magnitude,\nelse 0)",                                   \
-    .choices = input_magnitudes, .count = 1, .whole = true, .low = 0, .high = 1e9                      \
+#define INPUT_OPTION_COMPONENT                                                                          \
+  {                                                                                                     \
+    .name = "component", .kind = OPTION_NUMBERS, .argument = "N|WORD",                                  \
+    .help =                                                                                             \
+        "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude;\n" \
+        "or color: colours, opacity from alpha, if any;\nluminance: colours, opacity from luminance\n"  \
+        "(default: the only one; colours; of 2 or 3 the\nmagnitude, else 0)",                           \
+    .choices = input_components, .count = 1, .whole = true, .low = 0, .high = 1e9                       \
   }
 #define INPUT_OPTION_SERIES                                                                            \
   {                                                                                                    \
@@ -61,7 +62,7 @@ typedef struct cli_input {
     .help = "distance of voxels in world units (default: the\nfile's)", .count = 3, .separator = ',', \
     .low = 0, .above = true, .high = INFINITY                                                         \
   }
-extern const cli_choice input_magnitudes[];
+extern const cli_choice input_components[];
 
 /* The order in which a subcommand's table has these options. */
 enum input_reading { READ_ARRAY, READ_COMPONENT, READ_SERIES, READ_TIME, READ_CHANNEL, READ_LEVEL };

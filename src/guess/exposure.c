@@ -14,6 +14,7 @@
 #include "guess/sample.h"
 #include "scene/placement.h"
 #include "scene/scene.h"
+#include "volume/colors.h"
 
 #define TARGET    0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
 #define BRIGHTEST 0.99  /* fraction of the pixels that are darker */
@@ -67,8 +68,9 @@ static int entry_of(const exposure *e, double value) {
   return t > 0 ? t < TABLE ? (int)t : TABLE - 1 : 0;
 }
 
-/* The light that a sample sends to the eye, eqs. (3) and (4). */
-static void shade(const exposure *e, int entry, double value, vec3 gradient, vec3 to_eye, double sent[3]) {
+/* The light that a sample sends to the eye, eqs. (3) and (4). own: the voxel's colour. */
+static void shade(const exposure *e, int entry, double value, vec3 gradient, vec3 to_eye, const double own[3],
+                  double sent[3]) {
   const hl_material *material = &e->volume->material;
   bool surface = e->volume->shading == HL_SHADING_PHONG && vec3_length(gradient) > e->flat;
   vec3 normal = vec3_scale(vec3_normalise(gradient), value > e->empty ? -1 : 1);
@@ -84,7 +86,7 @@ static void shade(const exposure *e, int entry, double value, vec3 gradient, vec
       gloss += e->intensity[l] * material->specular *
                pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
   }
-  for (int c = 0; c < 3; c++) sent[c] = e->color[entry][c] * matt[c] + gloss;
+  for (int c = 0; c < 3; c++) sent[c] = e->color[entry][c] * own[c] * matt[c] + gloss;
 }
 
 /* The parameters, from the origin on, where a ray enters and leaves the volume's box; false if it misses it.
@@ -134,7 +136,8 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
   for (double t = part[0] + 0.5 * e->step; t < part[1] && alpha < OPAQUE; t += e->step) {
     vec3 place = vec3_add(from, vec3_scale(along, t));
     const long at[3] = {lround(place.x), lround(place.y), lround(place.z)};
-    double near = hl_volume_value(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3], sent[3];
+    double near = hl_volume_value(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3], own[3],
+           sent[3];
     if (!isfinite(near) || !(e->opacity[entry_of(e, near)] > 0)) continue;
     double value = smooth_value(volume, at, slope);
     if (!isfinite(value)) continue;
@@ -143,7 +146,8 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
     vec3 gradient = mat3_apply(mat3_transpose(e->world_to_index.linear), vec3_of(slope));
     if (alpha < FAINT && e->opacity[entry] > FAINT && vec3_length(gradient) > e->flat)
       p.thickness = thickness_at(e, entry, value, vec3_length(gradient) * e->step);
-    shade(e, entry, value, gradient, to_eye, sent);
+    hl_volume_color(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2], own);
+    shade(e, entry, value, gradient, to_eye, own, sent);
     for (int c = 0; c < 3; c++) seen[c] += share * sent[c];
     alpha += share;
   }

@@ -80,11 +80,26 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   return &looks[is];
 }
 
+/* Voxels with colours of their own: white leaves them as they are, and an alpha is the opacity of a voxel. */
+static void keep_colors(hl_function_writer *w, const hl_volume *volume) {
+  static const double white[3] = {1, 1, 1};
+  const double background = w->analysis->background;
+  w->color_count = 0;
+  if (volume->component == HL_COMPONENT_COLOR) {
+    w->opacity_count = 0;
+    w->direction = 1;
+    hl_add_opacity(w, volume->value_offset - background, 0);
+    hl_add_opacity(w, volume->value_offset + 255 * volume->value_scale - background, 0.99);
+  }
+  hl_add_color(w, 0, white);
+}
+
 hl_status hl_look_write(const hl_look *look, hl_context *context, const hl_volume *volume,
                         const hl_data_analysis *analysis, hl_transfer_function *function, hl_error *error) {
   hl_function_writer w;
   hl_begin_function(&w, analysis);
   look->write(&w);
+  if (volume->colors != NULL) keep_colors(&w, volume);
   return hl_finish_function(&w, context, volume, function, error);
 }
 

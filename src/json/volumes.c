@@ -21,6 +21,8 @@ static const char *const volume_keys[] = {"name",       "stand_in",          "fi
                                           "time",       "channel",           "level",   "spacing",
                                           "series",     "scattering",        "iso",     NULL};
 
+#define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
+
 /* How a file is read. */
 static const char *const of_file[] = {"array", "component", "time", "channel", "level", "series", "spacing"};
 
@@ -143,20 +145,16 @@ hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf) {
   return HL_OK;
 }
 
-/* An index, or "magnitude". */
+/* An index, or a word. */
 static hl_status read_component(hl_json_reader *reader, const json_t *value, int *component) {
   const json_t *given = json_object_get(value, "component");
-  if (json_is_string(given) && strcmp(json_string_value(given), "magnitude") == 0) {
-    *component = HL_COMPONENT_MAGNITUDE;
-    return HL_OK;
-  }
   if (given == NULL) return HL_OK;
+  if (json_is_string(given)) *component = hl_component_of_name(json_string_value(given));
+  if (*component < HL_COMPONENT_DEFAULT) return HL_OK;
   if (json_is_integer(given) && json_integer_value(given) < 0)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "component",
-                        "is below 0: give a number from 0 on, or \"magnitude\"");
+    return hl_json_fail(reader, HL_ERROR_INPUT, "component", "is below 0: " GIVE_COMPONENT);
   if (!json_is_integer(given))
-    return hl_json_fail(reader, HL_ERROR_INPUT, "component",
-                        "is %s: give a number from 0 on, or \"magnitude\"",
+    return hl_json_fail(reader, HL_ERROR_INPUT, "component", "is %s: " GIVE_COMPONENT,
                         json_is_string(given) ? "another word" : hl_json_type_name(given));
   return hl_json_integer(reader, value, "component", component);
 }

@@ -282,7 +282,8 @@ static void write_source(writer *w, const hl_scene_volume *volume) {
   write_name(w, "file", volume->file);
   if (volume->series != NULL) write_name(w, "series", volume->series);
   if (volume->array != NULL) write_name(w, "array", volume->array);
-  if (volume->component == HL_COMPONENT_MAGNITUDE) write_name(w, "component", "magnitude");
+  const char *component = hl_component_name(volume->component);
+  if (component != NULL) write_name(w, "component", component);
   else if (volume->component >= 0) write_number(w, "component", volume->component);
   if (volume->time >= 0) write_number(w, "time", volume->time);
   if (volume->channel >= 0) write_number(w, "channel", volume->channel);

@@ -6,6 +6,7 @@
  *     reference.c       camera, rows of pixels, the entry point
  *     march.c           a ray through the volumes' boxes, step by step, jumping over empty bricks
  *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
+ *     tint.c            the colours of a volume's own voxels
  *     coefficients.c    what the interpolating kernel sums in place of voxels
  *     rays.c            how many rays a pixel of a small picture has
  *     lights.c          points on the lights, their images, and the transmittance towards them
@@ -199,6 +200,8 @@ void hl_reference_volume_release(hl_context *context, reference_volume *volume);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);
+/* Multiplies a colour by that of the volume's own voxels, if they have one. */
+void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]);
 /* Data value per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
 /* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u */

@@ -120,6 +120,7 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
   double weight = at->weight;
   surface here;
   hl_transfer_function_color(&described->transfer_function, at->value, here.own);
+  hl_reference_tint(at->volume, at->index_point, here.own);
   here.normal = find_normal(at->volume, at->index_point, at->value, &here.amount);
   sample->weight += weight;
   sample->normal = vec3_add(sample->normal, vec3_scale(here.normal, weight * here.amount));

@@ -4,6 +4,7 @@
 
 #include "light/light_texture_lanes.h"
 #include "render/reaching_lanes.h"
+#include "render/voxel_color_lanes.h"
 
 static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
@@ -149,6 +150,17 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   return alpha;
 }
 
+/* The colour of a volume's matter where it is seen. */
+LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position) {
+  const shade_volume *volume = d->patch->volume;
+  color_lanes color, own;
+  table_values(volume->classifier->color, split_coordinate(coordinate_seen(d)), color.c);
+  if (volume->colors.voxels == NULL) return color;
+  voxel_color_at(&volume->colors, volume->to_index, position, own.c);
+  for (int c = 0; c < 3; c++) color.c[c] = color.c[c] * own.c[c];
+  return color;
+}
+
 /* Colours of the volumes, lit and averaged weighted by extinction. */
 LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geometry *g,
                                         const arriving_light *lights, const block_density *densities,
@@ -158,10 +170,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geomet
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible) continue;
-    table_coordinate place = split_coordinate(coordinate_seen(d));
-    color_lanes color;
-    table_values(d->patch->volume->classifier->color, place, color.c);
-    color_lanes lit = illuminate(job, d, g, lights, color);
+    color_lanes lit = illuminate(job, d, g, lights, color_of_matter(d, g->position));
     if (count == 1) return lit; /* its extinction is the total */
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
     for (int c = 0; c < 3; c++) sum.c[c] = lanes_fma(lit.c[c], weight, sum.c[c]);

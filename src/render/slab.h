@@ -15,6 +15,14 @@ enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 struct surface_samples;
 
+/* The colours of a volume's own voxels. */
+typedef struct voxel_colors {
+  const unsigned char *voxels; /* [k][j][i][4] (volume/colors.h); null: there are none */
+  int32_t last[3];             /* the greatest index along i, j, k */
+  int32_t step_bytes[3];       /* from voxel to voxel along i, j, k */
+  const float *decode;         /* [256]: the linear values of sRGB's codes */
+} voxel_colors;
+
 typedef struct shade_volume {
   const classifier *classifier;
   const grid *grid;
@@ -29,6 +37,7 @@ typedef struct shade_volume {
   const float (*shown)[4];               /* in a maximum projection: rows of SHOWN_...; else null */
   int rank;                              /* among the visible volumes */
   float anisotropy;                      /* g of the phase function */
+  voxel_colors colors;                   /* multiply the transfer function's */
 } shade_volume;
 
 /* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside

@@ -115,6 +115,7 @@ struct sweep {
   unsigned char *scratch;            /* [threads][volumes][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][volumes] */
   sweep_counts *counts;              /* [threads] */
+  float *srgb_decode;                /* [256]: the linear values of sRGB's codes, for voxels with colours */
   double seconds_sort, seconds_tiles, seconds_soften;
   uint64_t waits; /* how often all threads have waited for each other */
 };

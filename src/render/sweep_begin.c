@@ -4,8 +4,12 @@
 #include <time.h>
 
 #include "core/memory.h"
+#include "image/srgb.h"
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
+#include "volume/colors.h"
+
+enum { SRGB_CODES = 256 };
 
 /* Blocks outside the picture are closed from the start. */
 void hl_sweep_open(sweep *sweep) {
@@ -118,6 +122,7 @@ static void lay_out(sweep *sweep, size_t tasks, int threads, hl_layout *layout) 
   sweep->shade_patches = hl_layout_take(layout, places, sizeof *sweep->shade_patches);
   sweep->scratch = hl_layout_take(layout, places, SHADE_SCRATCH_BYTES);
   sweep->scratch_volumes = hl_layout_take(layout, places, sizeof *sweep->scratch_volumes);
+  sweep->srgb_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->srgb_decode);
   sweep->counts = hl_layout_take(layout, (size_t)threads, sizeof *sweep->counts);
 }
 
@@ -180,8 +185,23 @@ static hl_status allocate(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
+/* Volumes with colours have at most 2^29 voxels. */
+static voxel_colors colors_of(const sweep *sweep, const hl_volume *volume) {
+  voxel_colors colors = {.voxels = volume->colors, .decode = sweep->srgb_decode};
+  if (colors.voxels == NULL) return colors;
+  int32_t step = HL_COLOR_BYTES;
+  for (int axis = 0; axis < 3; axis++) {
+    colors.last[axis] = (int32_t)volume->dimension[axis] - 1;
+    colors.step_bytes[axis] = step;
+    if (axis < 2) step *= (int32_t)volume->dimension[axis];
+  }
+  return colors;
+}
+
 static void set_up_shading(sweep *sweep) {
   int rank = 0;
+  for (int code = 0; code < SRGB_CODES; code++)
+    sweep->srgb_decode[code] = (float)hl_srgb_decode(code / 255.0);
   for (int g = 0; g < sweep->content.volume_count; g++) {
     const hl_scene_volume *volume = sweep->content.volumes[g].scene;
     shade_volume *shade = &sweep->shade_volumes[g];
@@ -196,7 +216,8 @@ static void set_up_shading(sweep *sweep) {
                             .diffuse = (float)volume->material.diffuse,
                             .specular = (float)volume->material.specular,
                             .shininess = (float)volume->material.shininess,
-                            .anisotropy = (float)volume->anisotropy};
+                            .anisotropy = (float)volume->anisotropy,
+                            .colors = colors_of(sweep, volume->volume)};
     shade->emission = shade->lit ? (float)volume->material.emission : 1;
     if (!shade->lit) shade->ambient = shade->receives_shadow = 0;
     if (sweep->maximum->values != NULL && volume->visible) {

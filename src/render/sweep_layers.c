@@ -17,6 +17,7 @@ static void set_up_white_volumes(sweep *sweep) {
     layers->white_volumes[g].classifier = &layers->white[g];
     layers->white_volumes[g].phong = 0;
     layers->white_volumes[g].anisotropy = 0;
+    layers->white_volumes[g].colors.voxels = NULL;
     layers->white_volumes[g].lit = 1;
   }
 }

@@ -12,6 +12,22 @@
 #include "volume/convert.h"
 #include "volume/statistics.h"
 
+const char *hl_component_name(int component) {
+  switch (component) {
+    case HL_COMPONENT_MAGNITUDE: return "magnitude";
+    case HL_COMPONENT_COLOR: return "color";
+    case HL_COMPONENT_LUMINANCE: return "luminance";
+    default: return NULL;
+  }
+}
+
+int hl_component_of_name(const char *name) {
+  for (int component = HL_COMPONENT_MAGNITUDE; name != NULL && hl_component_name(component) != NULL;
+       component--)
+    if (strcmp(name, hl_component_name(component)) == 0) return component;
+  return HL_COMPONENT_DEFAULT;
+}
+
 const char *hl_space_name(hl_space space) {
   return space == HL_SPACE_RAS ? "RAS" : space == HL_SPACE_LPS ? "LPS" : space == HL_SPACE_LAS ? "LAS" : NULL;
 }
@@ -275,6 +291,7 @@ void hl_volume_release(hl_volume *volume) {
   hl_arrays_release(volume->context, volume->arrays, volume->array_count);
   hl_release(volume->context, volume->series);
   hl_release(volume->context, volume->owned_voxels);
+  hl_release(volume->context, volume->colors);
   if (volume->release != NULL) volume->release(volume->release_data, volume->voxels);
   hl_release(volume->context, volume);
 }

@@ -7,6 +7,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/colors.h"
 #include "volume/convert.h"
 #include "volume/text.h"
 
@@ -153,8 +154,12 @@ static hl_status check_steps(const hl_load_request *request, const char *path, h
                          : status;
 }
 
-/* Chooses the default component, and writes a warning that names it. */
-static int default_component(hl_load_request *request, const char *path, bool is_series, size_t components) {
+/* Chooses the default component, and writes a warning that names it; of colours nothing need be said. */
+static int default_component(hl_load_request *request, const char *path, bool is_series,
+                             const hl_payload *payload) {
+  size_t components = payload->components;
+  if (!is_series && payload->colors == HL_COLORS_MEANT && hl_can_be_colors(payload->grid.type, components))
+    return HL_COMPONENT_COLOR;
   bool magnitude = !is_series && components <= 3;
   if (is_series)
     snprintf(request->component_told, sizeof request->component_told,
@@ -202,8 +207,14 @@ hl_status hl_component_choose(hl_load_request *request, const char *path, bool i
   if (components == 1)
     return hl_fail(error, HL_ERROR_INPUT, "%s: its voxels have one component, 0: leave \"component\" out",
                    path);
-  if (wanted == HL_COMPONENT_DEFAULT) wanted = default_component(request, path, is_series, components);
-  if (wanted != HL_COMPONENT_MAGNITUDE && (wanted < 0 || (size_t)wanted >= components))
+  if (wanted == HL_COMPONENT_DEFAULT) wanted = default_component(request, path, is_series, payload);
+  if (hl_component_is_colors(wanted) &&
+      (is_series || payload->colors == HL_COLORS_UNREAD || !hl_can_be_colors(payload->grid.type, components)))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: %zu components of %s are not read as colours: these are 3 or 4 of uint8 or uint16",
+                   path, components, hl_voxel_type_name(payload->grid.type));
+  if (wanted != HL_COMPONENT_MAGNITUDE && !hl_component_is_colors(wanted) &&
+      (wanted < 0 || (size_t)wanted >= components))
     return hl_fail(error, HL_ERROR_INPUT, "%s: there is no component %d: choose 0 to %zu, or magnitude", path,
                    wanted, components - 1);
   payload->component = request->chosen_component = wanted;

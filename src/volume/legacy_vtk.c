@@ -120,6 +120,7 @@ static hl_status meet_array(vtk_header *header, const char *name, const char *ty
   header->payload.grid.type = type;
   header->payload.components = components;
   header->payload.block = 1;
+  if (type == HL_VOXEL_U8) header->payload.colors = HL_COLORS_MEANT; /* as VTK's mappers take bytes */
   header->tuples = tuples;
   header->found = true;
   return HL_OK;

@@ -184,7 +184,7 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "%s: struct_size is %zu, expected %zu: call hl_volume_load_options_defaults first",
                    subject, options->struct_size, sizeof *options);
-  if (options->component < HL_COMPONENT_MAGNITUDE)
+  if (options->component < HL_COMPONENT_LUMINANCE)
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s: component is %d: give an index or an HL_COMPONENT_ value",
                    subject, options->component);
   if (options->time < HL_INDEX_DEFAULT || options->channel < HL_INDEX_DEFAULT ||
@@ -245,7 +245,7 @@ static hl_status finish(hl_load_request *request, hl_status status, hl_volume **
   (*volume)->arrays = request->arrays;
   (*volume)->array_count = request->array_count;
   (*volume)->chosen_array = request->chosen;
-  (*volume)->component = request->chosen_component;
+  if ((*volume)->colors == NULL) (*volume)->component = request->chosen_component;
   return HL_OK;
 }
 

@@ -238,6 +238,7 @@ static hl_status load_grid(grid_list *list, hl_load_request *request, hl_volume 
   const grid_entry *entry = &list->entries[request->chosen];
   nanovdb_kind(entry->kind, &payload.grid.type, &payload.components);
   payload.block = 1;
+  payload.colors = HL_COLORS_UNREAD;
   if (payload.grid.type == 0)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "%s: a grid of type %u, which holds no voxels that are read (points, indices)", list->path,

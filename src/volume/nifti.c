@@ -300,6 +300,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   request->is_anatomical = true;
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
   payload.big_endian = header.big_endian;
+  if (side_by_side > 2) payload.colors = HL_COLORS_MEANT;
   if (status == HL_OK) status = find_components(&header, side_by_side, series, others, &payload, error);
   if (series > 1) request->selection.times = series, request->selection.channels = others;
   if (status == HL_OK) status = hl_component_only(request, (*stream)->path, series > 1, &payload, error);

@@ -389,7 +389,10 @@ static hl_status find_components(const nrrd_header *header, const int chosen[NRR
                      "%s: components along axes that do not follow each other: take one out with unu slice",
                      header->stream->path);
     if (!hl_multiply(payload->components, axis->size, &payload->components)) payload->components = SIZE_MAX;
-    *is_series = *is_series || hl_text_is_one_of(axis->kind, "list|time|domain|space") || grid_axis >= 3;
+    bool colors = hl_text_is_one_of(axis->kind, "RGB-color|RGBA-color|3-color|4-color");
+    if (colors) payload->colors = HL_COLORS_MEANT;
+    *is_series = *is_series || hl_text_is_one_of(axis->kind, "list|time|domain|space") ||
+                 (grid_axis >= 3 && !colors);
   }
   payload->block = before;
   return HL_OK;

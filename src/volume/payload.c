@@ -10,6 +10,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/colors.h"
 #include "volume/convert.h"
 #include "volume/text.h"
 
@@ -239,8 +240,13 @@ static void take_value(const hl_payload *payload, const unsigned char *stage, si
   size_t voxel = place->first + place->in_block;
   if (payload->component == HL_COMPONENT_MAGNITUDE) {
     add_square((float *)voxels + voxel, place->component, value_of(payload, stage, index));
+    return;
+  }
+  size_t bytes = hl_storage_bytes(hl_voxel_type_storage(payload->grid.type));
+  if (hl_component_is_colors(payload->component)) {
+    hl_colors_store(payload->grid.type, stage + index * bytes, 1, 1, place->component,
+                    voxels + voxel * HL_COLOR_BYTES);
   } else if (place->component == (size_t)payload->component) {
-    size_t bytes = hl_storage_bytes(hl_voxel_type_storage(payload->grid.type));
     memcpy(voxels + voxel * bytes, stage + index * bytes, bytes);
   }
 }
@@ -257,8 +263,8 @@ static void advance(const hl_payload *payload, component_place *place) {
 static hl_status skip_block(hl_stream *stream, const hl_payload *payload, component_place *place,
                             bool *skipped, hl_error *error) {
   uint64_t bytes = (uint64_t)payload->block * hl_voxel_type_bytes(payload->grid.type);
-  *skipped = place->in_block == 0 && !payload->text && bytes >= SKIPPED_BYTES &&
-             payload->component != HL_COMPONENT_MAGNITUDE && place->component != (size_t)payload->component;
+  *skipped = place->in_block == 0 && !payload->text && bytes >= SKIPPED_BYTES && payload->component >= 0 &&
+             place->component != (size_t)payload->component;
   if (!*skipped) return HL_OK;
   place->in_block = payload->block - 1;
   advance(payload, place);
@@ -304,7 +310,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, v
 
 /* Requesting one byte more also lets a decompressor verify its check sum. */
 static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_error *error) {
-  bool to_the_end = payload->components == 1 || payload->component == HL_COMPONENT_MAGNITUDE ||
+  bool to_the_end = payload->components == 1 || payload->component < 0 ||
                     payload->block < voxel_count(payload);
   if (payload->trailing == HL_TRAILING_IGNORED || !to_the_end) return HL_OK;
   const unsigned char *bytes;
@@ -348,7 +354,8 @@ hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const do
   hl_status status = check_promise(stream, payload, error);
   if (status != HL_OK) return status;
   hl_volume_description grid = hl_payload_grid(payload, spacing);
-  size_t stored_bytes = hl_storage_bytes(hl_voxel_type_storage(grid.type));
+  bool colors = payload->components > 1 && hl_component_is_colors(payload->component);
+  size_t stored_bytes = colors ? HL_COLOR_BYTES : hl_storage_bytes(hl_voxel_type_storage(grid.type));
   void *voxels = hl_allocate(stream->context, voxel_count(payload), stored_bytes);
   if (voxels == NULL) return hl_fail_memory(error, voxel_count(payload) * stored_bytes, stream->path);
   status = report(stream, 0, voxel_count(payload), error);
@@ -361,5 +368,7 @@ hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const do
     hl_release(stream->context, voxels);
     return status;
   }
-  return hl_volume_adopt(stream->context, &grid, stream->path, voxels, volume, error);
+  const hl_color_source source = {&grid, stream->path, payload->components, payload->component, false};
+  return colors ? hl_volume_adopt_colors(stream->context, &source, voxels, volume, error)
+                : hl_volume_adopt(stream->context, &grid, stream->path, voxels, volume, error);
 }

@@ -11,14 +11,21 @@ typedef enum hl_trailing {
   HL_TRAILING_REFUSED
 } hl_trailing;
 
-/* The description of the voxels by a file's header. */
+/* Whether three or four components are colours. */
+typedef enum hl_payload_colors {
+  HL_COLORS_WHERE_ASKED, /* the file does not say */
+  HL_COLORS_MEANT,       /* the file says so */
+  HL_COLORS_UNREAD       /* the reader cannot collect them */
+} hl_payload_colors;
 
+/* The description of the voxels by a file's header. */
 typedef struct hl_payload {
   hl_volume_description grid; /* dimensions, type, origin, axis, value_scale, value_offset; nothing else */
   size_t components;          /* values of each voxel */
   size_t block;  /* with several components: consecutive values of one component in the file; divides the
                     number of voxels */
-  int component; /* with several components: the index to read, or HL_COMPONENT_MAGNITUDE */
+  int component; /* with several components: the index to read, or an HL_COMPONENT_ value */
+  hl_payload_colors colors;
   bool big_endian;
   bool text;             /* decimal numbers separated by white space or commas, not binary */
   bool text_is_fraction; /* the numbers 0 to 1 of the text stand for the values 0 to 255 of u8 */

@@ -330,6 +330,9 @@ static void tell_losses(const saving *s, const char *path) {
   else if (loses != NULL && s->grid.space != HL_SPACE_UNKNOWN)
     hl_log(context, HL_LOG_WARNING, "%s: %s files do not tell that their world is %s: remember it", path,
            s->writer->ending, hl_space_name(s->grid.space));
+  if (s->volume->colors != NULL)
+    hl_log(context, HL_LOG_WARNING,
+           "%s: the voxels' colours are lost: what is written is what opacity comes from", path);
   if (s->clamped > 0)
     hl_log(context, HL_LOG_WARNING,
            "%s: %llu values are beyond the range of %s, and are written as its least or greatest", path,

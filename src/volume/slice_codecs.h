@@ -19,6 +19,7 @@ typedef struct hl_slice_file {
 typedef struct hl_slice_shape {
   size_t width, height, samples; /* samples of a pixel */
   hl_voxel_type type;
+  bool colors, premultiplied; /* red, green, blue, perhaps alpha; alpha is multiplied into the colours */
 } hl_slice_shape;
 
 hl_status hl_slice_read_png(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,

@@ -28,7 +28,8 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_slice_file *f
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a JPEG picture of %d components: 1 and 3 are read",
                    file->path, info->num_components);
   info->out_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
-  *shape = (hl_slice_shape){info->image_width, info->image_height, grey ? 1 : 3, HL_VOXEL_U8};
+  *shape = (hl_slice_shape){
+      .width = info->image_width, .height = info->image_height, .samples = grey ? 1 : 3, .type = HL_VOXEL_U8};
   size_t most = file->length < SIZE_MAX / PIXELS_OF_BYTE / 4 ? file->length * PIXELS_OF_BYTE * 4 : SIZE_MAX;
   hl_status status = hl_slice_check_size(file, shape, most, error);
   if (status != HL_OK || samples == NULL) return status;

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/memory.h"
+#include "volume/colors.h"
 #include "volume/convert.h"
 #include "volume/text.h"
 
@@ -35,11 +36,14 @@ static hl_status fail_unknown(const hl_slice_file *file, hl_error *error) {
 /* Reads a PNG or JPEG file; samples: null: its shape alone. */
 static hl_status read(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
                       hl_error *error) {
+  hl_status status;
   switch (kind_of(file)) {
-    case KIND_PNG: return hl_slice_read_png(file, shape, samples, error);
-    case KIND_JPEG: return hl_slice_read_jpeg(file, shape, samples, error);
+    case KIND_PNG: status = hl_slice_read_png(file, shape, samples, error); break;
+    case KIND_JPEG: status = hl_slice_read_jpeg(file, shape, samples, error); break;
     default: return fail_unknown(file, error);
   }
+  shape->colors = status == HL_OK && hl_can_be_colors(shape->type, shape->samples);
+  return status;
 }
 
 hl_status hl_slice_measure(const hl_slice_file *file, hl_slice_shape *shape, hl_error *error) {
@@ -54,11 +58,16 @@ static double sample_at(const hl_slice_shape *shape, const unsigned char *sample
   return wide;
 }
 
-/* voxels: of the shape's type, which is unsigned, as stored; or floats, of a magnitude. */
+/* voxels: of the shape's type, which is unsigned, as stored; or floats, of a magnitude; or colours. */
 static void take_component(const hl_slice_shape *shape, const unsigned char *samples, int component,
                            void *voxels) {
   size_t count = shape->width * shape->height, step = shape->samples,
          bytes = hl_voxel_type_bytes(shape->type);
+  if (hl_component_is_colors(component)) {
+    for (size_t c = 0; c < step; c++)
+      hl_colors_store(shape->type, samples + c * bytes, step, count, c, voxels);
+    return;
+  }
   if (component != HL_COMPONENT_MAGNITUDE) {
     for (size_t n = 0; n < count; n++)
       memcpy((unsigned char *)voxels + n * bytes, samples + (n * step + (size_t)component) * bytes, bytes);

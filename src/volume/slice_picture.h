@@ -11,8 +11,8 @@ bool hl_slice_is_named(const char *name);
 /* Reads a picture's header, and refuses pictures that the file is too short for. */
 hl_status hl_slice_measure(const hl_slice_file *file, hl_slice_shape *shape, hl_error *error);
 
-/* Decodes a picture's component, or HL_COMPONENT_MAGNITUDE, into width x height stored voxels. The picture's
- * shape must be `shape`. */
+/* Decodes a picture's component, or an HL_COMPONENT_ value, into width x height stored voxels, or colours
+ * (colors.h). The picture's shape must be `shape`. */
 hl_status hl_slice_decode(const hl_slice_file *file, const hl_slice_shape *shape, int component, void *voxels,
                           hl_error *error);
 

@@ -10,7 +10,8 @@ static hl_status read(tiff_file *tiff, hl_slice_shape *shape, int component, voi
   tiff_shape page;
   hl_status status = tiff_file_shape(tiff, &page, error);
   if (status != HL_OK) return status;
-  *shape = (hl_slice_shape){page.width, page.height, page.components, page.type};
+  *shape = (hl_slice_shape){page.width, page.height, page.components,
+                            page.type,  page.colors, page.premultiplied};
   if (voxels != NULL) return tiff_file_read(tiff, &page, component, voxels, error);
   return tiff_file_can_hold(tiff, &page)
              ? HL_OK

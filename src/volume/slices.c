@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/pool.h"
+#include "volume/colors.h"
 #include "volume/convert.h"
 #include "volume/format.h"
 #include "volume/parallel.h"
@@ -202,10 +203,11 @@ static hl_status find_grey(slices_reading *r, bool *is_grey, hl_error *error) {
   return status;
 }
 
-static hl_status read_voxels(slices_reading *r, const hl_volume_description *grid, hl_error *error) {
+/* voxel_bytes: of what is read of each voxel. */
+static hl_status read_voxels(slices_reading *r, size_t voxel_bytes, hl_error *error) {
   hl_context *context = r->request->context;
   hl_pool *pool = NULL;
-  r->slice_bytes = r->shape.width * r->shape.height * hl_storage_bytes(hl_voxel_type_storage(grid->type));
+  r->slice_bytes = r->shape.width * r->shape.height * voxel_bytes;
   r->voxels = hl_allocate(context, r->slice_bytes, r->count);
   if (r->voxels == NULL) return hl_fail_memory(error, r->slice_bytes * r->count, r->bundle->path);
   bool parallel = r->slice_bytes * r->count >= PARALLEL_VOXELS;
@@ -230,15 +232,20 @@ static hl_status load_slices(slices_reading *r, hl_volume **volume, hl_error *er
   hl_status status = hl_volume_check_grid(&payload.grid, path, error);
   if (status == HL_OK) status = find_grey(r, &is_grey, error);
   payload.components = is_grey ? 1 : r->shape.samples;
+  if (r->shape.colors) payload.colors = HL_COLORS_MEANT;
   if (status == HL_OK) status = hl_component_only(r->request, path, false, &payload, error);
   if (status != HL_OK) return status;
   r->component = payload.component;
   hl_volume_description grid = hl_payload_grid(&payload, r->request->spacing);
-  status = read_voxels(r, &grid, error);
+  bool colors = hl_component_is_colors(r->component);
+  status = read_voxels(r, colors ? HL_COLOR_BYTES : hl_storage_bytes(hl_voxel_type_storage(grid.type)),
+                       error);
   if (status != HL_OK) return status;
   void *voxels = r->voxels;
   r->voxels = NULL;
-  return hl_volume_adopt(r->request->context, &grid, path, voxels, volume, error);
+  const hl_color_source source = {&grid, path, r->shape.samples, r->component, r->shape.premultiplied};
+  return colors ? hl_volume_adopt_colors(r->request->context, &source, voxels, volume, error)
+                : hl_volume_adopt(r->request->context, &grid, path, voxels, volume, error);
 }
 
 /* Reads the TIFF file of a slice as a volume. */

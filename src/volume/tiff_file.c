@@ -13,6 +13,7 @@
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "volume/colors.h"
 #include "volume/convert.h"
 
 enum { LARGEST_ALLOCATION = 1 << 30, WARNINGS_TOLD = 4, PAGES_MOST = 1 << 22 };
@@ -155,6 +156,14 @@ static hl_voxel_type type_of(unsigned format, unsigned bits) {
   return bits == 64 ? (is_signed ? HL_VOXEL_I64 : HL_VOXEL_U64) : 0;
 }
 
+static void read_colors(TIFF *tiff, uint16_t photometric, tiff_shape *shape) {
+  uint16_t extra = 0, *kinds = NULL;
+  shape->colors = (photometric == PHOTOMETRIC_RGB || photometric == PHOTOMETRIC_YCBCR) &&
+                  shape->bits % 8 == 0 && hl_can_be_colors(shape->type, shape->components);
+  if (TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &extra, &kinds) && extra > 0)
+    shape->premultiplied = kinds[0] == EXTRASAMPLE_ASSOCALPHA;
+}
+
 hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error) {
   TIFF *tiff = file->tiff;
   uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG, compression = 1,
@@ -174,6 +183,7 @@ hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error) {
   shape->components = samples;
   shape->planar = planar == PLANARCONFIG_SEPARATE && samples > 1;
   shape->type = type_of(format, bits);
+  read_colors(tiff, photometric, shape);
   if (shape->width < 1 || shape->height < 1 || samples < 1 || shape->width > INT32_MAX ||
       shape->height > INT32_MAX)
     return hl_fail(error, HL_ERROR_INPUT, "%s: a page of %u x %u pixels with %u samples", file->path,
@@ -286,7 +296,7 @@ static void unpack_24(const unsigned char *source, size_t count, bool is_signed,
 typedef struct page_reading {
   tiff_file *file;
   const tiff_shape *shape;
-  int component; /* index of the wanted component, or HL_COMPONENT_MAGNITUDE */
+  int component; /* index of the wanted component, or an HL_COMPONENT_ value */
   uint32_t chunk_width, chunk_height;
   bool tiled;
   size_t row_bytes, chunk_bytes; /* of a decoded chunk */
@@ -306,12 +316,16 @@ static double sample_value(hl_voxel_type type, const void *stored) {
   }
 }
 
-/* Stores the component `index` of a row, or adds it to the magnitude. */
+/* Stores the component `index` of a row, as a colour too, or adds it to the magnitude. */
 static void take_component(page_reading *r, const unsigned char *samples, unsigned step, unsigned index,
                            size_t count, size_t first) {
   hl_voxel_type type = r->shape->type;
   size_t bytes = hl_voxel_type_bytes(type), stored = hl_storage_bytes(hl_voxel_type_storage(type));
   const unsigned char *row = samples;
+  if (hl_component_is_colors(r->component)) {
+    hl_colors_store(type, samples, step, count, index, r->voxels + first * HL_COLOR_BYTES);
+    return;
+  }
   if (step > 1) {
     for (size_t n = 0; n < count; n++) memcpy(r->picked + n * bytes, samples + n * step * bytes, bytes);
     row = r->picked;
@@ -344,7 +358,7 @@ static void take_row(page_reading *r, const unsigned char *row, unsigned plane, 
   size_t bytes = hl_voxel_type_bytes(shape->type);
   if (shape->planar) {
     take_component(r, samples, 1, plane, count, first);
-  } else if (r->component == HL_COMPONENT_MAGNITUDE) {
+  } else if (r->component < 0) {
     for (unsigned c = 0; c < each; c++) take_component(r, samples + c * bytes, each, c, count, first);
   } else {
     take_component(r, samples + (size_t)r->component * bytes, each, 0, count, first);

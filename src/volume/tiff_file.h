@@ -16,6 +16,8 @@ typedef struct tiff_shape {
   unsigned bits;       /* bits of a sample in the file */
   unsigned components; /* samples of a pixel */
   bool planar;         /* each component has chunks of its own */
+  bool colors;         /* red, green, blue, perhaps alpha, of whole bytes */
+  bool premultiplied;  /* alpha is multiplied into the colours */
 } tiff_shape;
 
 enum { TIFF_NO_WARNINGS = 1 << 20 };
@@ -54,7 +56,8 @@ hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl
  * its compression can reach. */
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
 
-/* Decodes the current directory's component, or HL_COMPONENT_MAGNITUDE, into width x height stored voxels. */
+/* Decodes the current directory's component, or an HL_COMPONENT_ value, into width x height stored voxels, or
+ * colours (colors.h). */
 hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, void *voxels,
                          hl_error *error);
 

@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/pool.h"
+#include "volume/colors.h"
 #include "volume/convert.h"
 #include "volume/tiff_file.h"
 #include "volume/tiff_plan.h"
@@ -322,6 +323,7 @@ static void describe(const stack_reading *r, hl_payload *payload) {
     grid->origin[axis] = (step - step / coarser[axis]) / 2;
   }
   payload->components = r->shape.components;
+  if (r->shape.colors) payload->colors = HL_COLORS_MEANT;
   payload->block = 1;
 }
 
@@ -335,7 +337,8 @@ static hl_status make_volume(stack_reading *r, hl_volume **volume, hl_error *err
   if (status != HL_OK) return status;
   r->component = payload.component;
   hl_volume_description grid = hl_payload_grid(&payload, r->request->spacing);
-  size_t stored = hl_storage_bytes(hl_voxel_type_storage(grid.type));
+  bool colors = hl_component_is_colors(r->component);
+  size_t stored = colors ? HL_COLOR_BYTES : hl_storage_bytes(hl_voxel_type_storage(grid.type));
   r->slice_bytes = (size_t)r->shape.width * r->shape.height * stored;
   r->voxels = hl_allocate(r->context, r->slice_bytes, r->plan.slice_count);
   if (r->voxels == NULL) return hl_fail_memory(error, r->slice_bytes * r->plan.slice_count, path);
@@ -343,7 +346,9 @@ static hl_status make_volume(stack_reading *r, hl_volume **volume, hl_error *err
   if (status != HL_OK) return status;
   void *voxels = r->voxels;
   r->voxels = NULL;
-  return hl_volume_adopt(r->context, &grid, path, voxels, volume, error);
+  const hl_color_source source = {&grid, path, r->shape.components, r->component, r->shape.premultiplied};
+  return colors ? hl_volume_adopt_colors(r->context, &source, voxels, volume, error)
+                : hl_volume_adopt(r->context, &grid, path, voxels, volume, error);
 }
 
 static void release(stack_reading *r) {

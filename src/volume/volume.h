@@ -46,8 +46,9 @@ struct hl_volume {
   hl_storage storage;
   const void *voxels; /* [k][j][i]; stored values; owned unless borrowed. Rows are packed; rows and slices of
                          borrowed voxels may lie further apart than they are long */
-  size_t row_bytes, slice_bytes;                           /* from row to row, and from slice to slice */
-  void *owned_voxels;                                      /* the block to hl_release; null if borrowed */
+  size_t row_bytes, slice_bytes; /* from row to row, and from slice to slice */
+  unsigned char *colors; /* owned; [k][j][i][4] (colors.h); null: the transfer function tells colours */
+  void *owned_voxels;    /* the block to hl_release; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */

@@ -336,6 +336,7 @@ static hl_status read_array(hl_stream **stream, const vti_header *header, hl_vol
   payload.text = array->format == FORMAT_ASCII;
   payload.components = entry->components;
   payload.block = 1;
+  if (payload.grid.type == HL_VOXEL_U8) payload.colors = HL_COLORS_MEANT; /* as VTK's mappers take bytes */
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
   if (status == HL_OK) status = hl_component_choose(request, (*stream)->path, false, &payload, error);
   if (status == HL_OK) status = go_to_array(stream, header, array, error);

@@ -69,7 +69,13 @@ def test_kinds():
     expect("JPEG", write("jpeg", smooth, "{}.JPG", quality=100), smooth, tolerance=1)
     expect("bits", write("bits", GREY > 99, "{:04}.png"), GREY > 99)
     expect("grey as colours", write("grey", np.repeat(GREY[..., None], 3, -1), "{}.png"), GREY)
-    expect("colours", write("colors", colors, "{}.png"), np.sqrt((colors.astype(float) ** 2).sum(-1)), "magnitude", 1e-4)
+    luminance = (colors.astype(int) @ [54, 183, 19] + 128) // 256
+    expect("colours", write("colors", colors, "{}.png"), luminance)
+    expect("colours, TIFF", write("tiff_colors", colors, "{}.tif"), luminance)
+    alpha = np.concatenate([colors, GREY[..., None]], -1)
+    expect("colours with alpha", write("alpha", alpha, "{}.png"), GREY)
+    info, _ = read(root / "alpha", "--component", "luminance")
+    check("luminance in place of alpha", info["mean"] == luminance.mean() and info["component"] == "luminance", info)
     info, _ = read(root / "colors", "--component", "1")
     check("a colour", info["mean"] == colors[..., 1].mean(), info)
     palette = root / "palette"

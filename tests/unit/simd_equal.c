@@ -376,11 +376,24 @@ static bench classifier_bench;
 enum { GRADIENT_GRIDS = 4 };
 static bench gradient_bench[GRADIENT_GRIDS];
 
+/* Voxels with colours of their own, within the grids' boxes. */
+static unsigned char color_voxels[8 * 9 * 10 * 4];
+static float decode_bench[256];
+static const voxel_colors colors_bench = {color_voxels, {7, 8, 9}, {4, 32, 288}, decode_bench};
+
+static void set_up_colors(void) {
+  uint32_t seed = 12;
+  for (size_t n = 0; n < sizeof color_voxels; n++)
+    color_voxels[n] = (unsigned char)(n % 4 == 3 ? 1 + 254 * bench_random(&seed) : 255 * bench_random(&seed));
+  for (int code = 0; code < 256; code++) decode_bench[code] = (float)(code * code) / 65025;
+}
+
 static void open_gradient_grids(void) {
   static float voxels[9 * 10 * 11];
   uint32_t seed = 7;
   for (size_t i = 0; i < 9 * 10 * 11; i++)
     voxels[i] = random_between(&seed, 0, 1); /* read as bytes and halves too */
+  set_up_colors();
   for (int i = 0; i < GRADIENT_GRIDS; i++)
     bench_open(&gradient_bench[i], (size_t[3]){9, 10, i == 3 ? 3 : 11},
                i == 3 ? HL_STORAGE_F32 : (hl_storage)i, voxels,
@@ -780,7 +793,8 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    {8.5f, 9.5f, 10.5f},
                                    NULL,
                                    v,
-                                   round % 3 == 1 ? -0.7f : round % 3 * 0.4f};
+                                   round % 3 == 1 ? -0.7f : round % 3 * 0.4f,
+                                   (round + v) % 3 == 1 ? colors_bench : (voxel_colors){NULL}};
     s->patches[v] = (shade_patch){&s->volumes[v],
                                   s->density[2 * v],
                                   s->density[2 * v + 1],

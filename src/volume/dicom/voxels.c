@@ -282,6 +282,7 @@ static hl_status choose(reading *r, hl_load_request *request, hl_error *error) {
   hl_payload_defaults(&payload);
   payload.grid.type = type_of(p);
   payload.components = p->samples;
+  payload.colors = HL_COLORS_UNREAD;
   hl_status status = hl_steps_choose(request, path, r->stack->times, 1, error);
   if (status == HL_OK) status = hl_component_only(request, path, false, &payload, error);
   r->time = (size_t)request->selection.time;

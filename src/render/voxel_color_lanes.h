@@ -1,0 +1,52 @@
+/* render/voxel_color_lanes.h - the colours of a volume's own voxels at sixteen samples. */
+#ifndef HL_RENDER_VOXEL_COLOR_LANES_H
+#define HL_RENDER_VOXEL_COLOR_LANES_H
+
+#include "render/slab.h"
+#include "view/rays_lanes.h"
+
+/* Sums over the corners of sixteen cells. */
+typedef struct color_sums {
+  lanes color[3], weight;
+} color_sums;
+
+/* offset: bytes from the first voxel to the corner; share: its trilinear weight. */
+LANES_INLINE void add_corner(const voxel_colors *colors, lanes_int offset, lanes share, color_sums *sums) {
+  lanes_int packed = lanes_gather_bytes(colors->voxels, offset);
+  lanes weight = share * lanes_from_int((packed >> 24) & 255);
+  sums->weight = sums->weight + weight;
+  for (int c = 0; c < 3; c++) {
+    lanes linear = lanes_gather(colors->decode, (packed >> (8 * c)) & 255);
+    sums->color[c] = lanes_fma(weight, linear, sums->color[c]);
+  }
+}
+
+/* The mean of the eight voxels' linear colours, each weighted trilinearly and by its own weight (colors.h):
+ * what colours multiplied by opacity give, divided by the opacity (Porter and Duff, "Compositing digital
+ * images", 1984). Beyond the outermost voxels these go on. */
+LANES_INLINE void voxel_color_at(const voxel_colors *colors, const float to_index[3][4], lanes3 position,
+                                 lanes color[3]) {
+  lanes_int near[3], far[3]; /* bytes along each axis */
+  lanes part[3];
+  color_sums sums = {{lanes_set(0), lanes_set(0), lanes_set(0)}, lanes_set(0)};
+  for (int a = 0; a < 3; a++) {
+    lanes at = lanes_clamp(row_of_point(to_index[a], position), 0, (float)colors->last[a]);
+    lanes_int first = lanes_truncate(at), next = first + 1, last = lanes_set_int(colors->last[a]);
+    part[a] = at - lanes_from_int(first);
+    near[a] = first * colors->step_bytes[a];
+    far[a] = lanes_select_int(next > last, last, next) * colors->step_bytes[a];
+  }
+  for (int corner = 0; corner < 8; corner++) {
+    lanes_int offset = lanes_set_int(0);
+    lanes share = lanes_set(1.0f);
+    for (int a = 0; a < 3; a++) {
+      int is_far = corner >> a & 1;
+      offset += is_far ? far[a] : near[a];
+      share = share * (is_far ? part[a] : 1.0f - part[a]);
+    }
+    add_corner(colors, offset, share, &sums);
+  }
+  for (int c = 0; c < 3; c++) color[c] = sums.color[c] / sums.weight;
+}
+
+#endif
