@@ -191,6 +191,9 @@ typedef struct hl_scene_volume {
                         0: mostly onwards, below 0: mostly back; default 0: evenly */
   const hl_isosurface *iso; /* [iso_count]; beside what the transfer function shows */
   size_t iso_count;
+  double albedo[3];        /* the fraction of the light met that a medium scatters, times its colour, R, G, B;
+                              default 1 */
+  int multiple_scattering; /* non-zero: light is scattered again and again; default 0: once */
 } hl_scene_volume;
 
 /* A mesh among the volumes. Its colour is that of its vertices, where it has some, times `color`. */

@@ -24,6 +24,11 @@ class VolumeSettings(TypedDict, total=False):
     anisotropy : float
         g: how a medium scatters light; above 0 onwards, below 0 back to where it comes from, 0 evenly. -0.99
         to 0.99. Default: 0.
+    albedo : Sequence[float]
+        The fraction of the light met that a medium scatters, times its colour; the rest is lost. Default: [1,
+        1, 1].
+    multiple_scattering : bool
+        Scattered light is scattered again: clouds and wax glow from inside. Default: False.
     visible : bool
         The eye sees the volume; a volume that it does not see still casts shadows. Default: True.
     casts_shadow : bool
@@ -38,6 +43,8 @@ class VolumeSettings(TypedDict, total=False):
     shading: str
     attenuation_color: Sequence[float]
     anisotropy: float
+    albedo: Sequence[float]
+    multiple_scattering: bool
     visible: bool
     casts_shadow: bool
     receives_shadow: bool
@@ -221,6 +228,8 @@ class FurtherSettings(TypedDict, total=False):
     translate: Sequence[float]
     attenuation_color: Sequence[float]
     anisotropy: float
+    albedo: Sequence[float]
+    multiple_scattering: bool
     visible: bool
     casts_shadow: bool
     receives_shadow: bool

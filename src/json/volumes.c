@@ -79,12 +79,13 @@ static hl_status read_clip(hl_json_reader *reader, const json_t *value, hl_scene
 }
 
 static hl_status read_scattering(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
-  static const char *const keys[] = {"anisotropy", NULL};
+  static const char *const keys[] = {"anisotropy", "albedo", "multiple", NULL};
+  static const char *const settings[] = {"scattering/anisotropy", "scattering/albedo", "scattering/multiple"};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "scattering");
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK)
-    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, "scattering/anisotropy", volume);
+  for (size_t k = 0; status == HL_OK && k < sizeof settings / sizeof *settings; k++)
+    status = hl_json_setting(reader, value, HL_SETTINGS_VOLUME, settings[k], volume);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }

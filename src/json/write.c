@@ -302,6 +302,17 @@ static void write_iso(writer *w, const hl_scene_volume *volume) {
   close_bracket(w, "]");
 }
 
+static void write_scattering(writer *w, const hl_scene_volume *volume) {
+  const double *albedo = volume->albedo;
+  bool white = albedo[0] == 1 && albedo[1] == 1 && albedo[2] == 1;
+  if (volume->anisotropy == 0 && white && !volume->multiple_scattering) return;
+  open_bracket(w, "scattering", "{");
+  if (volume->anisotropy != 0) write_key(w, HL_SETTINGS_VOLUME, "scattering/anisotropy", volume);
+  if (!white) write_key(w, HL_SETTINGS_VOLUME, "scattering/albedo", volume);
+  if (volume->multiple_scattering) write_key(w, HL_SETTINGS_VOLUME, "scattering/multiple", volume);
+  close_bracket(w, "}");
+}
+
 static void write_volume(writer *w, const hl_scene_volume *volume) {
   open_bracket(w, NULL, "{");
   if (volume->name != NULL) write_name(w, "name", volume->name);
@@ -313,11 +324,7 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
   write_key(w, HL_SETTINGS_VOLUME, "shading", volume);
   write_material(w, &volume->material);
   write_key(w, HL_SETTINGS_VOLUME, "attenuation_color", volume);
-  if (volume->anisotropy != 0) {
-    open_bracket(w, "scattering", "{");
-    write_key(w, HL_SETTINGS_VOLUME, "scattering/anisotropy", volume);
-    close_bracket(w, "}");
-  }
+  write_scattering(w, volume);
   write_key(w, HL_SETTINGS_VOLUME, "visible", volume);
   write_key(w, HL_SETTINGS_VOLUME, "casts_shadow", volume);
   write_key(w, HL_SETTINGS_VOLUME, "receives_shadow", volume);

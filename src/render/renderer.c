@@ -12,6 +12,7 @@
 #include "render/frame.h"
 #include "render/maximum.h"
 #include "render/prepare.h"
+#include "scatter/scatter.h"
 #include "scene/check.h"
 
 struct hl_renderer {
@@ -23,8 +24,9 @@ struct hl_renderer {
   shadow_buffer *buffers; /* owned; [buffer_count]; LIGHT_SECTORS for each of the scene's lights */
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* owned; of a sweep's lights */
-  hl_reserve reserve;                        /* owned; blocks that frames and sweeps have returned */
-  uint64_t estimate;                         /* bytes; see render/estimate.h */
+  scatter_field scattered; /* owned; kept while the scene's matter and lights stay the same */
+  hl_reserve reserve;      /* owned; blocks that frames and sweeps have returned */
+  uint64_t estimate;       /* bytes; see render/estimate.h */
 };
 
 uint64_t hl_renderer_estimate(const hl_renderer *renderer) { return renderer->estimate; }
@@ -62,6 +64,7 @@ void hl_renderer_destroy(hl_renderer *renderer) {
   if (renderer == NULL) return;
   release_volumes(renderer);
   release_buffers(renderer);
+  hl_scatter_release(renderer->context, &renderer->scattered);
   hl_reserve_release(&renderer->reserve);
   hl_pool_destroy(renderer->pool);
   hl_release(renderer->context, renderer);
@@ -295,10 +298,31 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
                  .act = hl_is_maximum(scene) ? hl_maximum_tile : hl_light_tile,
                  .first = index == 0,
                  .layer_pixels = &work->layers,
+                 .scattered = renderer->scattered.light != NULL ? &renderer->scattered : NULL,
                  .maximum = &work->maximum,
                  .measures = index == work->measuring_sweep,
                  .channels = attenuation_channels(scene),
                  .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};
+}
+
+/* Finds the light that is scattered more than once, where the scene asks for it. */
+static hl_status scatter_light(hl_renderer *renderer, const hl_scene_description *scene,
+                               const frame_work *work, hl_error *error) {
+  hl_context *context = renderer->context;
+  if (!hl_scatter_wanted(scene)) {
+    hl_scatter_release(context, &renderer->scattered);
+    return HL_OK;
+  }
+  hl_status status = check_room(renderer, hl_scatter_bytes(scene), error);
+  if (status != HL_OK) return status;
+  scatter_volume *volumes = hl_allocate(context, scene->volume_count, sizeof *volumes);
+  if (volumes == NULL) return hl_fail_memory(error, scene->volume_count * sizeof *volumes, "the volumes");
+  for (size_t v = 0; v < scene->volume_count; v++)
+    volumes[v] = (scatter_volume){&scene->volumes[v], &work->grids[v], &renderer->prepared[v].classifier};
+  const scatter_scene all = {context, renderer->pool, scene, volumes};
+  status = hl_scatter_update(&all, &renderer->scattered, error);
+  hl_release(context, volumes);
+  return status;
 }
 
 /* Bytes of shadow buffers that the renderer holds from the frame before. */
@@ -434,6 +458,7 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
     status = hl_prepare_isosurfaces(renderer->context, renderer->pool, scene, renderer->prepared, error);
   if (status == HL_OK) add_isosurfaces(renderer, &work->framed);
   if (status == HL_OK) status = set_up_frame(renderer, scene, request, work, error);
+  if (status == HL_OK) status = scatter_light(renderer, scene, work, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();

@@ -5,6 +5,7 @@
 #include "light/light_texture_lanes.h"
 #include "render/reaching_lanes.h"
 #include "render/voxel_color_lanes.h"
+#include "scatter/scatter_lanes.h"
 
 static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
@@ -99,7 +100,7 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   return arriving;
 }
 
-LANES_INLINE lanes power(lanes base, float exponent) {
+LANES_INLINE lanes power(lanes base, lanes exponent) {
   lanes safe = lanes_max(base, lanes_set(1e-12f));
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
@@ -110,6 +111,36 @@ LANES_INLINE lanes power(lanes base, float exponent) {
 LANES_INLINE lanes phase(float g, lanes turn) {
   lanes squared = lanes_line(turn, 2 * g, 1 + g * g);
   return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
+}
+
+/* Adds light that was scattered more than once. The grid holds a medium that scatters evenly (scatter.h). It
+ * lets T^(1 - w g) of a light through where the medium itself lets T through: the difference, the fraction g
+ * of what was scattered once, goes on like the light, and the rest, 1 - g, is in the grid. Light scattered
+ * twice follows the phase function p of g^2 (derived: the moments of Henyey and Greenstein's function are
+ * powers of g, and those of two turns multiply), so what goes on is scattered towards the eye by (p - (1 -
+ * g)) / g: with the grid's even part that makes p. */
+LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, const block_geometry *g,
+                                const arriving_light *lights, const color_lanes *color, color_lanes *lit) {
+  const shade_volume *volume = d->patch->volume;
+  const lanes position[3] = {g->position.x, g->position.y, g->position.z};
+  const lanes towards_eye[3] = {g->towards_eye.x, g->towards_eye.y, g->towards_eye.z};
+  lanes light[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  if (job->scattered != NULL)
+    scattered_light(job->scattered, position, towards_eye, volume->anisotropy, light);
+  for (int i = 0; i < job->light_count && volume->anisotropy > 0; i++) {
+    if (lights[i].dark || !job->lights[i].shadowed) continue;
+    float even = 1 - volume->anisotropy;
+    lanes twice = phase(volume->anisotropy * volume->anisotropy, dot3(g->towards_eye, lights[i].towards));
+    lanes turned = (twice - even) * (1.0f / volume->anisotropy) * (1.0f - d->surface);
+    for (int c = 0; c < 3; c++) {
+      lanes full = lights[i].full.c[c],
+            passing = lights[i].shadowed.c[c] / lanes_max(full, lanes_set(1e-30f));
+      lanes exponent = 1.0f - color->c[c] * (volume->albedo[c] * volume->anisotropy);
+      lanes onwards = lanes_max(power(passing, exponent) - passing, lanes_set(0));
+      light[c] = lanes_fma(full * onwards, turned, light[c]);
+    }
+  }
+  for (int c = 0; c < 3; c++) lit->c[c] = lanes_fma(light[c], color->c[c] * volume->albedo[c], lit->c[c]);
 }
 
 /* Step 15: eqs. (3) and (4) with the light's centre; a medium scatters by its phase function. Emission is
@@ -128,11 +159,15 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
       medium = medium * phase(volume->anisotropy, dot3(g->towards_eye, lights[i].towards));
     lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface, medium);
     lanes3 mirrored = add_scaled3(scale3(lights[i].towards, lanes_set(-1.0f)), d->normal, facing * 2.0f);
-    lanes glint = power(dot3(g->towards_eye, mirrored), volume->shininess) * volume->specular * d->surface;
+    lanes glint = power(dot3(g->towards_eye, mirrored), lanes_set(volume->shininess)) * volume->specular *
+                  d->surface;
     glint = lanes_keep(facing > 0.0f, glint);
-    for (int c = 0; c < 3; c++)
-      lit.c[c] = lanes_fma(intensity->c[c], lanes_fma(color.c[c], diffuse, glint), lit.c[c]);
+    for (int c = 0; c < 3; c++) {
+      lanes matt = volume->absorbs ? lanes_fma(medium, lanes_set(volume->albedo[c] - 1), diffuse) : diffuse;
+      lit.c[c] = lanes_fma(intensity->c[c], lanes_fma(color.c[c], matt, glint), lit.c[c]);
+    }
   }
+  if (volume->multiple && volume->lit) add_scattered(job, d, g, lights, &color, &lit);
   return lit;
 }
 

@@ -8,6 +8,7 @@
 
 #include "light/light_source.h"
 #include "light/light_texture.h"
+#include "scatter/scatter.h"
 #include "shadow/attenuate.h"
 #include "shadow/shadow_buffer.h"
 
@@ -38,6 +39,9 @@ typedef struct shade_volume {
   int rank;                              /* among the visible volumes */
   float anisotropy;                      /* g of the phase function */
   voxel_colors colors;                   /* multiply the transfer function's */
+  float albedo[3];                       /* of the medium, times its colour */
+  int absorbs;                           /* not all of the albedo is 1 */
+  int multiple;                          /* light that was scattered lights it again */
 } shade_volume;
 
 /* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside
@@ -85,9 +89,10 @@ typedef struct shade_job {
   int back_to_front;
   const shade_light *lights;
   int light_count;
-  float ambient[3]; /* Ia; zero in all sweeps but the first */
-  float emission;   /* 1 in the first sweep, 0 in the others: volumes' emission is added once */
-  int channels;     /* of light attenuation: 1 or 3 */
+  float ambient[3];               /* Ia; zero in all sweeps but the first */
+  float emission;                 /* 1 in the first sweep, 0 in the others: volumes' emission is added once */
+  int channels;                   /* of light attenuation: 1 or 3 */
+  const scatter_field *scattered; /* light scattered more than once, in the first sweep; null: none */
 } shade_job;
 
 /* Bytes of scratch memory for a patch: room for a block, and for up to sixteen slabs into which samples are

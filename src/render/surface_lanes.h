@@ -48,7 +48,8 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
   find_full_light(light, position, &arriving);
   if (is_dark(&arriving.full)) return;
   lanes3 mirrored = add_scaled3(scale3(arriving.towards, lanes_set(-1.0f)), normal, facing * 2.0f);
-  lanes glint = power(dot3(load3(samples->towards_eye), mirrored), samples->shininess) * samples->specular;
+  lanes glint = power(dot3(load3(samples->towards_eye), mirrored), lanes_set(samples->shininess)) *
+                samples->specular;
   lanes diffuse = lanes_max(facing, lanes_set(0)) * samples->diffuse, transmittance = lanes_set(1.0f);
   glint = lanes_keep(facing > 0.0f, glint);
   bool shadowed = light->shadowed && samples->receives_shadow;

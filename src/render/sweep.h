@@ -44,7 +44,8 @@ typedef struct layer_pass {
   const shade_light *lights; /* [light_count] */
   int light_count;
   float ambient[3], emission;
-  bool white; /* of white volumes */
+  const scatter_field *scattered; /* null: none */
+  bool white;                     /* of white volumes */
   float *pixels;
   size_t tile_floats;
 } layer_pass;
@@ -88,6 +89,7 @@ struct sweep {
   bool preparatory; /* this sweep prepares another one: it reports no progress, and its sheets are not counted
                      */
   const layer_pixels *layer_pixels; /* pixels of the layers; null: none */
+  const scatter_field *scattered;   /* null: none */
   const maximum_values *maximum;    /* values of a maximum projection; values null: matter is lit */
   float *pixels;                    /* [tiles][16][4][16] */
   int32_t *shown_from;              /* [tiles][16]; first visible slab per block; null: nothing is hidden */

@@ -217,7 +217,12 @@ static void set_up_shading(sweep *sweep) {
                             .specular = (float)volume->material.specular,
                             .shininess = (float)volume->material.shininess,
                             .anisotropy = (float)volume->anisotropy,
-                            .colors = colors_of(sweep, volume->volume)};
+                            .colors = colors_of(sweep, volume->volume),
+                            .multiple = volume->multiple_scattering};
+    for (int c = 0; c < 3; c++) {
+      shade->albedo[c] = (float)volume->albedo[c];
+      shade->absorbs = shade->absorbs || volume->albedo[c] != 1;
+    }
     shade->emission = shade->lit ? (float)volume->material.emission : 1;
     if (!shade->lit) shade->ambient = shade->receives_shadow = 0;
     if (sweep->maximum->values != NULL && volume->visible) {
@@ -282,7 +287,8 @@ static void set_up_jobs(sweep *sweep) {
                        .back_to_front = sweep->geometry->back_to_front,
                        .lights = sweep->shade_lights,
                        .light_count = sweep->geometry->light_count,
-                       .channels = sweep->channels};
+                       .channels = sweep->channels,
+                       .scattered = sweep->first ? sweep->scattered : NULL};
   vec3_store(shade->normal, normal);
   vec3_store(shade->eye, eye->origin);
   if (!eye->perspective) {

@@ -18,6 +18,7 @@ static void set_up_white_volumes(sweep *sweep) {
     layers->white_volumes[g].phong = 0;
     layers->white_volumes[g].anisotropy = 0;
     layers->white_volumes[g].colors.voxels = NULL;
+    layers->white_volumes[g].absorbs = layers->white_volumes[g].multiple = 0;
     layers->white_volumes[g].lit = 1;
   }
 }
@@ -76,6 +77,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   }
   layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
   for (int c = 0; c < 3 && ambient != NULL; c++) ambient->ambient[c] = sweep->shade.ambient[c];
+  if (ambient != NULL) ambient->scattered = sweep->shade.scattered;
   layer_pass *emission = sweep->first ? add_pass(sweep, pixels->emission, NULL, 0) : NULL;
   if (emission != NULL) emission->emission = sweep->shade.emission;
   layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
@@ -111,6 +113,7 @@ static shade_job job_of_pass(const layer_pass *pass, const shade_job *slab) {
   job.light_count = pass->light_count;
   memcpy(job.ambient, pass->ambient, sizeof job.ambient);
   job.emission = pass->emission;
+  job.scattered = pass->scattered;
   return job;
 }
 

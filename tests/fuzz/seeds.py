@@ -59,7 +59,8 @@ def scenes():
         "name": "a", "file": "v.nrrd", "transform": {
             "scale": 2, "rotate": {"axis": [0, 0, 1], "angle_deg": 30}, "translate": [1, 2, 3]},
         "shading": "none", "material": {"ambient": 1, "diffuse": 0.7, "specular": 0.3, "shininess": 32},
-        "attenuation_color": [1, 0.5, 0.2], "visible": False, "casts_shadow": False, "receives_shadow": False,
+        "attenuation_color": [1, 0.5, 0.2],
+        "scattering": {"anisotropy": 0.5, "albedo": [1, 0.9, 0.5], "multiple": True}, "visible": False, "casts_shadow": False, "receives_shadow": False,
         "clip": {"min": [0, 0, 0], "max": [1, 1, 1]}}
     functions = [
         {"unit_distance": 1, "opacity": [[0, 0], [255, 1]], "color": [[0, 0, 0, 0], [255, 1, 1, 1]]},

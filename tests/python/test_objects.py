@@ -124,7 +124,8 @@ def test_json_is_the_program_s_file(program, tmp_path, blob):
 
 def test_volume_looks_come_back(blob):
     look = {"name": "ball", "shading": "none", "ambient": 0.5, "diffuse": 0.25, "specular": 0.125, "shininess": 7.0,
-            "emission": 0.5, "attenuation_color": (1.0, 0.5, 0.25), "anisotropy": 0.5, "visible": False, "casts_shadow": False,
+            "emission": 0.5, "attenuation_color": (1.0, 0.5, 0.25), "anisotropy": 0.5,
+            "albedo": (0.875, 0.75, 0.5), "multiple_scattering": True, "visible": False, "casts_shadow": False,
             "receives_shadow": False, "clip": ((1.0, 2.0, 3.0), (9.0, 8.0, 7.0)), "scale": (2.0, 1.0, 1.0),
             "rotate_axis": (0.0, 1.0, 0.0), "rotate_angle_deg": 30.0, "translate": (5.0, 6.0, 7.0),
             "transfer_function": TransferFunction([(0, 0), (50, 0.5)], color=[(0, 1, 0, 0), (9, 0, 1, 0)],

@@ -675,6 +675,8 @@ typedef struct shade_state {
     uint64_t samples;
     uint32_t open;
   } out;
+  float scattered_light[12 * 60];
+  scatter_field scattered;
 } shade_state;
 
 /* The state's only tile. */
@@ -769,6 +771,12 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                        .emission = 1,
                        .channels = round % 3 ? 3 : 1};
   s->patch_count = 1 + round % 2;
+  fill_salted(s->scattered_light, sizeof s->scattered_light / sizeof(float), seed, 0, 2);
+  s->scattered = (scatter_field){.nodes = {{4, 3, 5}, {-1, -2, 0.5f}, 2.5f},
+                                 .light = s->scattered_light,
+                                 .flux = round % 2 ? s->scattered_light + 180 : NULL,
+                                 .channels = round % 3 ? 3 : 1};
+  s->job.scattered = round % 5 ? &s->scattered : NULL;
   if (round == 0) s->job.light_count = 2;
   set_up_lights(s, seed, round);
   for (int v = 0; v < 2; v++) {
@@ -794,7 +802,10 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    NULL,
                                    v,
                                    round % 3 == 1 ? -0.7f : round % 3 * 0.4f,
-                                   (round + v) % 3 == 1 ? colors_bench : (voxel_colors){NULL}};
+                                   (round + v) % 3 == 1 ? colors_bench : (voxel_colors){NULL},
+                                   {0.9f, 0.8f, 1},
+                                   round % 4 == 1,
+                                   round % 4 < 2};
     s->patches[v] = (shade_patch){&s->volumes[v],
                                   s->density[2 * v],
                                   s->density[2 * v + 1],

@@ -1,0 +1,206 @@
+/* scatter/field.c - a field from volumes and lights, kept while they stay the same. */
+#include "scatter/scatter.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scatter/parts.h"
+
+enum {
+  LONGEST = 48 /* nodes along the longest side of the matter */,
+  MARGIN = 1 /* empty nodes around it */
+};
+
+static bool scatters(const hl_scene_volume *volume) {
+  return volume->multiple_scattering && volume->casts_shadow && volume->shading != HL_SHADING_FLAT;
+}
+
+bool hl_scatter_wanted(const hl_scene_description *scene) {
+  bool wanted = false;
+  for (size_t v = 0; v < scene->volume_count; v++) wanted = wanted || scatters(&scene->volumes[v]);
+  return wanted && scene->render.compositing == HL_COMPOSITING_LIGHT;
+}
+
+void hl_scatter_release(hl_context *context, scatter_field *field) {
+  hl_release(context, field->light);
+  *field = (scatter_field){0};
+}
+
+/* True if some matter scatters some directions more than others. */
+static bool is_uneven(const hl_scene_description *scene) {
+  bool uneven = false;
+  for (size_t v = 0; v < scene->volume_count; v++)
+    uneven = uneven || (scatters(&scene->volumes[v]) && scene->volumes[v].anisotropy != 0);
+  return uneven;
+}
+
+/* ---- where the nodes are ---- */
+
+/* Widens bounds by the box of a volume's relevant bricks. */
+static void add_box(const grid *grid, double low[3], double high[3]) {
+  for (int corner = 0; corner < 8; corner++) {
+    double p[3];
+    for (int a = 0; a < 3; a++) {
+      int32_t brick = corner >> a & 1 ? grid->relevant_high[a] + 1 : grid->relevant_low[a];
+      p[a] = fmin(fmax(brick * HL_BRICK_CELLS - 1, grid->box_low[a]), grid->box_high[a]);
+    }
+    vec3 frame = affine3_apply(grid->index_to_frame, vec3_of(p));
+    const double at[3] = {frame.x, frame.y, frame.z};
+    for (int a = 0; a < 3; a++) low[a] = fmin(low[a], at[a]), high[a] = fmax(high[a], at[a]);
+  }
+}
+
+/* False where there is no matter. */
+static bool place_nodes(const scatter_scene *scene, scatter_nodes *nodes) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, longest = 0;
+  for (size_t v = 0; v < scene->scene->volume_count; v++)
+    if (scene->volumes[v].scene->casts_shadow && scene->volumes[v].grid->relevant_count > 0)
+      add_box(scene->volumes[v].grid, low, high);
+  for (int a = 0; a < 3; a++) longest = fmax(longest, high[a] - low[a]);
+  if (!(longest > 0)) return false;
+  double spacing = longest / LONGEST;
+  nodes->spacing = (float)spacing;
+  for (int a = 0; a < 3; a++) {
+    double boxes = fmax(ceil((high[a] - low[a]) / spacing - 1e-6), 1);
+    nodes->count[a] = (int32_t)boxes + 2 * MARGIN;
+    nodes->origin[a] = (float)((low[a] + high[a]) / 2 - spacing * ((boxes - 1) / 2 + MARGIN));
+  }
+  return true;
+}
+
+/* ---- memory ---- */
+
+static void lay_out(size_t nodes, bool with_flux, scatter_arrays *arrays, scatter_work *work,
+                    hl_layout *layout) {
+  arrays->extinction = hl_layout_take(layout, 3 * nodes, sizeof(float));
+  arrays->scattering = hl_layout_take(layout, 3 * nodes, sizeof(float));
+  arrays->direct = hl_layout_take(layout, 3 * nodes, sizeof(float));
+  for (int line = 0; line < SCATTER_LINES; line++) {
+    work->pass[line] = hl_layout_take(layout, nodes, sizeof(float));
+    work->along[line] = hl_layout_take(layout, nodes, sizeof(float));
+    work->flux[line] = with_flux ? hl_layout_take(layout, nodes, sizeof(float)) : NULL;
+    work->before[line] = with_flux ? hl_layout_take(layout, nodes, sizeof(float)) : NULL;
+  }
+  for (size_t v = 0; v < sizeof work->vectors / sizeof *work->vectors; v++)
+    work->vectors[v] = hl_layout_take(layout, nodes, sizeof(float));
+}
+
+uint64_t hl_scatter_bytes(const hl_scene_description *scene) {
+  if (!hl_scatter_wanted(scene)) return 0;
+  const size_t side = LONGEST + 2 * MARGIN, nodes = side * side * side;
+  scatter_arrays arrays;
+  scatter_work work;
+  hl_layout counted = {0};
+  lay_out(nodes, is_uneven(scene), &arrays, &work, &counted);
+  return counted.bytes + (is_uneven(scene) ? 12 : 3) * nodes * sizeof(float) +
+         scene->volume_count * sizeof(scatter_volume);
+}
+
+/* ---- the key ---- */
+
+/* Fowler, Noll and Vo's hash FNV-1a of 64 bits. */
+static uint64_t add_bytes(uint64_t key, const void *bytes, size_t count) {
+  for (const unsigned char *b = bytes; count-- > 0; b++) key = (key ^ *b) * UINT64_C(0x100000001b3);
+  return key;
+}
+
+static uint64_t add_numbers(uint64_t key, const double *numbers, size_t count) {
+  return add_bytes(key, numbers, count * sizeof *numbers);
+}
+
+static uint64_t add_volume_key(uint64_t key, const scatter_volume *volume) {
+  const hl_scene_volume *scene = volume->scene;
+  const hl_transfer_function *function = &scene->transfer_function;
+  const double flags[] = {scene->casts_shadow, scatters(scene),         scene->anisotropy,
+                          scene->clipped,      function->unit_distance, (double)(uintptr_t)scene->volume};
+  key = add_numbers(key, flags, sizeof flags / sizeof *flags);
+  key = add_numbers(key, scene->albedo, 3);
+  key = add_numbers(key, scene->attenuation_color, 3);
+  key = add_numbers(key, scene->clip_min, 3);
+  key = add_numbers(key, scene->clip_max, 3);
+  key = add_numbers(key, &volume->grid->index_to_frame.linear.row[0].x, 9);
+  key = add_numbers(key, &volume->grid->index_to_frame.offset.x, 3);
+  key = add_bytes(key, function->opacity, function->opacity_count * sizeof *function->opacity);
+  return add_bytes(key, function->color, function->color_count * sizeof *function->color);
+}
+
+static uint64_t add_light_key(uint64_t key, const hl_light *light, const hl_render_settings *render) {
+  const double words[] = {light->type,
+                          light->angular_diameter_deg,
+                          light->opening_angle_deg,
+                          light->falloff_angle_deg,
+                          light->radius,
+                          light->falloff,
+                          light->intensity,
+                          light->shadows,
+                          render->shadows};
+  const double *const vectors[] = {light->position, light->direction, light->edge1,
+                                   light->edge2,    light->normal,    light->color};
+  key = add_numbers(key, words, sizeof words / sizeof *words);
+  for (size_t v = 0; v < sizeof vectors / sizeof *vectors; v++) key = add_numbers(key, vectors[v], 3);
+  return add_bytes(key, light->vertices, light->vertex_count * sizeof *light->vertices);
+}
+
+static uint64_t key_of(const scatter_scene *scene) {
+  uint64_t key = UINT64_C(0xcbf29ce484222325);
+  for (size_t v = 0; v < scene->scene->volume_count; v++) key = add_volume_key(key, &scene->volumes[v]);
+  for (size_t l = 0; l < scene->scene->light_count; l++)
+    key = add_light_key(key, &scene->scene->lights[l], &scene->scene->render);
+  return key != 0 ? key : 1; /* 0: no field */
+}
+
+/* ---- the whole ---- */
+
+static void solve_channels(const scatter_scene *scene, const scatter_arrays *arrays, scatter_work *work,
+                           scatter_field *field) {
+  const scatter_nodes *nodes = &field->nodes;
+  size_t count = hl_scatter_node_count(nodes);
+  for (int c = 0; c < field->channels; c++) {
+    size_t medium = arrays->channels == 3 ? (size_t)c * count : 0;
+    if (c == 0 || arrays->channels == 3)
+      hl_scatter_begin_lines(scene->pool, nodes, arrays->extinction + medium, work);
+    hl_scatter_solve(scene->pool, nodes, arrays->extinction + medium, arrays->scattering + medium,
+                     arrays->direct + (size_t)c * count, work, field->light + (size_t)c * count,
+                     field->flux != NULL ? field->flux + (size_t)(3 * c) * count : NULL);
+  }
+}
+
+static hl_status find_field(const scatter_scene *scene, scatter_field *field, hl_error *error) {
+  size_t count = hl_scatter_node_count(&field->nodes);
+  scatter_arrays arrays;
+  scatter_work work;
+  hl_layout counted = {0};
+  bool with_flux = is_uneven(scene->scene);
+  lay_out(count, with_flux, &arrays, &work, &counted);
+  hl_layout handed = {.base = hl_allocate(scene->context, counted.bytes, 1)};
+  field->light = hl_allocate(scene->context, (with_flux ? 12 : 3) * count, sizeof *field->light);
+  if (handed.base == NULL || field->light == NULL) {
+    hl_release(scene->context, handed.base);
+    return hl_fail_memory(error, counted.bytes, "multiple scattering");
+  }
+  lay_out(count, with_flux, &arrays, &work, &handed);
+  field->flux = with_flux ? field->light + 3 * count : NULL;
+  hl_scatter_fill_matter(scene, &field->nodes, &arrays);
+  hl_scatter_fill_direct(scene, &field->nodes, &arrays);
+  bool grey = arrays.channels == 1;
+  for (size_t c = 1; c < 3; c++)
+    grey = grey && memcmp(arrays.direct, arrays.direct + c * count, count * sizeof(float)) == 0;
+  field->channels = grey ? 1 : 3;
+  solve_channels(scene, &arrays, &work, field);
+  hl_release(scene->context, handed.base);
+  if (hl_pool_cancelled(scene->pool))
+    return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while light is scattered");
+  return HL_OK;
+}
+
+hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl_error *error) {
+  uint64_t key = key_of(scene);
+  if (field->key == key) return HL_OK;
+  hl_scatter_release(scene->context, field);
+  if (!place_nodes(scene, &field->nodes)) return HL_OK;
+  hl_status status = find_field(scene, field, error);
+  if (status == HL_OK) field->key = key;
+  else hl_scatter_release(scene->context, field);
+  return status;
+}

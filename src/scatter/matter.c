@@ -1,0 +1,124 @@
+/* scatter/matter.c - extinction and scattering at the nodes: means over the boxes around them. */
+#include "scatter/parts.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The greatest number of samples along an edge of a node's box. */
+enum { MOST_SAMPLES = 4 };
+
+typedef struct matter_job {
+  const scatter_scene *scene;
+  const scatter_nodes *nodes;
+  scatter_arrays *arrays;
+  size_t node_count;
+} matter_job;
+
+static bool is_relevant(const grid *grid, const double p[3]) {
+  size_t brick[3];
+  for (int a = 0; a < 3; a++) {
+    if (!(p[a] >= grid->box_low[a] && p[a] <= grid->box_high[a])) return false;
+    double cell = fmin(fmax(floor(p[a]) + 1, 0), HL_BRICK_CELLS * grid->brick_count[a] - 1);
+    brick[a] = (size_t)cell / HL_BRICK_CELLS;
+  }
+  return grid->relevant[(brick[2] * (size_t)grid->brick_count[1] + brick[1]) * (size_t)grid->brick_count[0] +
+                        brick[0]] != 0;
+}
+
+/* The value between the voxels around a point, linear along each axis. */
+static float value_between(const grid *grid, const double p[3]) {
+  float value = 0;
+  for (int corner = 0; corner < 8; corner++) {
+    float weight = 1;
+    int64_t at[3];
+    for (int a = 0; a < 3; a++) {
+      double floored = floor(p[a]);
+      int far = corner >> a & 1;
+      at[a] = (int64_t)floored + far;
+      weight *= (float)(far ? p[a] - floored : 1 - (p[a] - floored));
+    }
+    if (weight > 0) value += weight * hl_stored_value(grid, at[0], at[1], at[2]);
+  }
+  return value;
+}
+
+/* The extinction of a volume at a point of frame space and the colour there; 0 where nothing is visible. */
+static float extinction_at(const scatter_volume *volume, vec3 point, float color[3]) {
+  const classifier *classifier = volume->classifier;
+  vec3 index = affine3_apply(volume->grid->frame_to_index, point);
+  const double p[3] = {index.x, index.y, index.z};
+  if (!is_relevant(volume->grid, p)) return 0;
+  float density = value_between(volume->grid, p) - volume->grid->empty;
+  float entry = density * classifier->scale + classifier->offset;
+  if (!(entry > 0)) entry = 0;
+  if (entry > CLASSIFIER_ENTRIES) entry = CLASSIFIER_ENTRIES;
+  size_t low = (size_t)entry;
+  float f = entry - (float)low;
+  for (int c = 0; c < 3; c++)
+    color[c] = classifier->color[low][c] + f * (classifier->color[low + 1][c] - classifier->color[low][c]);
+  return classifier->sums[low][0] + f * (classifier->sums[low + 1][0] - classifier->sums[low][0]);
+}
+
+/* Adds a volume's extinction and scattering at a point, times weight; similarity as scatter.h says. */
+static void add_volume(const scatter_volume *volume, vec3 point, float weight, float extinction[3],
+                       float scattering[3]) {
+  const hl_scene_volume *scene = volume->scene;
+  float color[3], found = extinction_at(volume, point, color);
+  if (!(found > 0)) return;
+  for (int c = 0; c < 3; c++) {
+    float taken = weight * found * (float)scene->attenuation_color[c];
+    float scattered = scene->multiple_scattering ? taken * color[c] * (float)scene->albedo[c] : 0;
+    extinction[c] += taken - scattered * (float)scene->anisotropy;
+    scattering[c] += scattered - scattered * (float)scene->anisotropy;
+  }
+}
+
+/* How many samples along an edge of a node's box find a volume's voxels. */
+static int samples_of(const scatter_volume *volume, float spacing) {
+  double voxel = mat3_shortest_column(volume->grid->index_to_frame.linear);
+  return (int)fmin(fmax(ceil(spacing / voxel), 1), MOST_SAMPLES);
+}
+
+static void fill_node(const matter_job *job, const int32_t at[3], size_t node) {
+  float extinction[3] = {0, 0, 0}, scattering[3] = {0, 0, 0}, spacing = job->nodes->spacing;
+  for (size_t v = 0; v < job->scene->scene->volume_count; v++) {
+    const scatter_volume *volume = &job->scene->volumes[v];
+    if (!volume->scene->casts_shadow || volume->grid->relevant_count == 0) continue;
+    int side = samples_of(volume, spacing);
+    float weight = 1 / (float)(side * side * side);
+    for (int s = 0; s < side * side * side; s++) {
+      const int of[3] = {s % side, s / side % side, s / side / side};
+      double p[3];
+      for (int a = 0; a < 3; a++)
+        p[a] = job->nodes->origin[a] + spacing * (at[a] + (of[a] + 0.5) / side - 0.5);
+      add_volume(volume, vec3_of(p), weight, extinction, scattering);
+    }
+  }
+  for (int c = 0; c < 3; c++) {
+    job->arrays->extinction[(size_t)c * job->node_count + node] = extinction[c];
+    job->arrays->scattering[(size_t)c * job->node_count + node] = scattering[c];
+  }
+}
+
+/* One slice of nodes. */
+static void fill_slice(void *data, size_t z, int worker) {
+  (void)worker;
+  const matter_job *job = data;
+  const int32_t *count = job->nodes->count;
+  for (int32_t y = 0; y < count[1]; y++)
+    for (int32_t x = 0; x < count[0]; x++) {
+      const int32_t at[3] = {x, y, (int32_t)z};
+      fill_node(job, at, (z * (size_t)count[1] + (size_t)y) * (size_t)count[0] + (size_t)x);
+    }
+}
+
+void hl_scatter_fill_matter(const scatter_scene *scene, const scatter_nodes *nodes, scatter_arrays *arrays) {
+  matter_job job = {scene, nodes, arrays, hl_scatter_node_count(nodes)};
+  hl_pool_run(scene->pool, (size_t)nodes->count[2], fill_slice, &job);
+  size_t bytes = job.node_count * sizeof(float);
+  bool grey = true;
+  for (int c = 1; c < 3; c++)
+    grey = grey && memcmp(arrays->extinction, arrays->extinction + (size_t)c * job.node_count, bytes) == 0 &&
+           memcmp(arrays->scattering, arrays->scattering + (size_t)c * job.node_count, bytes) == 0;
+  arrays->channels = grey ? 1 : 3;
+}

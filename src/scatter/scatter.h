@@ -1,0 +1,67 @@
+/* scatter/scatter.h - light that media scatter more than once, on a coarse grid over the scene.
+ *
+ * The grid does not depend on the camera. It is found once for volumes and lights that stay the same:
+ *
+ *     matter.c      extinction and scattering at the grid's nodes, from the volumes
+ *     direct.c      the lights' unscattered light at the nodes
+ *     transport.c   how scattered light spreads
+ *     field.c       the whole, and the key by which a result is kept
+ *
+ * A medium with anisotropy g and albedo w is taken for one that scatters evenly, with the extinction s (1 - w
+ * g) and the scattering s w (1 - g) (similarity; van de Hulst, "Multiple light scattering", 1980): where
+ * light was scattered often both spread it alike. */
+#ifndef HL_SCATTER_SCATTER_H
+#define HL_SCATTER_SCATTER_H
+
+#include <halflight/scene.h>
+
+#include "core/pool.h"
+#include "grid/classifier.h"
+#include "light/light_source.h"
+
+/* A volume of the scene, made ready. */
+typedef struct scatter_volume {
+  const hl_scene_volume *scene; /* in frame space */
+  const grid *grid;
+  const classifier *classifier;
+} scatter_volume;
+
+/* What a field is found from. Everything is borrowed. */
+typedef struct scatter_scene {
+  hl_context *context;
+  hl_pool *pool;
+  const hl_scene_description *scene; /* in frame space */
+  const scatter_volume *volumes;     /* [scene->volume_count] */
+} scatter_scene;
+
+/* Where the nodes are, in frame space: node (x, y, z) at origin + spacing * (x, y, z). */
+typedef struct scatter_nodes {
+  int32_t count[3];
+  float origin[3], spacing;
+} scatter_nodes;
+
+typedef struct scatter_field {
+  scatter_nodes nodes;
+  float *light; /* owned; [channels][count z][count y][count x]: the mean over all directions of light that
+                   was scattered, in the units of a light's color; null: none */
+  float *flux;  /* in the block of light; [channels][3][count z][count y][count x]: the mean of that light
+                   times its direction of  travel; null where all matter scatters evenly */
+  int channels; /* 1: the same for red, green and blue; or 3 */
+  uint64_t key; /* of what it was found from */
+} scatter_field;
+
+/* True if some volume asks for multiple scattering and can show it. */
+bool hl_scatter_wanted(const hl_scene_description *scene);
+
+/* The most bytes that hl_scatter_update() holds. */
+uint64_t hl_scatter_bytes(const hl_scene_description *scene);
+
+/* Brings the field up to date; does nothing where all that it depends on stayed the same. */
+hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl_error *error);
+void hl_scatter_release(hl_context *context, scatter_field *field);
+
+static inline size_t hl_scatter_node_count(const scatter_nodes *nodes) {
+  return (size_t)nodes->count[0] * (size_t)nodes->count[1] * (size_t)nodes->count[2];
+}
+
+#endif

@@ -1,0 +1,268 @@
+/* scatter/transport.c - how scattered light spreads from node to node.
+ *
+ * Along a line through the nodes let u be the mean of the light that travels either way. With even scattering
+ * and the optical depth t it obeys u'' = u - S, S being what is scattered into either way (Feautrier, "Sur la
+ * resolution numerique de l'equation de transfert", 1964). Between nodes i and i + 1, d apart in optical
+ * depth, with t_i that of a node's own box,
+ *
+ *     t_i (u_i - S_i) = (u_{i+1} - u_i) / d_{i+1/2} - (u_i - u_{i-1}) / d_{i-1/2}
+ *
+ * and no light enters at the ends. Elimination from one end on, in a form without differences and without
+ * division by d, which empty space may make 0 (derived; after Rybicki and Hummer, "An accelerated lambda
+ * iteration method for multilevel radiative transfer", 1991, appendix A):
+ *
+ *     f_i = t_i + f_{i-1} g_{i-1},  y_i = t_i S_i + y_{i-1} g_{i-1},  g_i = 1 / (1 + f_i d_{i+1/2}),  f = 1
+ * before the first u_i = (u_{i+1} + y_i d_{i+1/2}) g_i,  at the last node u = y / (1 + f)
+ *
+ * The mean over all directions is the weighted sum over the 13 lines between a node and its 26 neighbours, by
+ * the weights of the cubature of degree 7 of Lebedev ("Values of the nodes and weights of ninth to
+ * seventeenth order Gauss-Markov quadrature formulae invariant under the octahedron group with inversion",
+ * 1975). The scheme keeps all energy, and where many mean free paths lie between nodes it becomes the
+ * diffusion equation.
+ *
+ * From node i to the next the light that travels onwards exceeds the mean of both ways by v_{i+1/2} = y_i -
+ * f_i u_i (derived: the first of these equations for (u_i - u_{i+1}) / d). The sum of v times the line's
+ * direction is the light's flux.
+ *
+ * What is scattered depends on the light itself. With G the sum above as a function of the energy that nodes
+ * send out, D the scattering and b the light that was not scattered, u = G D (u + b). G is symmetric, so
+ * conjugate gradients (Hestenes and Stiefel, 1952) solve (1 - sqrt(D) G sqrt(D)) v = sqrt(D) G D b for v =
+ * sqrt(D) u.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "scatter/parts.h"
+
+/* Steps of conjugate gradients, and the fraction of the first residual at which they end. */
+enum { MOST_STEPS = 60 };
+static const double ENOUGH = 2e-3;
+
+/* From a node to the next one of a line. */
+static const int ways[SCATTER_LINES][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {-1, 1, 0},
+                                           {1, 0, 1},  {-1, 0, 1}, {0, 1, 1},  {0, -1, 1}, {1, 1, 1},
+                                           {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
+
+/* A line's weight, both ways: 2 x 1/21, 4/105, 9/280. */
+static float weight_of(int line) { return line < 3 ? 2.0f / 21 : line < 9 ? 8.0f / 105 : 18.0f / 280; }
+
+/* The distance of neighbouring nodes on a line, in units of the spacing. */
+static float length_of(int line) { return line < 3 ? 1.0f : line < 9 ? 1.41421356f : 1.73205081f; }
+
+typedef struct lines_job {
+  const scatter_nodes *nodes;
+  const float *extinction;
+  const float *sent; /* [nodes]; energy that a node sends out in all directions, per unit of length */
+  scatter_work *work;
+  float *mean; /* [nodes] */
+} lines_job;
+
+/* A row of nodes along x on the lines of one direction. */
+typedef struct line_row {
+  size_t at;         /* the row's first node */
+  size_t step;       /* from a node to the next one of the line */
+  int32_t low, high; /* nodes of the row that have a next one: from low to high - 1 */
+} line_row;
+
+/* The rows of a line in order; index: from 0 on. */
+static line_row row_of(const scatter_nodes *nodes, int line, size_t index) {
+  const int *way = ways[line];
+  const int32_t *count = nodes->count;
+  int32_t y = (int32_t)(index % (size_t)count[1]), z = (int32_t)(index / (size_t)count[1]);
+  if (way[1] < 0) y = count[1] - 1 - y;
+  line_row row = {.at = ((size_t)z * (size_t)count[1] + (size_t)y) * (size_t)count[0]};
+  row.step = (size_t)((ptrdiff_t)way[0] + ((ptrdiff_t)way[2] * count[1] + way[1]) * count[0]);
+  bool last = z + way[2] >= count[2] || y + way[1] < 0 || y + way[1] >= count[1];
+  row.low = way[0] < 0 ? 1 : 0;
+  row.high = last ? row.low : count[0] - (way[0] > 0 ? 1 : 0);
+  return row;
+}
+
+/* g of all nodes of a line; of last nodes 1 / (1 + f). */
+static void begin_line(void *data, size_t line, int worker) {
+  (void)worker;
+  const lines_job *job = data;
+  const int32_t *count = job->nodes->count;
+  size_t rows = (size_t)count[1] * (size_t)count[2];
+  float length = length_of((int)line) * job->nodes->spacing, *pass = job->work->pass[line],
+        *before = job->work->along[line]; /* f_{i-1} g_{i-1} */
+  const float *e = job->extinction;
+  for (size_t n = 0; n < rows * (size_t)count[0]; n++) before[n] = 1;
+  for (size_t r = 0; r < rows; r++) {
+    line_row row = row_of(job->nodes, (int)line, r);
+    for (int32_t x = 0; x < count[0]; x++) {
+      size_t at = row.at + (size_t)x;
+      float f = length * e[at] + before[at];
+      bool next = x >= row.low && x < row.high;
+      pass[at] = 1 / (1 + (next ? f * 0.5f * length * (e[at] + e[at + row.step]) : f));
+      if (next) before[at + row.step] = f * pass[at];
+    }
+  }
+}
+
+/* y along a row. */
+static void go_forward(const lines_job *job, int line, const line_row *row) {
+  const float *pass = job->work->pass[line] + row->at;
+  float *from = job->work->along[line] + row->at, *to = from + row->step;
+  for (int32_t x = row->low; x < row->high; x++) to[x] += from[x] * pass[x];
+}
+
+/* u along a row, from y. */
+static void go_back(const lines_job *job, int line, const line_row *row) {
+  float half = 0.5f * length_of(line) * job->nodes->spacing;
+  const float *pass = job->work->pass[line] + row->at, *e = job->extinction + row->at, *ahead = e + row->step;
+  float *here = job->work->along[line] + row->at;
+  const float *next = here + row->step;
+  int32_t count = job->nodes->count[0];
+  for (int32_t x = row->high > row->low ? row->high : 0; x < count; x++) here[x] *= pass[x];
+  for (int32_t x = 0; x < row->low && row->high > row->low; x++) here[x] *= pass[x];
+  if (row->step == 1)
+    for (int32_t x = row->high - 1; x >= row->low; x--)
+      here[x] = (next[x] + here[x] * (half * (e[x] + ahead[x]))) * pass[x];
+  else
+    for (int32_t x = row->low; x < row->high; x++)
+      here[x] = (next[x] + here[x] * (half * (e[x] + ahead[x]))) * pass[x];
+}
+
+static void solve_line(void *data, size_t line, int worker) {
+  (void)worker;
+  const lines_job *job = data;
+  const int32_t *count = job->nodes->count;
+  size_t rows = (size_t)count[1] * (size_t)count[2];
+  float length = length_of((int)line) * job->nodes->spacing, *along = job->work->along[line];
+  for (size_t n = 0; n < rows * (size_t)count[0]; n++) along[n] = length * job->sent[n];
+  for (size_t r = 0; r < rows; r++) {
+    line_row row = row_of(job->nodes, (int)line, r);
+    go_forward(job, (int)line, &row);
+  }
+  for (size_t r = rows; r-- > 0;) {
+    line_row row = row_of(job->nodes, (int)line, r);
+    go_back(job, (int)line, &row);
+  }
+}
+
+/* The work of flux_line(): v at the nodes, the mean of both neighbouring links'. */
+static void flux_line(void *data, size_t line, int worker) {
+  (void)worker;
+  const lines_job *job = data;
+  const int32_t *count = job->nodes->count;
+  size_t rows = (size_t)count[1] * (size_t)count[2], nodes = rows * (size_t)count[0];
+  float length = length_of((int)line) * job->nodes->spacing, *along = job->work->along[line],
+        *sent = job->work->flux[line], *before = job->work->before[line];
+  const float *pass = job->work->pass[line], *e = job->extinction;
+  for (size_t n = 0; n < nodes; n++) sent[n] = length * job->sent[n], before[n] = 1;
+  /* along holds u; sent becomes y, before f */
+  for (size_t r = 0; r < rows; r++) {
+    line_row row = row_of(job->nodes, (int)line, r);
+    for (int32_t x = 0; x < count[0]; x++) {
+      size_t at = row.at + (size_t)x;
+      before[at] += length * e[at];
+      if (x < row.low || x >= row.high) continue;
+      sent[at + row.step] += sent[at] * pass[at];
+      before[at + row.step] = before[at] * pass[at];
+    }
+  }
+  /* the link after a node: y - f u; before a node it is t (u - S) more (the first equation) */
+  for (size_t n = 0; n < nodes; n++) {
+    float after = sent[n] - before[n] * along[n];
+    sent[n] = after + 0.5f * length * (e[n] * along[n] - job->sent[n]);
+  }
+}
+
+/* The flux, one slice of nodes: [3][nodes] from job->mean on. */
+static void sum_flux(void *data, size_t z, int worker) {
+  (void)worker;
+  const lines_job *job = data;
+  size_t slice = (size_t)job->nodes->count[0] * (size_t)job->nodes->count[1],
+         nodes = hl_scatter_node_count(job->nodes);
+  for (int a = 0; a < 3; a++) {
+    float *flux = job->mean + (size_t)a * nodes + z * slice;
+    for (size_t n = 0; n < slice; n++) flux[n] = 0;
+    for (int line = 0; line < SCATTER_LINES; line++) {
+      if (ways[line][a] == 0) continue;
+      const float *v = job->work->flux[line] + z * slice;
+      float weight = weight_of(line) * (float)ways[line][a] / length_of(line);
+      for (size_t n = 0; n < slice; n++) flux[n] += weight * v[n];
+    }
+  }
+}
+
+/* The mean over the lines, one slice of nodes. */
+static void sum_slice(void *data, size_t z, int worker) {
+  (void)worker;
+  const lines_job *job = data;
+  size_t slice = (size_t)job->nodes->count[0] * (size_t)job->nodes->count[1];
+  float *mean = job->mean + z * slice;
+  for (size_t n = 0; n < slice; n++) mean[n] = 0;
+  for (int line = 0; line < SCATTER_LINES; line++) {
+    const float *along = job->work->along[line] + z * slice;
+    float weight = weight_of(line);
+    for (size_t n = 0; n < slice; n++) mean[n] += weight * along[n];
+  }
+}
+
+/* mean = G sent. */
+static void spread(hl_pool *pool, lines_job *job, const float *sent, float *mean) {
+  job->sent = sent;
+  job->mean = mean;
+  hl_pool_run(pool, SCATTER_LINES, solve_line, job);
+  hl_pool_run(pool, (size_t)job->nodes->count[2], sum_slice, job);
+}
+
+void hl_scatter_begin_lines(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
+                            scatter_work *work) {
+  lines_job job = {.nodes = nodes, .extinction = extinction, .work = work};
+  hl_pool_run(pool, SCATTER_LINES, begin_line, &job);
+}
+
+static double dot(const float *a, const float *b, size_t count) {
+  double sum = 0;
+  for (size_t n = 0; n < count; n++) sum += (double)a[n] * b[n];
+  return sum;
+}
+
+/* product = (1 - sqrt(D) G sqrt(D)) v; scratch: [nodes]. */
+static void apply(hl_pool *pool, lines_job *job, const float *root, const float *v, float *scratch,
+                  float *product) {
+  size_t count = hl_scatter_node_count(job->nodes);
+  for (size_t n = 0; n < count; n++) scratch[n] = root[n] * v[n];
+  spread(pool, job, scratch, product);
+  for (size_t n = 0; n < count; n++) product[n] = v[n] - root[n] * product[n];
+}
+
+/* Conjugate gradients from v = 0. rest: the right side, afterwards the residual. */
+static void solve_symmetric(hl_pool *pool, lines_job *job, const float *root, float *rest, float *v) {
+  size_t count = hl_scatter_node_count(job->nodes);
+  float *way = job->work->vectors[1], *product = job->work->vectors[2], *scratch = job->work->vectors[3];
+  memset(v, 0, count * sizeof *v);
+  memcpy(way, rest, count * sizeof *way);
+  double square = dot(rest, rest, count), enough = ENOUGH * ENOUGH * square;
+  for (int step = 0; step < MOST_STEPS && square > enough && square > 0 && !hl_pool_cancelled(pool); step++) {
+    apply(pool, job, root, way, scratch, product);
+    float length = (float)(square / dot(way, product, count));
+    for (size_t n = 0; n < count; n++) v[n] += length * way[n], rest[n] -= length * product[n];
+    double next = dot(rest, rest, count);
+    float keep = (float)(next / square);
+    for (size_t n = 0; n < count; n++) way[n] = rest[n] + keep * way[n];
+    square = next;
+  }
+}
+
+void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
+                      const float *scattering, const float *direct, scatter_work *work, float *light,
+                      float *flux) {
+  size_t count = hl_scatter_node_count(nodes);
+  float *root = work->vectors[0], *sent = work->vectors[3], *rest = work->vectors[2];
+  lines_job job = {.nodes = nodes, .extinction = extinction, .work = work};
+  for (size_t n = 0; n < count; n++) root[n] = sqrtf(scattering[n]), sent[n] = scattering[n] * direct[n];
+  spread(pool, &job, sent, rest);
+  float *right = work->vectors[4];
+  for (size_t n = 0; n < count; n++) right[n] = root[n] * rest[n];
+  solve_symmetric(pool, &job, root, right, light);
+  for (size_t n = 0; n < count; n++) sent[n] = scattering[n] * direct[n] + root[n] * light[n];
+  spread(pool, &job, sent, light);
+  if (flux == NULL) return;
+  job.mean = flux;
+  hl_pool_run(pool, SCATTER_LINES, flux_line, &job);
+  hl_pool_run(pool, (size_t)nodes->count[2], sum_flux, &job);
+}
