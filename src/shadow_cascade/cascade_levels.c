@@ -4,9 +4,12 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* GREATEST_CHUNKS: the most chunks of a sweep. ENOUGH_CHUNKS: to stay below this number, chunks grow, at most
- * to THICK_CHUNK. LEAST_CHUNK: the least thickness of a chunk. Thickness in pixels of omega. */
-static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3, LEAST_CHUNK = 0.15;
+/* GREATEST_CHUNKS, FAR_CHUNKS: the most chunks of a sweep, of near lights and of parallel ones; with 64
+ * chunks balls under parallel lights 60 to 90 degrees wide showed rings. ENOUGH_CHUNKS: to stay below this
+ * number, chunks grow, at most to THICK_CHUNK. LEAST_CHUNK: the least thickness of a chunk. Thickness in
+ * pixels of omega. */
+static const double GREATEST_CHUNKS = 64, FAR_CHUNKS = 96, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3,
+                    LEAST_CHUNK = 0.15;
 
 /* Divides omega from start to end into chunks of one length. A near light's omega grows without bound towards
  * the light, so these chunks may be more than the most allowed; then a chunk is a fixed fraction of -omega
@@ -14,8 +17,9 @@ static const double GREATEST_CHUNKS = 64, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3,
  * L / z, so all chunks have penumbrae of one width in space). Returns how many chunks there are. */
 static double divide(soft_cascade *cascade, double start, double end) {
   double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
+  double most = cascade->parallel ? FAR_CHUNKS : GREATEST_CHUNKS;
   cascade->chunk_start = start;
-  cascade->chunk = cascade->shortest_chunk = fmax(thick, (end - start) / GREATEST_CHUNKS);
+  cascade->chunk = cascade->shortest_chunk = fmax(thick, (end - start) / most);
   cascade->shrink = 0;
   bool even = cascade->emission ==
               NULL; /* an image keeps equal chunks: errors 0.024, not 0.026, over an edge */
